@@ -152,21 +152,14 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       first_(player_.session(), file_.string()),
       stage_(make_stage(std::move(loaded.history))) {
   if (const auto& twin = player_.session().twin) second_.emplace(*twin, file_.string());
+  if (const auto names = names_now()) stage_->name_runs(*names);
   show(player_.session().marks);
 }
 
 std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
   auto stage = std::make_unique<Stage>(arm_, document_, models_, std::move(history),
                                        steps_.empty() ? player_.duration() : kOfStory);
-  const Session& session = player_.session();
-  const Parameters p = session_parameters(session, file_.string());
-  stage->follow(p);
-  if (session.twin) {
-    const Parameters beside = session_parameters(*session.twin, file_.string());
-    const auto names = twin_names(p, beside);
-    stage->name_runs(
-        {names[0], names[1], true, {static_cast<int>(p.kind), static_cast<int>(beside.kind)}});
-  }
+  stage->follow(session_parameters(player_.session(), file_.string()));
   return stage;
 }
 
@@ -209,6 +202,14 @@ const StoryStep* PlayedSession::step() const {
 
 RunNames PlayedSession::names_in(const StoryStep& step) const {
   return {step.names[0], step.names[1], true, laws_at(player_.session(), step.begins)};
+}
+
+std::optional<RunNames> PlayedSession::names_now() {
+  if (!second_ || has_rerun() || !steps_.empty()) return std::nullopt;
+  const Parameters &first = settings(), &second = *twin_settings();
+  const auto names = twin_names(first, second);
+  return RunNames{
+      names[0], names[1], true, {static_cast<int>(first.kind), static_cast<int>(second.kind)}};
 }
 
 std::span<const double> PlayedSession::twin_row() const {

@@ -88,6 +88,10 @@ class PlayedSession {
   // What the plots call the two runs in a step of it.
   RunNames names_in(const StoryStep& step) const;
 
+  // The same at the player's time, where no story has names of its own; nothing of one run, or
+  // beside a re-run.
+  std::optional<RunNames> names_now();
+
   // Where it is pressed hardest: what its small picture shows.
   std::size_t row_to_show() const;
 

@@ -269,6 +269,9 @@ void Desktop::follow_playback(double dt) {
   if (sweep.update()) remember_recent(settings, sweep.sweep()->file.string());
   const bool another = playback.update(dt);
   tuning.follow_recorded(another);
+  if (PlayedSession* played = playback.shown()) {
+    if (const auto names = played->names_now()) played->stage().name_runs(*names);
+  }
   if (!another) return;
   tuning.end_break();
   const PlayedSession& opened = *playback.shown();

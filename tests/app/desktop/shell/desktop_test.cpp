@@ -841,6 +841,31 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   EXPECT_EQ(desktop->tuning.edited().eta, 3) << "for the re-run";
 }
 
+TEST_F(ADesktop, NamesTheRunsOfARecordedTwinAsTheyAreAtTheCursor) {
+  run("session.twin");
+  desktop->settings.parameters.kind = CouplingKind::standard;
+  desktop->settings.twin.parameters.kind = CouplingKind::tank;
+  frames(20);
+  record_something();
+  desktop->settings.parameters.kind = CouplingKind::proposed;
+  frames(30);
+  desktop->world.toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  desktop->playback.open(recordings().at(0));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  PlayedSession& played = *desktop->playback.shown();
+  const auto laws_at = [&](double time) {
+    played.player().seek(time);
+    frames(1);
+    return played.stage().names().laws;
+  };
+  using enum CouplingKind;
+  const int second = static_cast<int>(tank);
+  EXPECT_EQ(laws_at(0), (std::array{static_cast<int>(standard), second}));
+  EXPECT_EQ(laws_at(played.player().duration()), (std::array{static_cast<int>(proposed), second}));
+  EXPECT_EQ(laws_at(0), (std::array{static_cast<int>(standard), second}));
+}
+
 TEST_F(ADesktop, OffersASceneThatWasKeptUntilItIsTakenOrNot) {
   const fs::path folder = dir / "kept";
   const auto keep = [&](const std::string& ball) {
