@@ -130,7 +130,7 @@ void InputOptions::add_parameters(CLI::App& command) {
 }
 
 std::function<std::string(std::string)> or_shipped(const char* folder) {
-  return [folder](std::string named) {
+  return [folder](const std::string& named) {
     std::error_code none;
     const std::filesystem::path own = data_dir() / "assets" / folder / named;
     const bool shipped = !named.empty() && named.find('/') == std::string::npos &&

@@ -298,7 +298,7 @@ class Reader {
     const auto file = [&](const char* key, const char* kind, const fs::path& otherwise) {
       const auto name = file_.text(key);
       if (!name) return otherwise;
-      const fs::path found = beside_or_own(folder_, kind, *name);
+      fs::path found = beside_or_own(folder_, kind, *name);
       if (!fs::exists(found)) {
         file_.refuse(
             key, "a file beside the script, or one of " + (data_dir() / "assets" / kind).string());

@@ -212,7 +212,7 @@ void check_bodies(const SweepPlan& plan, const RunPlan& run, const SweepWorld& w
 RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
   const auto file = [&](const std::string& name, const char* kind, const fs::path& otherwise) {
     if (name.empty()) return otherwise;
-    const fs::path found = beside_or_own(plan.file.parent_path(), kind, name);
+    fs::path found = beside_or_own(plan.file.parent_path(), kind, name);
     if (fs::exists(found)) return found;
     throw FileError(fmt::format("{}: \"{}\" is not there, neither beside the plan nor in {}",
                                 plan.file.string(), name, (data_dir() / "assets" / kind).string()));

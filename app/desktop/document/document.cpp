@@ -242,7 +242,7 @@ fs::path keep_comments(const std::string& before, const fs::path& file) {
   const std::string now = text_there(file);
   const auto stays = [&](const std::string& each) { return now.find(each) != std::string::npos; };
   if (std::ranges::all_of(comments, stays)) return {};
-  const fs::path kept = file.string() + "~";
+  fs::path kept = file.string() + "~";
   if (const std::string wrong = try_write_atomically(kept, before); !wrong.empty()) {
     try_write_atomically(file, before);
     throw std::runtime_error(wrong);

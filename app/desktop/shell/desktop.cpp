@@ -160,7 +160,7 @@ Desktop::Desktop(Settings first, const AskForPriority& ask)
       devices(
           live, notices, ask,
           {.open = [this](std::unique_ptr<Device> device) { world.open_device(std::move(device)); },
-           .close = [this](std::function<void()> then) { world.close_device(then); },
+           .close = [this](const std::function<void()>& then) { world.close_device(then); },
            .first_button = [this] { pick_up_or_next_law(); }}),
       identify(live, devices, notices),
       playback(notices),
