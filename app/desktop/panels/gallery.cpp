@@ -112,6 +112,8 @@ fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width, int 
   const float em = ImGui::GetFontSize();
   const float pad = 0.5f * em;
   const bool at = keys_.at(number);
+  const ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 least = list.GetClipRectMin(), most = list.GetClipRectMax();
   const ImVec2 shot(width - 2 * pad, 0.5625f * (width - 2 * pad));
   const ImVec2 size(width, shot.y + 6.6f * em + ImGui::GetFrameHeight());
   ImGui::PushID(card.scene.c_str());
@@ -151,9 +153,11 @@ fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width, int 
   const bool over = ImGui::IsWindowHovered() && !on_button;
   if (keys_.taken(number)) chosen = card.scene;
   if (over || at) {
-    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y},
-                                        colour(current_palette().accent), 3, 0,
-                                        1.5f * current_scale());
+    const ImVec2 end(corner.x + size.x, corner.y + size.y);
+    ImGui::PushClipRect(least, most, false);  // the border is outside of the card's own
+    ImGui::GetWindowDrawList()->AddRect(corner, end, colour(current_palette().accent), 3, 0,
+                                        2 * current_scale());
+    ImGui::PopClipRect();
   }
   if (over) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);

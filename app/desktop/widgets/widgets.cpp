@@ -136,7 +136,7 @@ void ListKeys::move(int count, int columns) {
 
 bool ListKeys::at(int item) {
   if (item != at_) return false;
-  if (std::exchange(moved_, false)) ImGui::SetScrollHereY();
+  if (std::exchange(moved_, false)) ImGui::SetScrollHereY(0.25f);
   return true;
 }
 
