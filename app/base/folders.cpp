@@ -24,7 +24,7 @@ fs::path beside_or_own(const fs::path& folder, const std::string& kind, const st
   fs::path beside = folder / name;
   if (fs::exists(beside)) return beside;
   fs::path own = data_dir() / "assets" / kind / name;
-  return fs::exists(own) ? own : beside;
+  return fs::is_regular_file(own) ? own : beside;
 }
 
 namespace {

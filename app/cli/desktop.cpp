@@ -63,9 +63,7 @@ std::function<Parameters(const Parameters&)> checked_parameters(const InputOptio
   ArmDescription arm;
   SceneDocument document;
   read_world(input, arm, document);
-  const bool own = !input.configs.empty() || !input.settings.empty() || input.coupling ||
-                   input.eta || input.alpha;
-  if (!own) return nullptr;
+  if (!input.set_parameters()) return nullptr;
   make_parameters(input, arm);
   return [input, arm](const Parameters& last) {
     // A file has all of them; single ones change what was there.
@@ -116,9 +114,7 @@ int open_window(const WindowOptions& options) {
 
 // Nothing is simulated for a video: what it shows is recorded.
 void check_no_world(const InputOptions& input) {
-  const bool any = !input.device.empty() || !input.scene.empty() || !input.configs.empty() ||
-                   !input.settings.empty() || input.coupling || input.eta || input.alpha;
-  if (any) {
+  if (!input.device.empty() || !input.scene.empty() || input.set_parameters()) {
     throw UsageError(
         "--video: shows the session as it was recorded; arm, scene and parameters are for the "
         "window (`limpid run --hand SESSION.h5` runs it again under others)");

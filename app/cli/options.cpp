@@ -131,12 +131,8 @@ void InputOptions::add_parameters(CLI::App& command) {
 
 std::function<std::string(std::string)> or_shipped(const char* folder) {
   return [folder](const std::string& named) {
-    std::error_code none;
-    const std::filesystem::path own = data_dir() / "assets" / folder / named;
-    const bool shipped = !named.empty() && named.find('/') == std::string::npos &&
-                         !std::filesystem::exists(named, none) &&
-                         std::filesystem::is_regular_file(own, none);
-    return shipped ? own.string() : named;
+    if (named.empty() || named.find('/') != std::string::npos) return named;
+    return beside_or_own({}, folder, named).string();
   };
 }
 

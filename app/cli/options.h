@@ -32,6 +32,11 @@ struct InputOptions {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
 
+  // Whether any of them is given that add_parameters() declares.
+  bool set_parameters() const {
+    return !configs.empty() || !settings.empty() || coupling || eta || alpha;
+  }
+
   // Declares --config, --set, --coupling, --eta, --alpha.
   void add_parameters(CLI::App& command);
   // Declares --device, --tip and --scene.

@@ -81,7 +81,8 @@ void finish(Recorder& recorder) {
 }
 
 // Before the run, so that it is not made for nothing.
-void check_picture(const RunOptions& options) {
+void check_outputs(const RunOptions& options) {
+  keep_apart("--record", options.record, options.input);
   const std::filesystem::path png = options.picture;
   if (png.empty()) return;
   keep_apart("--picture", png, options.input);
@@ -218,8 +219,7 @@ int live(const RunOptions& options) {
                                     std::pair(options.twin.has_value(), "--twin")}) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
   }
-  check_picture(options);
-  keep_apart("--record", options.record, options.input);
+  check_outputs(options);
   return run_live({options.live, options.input, options.record, options.picture, options.force});
 }
 
@@ -228,8 +228,7 @@ int run(const RunOptions& options) {
   RunPlan plan = make_plan(options.input);
   say_about(plan);
   if (options.twin) plan.beside = {make_twin(plan.parameters, *options.twin)};
-  check_picture(options);
-  keep_apart("--record", options.record, options.input);
+  check_outputs(options);
   catch_interrupts();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {

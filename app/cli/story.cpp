@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <span>
 #include <stdexcept>
 
@@ -12,6 +11,7 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/story/run_story.h"
+#include "devices/files/atomic_file.h"
 
 namespace limpid {
 namespace {
@@ -64,9 +64,7 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
     print_steps(story);
     return 0;
   }
-  if (!options.record.empty() && !options.video.force && std::filesystem::exists(options.record)) {
-    throw FileError(options.record + ": exists already; --force replaces it");
-  }
+  if (!options.record.empty()) check_place(options.record, options.video.force);
   const StoryRun run = tell_with_progress(story);
   print_numbers(story, run.session);
   if (!options.record.empty()) {

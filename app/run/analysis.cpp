@@ -65,6 +65,12 @@ double device_delay(const ArmDescription& arm, const Parameters& p) {
   return simulated > known + p.tick / 2 ? simulated : known;
 }
 
+Condition3 condition3(const ArmDescription& arm, const Parameters& p) {
+  const Eigen::VectorXd b_d = device_damping(arm, p);
+  return condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())),
+                    device_delay(arm, p), p);
+}
+
 std::string basis_text(const ArmDescription& arm, const Parameters& p) {
   const std::string delay = fmt::format("a delay of {:.1f} ms", 1e3 * device_delay(arm, p));
   const char* const b_d = std::isnan(p.damping) ? "damping" : "damping as set";
@@ -101,8 +107,7 @@ Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, cons
   a.modes = std::move(modes);
   a.delay = device_delay(arm, p);
   a.measured = arm.delay.has_value() && std::isnan(p.damping);
-  a.condition3 = condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())),
-                            a.delay, p);
+  a.condition3 = condition3(arm, p);
   a.link = p.oldest() * p.tick;
   a.passive = p.eta >= a.eta_min;
   return a;

@@ -43,6 +43,9 @@ Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
 // as model.delay or the virtual arm's device.delay say.
 double device_delay(const ArmDescription& arm, const Parameters& p);
 
+// Condition (3) for these, and for the link that is set.
+Condition3 condition3(const ArmDescription& arm, const Parameters& p);
+
 // What the figures rest on, for people: "inertia, damping and a delay of 2.1 ms, measured".
 std::string basis_text(const ArmDescription& arm, const Parameters& p);
 

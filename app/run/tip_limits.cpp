@@ -52,13 +52,14 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip, l.delay};
   WallSetting through_link = s;
   through_link.delay += 2 * p.oldest() * p.tick;
-  const bool holds =
-      condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())), l.delay, p)
-          .holds;
+  const Condition3 c = condition3(description, p);
   const auto wall = [&](CouplingKind kind) -> TipLimits::Wall {
     switch (kind) {
       case CouplingKind::standard:
-        if (!holds) return {0, "condition (3) is broken: it is not passive in free motion either"};
+        if (!c.known) return {0, "no bound is known, as packets are lost (link.loss)"};
+        if (!c.holds) {
+          return {0, "condition (3) is broken: it is not passive in free motion either"};
+        }
         [[fallthrough]];
       case CouplingKind::tank:
         return {spring_at_tip(l.tip, p.k_vc), "felt through the spring k_vc"};

@@ -205,14 +205,25 @@ void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
   }
 }
 
+namespace {
+
+// Errors: FileError, where it is neither beside the script nor of those that come along.
+std::filesystem::path file_named(const TomlTable& table, const char* key,
+                                 const std::filesystem::path& folder, const char* kind,
+                                 const std::string& name) {
+  std::filesystem::path found = beside_or_own(folder, kind, name);
+  if (!std::filesystem::exists(found)) {
+    table.refuse(key,
+                 "a file beside the script, or one of " + (data_dir() / "assets" / kind).string());
+  }
+  return found;
+}
+
+}  // namespace
+
 void StoryHand::read_file(const TomlTable& step, const std::string& file, double begins,
                           double ends) {
-  const std::filesystem::path found = beside_or_own(folder_, "hands", file);
-  if (!std::filesystem::exists(found)) {
-    step.refuse("hand",
-                "a file beside the script, or one of " + (data_dir() / "assets/hands").string());
-  }
-  const HandPath path = read_hand(found);
+  const HandPath path = read_hand(file_named(step, "hand", folder_, "hands", file));
   const std::uint32_t line = step.find("hand")->source().begin.line;
   for (std::size_t i = 0; i < path.time.size() && begins + path.time[i] < ends; ++i) {
     add(begins + path.time[i], path.position[i], line);
@@ -297,13 +308,7 @@ class Reader {
   void read_world() {
     const auto file = [&](const char* key, const char* kind, const fs::path& otherwise) {
       const auto name = file_.text(key);
-      if (!name) return otherwise;
-      fs::path found = beside_or_own(folder_, kind, *name);
-      if (!fs::exists(found)) {
-        file_.refuse(
-            key, "a file beside the script, or one of " + (data_dir() / "assets" / kind).string());
-      }
-      return found;
+      return name ? file_named(file_, key, folder_, kind, *name) : otherwise;
     };
     RunPlan& plan = story_.plan;
     plan.arm = read_urdf(file("device", "devices", default_device()));

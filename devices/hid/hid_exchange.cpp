@@ -92,8 +92,9 @@ void HidExchange::send() noexcept {
   const nanoseconds now = clock_();
   if (!news && sent_any_ && now - sent_ < kSendPeriod) return;
   const Torque torque = torque_now(now);
+  went_on_ = now;
   protocol_.encode(std::span(torque).first(dof_), now, deliver_);
-  if (failures_ == 0) heard_ = clock_();  // a slow endpoint keeps it waiting, not the loop
+  if (failures_ == 0) heard_ = went_on_;
   sent_ = now;
   sent_any_ = true;
 }
@@ -134,6 +135,8 @@ bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
   if (!delivered) protocol_.undelivered();
   if (failures_ >= kMostFailures) lose();
   receive(0);
+  // A slow endpoint is no stall; what takes longer is, and the next torque is kept back for it.
+  if (const nanoseconds now = clock_(); now - went_on_ <= kSendGap) went_on_ = now;
   return delivered;
 }
 

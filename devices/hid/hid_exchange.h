@@ -93,7 +93,8 @@ class HidExchange {
   Arrival arrival_;
   SendReport deliver_;
   nanoseconds sent_{};
-  nanoseconds heard_{};  // by the device
+  nanoseconds heard_{};    // by the device
+  nanoseconds went_on_{};  // in send(): from report to report, up to a stall
   bool sent_any_ = false;
   int failures_ = 0;
   nanoseconds asked_{};

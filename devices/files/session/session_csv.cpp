@@ -168,15 +168,12 @@ void write_csv(const Session& session, const std::filesystem::path& out, bool fo
     write_line(numbers);
   }
   file.close();
-  std::string why = file ? "" : std::strerror(errno != 0 ? errno : EIO);
-  if (why.empty() && !device) {
-    std::error_code wrong;
-    std::filesystem::rename(written, out, wrong);
-    if (wrong) why = wrong.message();
+  if (!file) {
+    const std::string why = std::strerror(errno != 0 ? errno : EIO);
+    if (!device) std::filesystem::remove(written, none);
+    throw std::runtime_error(fmt::format("{}: not written: {}", out.string(), why));
   }
-  if (why.empty()) return;
-  if (!device) std::filesystem::remove(written, none);
-  throw std::runtime_error(fmt::format("{}: not written: {}", out.string(), why));
+  if (!device) publish(written, out, force);
 }
 
 }  // namespace limpid

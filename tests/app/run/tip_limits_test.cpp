@@ -31,6 +31,12 @@ TEST(TipLimits, OfTheStandardLawAreNoneWhereItGivesEnergyAlready) {
   p.link_delay = 20;
   EXPECT_EQ(wall(limits(p), standard), 0);
   EXPECT_GT(wall(limits(p), tank), 100) << "which is passive through a link";
+  p.link_loss = 0.1;
+  const TipLimits lossy = limits(p);
+  EXPECT_EQ(wall(lossy, standard), 0);
+  EXPECT_NE(lossy.walls[static_cast<std::size_t>(standard)].bound.find("packets are lost"),
+            std::string::npos);
+  p.link_loss = 0;
   p.link_delay = 0;
   p.tick = 0.1;
   EXPECT_EQ(wall(limits(p), standard), 0);

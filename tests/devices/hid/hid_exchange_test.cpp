@@ -297,6 +297,21 @@ TEST_F(RawExchange, PushesADeviceThatTakesItsReportsSlowly) {
   EXPECT_EQ(newest.lapses, before);
 }
 
+// As when the whole program is stopped meanwhile: what the device has had is old then.
+TEST_F(RawExchange, GivesNoTorqueAfterAWriteThatStoodStill) {
+  for (const int stall : {6, 20, 1000}) {
+    push();
+    const std::uint32_t before = newest.lapses;
+    device->while_writing = [this, stall] { now += milliseconds(stall); };
+    healthy_turn();
+    device->while_writing = [] {};
+    EXPECT_FALSE(healthy_turn().pushes()) << stall;
+    exchange->read(newest);
+    EXPECT_EQ(newest.lapses, before + 1) << stall;
+    EXPECT_TRUE(healthy_turn().pushes()) << stall;
+  }
+}
+
 TEST_F(RawExchange, TellsTheLoopWheneverItKeptATorqueBack) {
   push();
   const std::uint32_t before = newest.lapses;
