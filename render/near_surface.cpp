@@ -65,14 +65,13 @@ std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, d
   return nearest;
 }
 
-void add_surfaces(const Scene& scene, bool rubs, ViewState& state) {
+void add_surfaces(const Scene& scene, ViewState& state) {
   for (ContactMark& contact : state.contacts) {
     const auto surface = nearest_surface(scene, contact.position, kTouch, state.bodies);
     if (!surface) continue;
     const double side = contact.force.dot(surface->normal) < 0 ? -1 : 1;
     contact.normal = side * surface->normal;
-    contact.friction =
-        rubs && surface->material.friction_static > 0 ? surface->material.friction_static : 0;
+    contact.friction = surface->material.friction_static;
     contact.slips = contact.friction > 0 && slips(contact, surface->material);
   }
   state.shade.reset();

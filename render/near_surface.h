@@ -20,9 +20,9 @@ struct NearSurface {
 std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within,
                                            std::span<const Pose> bodies = {});
 
-// Fills in what the contacts' forces do not say: the normals, and, if the law `rubs`, friction and
-// whether they slip; and the proxy's shade. A force that is no more than friction holds, and is not
-// at the friction of slipping, sticks.
-void add_surfaces(const Scene& scene, bool rubs, ViewState& state);
+// Fills in what the contacts' forces do not say: the normals, friction and whether they slip; and
+// the proxy's shade. A force that is no more than friction holds, and is not at the friction of
+// slipping, sticks.
+void add_surfaces(const Scene& scene, ViewState& state);
 
 }  // namespace limpid

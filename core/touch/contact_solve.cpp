@@ -276,6 +276,10 @@ void ContactSolve<N>::learn(Row& row, const ContactAnswer<N>& answer, double T) 
 
 template <int N>
 void ContactSolve<N>::set_damping(Row& row, const ContactAnswer<N>& answer, double T) {
+  if (answer.inertia == nullptr) {
+    row.B = row.material.damping;
+    return;
+  }
   Vec<N> direction = row.g[0];
   Vec3 along = Vec3::UnitX();
   if (row.magnet != nullptr && !row.magnet->stretch.isZero(0)) {

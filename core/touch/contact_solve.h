@@ -44,10 +44,11 @@ struct ContactAnswer {
       : system(blocks...), on_device(device), on_proxy(proxy) {}
 
   CoupledSystem<N> system;
-  double on_device = 0;                         // of f2, what reaches the first rows
-  Wide<N> on_proxy;                             // and the second ones [-]
-  const SymmetricFactor<N>* inertia = nullptr;  // of what a wall finds heavy
-  double damping = 0;                           // see wall_damping() [-]
+  double on_device = 0;  // of f2, what reaches the first rows
+  Wide<N> on_proxy;      // and the second ones [-]
+  // Of what a wall finds heavy; null: walls have the damping of their material and no more.
+  const SymmetricFactor<N>* inertia = nullptr;
+  double damping = 0;       // see wall_damping() [-]
   double jump = 0;          // of a joint's velocity when its encoder makes a step [rad/s]
   double most_damping = 0;  // that a wall may have, as a part of its mass a tick, m_n/T [-]
 

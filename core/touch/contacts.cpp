@@ -40,7 +40,7 @@ void check_index(int index, const ArmDescription& arm, const char* what) {
 
 template <int N>
 Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
-    : stiffest_(stiffest_surface(scene)) {
+    : stiffest_(stiffest_surface(scene)), rub_(has_rubbing_surfaces(scene)) {
   const Vec3 tip = arm.tip.translation();
   probes_.push_back({"tip", arm.dof() - 1, tip, tip, scene.tip_radius});
   for (const Probe& probe : scene.probes) {

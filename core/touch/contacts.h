@@ -50,7 +50,7 @@ struct Contact {
   Vec3 friction = Vec3::Zero();  // the same, along the surface [N]
 };
 
-// What a contact keeps from tick to tick, for laws that render friction.
+// What a contact keeps from tick to tick, where surfaces rub.
 struct ContactMemory {
   Vec3 push = Vec3::Zero();    // of the wall: along x the force [N]; of a mesh: as a vector [N]
   Vec3 anchor = Vec3::Zero();  // how far the spring of friction is stretched [m]
@@ -131,6 +131,8 @@ class Contacts {
   std::span<Contact<N>> list() { return {contacts_.data(), count_}; }
   std::span<MeshContact<N>> meshes() { return meshes_; }
   ContactMemory& memory(std::size_t id) { return memories_[id]; }
+  // Some surface of the scene has friction or damping.
+  bool rub() const { return rub_; }
   // Something is in, or pushed over the last tick.
   bool engaged() const;
   void forget() { std::ranges::fill(memories_, ContactMemory{}); }
@@ -201,6 +203,7 @@ class Contacts {
   Magnet magnet_;
   double potential_ = 0;
   double stiffest_ = 0;
+  bool rub_ = false;
 };
 
 extern template class Contacts<3>;

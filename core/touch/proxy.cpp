@@ -90,6 +90,7 @@ template <int N>
 void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
   if (behind_) catch_up();
   look(T);
+  if (contacts_->rub()) return solve_with_friction(T, drive);
   // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
   // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
   // none ever pulls.
@@ -99,6 +100,35 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
   }
   step(T, vbar_, f_);
   contacts_->step_bodies();
+}
+
+// The same system, with the forces of contacts that rub and damp:
+//     (2/T M + S + damping) vbar = 2/T L nu + constant + share f2.
+// The torque that a law feeds forward to the device answers the motion of the tick before, so a
+// damper may ask for no more there than what stays stable so late.
+template <int N>
+void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
+  constexpr double kMostDamping = 0.34;  // of the mass that moves a tick, m_n/T [-]
+  const Eigen::Index n = x_.size();
+  const Mat<N> none = Mat<N>::Zero(n, n), one = Mat<N>::Identity(n, n);
+  Mat<N> share = drive.share.direct * one;
+  if (drive.share.shared != 0) {
+    share += drive.share.shared * drive.share.M_L->solve(M_).transpose();
+  }
+  Wide<N> Z = impedance(T);
+  Z.diagonal().array() += drive.damping;
+  ContactAnswer<N> answer(0, widened<N>(share), widened<N>(one), widened<N>(none), widened<N>(none),
+                          Z);
+  if (drive.share.shared != 0) {
+    answer.inertia = drive.share.M_L;
+    answer.most_damping = kMostDamping;
+  }
+  Motion<N> motion = answer.solve({Vec<N>::Zero(n), momentum(T) + drive.constant});
+  friction_.collect(*contacts_, arm_, frames_, motion.u, T);
+  if (friction_.any()) friction_.solve(answer, T, motion);
+  const Vec<N> f = friction_.f2(n);
+  friction_.finish(*contacts_);
+  step(T, motion.u, f);
 }
 
 template <int N>

@@ -5,6 +5,7 @@
 
 #include "core/dynamics/arm.h"
 #include "core/math/solve.h"
+#include "core/touch/contact_solve.h"
 #include "core/touch/contacts.h"
 
 namespace limpid {
@@ -25,7 +26,8 @@ struct ProxyDrive {
 //     (2/T M + S) vbar = 2/T L nu_k + tau + f,   x_k+1 = x_k + T vbar,
 // gives (|nu_k+1|^2 - |nu_k|^2) / 2 = (tau + f) . (x_k+1 - x_k): kinetic energy balances work in
 // every step, whatever T, M(x) and forces are. Springs, dampers and contacts enter at the midpoint,
-// linearly in vbar, so that one solve is all, and no inertia is too small.
+// linearly in vbar, so that one solve is all, and no inertia is too small. Friction and damping of
+// surfaces are not linear: where a scene has them, ContactSolve finds all contacts' forces.
 template <int N>
 class Proxy {
  public:
@@ -81,9 +83,11 @@ class Proxy {
 
  private:
   bool solve_step(double T, const ProxyDrive<N>& drive);
+  void solve_with_friction(double T, const ProxyDrive<N>& drive);
 
   Arm<N> arm_;
   std::unique_ptr<Contacts<N>> contacts_;
+  ContactSolve<N> friction_;  // of a tick in which surfaces rub or damp
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
   bool behind_ = false;  // of what catch_up() brings

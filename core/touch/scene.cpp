@@ -43,6 +43,13 @@ double stiffest_surface(const Scene& scene) {
   return most;
 }
 
+bool has_rubbing_surfaces(const Scene& scene) {
+  return std::ranges::any_of(scene.objects, [](const Object& object) {
+    const Material& m = object.material;
+    return m.damping > 0 || m.friction_static > 0 || m.friction_kinetic > 0;
+  });
+}
+
 void set_surface_stiffness(Scene& scene, double stiffness) {
   for (Object& object : scene.objects) {
     if (has_surface(object)) object.material.stiffness = stiffness;

@@ -14,8 +14,8 @@ namespace limpid {
 
 // Shapes, each around the origin of its object's pose.
 
-// How what can be touched pushes back. The paper's couplings render its stiffness alone (section
-// 4.1: contacts are pure stiffness), the predictive one all of it.
+// How what can be touched pushes back. The paper's contacts are pure stiffness (section 4.1);
+// friction and damping are further parts of its f2, under every law.
 
 struct Material {
   double stiffness = 600;       // [N/m]
@@ -149,6 +149,8 @@ int count_bodies(const Scene& scene);
 std::vector<std::string> body_names(const Scene& scene);
 // Of all surfaces; 0 without any [N/m].
 double stiffest_surface(const Scene& scene);
+// Some object has friction or damping.
+bool has_rubbing_surfaces(const Scene& scene);
 void set_surface_stiffness(Scene& scene, double stiffness);
 
 // Where something touches and how hard it pushes on the proxy.

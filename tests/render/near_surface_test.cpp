@@ -31,15 +31,19 @@ TEST(NearSurface, IsTheNearestOfAll) {
 
 TEST(NearSurface, GivesContactsTheFrictionOfWhatTheyTouch) {
   ViewState state = touched_with(Vec3(0, 0, 1));
-  add_surfaces(rough_table(), true, state);
+  add_surfaces(rough_table(), state);
   EXPECT_EQ(state.contacts[0].friction, 0.6);
   EXPECT_TRUE(state.contacts[0].normal.isApprox(Vec3::UnitZ()));
   EXPECT_FALSE(state.contacts[0].slips);
 }
 
-TEST(NearSurface, KnowsNoFrictionOfALawThatRendersNone) {
+TEST(NearSurface, GivesContactsOfASmoothSurfaceNone) {
+  Scene smooth = rough_table();
+  for (Object& object : smooth.objects) {
+    object.material.friction_static = object.material.friction_kinetic = 0;
+  }
   ViewState state = touched_with(Vec3(0.5, 0, 1));
-  add_surfaces(rough_table(), false, state);
+  add_surfaces(smooth, state);
   EXPECT_EQ(state.contacts[0].friction, 0);
   EXPECT_FALSE(state.contacts[0].slips);
 }
@@ -48,7 +52,7 @@ TEST(NearSurface, TellsSlippingFromSticking) {
   for (const auto& [along, slips] :
        {std::pair(0.0, false), {0.2, false}, {0.4, true}, {0.5, false}, {0.6, true}}) {
     ViewState state = touched_with(2 * Vec3(0, along, 1));
-    add_surfaces(rough_table(), true, state);
+    add_surfaces(rough_table(), state);
     EXPECT_EQ(state.contacts[0].slips, slips) << along;
   }
 }
@@ -57,12 +61,12 @@ TEST(NearSurface, ShadesWhereTheTipIsNear) {
   ViewState state;
   state.proxy.links.push_back(Pose::Identity());
   state.proxy.tip = Vec3(0.3, 0, 0.02);
-  add_surfaces(rough_table(), true, state);
+  add_surfaces(rough_table(), state);
   ASSERT_TRUE(state.shade);
   EXPECT_TRUE(state.shade->position.isApprox(Vec3(0.3, 0, 0)));
   EXPECT_NEAR(state.shade->height, 0.02, 1e-12);
   state.proxy.tip.z() = 0.3;
-  add_surfaces(rough_table(), true, state);
+  add_surfaces(rough_table(), state);
   EXPECT_FALSE(state.shade);
 }
 

@@ -149,8 +149,7 @@ ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
   const RowLayout& layout = stage.channels().layout();
   ViewState view = stage.rows().view(layout, row);
   memory.update(view, stage.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
-  const auto law = static_cast<CouplingKind>(layout.in(row, Column::kind)[0]);
-  add_surfaces(stage.document().scene, info(law).solves_together, view);
+  add_surfaces(stage.document().scene, view);
   view.show_ghost = settings.show_ghost;
   view.show_trail = settings.show_trail;
   view.show_forces = settings.show_forces;

@@ -1,0 +1,163 @@
+// Friction and damping of surfaces, under every coupling law and through a link: against Coulomb's
+// law, the damper's law and the balance of energy, each worked out from the rows alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/dynamics/arm.h"
+#include "devices/simulated/rig.h"
+#include "tests/support/built_in.h"
+#include "tests/support/rows.h"
+
+namespace limpid {
+namespace {
+
+using test::Rows;
+
+constexpr double kStiffness = 300;  // [N/m]
+const Vec3 kTable(0.19, 0, -0.04);
+
+struct Case {
+  std::string name;
+  Parameters p;
+};
+
+// All laws; those that know a link also with a delay of 3 ms each way.
+std::vector<Case> laws() {
+  std::vector<Case> cases;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    Parameters p;
+    p.kind = static_cast<CouplingKind>(i);
+    cases.push_back({kLawKeys[i], p});
+    if (p.kind != CouplingKind::standard && p.kind != CouplingKind::tank) continue;
+    p.link_delay = 3;
+    cases.push_back({std::string(kLawKeys[i]) + " through a link", p});
+  }
+  return cases;
+}
+
+Scene table(double damping, double friction_static, double friction_kinetic) {
+  Scene scene;
+  Object plane;
+  plane.shape = Plane{};
+  plane.pose = pose_at(kTable);
+  plane.material = {kStiffness, damping, friction_static, friction_kinetic};
+  scene.add(plane);
+  return scene;
+}
+
+Rows run(const Parameters& p, const Scene& scene, double seconds,
+         const std::function<Vec3(double)>& hand) {
+  const ArmDescription arm = test::omni();
+  Rig rig(arm, scene);
+  rig.start(p, rest_at(arm, hand(0)));
+  Rows rows(rig.layout());
+  const auto ticks = static_cast<std::size_t>(seconds / p.tick);
+  for (std::size_t k = 0; k < ticks; ++k) {
+    rig.step(p, {{hand(static_cast<double>(k) * p.tick), 1}}, rows.add());
+  }
+  return rows;
+}
+
+Vec3 proxy_tip(const Rows& rows, std::size_t k) {
+  static const Arm<3> arm(test::omni());
+  return arm.tip_at(rows.vec(k, Column::proxy_position));
+}
+
+Vec3 force(const Rows& rows, std::size_t k) {
+  Vec3 all = Vec3::Zero();
+  for (const Rows::Touch& touch : rows.touches(k)) all += touch.force;
+  return all;
+}
+
+// Down by 12 mm in half a second, then 25 mm/s along y.
+Vec3 stroke(double t) {
+  const double down = std::min(1.0, 2 * t), along = std::max(0.0, t - 1);
+  return kTable + Vec3(0, 0.025 * along, 0.005 - 0.017 * down);
+}
+
+TEST(Surfaces, SlipWithTheirKineticFrictionAgainstTheMotionUnderEveryLaw) {
+  for (const Case& c : laws()) {
+    SCOPED_TRACE(c.name);
+    const Rows rows = run(c.p, table(0, 0.6, 0.4), 3, stroke);
+    double moved = 0;
+    for (std::size_t k = 2000; k + 1 < rows.size(); ++k) {
+      const Vec3 f = force(rows, k), v = proxy_tip(rows, k + 1) - proxy_tip(rows, k);
+      ASSERT_GT(f.z(), 0.2) << k;
+      ASSERT_NEAR(f.head<2>().norm(), 0.4 * f.z(), 1e-6 * f.z()) << k;
+      ASSERT_LT(f.head<2>().dot(v.head<2>()), 0) << k;
+      moved += v.y();
+    }
+    EXPECT_NEAR(moved, 0.025, 0.002);
+  }
+}
+
+TEST(Surfaces, HoldAHandThatPullsWithLessThanTheirStaticFrictionUnderEveryLaw) {
+  const auto lean = [](double t) { return stroke(std::min(t, 1.04)); };  // 1 mm to the side
+  for (const Case& c : laws()) {
+    SCOPED_TRACE(c.name);
+    const Rows rows = run(c.p, table(0, 1, 1), 4, lean);
+    const std::size_t last = rows.size() - 1;
+    const Vec3 f = force(rows, last);
+    EXPECT_LT(f.y(), -0.02);
+    EXPECT_LT(f.head<2>().norm(), 0.9 * f.z());
+    const Vec3 crept = proxy_tip(rows, last) - proxy_tip(rows, last - 1000);
+    EXPECT_LT(crept.norm(), 1e-5);
+  }
+}
+
+// F (d' - d) = change of K d^2 / 2 + B (d' - d)^2 / T, the depth d before and d' after a tick.
+TEST(Surfaces, DampWhatIsPressedInAndLetOutUnderEveryLaw) {
+  constexpr double kDamping = 4;  // [N s/m]
+  const auto hand = [](double t) {
+    return Vec3(kTable + Vec3(0, 0, -0.01 + 0.004 * std::cos(12 * t)));
+  };
+  for (const Case& c : laws()) {
+    SCOPED_TRACE(c.name);
+    const Rows damped = run(c.p, table(kDamping, 0, 0), 2, hand);
+    double most = 0;
+    for (std::size_t k = 500; k + 1 < damped.size(); ++k) {
+      const double d = kTable.z() - proxy_tip(damped, k).z();
+      const double after = kTable.z() - proxy_tip(damped, k + 1).z();
+      ASSERT_GT(std::min(d, after), 0) << k;
+      const double damper = kDamping * (after - d) / c.p.tick;
+      // The predictive law's walls have a damper of their own besides.
+      const double F = force(damped, k).z() - kStiffness * (d + after) / 2;
+      if (c.p.kind == CouplingKind::predictive) {
+        ASSERT_GE(F * damper, damper * damper - 1e-6) << k;
+      } else {
+        ASSERT_NEAR(F, damper, 1e-4) << k;
+      }
+      most = std::max(most, std::abs(damper));
+    }
+    EXPECT_GT(most, 0.02);
+  }
+}
+
+TEST(Surfaces, ThatRubAndDampGiveNoEnergyUnderAnyLaw) {
+  const auto hand = [](double t) {  // pressed more and less, let go, and led to and fro
+    return Vec3(kTable + Vec3(0.01 * std::sin(9 * t), 0.01 * std::sin(14 * t),
+                              0.005 - 0.02 * std::min(1.0, 4 * t) + 0.012 * std::sin(23 * t)));
+  };
+  for (const Case& c : laws()) {
+    SCOPED_TRACE(c.name);
+    const Rows rows = run(c.p, table(2, 0.7, 0.5), 5, hand);
+    double lost = 0;
+    int touched = 0;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      const double gain = rows.at(k, Column::contact_gain) - rows.at(k - 1, Column::contact_gain);
+      ASSERT_LE(gain, 1e-9) << k;
+      lost -= gain;
+      touched += rows.touches(k).empty() ? 0 : 1;
+    }
+    EXPECT_GT(lost, 1e-3);
+    EXPECT_GT(touched, 1000);
+    EXPECT_LT(touched, 4990);
+  }
+}
+
+}  // namespace
+}  // namespace limpid
