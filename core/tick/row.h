@@ -144,12 +144,12 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
      "share of all torque that the ledger or the device's tank lets through"},
     {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
-     "how the predictive law solved the tick: 0 as usual, 1 with motors at their limit, 2 contacts "
-     "that did not settle one after the other, 3 not at all: the proxy stood still",
+     "how the tick was solved: 0 as usual; with the predictive law 1 with motors at their limit, 2 "
+     "contacts that did not settle one after the other; 3 not at all: the proxy stood still",
      true},
     {Column::unsettled, "/coupling/unsettled", ColumnWidth::one, "-",
-     "ticks so far in which motors at their limit and contacts had no common solution; the proxy "
-     "stood still for them"},
+     "ticks so far in which contacts, and with the predictive law motors at their limit, had no "
+     "common solution; the proxy stood still for them"},
     {Column::energy_total, "/energy/controller_total", ColumnWidth::one, "J",
      "E_c with the device's own damping"},
     {Column::energy_commanded, "/energy/controller_commanded", ColumnWidth::one, "J",

@@ -242,8 +242,9 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   set(Column::governor, law.contact_governor);
   set(Column::damping_governor, law.damping_governor);
   set(Column::torque_governor, law.torque_governor);
-  set(Column::solved, static_cast<double>(law.solved));
-  set(Column::unsettled, static_cast<double>(law.unsettled));
+  const TickSolve solved = proxy_.stood_still() ? TickSolve::stood_still : law.solved;
+  set(Column::solved, static_cast<double>(solved));
+  set(Column::unsettled, static_cast<double>(law.unsettled + proxy_.unsettled()));
   const double reserve = coupling_.reserve();
   set(Column::energy_ledger, std::isfinite(reserve) ? reserve : 0);
   set(Column::energy_port, books_.port);

@@ -566,6 +566,7 @@ void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>&
   settled_ = false;
   for (sweeps_ = 0; !settled_ && sweeps_ < kMostSweeps; ++sweeps_) {
     settled_ = true;
+    last_change_ = 0;
     for (Row& row : rows) {
       if (apart(row, T, motion.u)) continue;
       if (!row.known) learn(row, answer, T);
@@ -574,14 +575,15 @@ void ContactSolve<N>::solve(const ContactAnswer<N>& answer, double T, Motion<N>&
                                                     : push_mesh(row, T, motion);
       most = std::max(most, row.push.norm());
       settled_ = settled_ && change < kSettled * std::max(1.0, most);
+      last_change_ = std::max(last_change_, change / std::max(1.0, most));
     }
     if (world_ != nullptr) {
       const double enough = kSettled * std::max(1.0, most);
-      settled_ = world_->sweep(true, enough, kSweepsOfBodies) <= enough && settled_;
+      const double bodies = world_->sweep(true, enough, kSweepsOfBodies);
+      settled_ = bodies <= enough && settled_;
+      last_change_ = std::max(last_change_, bodies / std::max(1.0, most));
     } else if (count_ == 1 && rows_[0].radius == 0) {
       settled_ = true;
-      ++sweeps_;
-      return;
     }
   }
 }

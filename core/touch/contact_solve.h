@@ -93,6 +93,8 @@ class ContactSolve {
   bool any() const { return count_ > 0; }
   int sweeps() const { return sweeps_; }     // of the last solve,
   bool settled() const { return settled_; }  // which ended before they were all used up
+  // The largest change of a force in its last sweep, as a part of the largest force or of 1 N.
+  double last_change() const { return last_change_; }
 
   // The tick went like this: contacts and their memories learn of it.
   void finish(Contacts<N>& contacts) const;
@@ -169,6 +171,7 @@ class ContactSolve {
   int count_ = 0;
   int sweeps_ = 0;
   bool settled_ = true;
+  double last_change_ = 0;
 };
 
 extern template class ContactSolve<3>;

@@ -20,6 +20,8 @@ void Proxy<N>::place(const Vec<N>& x, const Vec<N>& v, double ratio) {
   v_ = v;  // to the last bit: a recording's first row is a starting point
   tau_ = f_ = vbar_ = Vec<N>::Zero(x.size());
   behind_ = false;
+  stood_still_ = false;
+  unsettled_ = 0;
   catch_up();
   nu_ = factor_.turned_times(v);
   contacts_->place(arm_, frames_, x_);
@@ -105,10 +107,12 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
 // The same system, with the forces of contacts that rub and damp:
 //     (2/T M + S + damping) vbar = 2/T L nu + constant + share f2.
 // The torque that a law feeds forward to the device answers the motion of the tick before, so a
-// damper may ask for no more there than what stays stable so late.
+// damper may ask for no more there than what stays stable so late. Forces that do not settle are
+// not used: the proxy and the bodies that it touches stand still for the tick, which gives nothing.
 template <int N>
 void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
   constexpr double kMostDamping = 0.34;  // of the mass that moves a tick, m_n/T [-]
+  constexpr double kMostChange = 1e-3;   // of a force in the last sweep, see last_change() [-]
   const Eigen::Index n = x_.size();
   const Mat<N> none = Mat<N>::Zero(n, n), one = Mat<N>::Identity(n, n);
   Mat<N> share = drive.share.direct * one;
@@ -126,6 +130,14 @@ void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
   Motion<N> motion = answer.solve({Vec<N>::Zero(n), momentum(T) + drive.constant});
   friction_.collect(*contacts_, arm_, frames_, motion.u, T);
   if (friction_.any()) friction_.solve(answer, T, motion);
+  stood_still_ = friction_.any() && friction_.last_change() > kMostChange;
+  if (stood_still_) {
+    ++unsettled_;
+    friction_.prepare(answer, T);
+    friction_.hold_bodies();
+    motion.u.setZero();
+    friction_.push(motion.u, T, nullptr);
+  }
   const Vec<N> f = friction_.f2(n);
   friction_.finish(*contacts_);
   step(T, motion.u, f);

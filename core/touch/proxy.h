@@ -74,6 +74,9 @@ class Proxy {
   const Vec<N>& f() const { return f_; }        // f2 as it acted [N m]
   const Vec<N>& vbar() const { return vbar_; }  // [rad/s]
   const Contacts<N>& contacts() const { return *contacts_; }
+  // advance() found no forces that agree, so that the proxy stood still; and how often so far.
+  bool stood_still() const { return stood_still_; }
+  int unsettled() const { return unsettled_; }
 
   // At the present position:
   const Arm<N>& arm() const { return arm_; }
@@ -88,6 +91,8 @@ class Proxy {
   Arm<N> arm_;
   std::unique_ptr<Contacts<N>> contacts_;
   ContactSolve<N> friction_;  // of a tick in which surfaces rub or damp
+  bool stood_still_ = false;
+  int unsettled_ = 0;
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
   bool behind_ = false;  // of what catch_up() brings
