@@ -78,7 +78,7 @@ def main() -> None:
         run.question("How sure were you?", ["guessed", "mostly sure", "sure"], law)
     fits = threshold_report("Just noticeable difference of stiffness", arguments.out, "N/m", answers,
                             f"Two-interval forced choice beside a wall of {STANDARD:g} N/m; 1-up-3-down "
-                            f"staircases; participant {arguments.participant}.", "stiffness")
+                            f"staircases; participant {arguments.participant}.", "stiffness", run=run)
     for law, found in fits.items():
         print(f"{law:>10}: {found} N/m, {100 * found.threshold / STANDARD:.0f} %", flush=True)
     run.tell("That was all. Thank you.")
