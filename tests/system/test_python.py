@@ -115,7 +115,8 @@ class TestSessions(InAFolder):
         self.assertEqual((session.law, len(session["coupling/eta"])), ("predictive", ROWS))
         with self.assertRaisesRegex(limpid.LimpidError, "device/position is no channel"):
             session.channel("device/position")
-        for wrong in (["no/such"], "coupling/eta"):
+        self.assertEqual(limpid.session(file, channels="coupling/eta").channels, session.channels)
+        for wrong in (["no/such"], [5], 5):
             with self.assertRaises(limpid.LimpidError):
                 limpid.session(file, channels=wrong)
 

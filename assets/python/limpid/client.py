@@ -21,7 +21,7 @@ from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Se
 from limpid.errors import ArgumentError, LimpidError, ProgramError, RequestError
 from limpid.program import find_program, setting_words
 from limpid.runs import hand_file
-from limpid.values import Hand, PathLike, path_of, settings_of
+from limpid.values import Hand, PathLike, names_of, path_of, plain, settings_of
 
 PROTOCOL = 1
 KEPT_MESSAGES = 10_000  # of rows that nobody has fetched; older ones are dropped and counted
@@ -95,7 +95,7 @@ class Client:
 
     def get(self, *keys: str) -> Dict[str, Any]:
         """The values of these settings, or of all; None stands for what is left to the arm."""
-        asked = {"keys": list(keys)} if keys else {}
+        asked = {"keys": names_of("keys", keys)} if keys else {}
         return dict(self.request("get", **asked)["values"])
 
     def state(self) -> Dict[str, Any]:
@@ -153,7 +153,7 @@ class Client:
 
     def row(self, channels: Optional[Sequence[str]] = None) -> Dict[str, Optional[float]]:
         """The newest row: values of these channels, or of all, by name."""
-        asked = {} if channels is None else {"channels": list(channels)}
+        asked = {} if channels is None else {"channels": names_of("channels", channels)}
         return dict(self.request("row", **asked)["values"])
 
     def follow(self, channels: Sequence[str], rate: float = 100.0) -> List[str]:
@@ -162,7 +162,8 @@ class Client:
         if not channels:
             self.request("follow")
             return []
-        return list(self.request("follow", channels=list(channels), rate=rate)["units"])
+        return list(self.request("follow", channels=names_of("channels", channels),
+                                 rate=plain("rate", rate))["units"])
 
     def rows(self, seconds: float = 0.0) -> Rows:
         """The rows that have come, and those that come within so long [s]."""
@@ -196,11 +197,11 @@ class Client:
         without choices it only says something for that time."""
         asked: Dict[str, Any] = {"text": text}
         if choices:
-            asked["choices"] = list(choices)
+            asked["choices"] = names_of("choices", choices)
         if beside:
             asked["beside"] = True
         if seconds is not None:
-            asked["seconds"] = seconds
+            asked["seconds"] = plain("seconds", seconds)
             timeout = max(timeout, seconds + self.timeout)
         found = self._request("ask", asked, timeout)
         none = found["index"] is None
@@ -320,7 +321,8 @@ def serve(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
     may also close. Raises ProgramError with what the program says where it does not start."""
     name = name or f"python-{os.getpid()}-{time.monotonic_ns() % 1_000_000}"
     words: List[str] = [find_program()]
-    words += ["--listen", name] if window else ["serve", name, "--until-eof"]
+    words += ["--listen", name] if window else ["serve", name]
+    words += ["--until-eof"]
     if live is not None:
         words += ["--live", live] if live else ["--live"]
     words += setting_words(settings_of(settings, more))

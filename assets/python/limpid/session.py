@@ -9,8 +9,8 @@ import contextlib
 import os
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from limpid.errors import ArgumentError, LimpidError
-from limpid.values import PathLike, path_of
+from limpid.errors import LimpidError
+from limpid.values import PathLike, names_of, path_of
 
 if TYPE_CHECKING:
     import numpy
@@ -107,9 +107,7 @@ class _Recording:
     def _choose(self, wanted: Optional[Sequence[str]]) -> None:
         if wanted is None:
             return
-        if isinstance(wanted, str):
-            raise ArgumentError(f'channels: "{wanted}" is not allowed; allowed: a list of names')
-        names = [self.known(str(name)) for name in wanted]
+        names = [self.known(name) for name in names_of("channels", wanted)]
         names += [name for name in ("time", TWIN + "time") if name in self.units and name not in names]
         self.units = {name: self.units[name] for name in names}
         self.about = {name: self.about[name] for name in names}

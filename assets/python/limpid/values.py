@@ -81,6 +81,17 @@ def settings_of(given: Any, more: Mapping[str, Any] = {}, name: str = "settings"
 SHORT = {"coupling": "coupling.kind", "eta": "coupling.eta", "alpha": "observer.alpha"}
 
 
+def names_of(what: str, given: Any) -> List[str]:
+    """A list of names; a single one is that one, and not its letters."""
+    if isinstance(given, str):
+        return [given]
+    if isinstance(given, Iterable) and not isinstance(given, (bytes, Mapping)):
+        found = list(given)
+        if all(isinstance(name, str) for name in found):
+            return [str(name) for name in found]
+    raise ArgumentError(f"{what}: {_shown(given)} is not allowed; allowed: a list of texts")
+
+
 def path_of(name: str, value: Any) -> str:
     """A file's name. Raises ArgumentError for anything else."""
     if isinstance(value, (str, os.PathLike)):

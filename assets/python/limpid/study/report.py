@@ -9,7 +9,7 @@ import math
 import os
 import re
 from pathlib import Path
-from typing import Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from limpid.study.fits import Fit, chance_of, equality, fit, mean_interval, proportion_interval
 from limpid.study.trials import Study
@@ -18,6 +18,13 @@ WIDTH, HEIGHT = 560, 340  # of a figure [px]
 LEFT, RIGHT, TOP, BOTTOM = 64, 16, 34, 48  # its margins [px]
 # Told apart by those who see few colours, too (Okabe and Ito 2008).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+# Of each law as the program has it (app/style/law_colours.h).
+LAW_COLOURS = {"standard": "#6B7280", "proposed": "#6A3D9A", "predictive": "#6B9100", "tank": "#7A2E0E"}
+
+
+def colours_of(names: Iterable[str]) -> List[str]:
+    """A colour for each name: a law has its own, whatever else there is; all others go by order."""
+    return [LAW_COLOURS.get(name, COLOURS[i % len(COLOURS)]) for i, name in enumerate(names)]
 
 
 def nice_ticks(low: float, high: float, most: int = 6) -> List[float]:
@@ -111,7 +118,7 @@ def psychometric(title: str, unit: str, answers: Dict[str, List[Tuple[float, boo
     """Right answers over the level, with the curve of each fit, for each condition."""
     top = 1.1 * max(level for each in answers.values() for level, _ in each)
     axes = Axes(title, f"difference [{unit}]", "right answers [-]", (0, top), (0, 1.04))
-    for (name, each), colour in zip(answers.items(), COLOURS):
+    for (name, each), colour in zip(answers.items(), colours_of(answers)):
         for level, right, of in binned(each):
             low, high = proportion_interval(right, of)
             axes.bar(level, right / of, low, high, colour, 2 + min(4.0, 0.8 * math.sqrt(of)))
@@ -139,7 +146,7 @@ def intervals(title: str, unit: str, found: Dict[str, Tuple[float, float, float]
     ends = [high for _, _, high in found.values() if math.isfinite(high)]
     top = 1.15 * max(ends + [value for value, _, _ in found.values()])
     axes = Axes(title, "", unit, (-0.6, len(found) - 0.4), (0, top), list(found))
-    for i, ((value, low, high), colour) in enumerate(zip(found.values(), COLOURS)):
+    for i, ((value, low, high), colour) in enumerate(zip(found.values(), colours_of(found))):
         axes.bar(i, value, low, high, colour, 5)
     return axes.svg()
 
@@ -150,7 +157,7 @@ def matched(title: str, quantity: str, matches: Dict[str, List[Tuple[float, floa
     top = 1.1 * max([level for each in matches.values() for pair in each for level in pair]
                     + [f.high for f in fits.values()])  # fmt: skip
     axes = Axes(title, "", quantity, (-0.6, len(fits) - 0.4), (0, top), list(fits))
-    for i, (condition, colour) in enumerate(zip(fits, COLOURS)):
+    for i, (condition, colour) in enumerate(zip(fits, colours_of(fits))):
         for level in (level for pair in matches[condition] for level in pair):
             axes.bar(i - 0.12, level, level, level, colour, 2)
         f = fits[condition]
@@ -309,7 +316,7 @@ def _group_figure(title: str, quantity: str, each: Mapping[str, Mapping[str, Fit
     top = 1.1 * max([x for x in ends if math.isfinite(x)], default=1.0)
     axes = Axes(title, "", quantity, (-0.6, len(means) - 0.4), (0, top), list(means))
     for i, (condition, (mean, low, high)) in enumerate(means.items()):
-        colour = COLOURS[i % len(COLOURS)]
+        colour = colours_of(means)[i]
         there = [(number, found[condition]) for number, found in each.items() if condition in found]
         for k, (number, f) in enumerate(there):
             x = i - 0.35 + 0.5 * (k + 0.5) / len(there)
