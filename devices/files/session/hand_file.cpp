@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kLongestCsv = std::size_t{1} << 30;  // [bytes]
 constexpr double kFarthest = 10;                           // [m]
 constexpr double kLongestTime = 1e6;                       // [s]
-constexpr std::string_view kSource = "# source: ";  // of a line before the header
-constexpr std::size_t kLongestSource = 200;          // [bytes]
+constexpr std::string_view kSource = "# source: ";         // of a line before the header
+constexpr std::size_t kLongestSource = 200;                // [bytes]
 constexpr std::array<std::string_view, 4> kHeader{"time_s", "x_m", "y_m", "z_m"};
 
 // Cuts the first field off `line`.
