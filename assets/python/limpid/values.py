@@ -58,7 +58,7 @@ def text_of(value: Value) -> str:
     """As the program reads it, to the last digit."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    return repr(value) if isinstance(value, float) else str(value)
+    return str(value)
 
 
 def settings_of(given: Any, more: Mapping[str, Any] = {}, name: str = "settings") -> Dict[str, Value]:
