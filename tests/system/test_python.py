@@ -175,7 +175,7 @@ class TestNumbers(InAFolder):
                                                                 "1.0,0.19,0.0,-0.05"])
 
     def test_of_numpy_2_are_numbers_in_the_answers_of_a_study(self) -> None:
-        run = study.Study("levels", self.folder, 0, study.Simulated(OfNumpy2(45)))
+        run = study.Study("levels", self.folder, numpy.int64(0), study.Simulated(OfNumpy2(45), seed=numpy.int64(3)))
         levels = [OfNumpy2(30), OfNumpy2(60.5)]
         run.two_intervals(study.ConstantStimuli(levels, 2, "a"), "a", OfNumpy2(300), study.Stimulus, "?")
         run.value("a", 0, lambda: (OfNumpy2(1.5), []), OfNumpy2(2.5))

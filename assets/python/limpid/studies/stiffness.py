@@ -24,7 +24,7 @@ WALL = """title = "Wall"
 name = "wall"
 point = [0, 0, -0.04]
 normal = [0, 0, 1]
-stiffness = {stiffness!r}
+stiffness = {stiffness}
 """
 PRESS = [(0, 0.19, 0, 0), (0.2, 0.19, 0, 0), (0.7, 0.19, 0, -0.05), (1.2, 0.19, 0, -0.05)]
 

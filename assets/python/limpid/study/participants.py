@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 from limpid.client import Client
 from limpid.errors import ArgumentError, ProgramError, RequestError
 from limpid.study.sheet import program_version
-from limpid.values import number, settings_of
+from limpid.values import number, plain, settings_of
 
 
 class StimulusError(RequestError):
@@ -163,7 +163,7 @@ class Simulated:
         self.threshold = threshold
         # Phi(d / (sqrt(2) sigma)) is 75 % at the threshold.
         self.sigma = threshold / (0.6744897501960817 * math.sqrt(2))
-        self.lapse, self._seed = lapse, seed
+        self.lapse, self._seed = lapse, plain("seed", seed)
         self._felt = percept
 
     def begin(self, settings: Mapping[str, Any]) -> Tuple[Dict[str, Any], str]:

@@ -19,7 +19,7 @@ from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase
 from limpid.study.orders import order_for
 from limpid.study.participants import Person, Shown, Simulated, Stimulus, StimulusError
 from limpid.study.sheet import Sheet
-from limpid.values import plain, settings_of, text_of, whole
+from limpid.values import number, plain, settings_of, text_of, whole
 
 WANTED = ("less", "more", "reference", "same")  # by the keys 1 to 4 of who adjusts
 COLUMNS = ("study", "participant", "row", "kind", "block", "condition", "trial", "practice", "level",
@@ -111,16 +111,16 @@ class Study:
 
     def _row(self, asked: Dict[str, Any], ask: Callable[[], Dict[str, Any]]) -> Dict[str, str]:
         """What is known of the next row, or else what is asked and written now."""
-        number = self._next
+        place = self._next
         self._next += 1
         plan = {key: _text(value) for key, value in asked.items()}
-        if number < len(self._known):
-            row = self._known[number]
+        if place < len(self._known):
+            row = self._known[place]
             other = [key for key, value in plan.items() if not _same(row.get(key), value)]
             if other:
                 words = self.sheet.words()
                 began = f" It began with the words: {words}" if words else ""
-                raise StudyError(f"{self.file}: row {number + 1}: {other[0]} is {row.get(other[0])}; needed: "
+                raise StudyError(f"{self.file}: row {place + 1}: {other[0]} is {row.get(other[0])}; needed: "
                                  f"{plan[other[0]]}, as the study has it now. Start it as it began, or with "
                                  f"another folder or participant.{began}")  # fmt: skip
         else:
@@ -128,7 +128,7 @@ class Study:
                 answers = {key: _text(value) for key, value in ask().items()}
             now = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
             row = {**dict.fromkeys(COLUMNS, ""), "study": self.name,
-                   "participant": str(self.participant), "row": str(number + 1),
+                   "participant": str(self.participant), "row": str(place + 1),
                    "block": str(self._block or ""), **plan, **answers, "time": now}  # fmt: skip
             self._append([row[key] for key in COLUMNS])
         self.rows.append(row)
@@ -180,6 +180,7 @@ class Study:
         trials are at the method's first level, are told whether they were right, and do not count.
         Returns the answers that count: (level, right)."""
         self.sheet.ask(condition, question)
+        standard = number("standard", standard)
         counted: List[Tuple[float, bool]] = []
         first_level, trial = method.level, 0
         while trial < practice or not method.done:
@@ -222,7 +223,7 @@ class Study:
         if trials < 2 or trials % 2:
             raise ArgumentError(f"trials come in pairs, from above and from below; found: {trials}")
         self.sheet.ask(condition, question)
-        middle = reference.level if around is None else around
+        middle = number("around", reference.level if around is None else around)
         found: List[Optional[float]] = []
         above = False
         for trial in range(practice + trials):
