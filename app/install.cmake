@@ -6,6 +6,30 @@ set(made ${BUILD}/made)
 file(CREATE_LINK ../libexec/limpid/limpid ${made}/limpid SYMBOLIC)
 file(INSTALL ${made}/limpid DESTINATION ${CMAKE_INSTALL_PREFIX}/bin)
 
+# The Python package goes where Python looks: below /usr where Debian's does, elsewhere into a folder
+# of that prefix which the python3 of whoever installs has in its path, as ~/.local has one.
+set(modules lib/python3/dist-packages)
+if(NOT CMAKE_INSTALL_PREFIX STREQUAL /usr)
+  find_program(limpid_python python3)
+  set(folder)
+  if(limpid_python)
+    execute_process(COMMAND ${limpid_python} -c "
+import os, site, sys
+prefix = os.path.realpath(sys.argv[1])
+folders = [os.path.realpath(each) for each in [*site.getsitepackages(), site.getusersitepackages()]]
+print(next((os.path.relpath(each, prefix) for each in folders if each.startswith(prefix + os.sep)), ''))"
+      ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE folder OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  endif()
+  if(folder)
+    set(modules ${folder})
+  else()
+    message("Python looks nowhere below ${CMAKE_INSTALL_PREFIX}. For `import limpid`: "
+      "export PYTHONPATH=${CMAKE_INSTALL_PREFIX}/${modules}")
+  endif()
+endif()
+file(INSTALL ${SOURCE}/assets/python/limpid DESTINATION ${CMAKE_INSTALL_PREFIX}/${modules}
+  PATTERN "__pycache__" EXCLUDE)
+
 # Without the time or the name of the file, so that the same text gives the same bytes.
 function(pack file folder name)
   execute_process(COMMAND gzip -9nc ${file} OUTPUT_FILE ${made}/${name}.gz

@@ -20,9 +20,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
 install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md DESTINATION share/doc/limpid)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
   ${PROJECT_SOURCE_DIR}/assets/python/read_session.py DESTINATION share/doc/limpid/examples)
-# Where Debian's Python looks, below /usr; elsewhere PYTHONPATH has to say so.
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets/python/limpid DESTINATION lib/python3/dist-packages
-  PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets/python/lessons
+  DESTINATION share/doc/limpid/examples PATTERN "__pycache__" EXCLUDE)
 install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")\nset(BUILD \"${PROJECT_BINARY_DIR}\")")
 install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/install.cmake)
 

@@ -17,7 +17,8 @@ fs::path data_dir() {
     if (fs::exists(data / "assets/devices/omni.urdf", none)) return fs::canonical(data);
   }
   throw std::runtime_error("limpid's assets are in no folder share/limpid above " +
-                           program.string() + "; install it again");
+                           program.string() +
+                           "; install it again, or build it again where its sources are now");
 }
 
 fs::path beside_or_own(const fs::path& folder, const std::string& kind, const std::string& name) {

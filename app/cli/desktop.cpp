@@ -42,6 +42,10 @@ void add(CLI::App& command, WindowOptions& options) {
           "$XDG_RUNTIME_DIR/limpid/NAME.control; default: control. See `limpid serve`")
       ->type_name("[NAME]")
       ->expected(0, 1);
+  command.add_flag(
+      "--until-eof", options.desktop.until_eof,
+      "with --listen: end as soon as standard input does, as that of a program that has "
+      "ended, and keep no settings");
   command.add_flag("--print-state", options.desktop.print_state,
                    "print the state as a line of JSON ten times a second");
 }
@@ -54,6 +58,7 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
   }
   if (behind.listen.empty()) behind.listen = before.listen;
   behind.desktop.print_state |= before.desktop.print_state;
+  behind.desktop.until_eof |= before.desktop.until_eof;
   return behind;
 }
 
@@ -87,6 +92,7 @@ int open_window(const WindowOptions& options) {
   const InputOptions& input = options.input;
   desktop.parameters = checked_parameters(input);
   if (!options.listen.empty()) desktop.listen = socket_called(options.listen);
+  if (desktop.until_eof && desktop.listen.empty()) throw UsageError("--until-eof: needs --listen");
   desktop.in_use = device_named(input.device);
   if (desktop.in_use.empty()) desktop.device = input.device;
   desktop.tip = input.tip;

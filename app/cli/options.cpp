@@ -15,6 +15,7 @@
 #include "app/run/reach_check.h"
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
+#include "app/run/varied_hand.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/urdf_file.h"
@@ -110,6 +111,20 @@ RunPlan plan_from_session(const InputOptions& options) {
   return plan;
 }
 
+// Errors: UsageError for a hand that does more than follow a path.
+void vary(RunPlan& plan, const InputOptions& options) {
+  if (options.variation.value_or(0) == 0) return;
+  const HandPath& hand = plan.hand;
+  const bool held = std::ranges::all_of(hand.grip, [](double grip) { return grip == 1; });
+  if (!held || !plan.hand_torque.empty() || !hand.magnet.empty() || !hand.pull.empty()) {
+    throw UsageError(fmt::format(
+        "--variation: --hand {} does more than follow a path: it lets go, or has torques, a magnet "
+        "or pulls, which have no variations; needed: a path alone",
+        options.hand));
+  }
+  plan.hand = varied(plan.hand, plan.seed, *options.variation);
+}
+
 }  // namespace
 
 void InputOptions::add_parameters(CLI::App& command) {
@@ -162,7 +177,13 @@ void InputOptions::add_hand(CLI::App& command) {
       command.add_option("--duration", duration, "default: the length of the hand's path")
           ->type_name("SECONDS");
   require_above_zero(length, kLongestRun, "s");
-  command.add_option("--seed", seed, "for whatever is random")
+  command
+      .add_option("--variation", variation,
+                  "the hand as the same person would lead it another time, as `repeats` of a sweep "
+                  "have it; default: 0, as it is")
+      ->type_name("I")
+      ->check(whole_number());
+  command.add_option("--seed", seed, "which hands the variations are; nothing else is random")
       ->type_name("N")
       ->check(whole_number());
 }
@@ -180,6 +201,7 @@ InputOptions both(const InputOptions& first, InputOptions second) {
   unless_said(second.alpha, first.alpha);
   unless_said(second.duration, first.duration);
   unless_said(second.seed, first.seed);
+  unless_said(second.variation, first.variation);
   second.configs.insert(second.configs.begin(), first.configs.begin(), first.configs.end());
   second.settings.insert(second.settings.begin(), first.settings.begin(), first.settings.end());
   return second;
@@ -237,10 +259,11 @@ RunPlan make_plan(const InputOptions& options) {
       plan.hand = read_hand(options.hand.empty() ? default_hand().string() : options.hand);
     }
   }
+  if (options.seed) plan.seed = *options.seed;
+  vary(plan, options);
   if (const std::string why = out_of_reach(plan); !why.empty()) throw UsageError(why);
   const double duration = options.duration.value_or(plan.hand.duration());
   plan.rows = ticks_in(duration, plan.parameters.tick);
-  if (options.seed) plan.seed = *options.seed;
   return plan;
 }
 

@@ -30,7 +30,8 @@ struct InputOptions {
   std::vector<std::string> settings;                // key=value
   std::optional<std::string> coupling, eta, alpha;  // short for three settings
   std::optional<double> duration;
-  std::optional<std::uint64_t> seed;
+  std::optional<std::uint64_t> seed;       // which hand a variation is
+  std::optional<std::uint64_t> variation;  // of the hand; 0: as it is
 
   // Whether any of them is given that add_parameters() declares.
   bool set_parameters() const {
@@ -41,7 +42,7 @@ struct InputOptions {
   void add_parameters(CLI::App& command);
   // Declares --device, --tip and --scene.
   void add_world(CLI::App& command);
-  // Declares --hand, --duration, --seed.
+  // Declares --hand, --duration, --variation, --seed.
   void add_hand(CLI::App& command);
 };
 

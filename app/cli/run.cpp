@@ -216,6 +216,7 @@ void say_about(const RunPlan& plan) {
 
 int live(const RunOptions& options) {
   for (const auto& [given, what] : {std::pair(!options.input.hand.empty(), "--hand"),
+                                    std::pair(options.input.variation.has_value(), "--variation"),
                                     std::pair(options.twin.has_value(), "--twin")}) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
   }
@@ -227,6 +228,11 @@ int run(const RunOptions& options) {
   if (options.live.device) return live(options);
   RunPlan plan = make_plan(options.input);
   say_about(plan);
+  if (options.input.seed && options.input.variation.value_or(0) == 0) {
+    fmt::print(stderr,
+               "limpid: note: --seed changes nothing here: only variations of the hand are random, "
+               "and --variation asks for none\n");
+  }
   if (options.twin) plan.beside = {make_twin(plan.parameters, *options.twin)};
   check_outputs(options);
   catch_interrupts();

@@ -1,10 +1,7 @@
 // `limpid serve`: the live loop without a window, led by programs.
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +9,7 @@
 #include <thread>
 
 #include "app/base/folders.h"
+#include "app/base/input_end.h"
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
@@ -127,13 +125,6 @@ struct RealDevice {
   std::unique_ptr<Device> device;
   SafetyLimits limits;
 };
-
-bool input_has_ended() {
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  if (poll(&input, 1, 0) <= 0) return false;
-  std::array<char, 256> bytes{};
-  return ::read(STDIN_FILENO, bytes.data(), bytes.size()) <= 0;
-}
 
 int serve(const ServeOptions& options) {
   catch_interrupts();

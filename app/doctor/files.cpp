@@ -15,7 +15,9 @@ namespace fs = std::filesystem;
 using State = Finding::State;
 
 constexpr const char* kFilesArea = "files";
-constexpr const char* kAgain = "sudo apt install --reinstall limpid, or `cmake --install` again";
+constexpr const char* kAgain =
+    "sudo apt install --reinstall limpid; or `cmake --install` again; or, in its "
+    "sources, ./run";
 constexpr std::uintmax_t kMega = 1'000'000;
 constexpr std::uintmax_t kLittle = 1000 * kMega, kTooLittle = 50 * kMega;  // [bytes]
 

@@ -16,9 +16,9 @@ constexpr std::size_t kShown = 60;
 
 constexpr std::array<const char*, 0> kNone{};
 constexpr std::array kGet{"keys"};
-constexpr std::array kSet{"values", "twin"};
+constexpr std::array kSet{"values", "twin", "reset"};
 constexpr std::array kOpen{"scene", "arm", "tip", "session", "hand", "wait"};
-constexpr std::array kRecord{"file"};
+constexpr std::array kRecord{"file", "force"};
 constexpr std::array kMark{"text"};
 constexpr std::array kRow{"channels"};
 constexpr std::array kFollow{"channels", "rate"};
@@ -31,9 +31,12 @@ constexpr std::array kVerbs{
     Verb{"hello", kNone, "which Limpid this is, and what it has"},
     Verb{"get", kGet, "settings, all or those of \"keys\", and the state"},
     Verb{"set", kSet,
-         "\"values\" of settings, all or none of them; with \"twin\" true, the twin's"},
+         "\"values\" of settings, all or none of them; with \"twin\" true, the twin's; with "
+         "\"reset\" true, all others as they usually are"},
     Verb{"open", kOpen, "a scene, an arm, a session or a hand's path"},
-    Verb{"record", kRecord, "every tick, into \"file\" or a new file of the user's sessions"},
+    Verb{"record", kRecord,
+         "every tick, into \"file\" or a new file of the user's sessions; with \"force\" true also "
+         "in place of one that is there"},
     Verb{"stop", kNone, "the recording; answers once the file is complete"},
     Verb{"start_over", kNone, "at rest in the middle, or at the beginning of the hand's path"},
     Verb{"mark", kMark, "\"text\" in the plots and in what is recorded; answers which tick it is"},

@@ -92,7 +92,7 @@ Answer Remote::act(const Request& request, Client client) {
   const Keys keys(request);
   if (verb == "hello") return hello();
   if (verb == "get") return get(keys);
-  if (verb == "set") return set(keys);
+  if (verb == "set") return set(keys, client);
   if (verb == "row") return newest(keys);
   if (verb == "follow") return follow(keys, client);
   if (verb == "bye") return json::object();
@@ -157,16 +157,18 @@ json Remote::get(const Keys& keys) const {
   return answer;
 }
 
-json Remote::set(const Keys& keys) {
+json Remote::set(const Keys& keys, Client client) {
   const bool of_twin = keys.flag_or("twin", false);
+  const bool reset = keys.flag_or("reset", false);
   if (of_twin && host_.twin() == nullptr) throw keys.error("twin", "there is none");
   const auto changed = [&] {
     Parameters p = of_twin ? *host_.twin() : host_.parameters();
+    if (reset) p = host_.usual();
     set_values(p, keys, host_.highest());
     return p;
   };
   changed();  // what is refused changes nothing
-  host_.before_set();
+  host_.before_set(client);
   const Parameters p = changed();
   host_.set(p, of_twin);
   json now = json::object();

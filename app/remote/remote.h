@@ -45,8 +45,10 @@ struct RemoteHost {
   std::function<const Parameters*()> twin;  // null: there is none
   // What a person has chosen, as with_limits_of() has it.
   std::function<Parameters()> highest;
-  // Ends what has put other settings in their place for a while.
-  std::function<void()> before_set = [] {};
+  // Before this client sets anything: ends what has put other settings in their place for a while.
+  std::function<void(LineServer::Client)> before_set = [](LineServer::Client) {};
+  // All settings as they usually are for the arm, as far as they can be so while the loop runs.
+  std::function<Parameters()> usual = [] { return Parameters{}; };
   // The whole of them; the second run's where `of_twin`.
   std::function<void(const Parameters&, bool of_twin)> set;
   std::function<const TraceChannels&()> channels;
@@ -108,7 +110,7 @@ class Remote {
   Answer act(const Request& request, Client client);
   nlohmann::json hello() const;
   nlohmann::json get(const Keys& keys) const;
-  nlohmann::json set(const Keys& keys);
+  nlohmann::json set(const Keys& keys, Client client);
   nlohmann::json newest(const Keys& keys) const;
   nlohmann::json follow(const Keys& keys, Client client);
   std::vector<Wanted> find(const std::vector<std::string>& names, const std::string& verb) const;

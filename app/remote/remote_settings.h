@@ -30,6 +30,11 @@ void set_values(Parameters& p, const Keys& keys, const Parameters& highest);
 Parameters with_limits_of(const ArmDescription& arm, Parameters p);
 // Settings that come from a file, with limits no higher than a person has chosen for the arm.
 void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& arm);
+// The settings that are usual for the arm, with limits no higher than a person has chosen. What is
+// fixed while a loop runs stays as it is `now`; with a real device in the arm's place, so does what
+// is the device's own: its encoders, and what its motors take off the hand.
+Parameters usual_settings(const Parameters& now, const Parameters& chosen,
+                          const ArmDescription& arm, bool with_device);
 // The value that a setting has; null where it is left to the arm, or to another setting.
 nlohmann::json value_of(const Parameters& p, const ParameterInfo& info);
 

@@ -105,6 +105,9 @@ RemoteHost ServedSession::host() {
   host.parameters = [this]() -> const Parameters& { return controls_.parameters; };
   host.twin = [this] { return of_twin_ ? &*of_twin_ : nullptr; };
   host.highest = [this] { return with_limits_of(world_.plan.arm, highest_); };
+  host.usual = [this] {
+    return usual_settings(controls_.parameters, highest_, world_.plan.arm, loop_.device_in_place());
+  };
   host.set = [this](const Parameters& p, bool of_twin) { set(p, of_twin); };
   host.channels = [this]() -> const TraceChannels& { return channels_; };
   const auto half = [this](bool second) -> std::span<const double> {
@@ -250,8 +253,9 @@ Answer ServedSession::record(const Keys& keys) {
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
   recording_ = {};
   recording_.file = file;
-  recording_.opening = recordings_.run([file, about, initial = plan.parameters, twin = of_twin_] {
-    return std::make_unique<Recorder>(file, about, initial, false, Recorder::kLiveRoom,
+  recording_.opening = recordings_.run([file, about, initial = plan.parameters, twin = of_twin_,
+                                        replaces = keys.flag_or("force", false)] {
+    return std::make_unique<Recorder>(file, about, initial, replaces, Recorder::kLiveRoom,
                                       twin ? &*twin : nullptr);
   });
   return Answer::Later([this, file]() -> std::optional<json> {

@@ -81,6 +81,29 @@ class Run(WithAnArm):
         self.assertRegex(session.attributes["created"], iso_8601)
         self.assertEqual(set(np.unique(session["/coupling/eta"])), {0.8})
 
+    def test_a_variation_of_the_hand_is_what_is_random_in_a_run(self) -> None:
+        def path(*words: str) -> np.ndarray:
+            with h5py.File(self.record(*self.arm, "--duration", "1", *words), "r") as file:
+                return file["/hand/target"][...]
+
+        first = path("--variation", "1", "--seed", "1")
+        np.testing.assert_array_equal(first, path("--variation", "1", "--seed", "1"))
+        self.assertFalse(np.array_equal(first, path("--variation", "2", "--seed", "1")))
+        self.assertFalse(np.array_equal(first, path("--variation", "1", "--seed", "2")))
+        self.assertFalse(np.array_equal(first, path()))
+        np.testing.assert_array_equal(path(), path("--variation", "0", "--seed", "5"))
+
+    def test_a_seed_that_changes_nothing_is_said_to(self) -> None:
+        seeded = limpid("run", "--duration", "0.1", "--seed", "3")
+        self.assertIn("--seed changes nothing here", seeded.err)
+        varied = limpid("run", "--duration", "0.1", "--seed", "3", "--variation", "1")
+        self.assertNotIn("--seed", varied.err)
+
+    def test_a_hand_that_does_more_than_follow_a_path_has_no_variations(self) -> None:
+        refused = limpid("run", "--hand", ASSETS / "sessions/cup.h5", "--variation", "1")
+        self.assertEqual(refused.status, 2)
+        self.assertIn("cup.h5 does more than follow a path", refused.err)
+
     def test_short_options_config_and_set_mean_the_same(self) -> None:
         config = self.out(".toml")
         config.write_text('[coupling]\nkind = "standard"\neta = 0.7\n[observer]\nalpha = 0.02\n')

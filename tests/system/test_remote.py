@@ -185,7 +185,9 @@ class TestServe(RemoteTest):
         file = loop.record(self.home / "twin.h5")
         time.sleep(0.2)
         loop.stop()
-        self.assertIn("twin/coupling/kind", limpid.session(file).channels)
+        session = limpid.session(file)
+        self.assertGreater(len(session), 100)
+        self.assertEqual((session.law, session.twin.law), ("proposed", "standard"))
 
     @staticmethod
     def twin_row(loop, names):
@@ -432,6 +434,53 @@ class TestPackage(RemoteTest):
         self.assertLess(0.2, contact.begins)
         self.assertAlmostEqual(contact.point[2], -0.04, places=2)
         self.assertGreater(contact.force, 0.1)
+
+    def test_a_hand_is_rows_wherever_one_is_asked_for(self) -> None:
+        session = limpid.run(hand=PATH, duration=0.1)
+        self.assertRegex(session.attributes["source"], r"^\d+ rows from Python, SHA-256 [0-9a-f]{8}$")
+        loop = self.connect()
+        self.assertEqual(loop.open(hand=numpy.array(PATH))["hand"]["source"], session.attributes["source"])
+        with limpid.serve(hand=iter(PATH)) as served:
+            self.assertEqual(served.state()["hand"]["source"], session.attributes["source"])
+
+    def test_settings_are_spelt_alike_wherever_they_are(self) -> None:
+        law = limpid.run(duration=0.05, settings={"coupling.eta": 0.7}, coupling__k_vc=8, coupling="standard").config
+        self.assertIn("0.7", law)
+        loop = self.connect()
+        loop.set({"coupling.eta": 0.7}, coupling__k_vc=8, coupling="standard")
+        self.assertEqual(loop.get("coupling.eta", "coupling.k_vc", "coupling.kind"),
+                         {"coupling.eta": 0.7, "coupling.k_vc": 8, "coupling.kind": "standard"})
+        loop.set(reset=True, eta=numpy.float32(0.5))
+        self.assertEqual(loop.get("coupling.eta", "coupling.k_vc", "coupling.kind"),
+                         {"coupling.eta": 0.5, "coupling.k_vc": 10, "coupling.kind": "proposed"})
+        for wrong in (float("nan"), None, [1]):
+            with self.assertRaises(limpid.ArgumentError):
+                loop.set({"coupling.eta": wrong})
+
+    def test_a_file_that_is_there_is_replaced_only_by_force(self) -> None:
+        out = self.home / "a.h5"
+        limpid.run(duration=0.05, record=out)
+        with self.assertRaisesRegex(limpid.ProgramError, "force=True"):
+            limpid.run(duration=0.05, record=out)
+        self.assertEqual(len(limpid.run(duration=0.1, record=out, force=True)), 100)
+        loop = self.connect()
+        with self.assertRaisesRegex(limpid.RequestError, "exists"):
+            loop.record(out)
+        loop.record(out, force=True)
+        loop.stop()
+
+    def test_a_connection_that_is_closed_says_so(self) -> None:
+        loop = self.connect()
+        loop.close()
+        for call in (loop.state, loop.rows, loop.stop):
+            with self.assertRaisesRegex(limpid.ProgramError, "closed"):
+                call()
+
+    def test_a_variation_is_another_hand(self) -> None:
+        hands = [limpid.run(duration=0.5, **how)["hand/target"] for how in (
+            {}, {"variation": 1}, {"variation": 1, "seed": 1}, {"variation": 2}, {"variation": 1})]
+        self.assertEqual(len({hand.tobytes() for hand in hands}), 4)
+        numpy.testing.assert_array_equal(hands[1], hands[4])
 
     def test_run_says_what_is_refused(self) -> None:
         with self.assertRaisesRegex(limpid.ProgramError, "coupling.eta"):

@@ -7,8 +7,10 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from support import ASSETS, LIMPID
 from window import WindowTest
@@ -385,6 +387,136 @@ class TestRemoteWindow(WindowTest):
             self.answer(key)
         thread.join(20)
         self.assertEqual(len(result[0]), 2)
+
+    # What a program sets is the program's.
+
+    def kept(self) -> dict:
+        """Settings for the next start, as they are on the disk."""
+        return tomllib.loads((self.home / "config/limpid/settings.toml").read_text())
+
+    def another_leads(self) -> limpid.Client:
+        """With settings, a scene and a twin of its own."""
+        other = limpid.Client(self.path)
+        self.addCleanup(other.close)
+        other.open(scene="spheres.toml")
+        other.set({"coupling.kind": "predictive", "coupling.eta": 0.5, "device.torque_limit": 0.1, "link.delay": 20})
+        other.twin({"coupling.kind": "proposed"})
+        self.wait("the program's settings", lambda s: s["led"] and s["kind"] == 2 and s["twin"])
+        return other
+
+    def check_is_back(self, scene: str) -> None:
+        self.wait_for_notice("Your settings are back.")
+        self.wait("the person's settings", lambda s: not s["led"] and s["kind"] == 0 and s["eta"] == 1
+                  and not s["twin"] and s["scene"] == scene)
+        values = self.loop.get()
+        self.assertEqual((values["device.torque_limit"], values["link.delay"]), (self.limit, 0))
+        self.assertEqual(self.loop.state()["file"], scene)
+
+    def start_of_a_person(self) -> str:
+        self.limit = self.loop.get("device.torque_limit")["device.torque_limit"]
+        self.assertFalse(self.state()["led"])
+        return self.state()["scene"]
+
+    def test_settings_and_scene_come_back_when_the_program_ends(self) -> None:
+        scene = self.start_of_a_person()
+        other = self.another_leads()
+        self.assertIn("spheres.toml", self.state()["scene"])
+        other.close()
+        self.check_is_back(scene)
+        self.assertIn("The program that led this window has ended. Your settings are back.", self.notices())
+        self.stop(self.app)
+        kept = self.kept()
+        self.assertEqual((kept["parameters"]["coupling"]["kind"], kept["window"]["scene"]), ("standard", ""))
+        self.assertNotIn("spheres.toml", str(kept["window"]["recent"]))
+
+    def test_settings_come_back_when_a_study_is_killed_that_records(self) -> None:
+        scene = self.start_of_a_person()
+        other = self.another_leads()
+        other.blind()
+        file = other.record(self.home / "cut.h5")
+        self.go_on(0.3)
+        other._socket.shutdown(2)  # as the kernel does for a process that is killed
+        self.check_is_back(scene)
+        self.assertIn("The study has ended. Your settings are back.", self.notices())
+        session = limpid.session(file)  # which is complete
+        self.assertEqual(set(session["coupling/kind"]), {2})
+        self.assertEqual(session.changes, [])
+
+    def test_nothing_that_a_program_set_is_kept_where_the_window_ends_first(self) -> None:
+        for end in (self.app.terminate, self.app.kill):
+            with self.subTest(end=end.__name__):
+                self.key("bracketright")  # of the person, who has another eta now
+                eta = self.wait("another eta", lambda s: s["eta"] != 1)["eta"]
+                self.wait_until("it to be kept", lambda eta=eta: abs(
+                    self.kept().get("parameters", {}).get("coupling", {}).get("eta", 1) - eta) < 1e-9)
+                self.another_leads()
+                self.go_on(5)
+                end = self.app.kill if end.__name__ == "kill" else self.app.terminate
+                end()
+                self.app.wait(30)
+                kept = self.kept()
+                self.assertEqual((kept["parameters"]["coupling"]["kind"], kept["parameters"]["link"]["delay"],
+                                  kept["window"]["scene"]), ("standard", 0, ""))
+                self.assertAlmostEqual(kept["parameters"]["coupling"]["eta"], eta)
+                settings = self.home / "config/limpid/settings.toml"
+                settings.write_text('[parameters]\ncoupling.kind = "standard"\n')
+                self.start()
+
+    def test_what_a_person_changes_meanwhile_stays(self) -> None:
+        other = limpid.Client(self.path)
+        other.set({"coupling.eta": 0.5})
+        self.wait("the setting", lambda s: s["eta"] == 0.5)
+        self.key("c")
+        self.wait("the next law", lambda s: s["kind"] == 1)
+        other.close()
+        self.wait_for_notice("Your settings are back.")
+        self.wait("both", lambda s: s["kind"] == 1 and s["eta"] == 1)
+
+    def test_a_study_begins_from_usual_settings_whatever_was_there(self) -> None:
+        from limpid import study
+
+        self.key("b")  # a twin, of the person
+        self.wait("the twin", lambda s: s["twin"])
+        other = limpid.Client(self.path)  # somebody else who leads
+        self.addCleanup(other.close)
+        other.set({"hand.stiffness": 900, "link.delay": 20, "coupling.eta": 0.6})
+        run = study.Study("known", self.home / "answers", 0, study.Person(self.loop, seconds=0.3),
+                          {"coupling.kind": "predictive"})
+        values = self.loop.get()
+        self.assertEqual((values["hand.stiffness"], values["link.delay"], values["coupling.eta"],
+                          values["coupling.kind"]), (300, 0, 1, "predictive"))
+        self.assertFalse(self.loop.state()["twin"])
+        self.assertEqual(run.sheet.has["settings"], values)
+        # Each interval begins from them again.
+        run.who.use({"coupling.eta": 0.7})
+        run.who.use({"hand.damping": 3})
+        values = self.loop.get()
+        self.assertEqual((values["coupling.eta"], values["hand.damping"]), (1, 3))
+        with self.assertRaises(study.StimulusError):
+            run.who.use({"coupling.eta": -1})
+
+    def test_a_window_that_a_program_has_started_ends_with_it_and_keeps_nothing(self) -> None:
+        self.stop(self.app)
+        before = self.kept()
+        with mock.patch.dict(os.environ, self.environment):
+            loop = limpid.serve(window=True, settings={"coupling.eta": 0.6}, hand__stiffness=900)
+            self.addCleanup(loop.close)
+            self.assertEqual(loop.get("coupling.eta", "hand.stiffness"), {"coupling.eta": 0.6, "hand.stiffness": 900})
+            loop.set({"link.delay": 20})
+            loop._process.stdin.close()  # as that of a Python that is killed
+            loop._process.stdin = None
+            loop._process.wait(30)
+        after = self.kept()
+        self.assertEqual((after.get("twin"), after["window"].get("scene", "")), (before.get("twin"), before["window"].get("scene", "")))
+        self.assertEqual(after["parameters"], before["parameters"])
+
+    def test_a_recording_is_replaced_only_when_that_is_said(self) -> None:
+        file = self.loop.record(self.home / "a.h5")
+        self.loop.stop()
+        with self.assertRaisesRegex(limpid.RequestError, "exists already; with force it is replaced"):
+            self.loop.record(file)
+        self.loop.record(file, force=True)
+        self.loop.stop()
 
     def test_scenes_and_sessions_are_opened(self) -> None:
         self.assertEqual(self.loop.open(scene="spheres.toml")["scene"], "Soft and hard")

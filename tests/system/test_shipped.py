@@ -150,6 +150,34 @@ class Package(Run):
         self.assertEqual(set(faults) - {"url-homepage-missing"}, set(), done.stdout + done.stderr)
 
 
+class WithoutAPackage(Run):
+    """`cmake --install --prefix ~/.local`, of somebody whose home is empty."""
+
+    def test_python_finds_its_package_and_the_program(self) -> None:
+        home = self.out("")
+        home.mkdir(parents=True)
+        environment = {key: value for key, value in os.environ.items() if key not in ("LIMPID", "PYTHONPATH")}
+        environment |= {"HOME": str(home), "PATH": "/usr/bin:/bin"}
+        self.must("cmake", "--install", BUILD, "--prefix", home / ".local", env=environment)
+        said = self.must("python3", "-c", "import limpid, limpid.studies.stiffness\n"
+                         "print(limpid.program.find_program(), len(limpid.run(duration=0.1)))", env=environment,
+                         cwd=home)  # fmt: skip
+        self.assertEqual(said.split(), [str(home / ".local/bin/limpid"), "100"])
+        lessons = home / ".local/share/doc/limpid/examples/lessons"
+        figures = self.out("")
+        figures.mkdir()
+        self.must("python3", "drift.py", cwd=lessons, env=environment | {"LESSONS": str(figures)})
+        self.assertTrue((figures / "drift.svg").exists())
+
+    def test_a_tree_that_was_moved_runs_where_it_is(self) -> None:
+        """Its assets are found from where the program is, and not from where it was built."""
+        link = BUILD / "share/limpid"
+        if ROOT.resolve() not in BUILD.resolve().parents:
+            self.skipTest("was built elsewhere")
+        self.assertFalse(os.path.isabs(os.readlink(link)))
+        self.assertEqual(link.resolve(), ROOT.resolve())
+
+
 class Sessions(Run):
     """What the desktop takes a file for."""
 

@@ -9,6 +9,7 @@
 
 #include "app/base/folders.h"
 #include "app/desktop/base/first_steps.h"
+#include "app/desktop/base/kept_settings.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
 #include "devices/files/text_file.h"
@@ -249,6 +250,8 @@ std::string text_with(const Settings& settings, const Settings& began, const std
 }
 
 }  // namespace
+
+bool kept_alike(const Settings& a, const Settings& b) { return table_of(a) == table_of(b); }
 
 Settings load_settings(std::string& complaint) {
   const fs::path file = settings_file();

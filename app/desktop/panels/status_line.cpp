@@ -42,11 +42,15 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   const LoopStatus status = loop.status();
   const bool stopped = !status.running;
   std::vector<StatusPart> parts;
-  const auto& [played, pace] = going;
+  const auto& [played, pace, led] = going;
   if (!played.empty()) parts.push_back({"playing " + played, colours.text, played});
   // Its button is in the bar below only where the loop is shown.
   if (!played.empty() && loop.recording()) {
     parts.push_back({"recording [R]", colours.broken, "The loop is recorded meanwhile; R ends it"});
+  }
+  if (led) {
+    parts.push_back({"led by a program", colours.accent,
+                     "A program has set law, settings or scene. Yours come back when it ends."});
   }
   if (!pace.empty()) {
     parts.push_back({pace, colours.accent, "The simulation; the loop itself goes on as usual"});

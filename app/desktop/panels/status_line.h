@@ -13,10 +13,11 @@ struct StatusLaw {
   double eta;
 };
 
-// What goes on: the name of the recording that is shown, empty for the loop; and how a virtual
-// arm's time goes, empty as usual.
+// What goes on: the name of the recording that is shown, empty for the loop; how a virtual arm's
+// time goes, empty as usual; and whether a program leads the window.
 struct StatusGoing {
   std::string played, pace;
+  bool led = false;
 };
 
 // As much as there is room for; the force is the last to go.

@@ -217,8 +217,9 @@ void Desktop::follow_first_steps() {
     law_.reset();
     return;
   }
+  // Settings that nobody here chose.
+  if (passivity_broken(settings) || lead.on()) return law_.reset();
   if (settings.twin.on) note_done(settings, FirstStep::twin);
-  if (passivity_broken(settings)) return law_.reset();  // whose settings nobody chose
   const Parameters& p = settings.parameters;
   const auto now = std::pair(p.kind, p.eta);
   const auto before = std::exchange(law_, now);
@@ -252,7 +253,7 @@ void Desktop::update(double dt) {
   world.take_loaded();
   devices.update();
   identify.update();
-  tuning.note_compensation();
+  if (!lead.on()) tuning.note_compensation();
   shown.camera.advance(dt);
   if (live.became_unstable()) {
     cut_force();

@@ -22,6 +22,7 @@
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/exporter.h"
 #include "app/desktop/shell/focus.h"
+#include "app/desktop/shell/lead.h"
 #include "app/desktop/shell/marking.h"
 #include "app/desktop/shell/pads.h"
 #include "app/desktop/shell/tuning.h"
@@ -117,6 +118,7 @@ class Desktop {
   Pads pads;
   KeptScenes kept;
   World world;
+  Lead lead{*this};
   WindowRequests asked;
   // Of programs on the control socket: what one asks whoever is here, and that one hides the law,
   // the settings and the plots, and all commands that show or change them.

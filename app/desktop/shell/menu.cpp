@@ -259,7 +259,8 @@ void draw_menu_bar(Desktop& desktop, FileMenus& files) {
     law.eta = layout.in(desktop.shown.row(), Column::eta)[0];
     played = session->file().filename().string();
   }
-  draw_status(loop, law, {played, played.empty() ? desktop.live.pace_text() : ""});
+  draw_status(loop, law,
+              {played, played.empty() ? desktop.live.pace_text() : "", desktop.lead.on()});
   ImGui::EndMainMenuBar();
 }
 

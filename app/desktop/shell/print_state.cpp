@@ -218,7 +218,7 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
       "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}, \"banners\": {}, "
       "\"closing\": {}, "
-      "\"recorded\": {}, \"places\": {}, \"blind\": {}, \"question\": {}, "
+      "\"recorded\": {}, \"places\": {}, \"blind\": {}, \"led\": {}, \"question\": {}, "
       "\"your_turn\": {}, \"tried\": {}, \"range\": {}, \"notes\": {}, \"shown\": [{:.4f}, "
       "{:.4f}], "
       "\"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
@@ -239,10 +239,10 @@ void print_state(Desktop& d, const WindowState& window) {
       d.playback.loading() ? d.playback.loading_part() : 1, state_of(d.sweep).dump(),
       state_of(d.identify, live.loop().device_plugged()).dump(), state_of(d.devices).dump(),
       banners_of(d).dump(), closing().dump(), recorded(d).dump(), places_of(d).dump(), d.blind,
-      question_of(d).dump(), d.settings.your_turn, nlohmann::json(d.settings.tried).dump(),
-      range_of(d.shown.stage()).dump(), notes_of(d.shown.stage()).dump(),
-      d.shown.stage().group.start(), d.shown.stage().group.stop(), p.hand_stiffness,
-      p.hand_damping);
+      d.lead.on(), question_of(d).dump(), d.settings.your_turn,
+      nlohmann::json(d.settings.tried).dump(), range_of(d.shown.stage()).dump(),
+      notes_of(d.shown.stage()).dump(), d.shown.stage().group.start(), d.shown.stage().group.stop(),
+      p.hand_stiffness, p.hand_damping);
   std::fflush(stdout);
 }
 

@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "app/base/input_end.h"
 #include "app/base/interrupt.h"
+#include "app/desktop/base/kept_settings.h"
 #include "app/desktop/document/unsaved.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/frame.h"
@@ -54,7 +56,7 @@ class Application {
   // OpenGL's own threads inherit that.
   Application(const DesktopOptions& options, const Settings& settings)
       : options_(options),
-        began_(settings),
+        kept_(settings),
         desktop_(with(settings, options),
                  [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
         window_(prepare_window()),
@@ -82,9 +84,10 @@ class Application {
   bool asked_to_close();  // true: at once
   void keep_scene();      // with the changes that nobody was asked about
   void say_what_was_saved();
+  Settings settings_to_keep() const;
 
   const DesktopOptions& options_;
-  const Settings began_;  // as they were read
+  KeptSettings kept_;
   std::string why_;
   Desktop desktop_;
   Window window_;
@@ -179,6 +182,7 @@ void Application::leave_without_display(bool with_scene) {
 // The desktop goes on in every turn; a frame is drawn where there is something new to see.
 void Application::turn() {
   Notices& notices = desktop_.notices;
+  if (options_.until_eof && input_has_ended()) interrupted = true;
   if (interrupted) window_.close();
   const double now = glfwGetTime();
   bool asked_for = false;
@@ -195,6 +199,11 @@ void Application::turn() {
   }
   guard(notices, [&] { desktop_.follow_pads(plugged_pads(), window_.focused(), now - last_); });
   guard(notices, [&] { desktop_.update(now - last_); });
+  if (kept_.due(now)) {
+    if (const std::string failure = kept_.follow(settings_to_keep()); !failure.empty()) {
+      notices.say("Settings not saved: " + failure, true);
+    }
+  }
   last_ = now;
   const bool moved = frame_.differs();
   if (moved && !drawing) window_.begin_frame(desktop_.focus());
@@ -246,10 +255,23 @@ void Application::keep() {
   if (const SetAside* waiting = desktop_.document.unsaved_set_aside()) {
     keep_changes(waiting->world->document, waiting->arm, waiting->file);
   }
-  if (const std::string error = save_settings(desktop_.tuning.settings_to_keep(), began_);
-      !error.empty()) {
+  if (const std::string error = kept_.keep(settings_to_keep()); !error.empty()) {
     say("settings not saved: " + error);
   }
+}
+
+// Of a window that a program has started nothing but its looks: all else is the program's.
+Settings Application::settings_to_keep() const {
+  Settings kept = desktop_.lead.settings_to_keep();
+  if (!options_.until_eof) return kept;
+  const Settings& before = kept_.kept();
+  kept.parameters = before.parameters;
+  kept.twin = before.twin;
+  kept.scene = before.scene;
+  kept.device = before.device;
+  kept.device_tip = before.device_tip;
+  kept.recent = before.recent;
+  return kept;
 }
 
 }  // namespace

@@ -22,6 +22,8 @@ struct DesktopOptions {
   bool print_state = false;                  // one line of JSON ten times a second
   double ui_scale = 0;                       // 0: the screen's
   std::filesystem::path listen;              // a socket for programs; empty: none
+  // It ends as soon as standard input does, and keeps no settings: a program has started it.
+  bool until_eof = false;
 };
 
 // Runs until the window is closed. Errors: std::runtime_error without a display; FileError and the

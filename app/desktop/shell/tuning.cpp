@@ -94,7 +94,7 @@ void Tuning::suit(const ArmDescription& arm, const DeviceTraits* device) {
   of_virtual_ = of_virtual;
   device_ = devices_.hub().in_use();
   devices_.hub().notes(device_).compensation.give(now);
-  now.encoder_step = encoder_step_of(*device);
+  now.encoder_step = encoder_of_device_ = encoder_step_of(*device);
 }
 
 void Tuning::note_compensation() {
@@ -164,13 +164,35 @@ void Tuning::follow_recorded(bool another) {
   recorded_analysis_ = analyze(arm, rest_pose(arm), now, std::nullopt);
 }
 
-Settings Tuning::settings_to_keep() const {
+Tuning::Choices Tuning::choices() const {
+  Settings now = settings_;
+  end_passivity_break(now);
+  if (of_virtual_) of_virtual_->give(now.parameters);
+  return {now.parameters, now.twin, fitted_for_};
+}
+
+void Tuning::take(const Choices& of_person) {
+  Parameters& first = settings_.parameters;
+  first = of_person.first;
+  settings_.twin = of_person.twin;
+  if (fitted_for_ && of_person.fitted_for && fitted_for_->urdf != of_person.fitted_for->urdf) {
+    refit(first, &*of_person.fitted_for, &*fitted_for_);
+    refit(settings_.twin.parameters, &*of_person.fitted_for, &*fitted_for_);
+  }
+  if (!of_virtual_) return;
+  of_virtual_ = OfVirtualArm::of(first);
+  devices_.hub().notes(device_).compensation.give(first);
+  first.encoder_step = encoder_of_device_;
+}
+
+Settings Tuning::settings_to_keep(const Choices& of_person) const {
   Settings kept = settings_;
-  end_passivity_break(kept);
-  if (of_virtual_) of_virtual_->give(kept.parameters);
-  if (!fitted_for_) return kept;
-  refit(kept.parameters, &*fitted_for_, nullptr);
-  refit(kept.twin.parameters, &*fitted_for_, nullptr);
+  kept.before_break.reset();
+  kept.parameters = of_person.first;
+  kept.twin = of_person.twin;
+  if (!of_person.fitted_for) return kept;
+  refit(kept.parameters, &*of_person.fitted_for, nullptr);
+  refit(kept.twin.parameters, &*of_person.fitted_for, nullptr);
   return kept;
 }
 

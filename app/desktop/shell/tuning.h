@@ -44,9 +44,19 @@ class Tuning {
   // Once a frame, before and after the loop has had them.
   void update();
   void follow_recorded(bool another);  // session
+  // What of its own forces the device's motors take off the hand is remembered with it.
   void note_compensation();
+  // What is chosen for both runs, as it is with the virtual arm, and the arm that it suits.
+  struct Choices {
+    Parameters first;
+    TwinSettings twin;
+    std::optional<ArmDescription> fitted_for;
+  };
+  Choices choices() const;
+  // Puts them back, for the arm and the device that are there now.
+  void take(const Choices& of_person);
   // For the next start, with whichever arm.
-  Settings settings_to_keep() const;
+  Settings settings_to_keep(const Choices& of_person) const;
 
   NamedTexts presets;
 
@@ -72,7 +82,8 @@ class Tuning {
     }
   };
   std::optional<OfVirtualArm> of_virtual_;
-  std::string device_;  // then: its id
+  std::string device_;            // then: its id
+  double encoder_of_device_ = 0;  // then [rad]
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;

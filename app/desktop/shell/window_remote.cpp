@@ -53,7 +53,12 @@ WindowRemote::WindowRemote(const fs::path& socket, Desktop& desktop)
 
 bool WindowRemote::turn() {
   follow_limits();
-  if (const Stage* now = &d_.live.stage(); std::exchange(stage_, now) != now) remote_.reopened();
+  // What a new arm fitted to itself nobody has chosen.
+  if (const Stage* now = &d_.live.stage(); std::exchange(stage_, now) != now) {
+    remote_.reopened();
+    if (d_.lead.on()) d_.lead.note_program();
+  }
+  follow_lead();
   const bool any = remote_.turn();
   // Esc and other dialogs leave the question open.
   if (d_.question.asking() && d_.dialog.kind() == nullptr && !d_.document.asking())
@@ -85,7 +90,11 @@ RemoteHost WindowRemote::host() {
     return d_.settings.twin.on ? &d_.settings.twin.parameters : nullptr;
   };
   host.highest = [this] { return with_limits_of(d_.live.stage().arm(), highest_); };
-  host.before_set = [this] { d_.tuning.end_break(); };
+  host.before_set = [this](LineServer::Client client) { lead(client); };
+  host.usual = [this] {
+    return usual_settings(d_.settings.parameters, highest_, d_.live.stage().arm(),
+                          d_.live.loop().device_in_place());
+  };
   host.set = [this](const Parameters& p, bool of_twin) { set(p, of_twin); };
   host.channels = [this]() -> const TraceChannels& { return d_.live.stage().channels(); };
   host.row = [this] { return d_.live.row(); };
@@ -99,12 +108,12 @@ RemoteHost WindowRemote::host() {
 void WindowRemote::add_actions(RemoteHost& host) {
   using Client = LineServer::Client;
   auto& actions = host.actions;
-  actions["open"] = [this](const Keys& keys, Client) { return open(keys); };
+  actions["open"] = [this](const Keys& keys, Client client) { return open(keys, client); };
   actions["record"] = [this](const Keys& keys, Client) { return record(keys); };
   actions["stop"] = [this](const Keys&, Client) { return stop(); };
   actions["start_over"] = [this](const Keys&, Client) { return start_over(); };
   actions["mark"] = [this](const Keys& keys, Client) { return mark(keys); };
-  actions["twin"] = [this](const Keys& keys, Client) { return twin(keys); };
+  actions["twin"] = [this](const Keys& keys, Client client) { return twin(keys, client); };
   actions["blind"] = [this](const Keys& keys, Client client) { return blind(keys, client); };
   actions["ask"] = [this](const Keys& keys, Client client) { return ask(keys, client); };
   actions["picture"] = [this](const Keys& keys, Client) { return picture(keys); };
@@ -145,9 +154,26 @@ json WindowRemote::state() const {
 void WindowRemote::set(const Parameters& p, bool of_twin) {
   (of_twin ? d_.settings.twin.parameters : d_.settings.parameters) = p;
   if (!of_twin) limits_ = limits_of(p);
+  d_.lead.note_program();
 }
 
-Answer WindowRemote::open(const Keys& keys) {
+// From now on the settings are this client's, until it is gone.
+void WindowRemote::lead(LineServer::Client client) {
+  d_.tuning.end_break();
+  d_.lead.begin();
+  leaders_.insert(client);
+}
+
+// When all that led are gone, what they recorded ends, and the person's settings come back.
+void WindowRemote::follow_lead() {
+  d_.lead.follow_person();
+  if (!leaders_.empty() || !d_.lead.on()) return;
+  const LiveLoop& loop = d_.live.loop();
+  if (loop.recording() && loop.recorder()->out() == recorded_) run("session.record");
+  if (d_.lead.end(study_)) study_ = false;
+}
+
+Answer WindowRemote::open(const Keys& keys, LineServer::Client client) {
   if (d_.live.recording()) throw RemoteError("open: stop the recording before");
   if (d_.document.editor().dirty() && !keys.has("session")) {
     throw RemoteError(
@@ -160,8 +186,18 @@ Answer WindowRemote::open(const Keys& keys) {
   if (keys.has("tip") && !arm) throw keys.error("tip", "belongs to an arm");
   if (keys.has("wait"))
     throw keys.error("wait", "needs `limpid serve`; here hands are run at once");
-  if (keys.has("scene")) return open_scene(file_of(keys, "scene", "scenes"));
-  if (arm) return open_arm(file_of(keys, "arm", "devices"), keys.text_if("tip").value_or(""));
+  const auto elsewhere = [&](fs::path file) {
+    lead(client);
+    d_.lead.begin_elsewhere();
+    return file;
+  };
+  if (keys.has("scene")) return open_scene(elsewhere(file_of(keys, "scene", "scenes")));
+  if (arm) {
+    if (d_.live.loop().device_in_place()) {
+      throw RemoteError("open: a real device is in the arm's place");
+    }
+    return open_arm(elsewhere(file_of(keys, "arm", "devices")), keys.text_if("tip").value_or(""));
+  }
   return play(keys.has("session") ? file_of(keys, "session", "sessions")
                                   : file_of(keys, "hand", "hands"));
 }
@@ -178,9 +214,6 @@ Answer WindowRemote::open_scene(const fs::path& file) {
 }
 
 Answer WindowRemote::open_arm(const fs::path& file, const std::string& tip) {
-  if (d_.live.loop().device_in_place()) {
-    throw RemoteError("open: a real device is in the arm's place");
-  }
   d_.notices.clear();
   d_.world.open_arm(file, tip);
   return Answer::Later([this, before = stage_]() -> std::optional<json> {
@@ -188,6 +221,7 @@ Answer WindowRemote::open_arm(const fs::path& file, const std::string& tip) {
     if (&d_.live.stage() == before) throw RemoteError(last_complaint("open: the arm did not come"));
     hold_limits(d_.settings.parameters, highest_, d_.live.stage().arm());
     limits_ = limits_of(d_.settings.parameters);
+    d_.lead.note_program();
     return state();
   });
 }
@@ -209,7 +243,10 @@ Answer WindowRemote::record(const Keys& keys) {
   fs::path file;
   if (keys.has("file")) {
     file = keys.file(".h5");
-    if (fs::exists(file)) throw keys.error("file", file.string() + " exists already");
+    if (fs::exists(file) && !keys.flag_or("force", false)) {
+      throw keys.error("file", file.string() + " exists already; with force it is replaced");
+    }
+    fs::remove(file);
   }
   d_.notices.clear();
   d_.world.record(file);
@@ -218,7 +255,8 @@ Answer WindowRemote::record(const Keys& keys) {
     if (!d_.live.recording()) throw RemoteError(last_complaint("record: it has not begun"));
     const LiveLoop& loop = d_.live.loop();
     if (!loop.recording() || !loop.snapshot().recording) return std::nullopt;
-    return json{{"file", loop.recorder()->out().string()}};
+    recorded_ = loop.recorder()->out();
+    return json{{"file", recorded_.string()}};
   });
 }
 
@@ -255,14 +293,15 @@ Answer WindowRemote::mark(const Keys& keys) {
   return place();
 }
 
-Answer WindowRemote::twin(const Keys& keys) {
+Answer WindowRemote::twin(const Keys& keys, LineServer::Client client) {
   const bool on = keys.flag_or("on", true);
   const bool sets = on && keys.has("values");
   Parameters p = d_.settings.twin.parameters;
   if (sets) set_values(p, keys, with_limits_of(d_.live.stage().arm(), highest_));
+  lead(client);
   if (on != d_.settings.twin.on) run("session.twin");
+  d_.lead.note_program();
   if (!sets) return json{{"on", on}};
-  d_.tuning.end_break();
   set(p, true);
   return json{{"on", on}};
 }
@@ -272,6 +311,7 @@ Answer WindowRemote::blind(const Keys& keys, LineServer::Client client) {
   const bool on = keys.flag_or("on", true);
   if (on && d_.dialog.kind() != nullptr && d_.dialog.name() != "ask") d_.dialog.close();
   d_.blind = on;
+  study_ |= on;
   hides_ = on ? std::optional(client) : std::nullopt;
   return json{{"on", on}};
 }
@@ -325,6 +365,7 @@ void WindowRemote::gone(LineServer::Client client) {
     d_.blind = false;
     hides_.reset();
   }
+  leaders_.erase(client);
   if (asks_ != client) return;
   asks_.reset();
   d_.question.withdraw();

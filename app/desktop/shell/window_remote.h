@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -31,7 +32,7 @@ class WindowRemote {
   void add_actions(RemoteHost& host);
   nlohmann::json state() const;
   void set(const Parameters& p, bool of_twin);
-  Answer open(const Keys& keys);
+  Answer open(const Keys& keys, LineServer::Client client);
   Answer open_scene(const std::filesystem::path& file);
   Answer open_arm(const std::filesystem::path& file, const std::string& tip);
   Answer play(const std::filesystem::path& file);
@@ -39,7 +40,7 @@ class WindowRemote {
   Answer stop();
   Answer start_over();
   Answer mark(const Keys& keys);
-  Answer twin(const Keys& keys);
+  Answer twin(const Keys& keys, LineServer::Client client);
   Answer blind(const Keys& keys, LineServer::Client client);
   Answer ask(const Keys& keys, LineServer::Client client);
   Answer picture(const Keys& keys);
@@ -47,6 +48,8 @@ class WindowRemote {
   void run(const char* command);
   std::string last_complaint(const char* otherwise) const;
   void follow_limits();
+  void lead(LineServer::Client client);
+  void follow_lead();
   void gone(LineServer::Client client);
 
   Desktop& d_;
@@ -56,6 +59,9 @@ class WindowRemote {
   std::uint64_t tick_ = 0;                   // of the newest row
   std::optional<LineServer::Client> hides_;  // the client that asked for it
   std::optional<LineServer::Client> asks_;   // the same of the question
+  std::set<LineServer::Client> leaders_;     // that have changed settings or scene
+  bool study_ = false;                       // one of them has hidden the settings
+  std::filesystem::path recorded_;           // by a client
   bool records_ = false;                     // a client has begun what nobody has stopped
   std::vector<SavedPicture> saved_;          // that somebody waits for
   Remote remote_;                            // last: it goes first

@@ -310,6 +310,34 @@ void World::take_up_set_aside(const ArmDescription& arm) {
   open(arm, before.world->document, before.world->models, nullptr, !before.unsaved);
 }
 
+World::Place World::place() const {
+  return {d_.live.stage().arm(), device_file_,
+          device_tip_,           d_.live.loop().device_in_place(),
+          d_.document.file(),    d_.document.editor().version().world};
+}
+
+void World::go_to(const Place& place) {
+  const bool with_device = d_.live.loop().device_in_place();
+  if (with_device != place.with_device ||
+      (with_device && place.arm.urdf != d_.live.stage().arm().urdf)) {
+    if (!place.file.empty()) load_scene(place.file);
+    return;
+  }
+  SceneDocument document = place.world->document;
+  MeshModels models = place.world->models;
+  if (with_device) {
+    d_.cut_force();
+    d_.live.open_beside(std::move(document), models, d_.settings.parameters,
+                        d_.settings.plot_length);
+    take_stage(std::move(models), true);
+  } else {
+    open(place.arm, std::move(document), std::move(models));
+    device_file_ = place.device_file;
+    device_tip_ = place.device_tip;
+  }
+  d_.document.set_file(place.file);
+}
+
 std::string World::why_fixed() const {
   if (d_.live.recording()) {
     return "Stop the recording (R) before changing the scene: it is part of what is recorded.";

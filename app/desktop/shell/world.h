@@ -51,6 +51,19 @@ class World {
   void open_device(std::unique_ptr<Device> device);
   void close_device(const std::function<void()>& then = [] {});
 
+  // What is open now, to come back to.
+  struct Place {
+    ArmDescription arm;
+    std::string device_file, device_tip;
+    bool with_device = false;  // a real one is in the arm's place
+    std::string file;          // of the scene
+    std::shared_ptr<const SceneEditor::World> world;
+  };
+  Place place() const;
+  // Opens it again; where a real device has come or gone meanwhile, its scene for the arm that is
+  // there now. Errors: as LiveSession::open().
+  void go_to(const Place& place);
+
   void toggle_recording();  // of all that is there now, in a new file of the user's sessions
   void record(const std::filesystem::path& file);  // the same in this one; empty: a new one
   std::string why_fixed() const;

@@ -9,7 +9,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # in the source tree
 
 import limpid  # noqa: E402
-from limpid.study.report import COLOURS, Axes  # noqa: E402
+from limpid.study.report import Axes, colours_of  # noqa: E402
 
 LAWS = ("standard", "proposed", "predictive")
 
@@ -20,7 +20,7 @@ def figure(name: str, title: str, x: str, y: str, lines: dict, top: float | None
     values = [float(value) for _, ys in lines.values() for value in ys]
     low, high = min(0.0, min(values)), top or max(values) * 1.1
     axes = Axes(title, x, y, (min(ends), max(ends)), (low, high))
-    for (label, (xs, ys)), colour in zip(lines.items(), COLOURS):
+    for (label, (xs, ys)), colour in zip(lines.items(), colours_of(lines)):
         axes.line(list(xs), list(ys), colour, label)
     file = Path(os.environ.get("LESSONS", "."), f"{name}.svg")
     file.write_text(axes.svg(), encoding="utf-8")

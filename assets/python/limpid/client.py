@@ -18,8 +18,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Type
 
-from limpid.errors import LimpidError, ProgramError, RequestError
-from limpid.program import PathLike, find_program, setting_words
+from limpid.errors import ArgumentError, LimpidError, ProgramError, RequestError
+from limpid.program import find_program, setting_words
+from limpid.runs import hand_file
+from limpid.values import Hand, PathLike, names_of, path_of, plain, settings_of
 
 PROTOCOL = 1
 KEPT_MESSAGES = 10_000  # of rows that nobody has fetched; older ones are dropped and counted
@@ -54,7 +56,8 @@ def control_path(name: str = "control") -> Path:
 
 class Client:
     """A connection to a running program. All calls raise RequestError where the program refuses what
-    is asked for, and ProgramError where it has ended or does not answer within `timeout` [s]."""
+    is asked for, ArgumentError for what cannot be asked, and ProgramError where the program has ended,
+    does not answer within `timeout` [s], or the connection is closed."""
 
     def __init__(self, path: PathLike, timeout: float = 30.0) -> None:
         """Connects to the socket `path`. Raises ProgramError where nobody listens there."""
@@ -92,37 +95,48 @@ class Client:
 
     def get(self, *keys: str) -> Dict[str, Any]:
         """The values of these settings, or of all; None stands for what is left to the arm."""
-        asked = {"keys": list(keys)} if keys else {}
+        asked = {"keys": names_of("keys", keys)} if keys else {}
         return dict(self.request("get", **asked)["values"])
 
     def state(self) -> Dict[str, Any]:
         """What is open and how the loop is: arm, scene, force, recording, ticks, late, missed."""
         return dict(self.request("get", keys=[])["state"])
 
-    def set(self, values: Mapping[str, Any], twin: bool = False) -> Dict[str, Any]:
-        """Sets all of these or, where one is refused, none; `twin`: those of the second run."""
-        asked = {"twin": True} if twin else {}
-        return dict(self.request("set", values=dict(values), **asked)["values"])
+    def set(self, values: Optional[Mapping[str, Any]] = None, twin: bool = False, reset: bool = False,
+            **more: Any) -> Dict[str, Any]:  # fmt: skip
+        """Sets all of these or, where one is refused, none; `twin`: those of the second run; `reset`:
+        all others have their usual values then, up to limits that a person has chosen. Settings are
+        those of a dict, or keywords: coupling__eta=0.5. Of a window they last as long as this
+        connection; then those of its user come back."""
+        asked: Dict[str, Any] = {"twin": True} if twin else {}
+        if reset:
+            asked["reset"] = True
+        return dict(self.request("set", values=settings_of(values, more, "values"), **asked)["values"])
 
     def open(self, scene: Optional[PathLike] = None, arm: Optional[PathLike] = None,
-             session: Optional[PathLike] = None, hand: Optional[PathLike] = None,
+             session: Optional[PathLike] = None, hand: Optional[Hand] = None,
              tip: Optional[str] = None, wait: bool = False, timeout: float = 120.0
              ) -> Dict[str, Any]:  # fmt: skip
-        """Opens files, or things that came along by their bare names ("table.toml"). With `wait` the
-        hand stays at its first point until a recording begins. Returns the state."""
+        """Opens files, or things that came along by their bare names ("table.toml"); `hand` may be
+        rows of time [s], x, y, z [m], too. With `wait` the hand stays at its first point until a
+        recording begins. Returns the state."""
         asked: Dict[str, Any] = {}
-        for key, what in (("scene", scene), ("arm", arm), ("session", session), ("hand", hand)):
-            if what is not None:
-                asked[key] = _named(what)
-        if tip is not None:
-            asked["tip"] = tip
-        if wait:
-            asked["wait"] = True
-        return self._request("open", asked, timeout)
+        with hand_file(hand) as path:
+            for key, what in (("scene", scene), ("arm", arm), ("session", session), ("hand", path)):
+                if what is not None:
+                    asked[key] = _named(key, what)
+            if tip is not None:
+                asked["tip"] = tip
+            if wait:
+                asked["wait"] = True
+            return self._request("open", asked, timeout)
 
-    def record(self, file: Optional[PathLike] = None) -> str:
-        """Records every tick into `file` or a new one; returns its name once rows are written."""
-        asked = {} if file is None else {"file": os.path.abspath(os.fspath(file))}
+    def record(self, file: Optional[PathLike] = None, force: bool = False) -> str:
+        """Records every tick into `file` or a new one; returns its name once rows are written. One
+        that is there is replaced with `force` only."""
+        asked: Dict[str, Any] = {} if file is None else {"file": os.path.abspath(path_of("file", file))}
+        if force:
+            asked["force"] = True
         return str(self.request("record", **asked)["file"])
 
     def stop(self) -> Dict[str, Any]:
@@ -139,7 +153,7 @@ class Client:
 
     def row(self, channels: Optional[Sequence[str]] = None) -> Dict[str, Optional[float]]:
         """The newest row: values of these channels, or of all, by name."""
-        asked = {} if channels is None else {"channels": list(channels)}
+        asked = {} if channels is None else {"channels": names_of("channels", channels)}
         return dict(self.request("row", **asked)["values"])
 
     def follow(self, channels: Sequence[str], rate: float = 100.0) -> List[str]:
@@ -148,7 +162,8 @@ class Client:
         if not channels:
             self.request("follow")
             return []
-        return list(self.request("follow", channels=list(channels), rate=rate)["units"])
+        return list(self.request("follow", channels=names_of("channels", channels),
+                                 rate=plain("rate", rate))["units"])
 
     def rows(self, seconds: float = 0.0) -> Rows:
         """The rows that have come, and those that come within so long [s]."""
@@ -168,7 +183,7 @@ class Client:
 
     def twin(self, values: Optional[Mapping[str, Any]] = None, on: bool = True) -> None:
         """A second run on the same hand, with these settings of its own; or none any more."""
-        asked = {} if values is None else {"values": dict(values)}
+        asked = {} if values is None else {"values": settings_of(values, name="values")}
         self.request("twin", on=on, **asked)
 
     def blind(self, on: bool = True) -> None:
@@ -182,11 +197,11 @@ class Client:
         without choices it only says something for that time."""
         asked: Dict[str, Any] = {"text": text}
         if choices:
-            asked["choices"] = list(choices)
+            asked["choices"] = names_of("choices", choices)
         if beside:
             asked["beside"] = True
         if seconds is not None:
-            asked["seconds"] = seconds
+            asked["seconds"] = plain("seconds", seconds)
             timeout = max(timeout, seconds + self.timeout)
         found = self._request("ask", asked, timeout)
         none = found["index"] is None
@@ -195,7 +210,7 @@ class Client:
 
     def picture(self, file: PathLike) -> str:
         """Saves a picture, a PNG."""
-        path = os.path.abspath(os.fspath(file))
+        path = os.path.abspath(path_of("file", file))
         return str(self._request("picture", {"file": path}, max(self.timeout, 60.0))["file"])
 
     def cut(self) -> None:
@@ -222,7 +237,10 @@ class Client:
     def _request(self, verb: str, keys: Mapping[str, Any], timeout: float) -> Dict[str, Any]:
         self._next_id += 1
         number = self._next_id
-        line = json.dumps({"id": number, "do": verb, **keys}, allow_nan=False) + "\n"
+        try:
+            line = json.dumps({"id": number, "do": verb, **keys}, allow_nan=False) + "\n"
+        except (TypeError, ValueError) as error:
+            raise ArgumentError(f"{verb}: cannot be asked for: {error}") from error
         end = time.monotonic() + timeout
         self._send(line.encode(), end)
         while number not in self._answers:
@@ -235,6 +253,7 @@ class Client:
         return dict(answer["ok"])
 
     def _send(self, data: bytes, end: float) -> None:
+        self._stay_open()
         while data:
             _, ready, _ = select.select([], [self._socket], [], max(0.0, end - time.monotonic()))
             if not ready:
@@ -246,8 +265,13 @@ class Client:
             except OSError as error:
                 raise ProgramError(f"the program has ended: {error.strerror}") from error
 
+    def _stay_open(self) -> None:
+        if self._socket.fileno() < 0:
+            raise ProgramError("this connection is closed")
+
     def _receive(self, seconds: float) -> bool:
         """Takes in what comes within so long; False where nothing does."""
+        self._stay_open()
         ready, _, _ = select.select([self._socket], [], [], seconds)
         if not ready:
             return False
@@ -273,9 +297,9 @@ class Client:
             raise RequestError(str(message.get("error", message)))
 
 
-def _named(what: PathLike) -> str:
+def _named(key: str, what: Any) -> str:
     """A path from / on; a bare name that is no file here is left to the program."""
-    text = os.fspath(what)
+    text = path_of(key, what)
     bare = os.sep not in text and not os.path.exists(text)
     return text if bare else os.path.abspath(text)
 
@@ -285,28 +309,37 @@ def connect(name: str = "control", timeout: float = 30.0) -> Client:
     return Client(control_path(name), timeout)
 
 
-def serve(scene: Optional[PathLike] = None, hand: Optional[PathLike] = None,
+def serve(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
           arm: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
           live: Optional[str] = None, window: bool = False, name: Optional[str] = None,
-          timeout: float = 30.0) -> Client:  # fmt: skip
+          timeout: float = 30.0, **more: Any) -> Client:  # fmt: skip
     """Starts a program and connects to it; it ends with the connection, or with this process.
 
+    `hand`: a file, a recorded session, or rows of time [s], x, y, z [m]; a window runs it and plays
+    what came of it. `settings`: by their keys, or as keywords: coupling__k_vc=8, eta=0.5.
     `live`: the id of a real device, or "" for the one in use. `window`: with a window, which a person
     may also close. Raises ProgramError with what the program says where it does not start."""
     name = name or f"python-{os.getpid()}-{time.monotonic_ns() % 1_000_000}"
     words: List[str] = [find_program()]
-    words += ["--listen", name] if window else ["serve", name, "--until-eof"]
-    for option, what in (("--scene", scene), ("--hand", hand), ("--device", arm)):
-        if what is not None:
-            words += [option, os.fspath(what)]
+    words += ["--listen", name] if window else ["serve", name]
+    words += ["--until-eof"]
     if live is not None:
         words += ["--live", live] if live else ["--live"]
-    words += setting_words(dict(settings or {}))
+    words += setting_words(settings_of(settings, more))
     path = control_path(name)
-    with tempfile.TemporaryFile("w+", errors="replace") as said:
-        process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+    with hand_file(hand) as file, tempfile.TemporaryFile("w+", errors="replace") as said:
+        for key, option, what in (("scene", "--scene", scene), ("arm", "--device", arm),
+                                  ("hand", "--hand", None if window else file)):  # fmt: skip
+            if what is not None:
+                words += [option, path_of(key, what)]
+        try:
+            process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
+        except OSError as error:
+            raise ProgramError(f"{words[0]}: cannot be started: {error.strerror}") from error
         try:
             client = _reach(path, process, said, timeout)
+            if window and file is not None:
+                client.open(hand=file)
         except BaseException:
             _end(process)
             raise

@@ -5,6 +5,10 @@ class LimpidError(Exception):
     """Anything that this package refuses or that the program cannot do."""
 
 
+class ArgumentError(LimpidError, ValueError):
+    """What was given to a function cannot be: the message names it and says what is allowed."""
+
+
 class RequestError(LimpidError):
     """The program refused what was asked for: the message names the key, what was found and what is
     allowed."""

@@ -6,11 +6,10 @@ import os
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Sequence, Union
+from typing import List, Mapping, Sequence
 
 from limpid.errors import ProgramError
-
-PathLike = Union[str, "os.PathLike[str]"]
+from limpid.values import PathLike, Value, text_of
 
 
 def find_program() -> str:
@@ -40,18 +39,21 @@ def carry_out(words: Sequence[PathLike]) -> str:
 
     Raises ProgramError with what it said where it fails."""
     command = [find_program(), *(os.fspath(word) for word in words)]
-    done = subprocess.run(command, capture_output=True, text=True, errors="replace",
-                          stdin=subprocess.DEVNULL, check=False)  # fmt: skip
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace",
+                              stdin=subprocess.DEVNULL, check=False)  # fmt: skip
+    except (OSError, ValueError) as error:
+        raise ProgramError(f"{command[0]}: cannot be started: {error}") from error
     if done.returncode != 0:
         said = done.stderr.strip() or done.stdout.strip() or f"exit status {done.returncode}"
         raise ProgramError(said)
     return done.stdout
 
 
-def setting_words(values: "dict[str, object]") -> "list[str]":
-    """Settings as the command line has them: {"coupling.eta": 0.5} becomes --set coupling.eta=0.5."""
-    words: "list[str]" = []
+def setting_words(values: Mapping[str, Value], option: str = "--set") -> List[str]:
+    """Settings as the command line has them: {"coupling.eta": 0.5} becomes --set coupling.eta=0.5, or
+    without an option the word alone."""
+    words: List[str] = []
     for key, value in values.items():
-        text = str(value).lower() if isinstance(value, bool) else str(value)
-        words += ["--set", f"{key}={text}"]
+        words += [option] * bool(option) + [f"{key}={text_of(value)}"]
     return words

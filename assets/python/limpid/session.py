@@ -5,17 +5,21 @@ Needs h5py and numpy (Debian: python3-h5py, python3-numpy).
 
 from __future__ import annotations
 
+import contextlib
 import os
-from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from limpid.errors import LimpidError
-from limpid.program import PathLike
+from limpid.values import PathLike, names_of, path_of
 
 if TYPE_CHECKING:
     import numpy
 
 # As /coupling/kind has them.
 LAWS = ("standard", "proposed", "predictive", "tank")
+MAIN, TWIN = "", "twin/"  # the runs that a recording keeps, by what the names of their channels begin with
+BESIDE_ROWS = ("axis", "check", "events", "joint", "marks", "models")  # of each run
+ONE_STATE = "objects/state"  # of the first row only
 
 
 class Contact(NamedTuple):
@@ -27,89 +31,188 @@ class Contact(NamedTuple):
     point: Tuple[float, float, float]  # of the hardest contact at that moment [m]
 
 
+class _Lane(NamedTuple):
+    """What stands beside the rows of one of the runs."""
+
+    config: str
+    law: str
+    changes: List[Tuple[int, str]]  # from which row on, what
+
+
+class _Recording:
+    """A file and what was read of it. Rows are read channel by channel, when somebody asks for them;
+    there are as many as when it was opened, also where the recording goes on."""
+
+    def __init__(self, file: PathLike, wanted: Optional[Sequence[str]]) -> None:
+        try:
+            import h5py  # noqa: F401
+            import numpy  # noqa: F401
+        except ImportError as error:
+            raise LimpidError(f"{file}: sessions are read with h5py and numpy; "
+                              f"{error.name} is missing") from error  # fmt: skip
+        self.file = path_of("session", file)
+        self.units: Dict[str, str] = {}
+        self.about: Dict[str, str] = {}
+        self._read: Dict[str, Any] = {}
+        self._opened_as: Optional[Tuple[int, ...]] = None
+        lengths: List[int] = []
+
+        def take(name: str, item: Any) -> None:
+            bare = name[len(TWIN):] if name.startswith(TWIN) else name
+            rows = hasattr(item, "shape") and bare.split("/")[0] not in BESIDE_ROWS and bare != ONE_STATE
+            if rows and item.ndim > 0 and item.attrs.get("unit") is not None:
+                self.units[name] = str(item.attrs["unit"])
+                self.about[name] = str(item.attrs.get("what", ""))
+                lengths.append(len(item))
+
+        with self.opened() as opened:
+            if opened.attrs.get("format") != "limpid-session":
+                raise LimpidError(f"{self.file}: is no session of Limpid")
+            self.attributes: Dict[str, Any] = dict(opened.attrs)
+            opened.visititems(take)
+            self.rows = min(lengths, default=0)
+            self.lanes = {name: self._lane(opened[name] if name else opened) for name in (MAIN, TWIN)
+                          if not name or name in opened}  # fmt: skip
+            self.marks = sorted(_pairs(opened, "marks/tick", "marks/text"), key=lambda mark: mark[0])
+        self._choose(wanted)
+
+    @contextlib.contextmanager
+    def opened(self) -> Iterator[Any]:
+        """The file, as long as somebody reads it. Raises LimpidError where it cannot be read, or is
+        another one by now."""
+        import h5py
+
+        file = self.file
+        if self._opened_as and file.endswith(".part") and not os.path.exists(file):
+            file = file[: -len(".part")]  # the recording is complete by now
+        try:
+            with h5py.File(file, "r", swmr=file.endswith(".part")) as opened:
+                found = os.stat(file)
+                known = (found.st_dev, found.st_ino)
+                if self._opened_as not in (None, known):
+                    raise LimpidError(f"{self.file}: is another file than when it was opened; open it again")
+                self._opened_as = known
+                yield opened
+        except (OSError, RuntimeError, KeyError) as error:
+            raise LimpidError(f"{self.file}: cannot be read as a session: {error}") from error
+
+    @staticmethod
+    def _lane(group: Any) -> _Lane:
+        kind = group["coupling/kind"] if "coupling/kind" in group else ()
+        law = int(kind[0]) if len(kind) else -1
+        return _Lane(str(group.attrs.get("config", "")),
+                     LAWS[law] if 0 <= law < len(LAWS) else "",
+                     _pairs(group, "events/row", "events/setting"))  # fmt: skip
+
+    def _choose(self, wanted: Optional[Sequence[str]]) -> None:
+        if wanted is None:
+            return
+        names = [self.known(name) for name in names_of("channels", wanted)]
+        names += [name for name in ("time", TWIN + "time") if name in self.units and name not in names]
+        self.units = {name: self.units[name] for name in names}
+        self.about = {name: self.about[name] for name in names}
+
+    def known(self, name: str) -> str:
+        name = name.lstrip("/")
+        if name in self.units:
+            return name
+        raise LimpidError(f"{self.file}: {name} is no channel; there are {', '.join(self.units)}")
+
+    def channel(self, name: str) -> "numpy.ndarray":
+        import numpy
+
+        name = self.known(name)
+        if name not in self._read:
+            with self.opened() as opened:
+                self._read[name] = numpy.asarray(opened[name][: self.rows])
+        return self._read[name]
+
+    def keep(self) -> None:
+        """All channels are in memory from now on, and the file may go."""
+        with self.opened() as opened:
+            for name in self.units:
+                if name not in self._read:
+                    self._read[name] = opened[name][: self.rows]
+
+
+def _pairs(group: Any, numbers: str, texts: str) -> List[Tuple[int, str]]:
+    if numbers not in group or texts not in group:
+        return []
+    return [(int(number), bytes(text).decode(errors="replace"))
+            for number, text in zip(group[numbers], group[texts])]  # fmt: skip
+
+
 class Session:
     """Row k holds the state at time[k] and the torques held until time[k + 1]; SI units, radians.
-    The file is read whole when the session is opened, and stays as it is."""
+    Channels are read from the file when they are asked for, and then kept; the session has the rows
+    that were there when it was opened."""
 
-    def __init__(self, file: PathLike) -> None:
-        """Reads FILE.h5, or the FILE.h5.part of a recording. Raises LimpidError for anything else."""
-        try:
-            import h5py
-            import numpy
-        except ImportError as error:
-            raise LimpidError(f"{os.fspath(file)}: sessions are read with h5py and numpy; "
-                              f"{error.name} is missing") from error  # fmt: skip
-        self.file = os.fspath(file)
-        self._channels: Dict[str, Any] = {}
-        self._units: Dict[str, str] = {}
-        self._about: Dict[str, str] = {}
-        self._changes: List[Tuple[int, str]] = []
-        self._marks: List[Tuple[int, str]] = []
-        try:
-            with h5py.File(self.file, "r", swmr=self.file.endswith(".part")) as opened:
-                if opened.attrs.get("format") != "limpid-session":
-                    raise LimpidError(f"{self.file}: is no session of Limpid")
-                self.attributes: Dict[str, Any] = dict(opened.attrs)
-                opened.visititems(self._take)
-                if "events/row" in opened:
-                    texts = (bytes(text).decode(errors="replace") for text in opened["events/setting"])
-                    self._changes = [(int(row), text) for row, text in zip(opened["events/row"], texts)]
-                if "marks/tick" in opened:
-                    texts = (bytes(text).decode(errors="replace") for text in opened["marks/text"])
-                    self._marks = sorted(((int(tick), text) for tick, text in
-                                          zip(opened["marks/tick"], texts)), key=lambda mark: mark[0])  # fmt: skip
-        except OSError as error:
-            raise LimpidError(f"{self.file}: cannot be read as a session: {error}") from error
-        rows = min(len(data) for data in self._channels.values())
-        self._channels = {name: numpy.asarray(data[:rows]) for name, data in self._channels.items()}
+    def __init__(self, file: PathLike, channels: Optional[Sequence[str]] = None) -> None:
+        """Opens FILE.h5, or the FILE.h5.part of a recording; `channels`: only these, and the time.
+        Raises LimpidError for anything else, and where there is no channel of such a name."""
+        self._recording = _Recording(file, channels)
+        self._lane = MAIN
 
-    def _take(self, name: str, item: Any) -> None:
-        if not hasattr(item, "shape") or name.split("/")[0] in ("check", "events", "marks", "axis", "joint"):
-            return
-        if item.ndim < 1 or item.attrs.get("unit") is None:
-            return
-        if name.endswith("objects/state"):
-            return
-        self._channels[name] = item[()]
-        self._units[name] = str(item.attrs["unit"])
-        self._about[name] = str(item.attrs.get("what", ""))
+    @property
+    def file(self) -> str:
+        """Its name, as it was opened."""
+        return self._recording.file
+
+    @property
+    def attributes(self) -> Dict[str, Any]:
+        """Of the file, for all runs in it: version, seed, source of the hand, and others."""
+        return self._recording.attributes
+
+    @property
+    def twin(self) -> "Optional[Session]":
+        """The second run on the same hand, with its own channels, law, settings and changes; None
+        where there is none."""
+        if self._lane == TWIN or TWIN not in self._recording.lanes:
+            return None
+        second = Session.__new__(Session)
+        second._recording, second._lane = self._recording, TWIN
+        return second
 
     def __len__(self) -> int:
-        return len(self.time)
+        return self._recording.rows
 
     def __repr__(self) -> str:
-        return f"<limpid.Session {self.file}: {len(self)} rows, {len(self) * self.tick:.3f} s>"
+        which = ", second run" * (self._lane == TWIN)
+        return f"<limpid.Session {self.file}{which}: {len(self)} rows, {len(self) * self.tick:.3f} s>"
 
     @property
     def channels(self) -> List[str]:
-        """Names of all channels; those of a second run begin with "twin/"."""
-        return list(self._channels)
+        """Names of all channels; those of a second run begin with "twin/", and are those of twin
+        without that."""
+        names = [name for name in self._recording.units if name.startswith(self._lane)]
+        return [name[len(self._lane):] for name in names]
 
     def channel(self, name: str) -> "numpy.ndarray":
         """Values, a row each; of several numbers a row (joints, or x y z) a matrix. Raises
         LimpidError for a name that there is not."""
-        return self._channels[self._known(name)]
+        return self._recording.channel(self._named(name))
 
     __getitem__ = channel
 
     def unit(self, name: str) -> str:
         """The channel's unit, "-" for none; of joints that slide see the attribute joint_types."""
-        return self._units[self._known(name)]
+        return self._recording.units[self._recording.known(self._named(name))]
 
     def about(self, name: str) -> str:
         """What the channel is, in words."""
-        return self._about[self._known(name)]
+        return self._recording.about[self._recording.known(self._named(name))]
 
-    def _known(self, name: str) -> str:
-        name = name.lstrip("/")
-        if name in self._channels:
-            return name
-        raise LimpidError(f"{self.file}: {name} is no channel; there are {', '.join(self.channels)}")
+    def _named(self, name: str) -> str:
+        return self._lane + str(name).lstrip("/")
+
+    def keep(self) -> None:
+        """Reads all channels into memory; the file may go then."""
+        self._recording.keep()
 
     @property
     def time(self) -> "numpy.ndarray":
         """[s], from 0."""
-        return self._channels["time"]
+        return self.channel("time")
 
     @property
     def tick(self) -> float:
@@ -124,12 +227,13 @@ class Session:
     @property
     def config(self) -> str:
         """All settings at the first row, as TOML."""
-        return str(self.attributes["config"])
+        return self._recording.lanes[self._lane].config
 
     @property
     def law(self) -> str:
-        """The coupling at the first row."""
-        return LAWS[int(self._channels["coupling/kind"][0])]
+        """The coupling at the first row; empty where there is no row, or this package does not know
+        the law."""
+        return self._recording.lanes[self._lane].law
 
     @property
     def device_tip(self) -> "numpy.ndarray":
@@ -157,23 +261,25 @@ class Session:
         found = []
         for first, end in zip(touched[::2], touched[1::2]):
             hardest = first + int(numpy.argmax(size[first:end]))
-            point = tuple(float(x) for x in points[hardest][:3])
+            x, y, z = (float(each) for each in points[hardest][:3])
             found.append(Contact(float(self.time[first]), float(self.time[end - 1]) + self.tick,
-                                 float(size[hardest]), point))  # fmt: skip
+                                 float(size[hardest]), (x, y, z)))  # fmt: skip
         return found
 
     @property
     def changes(self) -> List[Tuple[float, str]]:
-        """When a setting changed while recording [s], and to what: "coupling.eta = 0.5"."""
+        """When a setting of this run changed while recording [s], and to what: "coupling.eta = 0.5"."""
         last = len(self) - 1
-        return [(float(self.time[min(row, last)]), text) for row, text in self._changes]
+        changes = self._recording.lanes[self._lane].changes if last >= 0 else []
+        return [(float(self.time[min(row, last)]), text) for row, text in changes]
 
     @property
     def marks(self) -> List[Tuple[float, str]]:
         """What people noted, and when [s]: with T in the window, or a program with mark()."""
-        return [(float(self.time[tick]), text) for tick, text in self._marks if tick < len(self)]
+        marks = self._recording.marks
+        return [(float(self.time[tick]), text) for tick, text in marks if tick < len(self)]
 
 
-def session(file: PathLike) -> Session:
-    """Opens a recorded session."""
-    return Session(file)
+def session(file: PathLike, channels: Optional[Sequence[str]] = None) -> Session:
+    """Opens a recorded session; `channels`: only these, and the time."""
+    return Session(file, channels)

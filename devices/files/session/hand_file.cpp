@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "devices/files/text_file.h"
 
@@ -18,6 +19,8 @@ namespace {
 constexpr std::size_t kLongestCsv = std::size_t{1} << 30;  // [bytes]
 constexpr double kFarthest = 10;                           // [m]
 constexpr double kLongestTime = 1e6;                       // [s]
+constexpr std::string_view kSource = "# source: ";         // of a line before the header
+constexpr std::size_t kLongestSource = 200;                // [bytes]
 constexpr std::array<std::string_view, 4> kHeader{"time_s", "x_m", "y_m", "z_m"};
 
 // Cuts the first field off `line`.
@@ -246,12 +249,16 @@ HandPath parse_hand_csv(const std::string& text, const std::string& where) {
   path.source = where;
   Csv csv{where};
   std::string_view rest = text;
+  bool headed = false;
   while (!rest.empty()) {
     const auto end = rest.find('\n');
     const std::string_view line = rest.substr(0, end);
     rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
     ++csv.line;
-    if (csv.line == 1) {
+    if (csv.line == 1 && line.starts_with(kSource)) {
+      const std::string_view source = trimmed(line.substr(kSource.size()));
+      path.source = printable(std::string(source.substr(0, kLongestSource)));
+    } else if (!std::exchange(headed, true)) {
       csv.read_header(line);
     } else if (!trimmed(line).empty()) {
       csv.add_row(line, path);

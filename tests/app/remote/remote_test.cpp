@@ -121,10 +121,44 @@ TEST_F(RemoteTest, SetsAllOrNothing) {
   EXPECT_EQ(twin->eta, 2);
 }
 
+TEST_F(RemoteTest, SetsAllOthersAsTheyUsuallyAreWhenThatIsAskedFor) {
+  parameters.eta = 0.5;
+  parameters.hand_stiffness = 900;
+  host.usual = [] { return Parameters{}; };
+  start();
+  EXPECT_TRUE(ask(R"({"do":"set","reset":true,"values":{"coupling.eta":-1}})").contains("error"));
+  EXPECT_EQ(parameters.hand_stiffness, 900) << "what is refused changes nothing";
+  EXPECT_TRUE(ask(R"({"do":"set","reset":true,"values":{"coupling.k_vc":8}})").contains("ok"));
+  EXPECT_EQ(parameters.k_vc, 8);
+  EXPECT_EQ(parameters.eta, Parameters{}.eta);
+  EXPECT_EQ(parameters.hand_stiffness, Parameters{}.hand_stiffness);
+}
+
+TEST(UsualSettings, StayWithinLimitsAndLeaveADeviceWhatIsItsOwn) {
+  const ArmDescription arm = test::omni();
+  Parameters now, chosen;
+  now.eta = 0.5;
+  now.tick = 0.002;
+  now.friction_share = 0.3;
+  now.encoder_step = 1e-3;
+  chosen.torque_limit = 0.1;
+  set_parameter(chosen, "ledger.energy", 0.001);
+  const Parameters device = usual_settings(now, chosen, arm, true);
+  EXPECT_EQ(device.eta, Parameters{}.eta);
+  EXPECT_EQ(device.tick, 0.002) << "fixed while the loop runs";
+  EXPECT_EQ(device.torque_limit, 0.1);
+  EXPECT_EQ(parameter_number(device, *find_parameter("ledger.energy")), 0.001);
+  EXPECT_EQ(device.friction_share, 0.3);
+  EXPECT_EQ(device.encoder_step, 1e-3);
+  const Parameters simulated = usual_settings(now, chosen, arm, false);
+  EXPECT_EQ(simulated.friction_share, 0);
+  EXPECT_EQ(simulated.encoder_step, 0);
+}
+
 // As passivity that is broken puts other settings in their place: these are not kept by a request.
 TEST_F(RemoteTest, SetsOnTopOfWhatIsThereOnceWhatIsForAWhileHasEnded) {
   parameters.hand_stiffness = 3000;
-  host.before_set = [this] { parameters.hand_stiffness = 300; };
+  host.before_set = [this](LineServer::Client) { parameters.hand_stiffness = 300; };
   start();
   EXPECT_TRUE(ask(R"({"do":"set","values":{"coupling.eta":-1}})").contains("error"));
   EXPECT_EQ(parameters.hand_stiffness, 3000) << "what is refused ends nothing";

@@ -59,7 +59,6 @@ def participant(arguments: argparse.Namespace, scene: Path):
     if not arguments.simulate:
         loop = limpid.connect(arguments.connect)
         loop.open(scene=scene)
-        loop.set({"coupling.kind": LAW})
         return study.Person(loop)
     return study.Simulated(WEBER * STANDARD, seed=arguments.participant,
                            percept=lambda stimulus: felt(LAW, stimulus.level, scene))
@@ -69,7 +68,8 @@ def main() -> None:
     arguments = study.words(__doc__, "trials", 40, "how many")
     scene = (arguments.out / "nothing.toml").resolve()
     scene.write_text(SCENE)
-    run = study.Study("inertia", arguments.out, arguments.participant, participant(arguments, scene))
+    run = study.Study("inertia", arguments.out, arguments.participant, participant(arguments, scene),
+                      {"coupling.kind": LAW})
     run.tell("You feel the arm two times, one after the other. Shake it to and fro each time; then say "
              "which time it was heavier.")
     method = study.Quest(guess=0.5 * STANDARD, low=0.01, high=2.0, trials=arguments.trials)
@@ -79,7 +79,7 @@ def main() -> None:
     found = method.found()
     threshold_report("Just noticeable difference of inertia", arguments.out, "eta", {LAW: answers},
                      f"Two-interval forced choice beside eta {STANDARD:g}; QUEST-like; participant "
-                     f"{arguments.participant}.", "inertia", {LAW: found})
+                     f"{arguments.participant}.", "inertia", {LAW: found}, run)
     print(f"eta: {found}, {100 * found.threshold / STANDARD:.0f} %", flush=True)
     run.tell("That was all. Thank you.")
 

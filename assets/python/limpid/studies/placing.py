@@ -89,7 +89,7 @@ def main() -> None:
     found = {}
     for law in run.blocks(LAWS):
         if loop:
-            loop.set({"coupling.kind": law})
+            who.use({"coupling.kind": law})
         plan = study.ConstantStimuli(DISTANCES, arguments.repeats, f"{arguments.participant} {law}")
         rates = []
         while not plan.done:
@@ -103,14 +103,14 @@ def main() -> None:
             taken = run.value(law, trial, measure, distance)
             rates.append(math.log2(distance / WIDTH + 1) / taken)
             plan.answer(True)
-        found[law] = study.mean_interval(rates)
-    report = Report("Placing under each law", arguments.out)
+        found[law] = study.Fit(*study.mean_interval(rates), len(rates))
+    report = Report("Placing under each law", arguments.out, run)
     report.text(f"Fitts' task, places {1000 * WIDTH:g} mm wide; {2 * arguments.repeats} trials a law.")
-    report.figure("placing", intervals("Placing", "throughput [bit/s]", found), "Mean, interval of 95 %.")
-    report.table(["law", "throughput [bit/s]", "from", "to"],
-                 [[law, *(f"{x:.2f}" for x in numbers)] for law, numbers in found.items()])
+    report.figure("placing", intervals("Placing", "throughput [bit/s]", {
+        law: each[:3] for law, each in found.items()}), "Mean, interval of 95 %.")
+    report.results("placing", "throughput [bit/s]", found)
     report.write("placing")
-    for law, (mean, low, high) in found.items():
+    for law, (mean, low, high, _) in found.items():
         print(f"{law:>10}: {mean:.2f} bit/s ({low:.2f} to {high:.2f})", flush=True)
     run.tell("That was all. Thank you.")
 

@@ -24,7 +24,7 @@ WALL = """title = "Wall"
 name = "wall"
 point = [0, 0, -0.04]
 normal = [0, 0, 1]
-stiffness = {stiffness!r}
+stiffness = {stiffness}
 """
 PRESS = [(0, 0.19, 0, 0), (0.2, 0.19, 0, 0), (0.7, 0.19, 0, -0.05), (1.2, 0.19, 0, -0.05)]
 
@@ -78,7 +78,7 @@ def main() -> None:
         run.question("How sure were you?", ["guessed", "mostly sure", "sure"], law)
     fits = threshold_report("Just noticeable difference of stiffness", arguments.out, "N/m", answers,
                             f"Two-interval forced choice beside a wall of {STANDARD:g} N/m; 1-up-3-down "
-                            f"staircases; participant {arguments.participant}.", "stiffness")
+                            f"staircases; participant {arguments.participant}.", "stiffness", run=run)
     for law, found in fits.items():
         print(f"{law:>10}: {found} N/m, {100 * found.threshold / STANDARD:.0f} %", flush=True)
     run.tell("That was all. Thank you.")

@@ -51,7 +51,7 @@ def main() -> None:
             "Make the arm as heavy as the reference.", ("lighter", "heavier"), low=LOW, high=HIGH,
             trials=2 * arguments.pairs, practice=1, pause_every=10)
     fits = equality_report("As heavy as the other laws", arguments.out, "eta of the predictive law", matches,
-                           f"Method of adjustment; participant {arguments.participant}.", "weight")
+                           f"Method of adjustment; participant {arguments.participant}.", "weight", run)
     for law, found in fits.items():
         print(f"{law:>10}: as eta {found}", flush=True)
     run.tell("That was all. Thank you.")

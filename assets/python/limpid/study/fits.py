@@ -12,9 +12,10 @@ import math
 from statistics import NormalDist
 from typing import Iterable, List, NamedTuple, Sequence, Tuple
 
+from limpid.errors import ArgumentError
+
 LEVEL = 0.75  # of right answers, at the threshold
 _QUARTILE = NormalDist().inv_cdf(LEVEL)
-_CHI2 = {0.95: 3.841458820694124, 0.99: 6.6348966010212145, 0.9: 2.705543454095404}  # of 1 freedom
 
 
 class Fit(NamedTuple):
@@ -27,6 +28,12 @@ class Fit(NamedTuple):
     trials: int
 
     def __str__(self) -> str:
+        if self.low <= 0 and not math.isfinite(self.high):
+            return f"not found ({self.trials} trials)"
+        if self.low <= 0:
+            return f"not found, below {self.high:.3g} ({self.trials} trials)"
+        if not math.isfinite(self.high):
+            return f"not found, above {self.low:.3g} ({self.trials} trials)"
         return f"{self.threshold:.3g} ({self.low:.3g} to {self.high:.3g}, {self.trials} trials)"
 
 
@@ -41,13 +48,13 @@ def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float 
     those whose likelihood is not significantly less (its ratio by the chi-square distribution).
 
     Where the answers do not bound it, as where all are right, an end is 0 or infinite. Raises
-    ValueError for fewer than 5 answers or levels that are not above 0."""
+    ArgumentError for fewer than 5 answers or levels that are not above 0."""
     counted = _counted(answers)
     trials = sum(right + wrong for _, right, wrong in counted)
     if trials < 5:
-        raise ValueError(f"a threshold needs at least 5 answers; found: {trials}")
+        raise ArgumentError(f"a threshold needs at least 5 answers; found: {trials}")
     if not all(level > 0 and math.isfinite(level) for level, _, _ in counted):
-        raise ValueError("levels are differences above 0")
+        raise ArgumentError("levels are differences above 0")
 
     def loss(log_threshold: float) -> float:
         threshold, total = math.exp(log_threshold), 0.0
@@ -62,7 +69,9 @@ def fit(answers: Iterable[Tuple[float, bool]], lapse: float = 0.02, part: float 
     grid = [first + (last - first) * i / 120 for i in range(121)]
     best = min(range(121), key=lambda i: loss(grid[i]))
     top = _least(loss, grid[max(best - 1, 0)], grid[min(best + 1, 120)])
-    bound = loss(top) + 0.5 * _CHI2[part]
+    if not 0 < part < 1:
+        raise ArgumentError(f"part: {part} is not allowed; allowed: a part above 0 and below 1, such as 0.95")
+    bound = loss(top) + 0.5 * NormalDist().inv_cdf(0.5 + part / 2) ** 2  # chi-square of 1 freedom
     low = 0.0 if loss(first) <= bound else math.exp(_crossing(loss, bound, top, first))
     high = math.inf if loss(last) <= bound else math.exp(_crossing(loss, bound, top, last))
     return Fit(math.exp(top), low, high, trials)
@@ -106,11 +115,11 @@ def equality(matches: Sequence[Tuple[float, float]]) -> Fit:
     as the levels are adjusted by factors; a pair counts once, by its mean, so that what a participant
     stops short of the reference on either side is no part of the spread.
 
-    Raises ValueError for fewer than 2 pairs or levels that are not above 0."""
+    Raises ArgumentError for fewer than 2 pairs or levels that are not above 0."""
     if len(matches) < 2:
-        raise ValueError(f"a point of equality needs at least 2 pairs of matches; found: {len(matches)}")
+        raise ArgumentError(f"a point of equality needs at least 2 pairs of matches; found: {len(matches)}")
     if not all(level > 0 and math.isfinite(level) for pair in matches for level in pair):
-        raise ValueError("levels of matches are numbers above 0")
+        raise ArgumentError("levels of matches are numbers above 0")
     found = mean_interval([0.5 * (math.log(a) + math.log(b)) for a, b in matches])
     return Fit(*(math.exp(x) for x in found), 2 * len(matches))
 
@@ -118,7 +127,7 @@ def equality(matches: Sequence[Tuple[float, float]]) -> Fit:
 def proportion_interval(right: int, of: int, part: float = 0.95) -> Tuple[float, float]:
     """Of a chance, by Wilson (1927)."""
     if of < 1 or not 0 <= right <= of:
-        raise ValueError(f"a proportion is so many of at least 1; found: {right} of {of}")
+        raise ArgumentError(f"a proportion is so many of at least 1; found: {right} of {of}")
     z = NormalDist().inv_cdf(0.5 + part / 2)
     centre = (right + z * z / 2) / (of + z * z)
     half = z / (of + z * z) * math.sqrt(right * (of - right) / of + z * z / 4)
@@ -129,7 +138,7 @@ def mean_interval(values: Sequence[float]) -> Tuple[float, float, float]:
     """Mean and the ends of its interval of 95 %, by Student's distribution."""
     n = len(values)
     if n < 2:
-        raise ValueError(f"an interval needs at least 2 values; found: {n}")
+        raise ArgumentError(f"an interval needs at least 2 values; found: {n}")
     mean = sum(values) / n
     deviation = math.sqrt(sum((x - mean) ** 2 for x in values) / (n - 1))
     half = _student(n - 1) * deviation / math.sqrt(n)

@@ -6,6 +6,7 @@ import math
 import random
 from typing import List, Optional, Sequence, Tuple
 
+from limpid.errors import ArgumentError
 from limpid.study.fits import Fit, chance_of
 
 
@@ -18,10 +19,13 @@ class Staircase:
                  trials: int = 80, low: float = 0.0, high: float = math.inf, down: int = 3) -> None:  # fmt: skip
         """`start`: the first level; `steps`: factors, the next one from each second reversal on;
         ends after so many `reversals`, or `trials`; levels stay between `low` and `high`."""
-        if not (low <= start <= high and start > 0 and all(step > 1 for step in steps)):
-            raise ValueError("a staircase needs a start between its limits and steps above 1")
-        self.level = start
-        self._steps, self._down = list(steps), down
+        steps = [float(step) for step in steps]
+        if not (low <= start <= high and start > 0 and steps and all(step > 1 for step in steps)):
+            raise ArgumentError("a staircase needs a start between its limits, and steps, each above 1")
+        if down < 1 or reversals < 1 or trials < 1:
+            raise ArgumentError("a staircase needs at least 1 trial, 1 reversal, and 1 right answer to go down")
+        self.level = float(start)
+        self._steps, self._down = steps, down
         self._reversals, self._trials = reversals, trials
         self._low, self._high = low, high
         self._right = self._direction = self._count = 0
@@ -61,7 +65,7 @@ class Quest:
                  high: float = math.inf, lapse: float = 0.02) -> None:  # fmt: skip
         """`guess`: of the threshold, right within a factor `spread` two times of three."""
         if not (guess > 0 and spread > 1 and trials > 0):
-            raise ValueError("QUEST needs a guess above 0, a spread above 1, and trials")
+            raise ArgumentError("QUEST needs a guess above 0, a spread above 1, and trials")
         self._trials, self._low, self._high, self._lapse = trials, low, high, lapse
         width = math.log(spread)
         self._grid = [math.log(guess) + width * 4 * (i / 200 - 1) for i in range(401)]
@@ -113,8 +117,9 @@ class ConstantStimuli:
     """Each level equally often, in an order of chance that is the same for the same seed."""
 
     def __init__(self, levels: Sequence[float], repeats: int, seed: str) -> None:
+        levels = [float(level) for level in levels]
         if not levels or repeats < 1:
-            raise ValueError("constant stimuli need levels, each at least once")
+            raise ArgumentError("constant stimuli need levels, each at least once")
         self._left = [level for level in levels for _ in range(repeats)]
         random.Random(seed).shuffle(self._left)
 
@@ -141,7 +146,7 @@ class Adjustment:
         """Levels stay between `low` and `high`; it ends after so many answers, `trials`, whether it is
         as the standard or not."""
         if not (start > 0 and low <= start <= high and step >= finest > 1):
-            raise ValueError("an adjustment needs a start above 0 between its limits, and steps above 1")
+            raise ArgumentError("an adjustment needs a start above 0 between its limits, and steps above 1")
         self.level, self._step, self._finest = start, step, finest
         self._low, self._high = low, high
         self._direction, self._trials, self._count = 0, trials, 0
@@ -155,7 +160,7 @@ class Adjustment:
     def answer(self, wanted: str) -> None:
         """Of the participant."""
         if wanted not in ("more", "less", "same"):
-            raise ValueError(f'"{wanted}" is not allowed; allowed: more, less, same')
+            raise ArgumentError(f'"{wanted}" is not allowed; allowed: more, less, same')
         self._count += 1
         self.matched = wanted == "same"
         if self.matched:

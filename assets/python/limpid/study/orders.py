@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import List, Sequence, TypeVar
 
+from limpid.errors import ArgumentError
+
 T = TypeVar("T")
 
 
@@ -12,7 +14,7 @@ def latin_square(count: int) -> List[List[int]]:
     number as many orders as conditions, of an odd one twice as many. In them each condition is
     as often at each place, and as often right behind each other one."""
     if count < 1:
-        raise ValueError(f"a study has at least 1 condition; found: {count}")
+        raise ArgumentError(f"a study has at least 1 condition; found: {count}")
     zigzag = [(i + 1) // 2 if i % 2 else (count - i // 2) % count for i in range(count)]
     rows = [[(place + shift) % count for place in zigzag] for shift in range(count)]
     return rows if count % 2 == 0 else rows + [row[::-1] for row in rows]

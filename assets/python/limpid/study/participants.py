@@ -7,9 +7,16 @@ import math
 import os
 import random
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from limpid.client import Client
+from limpid.errors import ArgumentError, ProgramError, RequestError
+from limpid.study.sheet import program_version
+from limpid.values import number, plain, settings_of
+
+
+class StimulusError(RequestError):
+    """The program refuses what a stimulus asks for."""
 
 
 class Stimulus(NamedTuple):
@@ -44,13 +51,41 @@ class Person:
 
     def __init__(self, loop: Client, seconds: float = 4.0) -> None:
         """`seconds`: how long an interval is [s]."""
-        self._loop, self._seconds = loop, seconds
+        self._loop, self._seconds = loop, number("seconds", seconds)
+        self._settings: Dict[str, Any] = {}  # of all stimuli, once a study has begun
+        self._begun = False
         self._session, self._scene = "", ""  # of a trial that is adjusted
         state = loop.state()
         if state["recording"]:  # of a study that was cut off
             loop.stop()
         self._how = "" if state["device"] else " Pull the arm by its tip, with the left mouse button."
         loop.blind()
+
+    def begin(self, settings: Mapping[str, Any]) -> Tuple[Dict[str, Any], str]:
+        """From now on all stimuli have these settings, and all others their usual values. Returns
+        what the answers are given under, and the program's version."""
+        self._settings, self._begun = dict(settings), True
+        state = self._loop.state()
+        if state.get("twin"):
+            self._loop.twin(on=False)
+        self.use({})
+        return {"settings": self._loop.get(), "truth": None, "arm": state.get("arm")}, str(
+            self._loop.about.get("version", "unknown"))
+
+    def use(self, settings: Mapping[str, Any], scene: Optional[str] = None) -> None:
+        """Sets these over the study's, in this scene. Raises StimulusError where the program refuses
+        what they are."""
+        if scene is not None:
+            try:
+                self._loop.open(scene=scene)
+            except RequestError as error:
+                if os.path.basename(scene) in str(error):
+                    raise StimulusError(str(error)) from error
+                raise
+        try:
+            self._loop.set({**self._settings, **settings_of(settings)}, reset=self._begun)
+        except (RequestError, ArgumentError) as error:
+            raise StimulusError(str(error)) from error
 
     def tell(self, text: str) -> None:
         """Waits for Enter. The first time it says what the hand is, too."""
@@ -68,9 +103,7 @@ class Person:
         sessions."""
         sessions = []
         for i, stimulus in enumerate(stimuli):
-            if stimulus.scene is not None:
-                self._loop.open(scene=stimulus.scene)
-            self._loop.set(stimulus.settings)
+            self.use(stimulus.settings, stimulus.scene)
             place = f"Interval {i + 1} of {len(stimuli)}" if len(stimuli) > 1 else "Interval"
             self._loop.ask(f"{place}, {self._seconds:g} s. Enter begins.")
             file = folder / f"{name}-{i + 1}.h5"
@@ -86,8 +119,7 @@ class Person:
         scene, self._scene = self._scene, shown.stimulus.scene or self._scene
         if scene != self._scene:
             self.rest()
-            self._loop.open(scene=self._scene)
-        self._loop.set(shown.stimulus.settings)
+        self.use(shown.stimulus.settings, self._scene if scene != self._scene else None)
         if not self._session:
             parts = (folder / f"{name}-{part}.h5" for part in itertools.count(1))
             file = next(file for file in parts if not (file.exists() or part_of(file).exists()))
@@ -126,13 +158,28 @@ class Simulated:
                  percept: Optional[Callable[[Stimulus], float]] = None) -> None:  # fmt: skip
         """`threshold`: the difference of 75 % right answers, in the study's unit. `percept`: what is
         perceived of a stimulus without the error; the default is its level."""
-        if threshold <= 0 or not 0 <= lapse < 1:
-            raise ValueError("a participant has a threshold above 0 and a lapse from 0 to below 1")
+        if number("threshold", threshold) <= 0 or not 0 <= number("lapse", lapse) < 1:
+            raise ArgumentError("a participant has a threshold above 0 and a lapse from 0 to below 1")
         self.threshold = threshold
         # Phi(d / (sqrt(2) sigma)) is 75 % at the threshold.
         self.sigma = threshold / (0.6744897501960817 * math.sqrt(2))
-        self.lapse, self._seed = lapse, seed
-        self._percept = percept or (lambda stimulus: stimulus.level)
+        self.lapse, self._seed = lapse, plain("seed", seed)
+        self._felt = percept
+
+    def begin(self, settings: Mapping[str, Any]) -> Tuple[Dict[str, Any], str]:
+        """Returns what the answers are given under, the truth about this participant among it, and the
+        program's version."""
+        truth = {"threshold": float(self.threshold), "lapse": float(self.lapse), "seed": self._seed,
+                 "perceives": "levels" if self._felt is None else "runs of the loop"}  # fmt: skip
+        return {"settings": dict(settings), "truth": truth, "arm": None}, program_version()
+
+    def _percept(self, stimulus: Stimulus) -> float:
+        if self._felt is None:
+            return stimulus.level
+        try:
+            return self._felt(stimulus)
+        except ProgramError as error:
+            raise StimulusError(str(error)) from error
 
     def tell(self, text: str) -> None:
         """Reads nothing."""

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import csv
 import html
+import json
 import math
 import os
+import re
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from limpid.study.fits import Fit, chance_of, equality, fit, proportion_interval
+from limpid.study.fits import Fit, chance_of, equality, fit, mean_interval, proportion_interval
+from limpid.study.trials import Study
 
 WIDTH, HEIGHT = 560, 340  # of a figure [px]
 LEFT, RIGHT, TOP, BOTTOM = 64, 16, 34, 48  # its margins [px]
 # Told apart by those who see few colours, too (Okabe and Ito 2008).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+# Of each law as the program has it (app/style/law_colours.h).
+LAW_COLOURS = {"standard": "#6B7280", "proposed": "#6A3D9A", "predictive": "#6B9100", "tank": "#7A2E0E"}
+
+
+def colours_of(names: Iterable[str]) -> List[str]:
+    """A colour for each name: a law has its own, whatever else there is; all others go by order."""
+    return [LAW_COLOURS.get(name, COLOURS[i % len(COLOURS)]) for i, name in enumerate(names)]
 
 
 def nice_ticks(low: float, high: float, most: int = 6) -> List[float]:
@@ -88,6 +99,11 @@ class Axes:
             self._parts[-1] = self._parts[-1].replace("<text", f'<text fill="{colour}"', 1)
             self._legend += 1
 
+    def text_at(self, x: float, y: float, text: str, colour: str) -> None:
+        """A small text beside a point."""
+        self._text(self.x(x), self.y(y) - 6, text)
+        self._parts[-1] = self._parts[-1].replace("<text", f'<text fill="{colour}" font-size="9"', 1)
+
     def svg(self) -> str:
         """The figure."""
         return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
@@ -101,8 +117,8 @@ def psychometric(title: str, unit: str, answers: Dict[str, List[Tuple[float, boo
                  fits: Dict[str, Fit], lapse: float = 0.02) -> str:  # fmt: skip
     """Right answers over the level, with the curve of each fit, for each condition."""
     top = 1.1 * max(level for each in answers.values() for level, _ in each)
-    axes = Axes(title, f"difference [{unit}]", "right answers [-]", (0, top), (0.3, 1.0))
-    for (name, each), colour in zip(answers.items(), COLOURS):
+    axes = Axes(title, f"difference [{unit}]", "right answers [-]", (0, top), (0, 1.04))
+    for (name, each), colour in zip(answers.items(), colours_of(answers)):
         for level, right, of in binned(each):
             low, high = proportion_interval(right, of)
             axes.bar(level, right / of, low, high, colour, 2 + min(4.0, 0.8 * math.sqrt(of)))
@@ -130,7 +146,7 @@ def intervals(title: str, unit: str, found: Dict[str, Tuple[float, float, float]
     ends = [high for _, _, high in found.values() if math.isfinite(high)]
     top = 1.15 * max(ends + [value for value, _, _ in found.values()])
     axes = Axes(title, "", unit, (-0.6, len(found) - 0.4), (0, top), list(found))
-    for i, ((value, low, high), colour) in enumerate(zip(found.values(), COLOURS)):
+    for i, ((value, low, high), colour) in enumerate(zip(found.values(), colours_of(found))):
         axes.bar(i, value, low, high, colour, 5)
     return axes.svg()
 
@@ -141,7 +157,7 @@ def matched(title: str, quantity: str, matches: Dict[str, List[Tuple[float, floa
     top = 1.1 * max([level for each in matches.values() for pair in each for level in pair]
                     + [f.high for f in fits.values()])  # fmt: skip
     axes = Axes(title, "", quantity, (-0.6, len(fits) - 0.4), (0, top), list(fits))
-    for i, (condition, colour) in enumerate(zip(fits, COLOURS)):
+    for i, (condition, colour) in enumerate(zip(fits, colours_of(fits))):
         for level in (level for pair in matches[condition] for level in pair):
             axes.bar(i - 0.12, level, level, level, colour, 2)
         f = fits[condition]
@@ -150,11 +166,17 @@ def matched(title: str, quantity: str, matches: Dict[str, List[Tuple[float, floa
 
 
 class Report:
-    """FOLDER/NAME.html with its figures beside it as SVG."""
+    """FOLDER/NAME.html with its figures beside it as SVG. Of one participant of a study the names
+    have its number, and page and figures say where they come from."""
 
-    def __init__(self, title: str, folder: "os.PathLike[str] | str") -> None:
-        self._title, self._folder = title, Path(folder)
+    def __init__(self, title: str, folder: "os.PathLike[str] | str", run: Optional[Study] = None) -> None:
+        self._title, self._folder, self._run = title, Path(folder), run
+        self.provenance = str(run.sheet.has.get("provenance", "")) if run else ""
         self._parts: List[str] = []
+
+    def named(self, name: str) -> str:
+        """What a file of this page is called."""
+        return f"{name}-{self._run.participant:03d}" if self._run else name
 
     def text(self, text: str) -> None:
         """A paragraph."""
@@ -162,7 +184,9 @@ class Report:
 
     def figure(self, name: str, svg: str, caption: str) -> None:
         """Shown in the page, and a file of its own."""
-        (self._folder / f"{name}.svg").write_text(svg, encoding="utf-8")
+        about = f"<desc>{html.escape(self.provenance)}</desc>" if self.provenance else ""
+        svg = re.sub("(<svg[^>]*>)", lambda head: head[0] + about, svg, count=1)
+        (self._folder / f"{self.named(name)}.svg").write_text(svg, encoding="utf-8")
         self._parts.append(f"<figure>{svg}<figcaption>{html.escape(caption)}</figcaption></figure>")
 
     def table(self, head: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
@@ -172,9 +196,22 @@ class Report:
                   for row in rows]  # fmt: skip
         self._parts.append(f"<table>{''.join(lines)}</table>")
 
+    def results(self, name: str, quantity: str, found: Mapping[str, Fit]) -> None:
+        """What was found under each condition: a table here and, of a participant, a CSV of its own,
+        from which the page over all of them is made: NAME.html."""
+        self.table(["condition", quantity, "from", "to", "trials"], [
+            [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
+            for condition, f in found.items()])  # fmt: skip
+        if self._run is None:
+            return
+        _write_results(self._folder / f"{self.named(name)}-results.csv", found)
+        group_report(f"{self._title}: all participants", self._folder, quantity, name)
+
     def write(self, name: str) -> Path:
         """The page's file."""
-        file = self._folder / f"{name}.html"
+        if self._run is not None:
+            self._say_under_what(self._run.sheet.has)
+        file = self._folder / f"{self.named(name)}.html"
         file.write_text(
             '<!doctype html><html lang="en"><meta charset="utf-8">'
             f"<title>{html.escape(self._title)}</title><style>body{{font-family:sans-serif;"
@@ -183,41 +220,147 @@ class Report:
             f"<h1>{html.escape(self._title)}</h1>{''.join(self._parts)}</html>\n", encoding="utf-8")  # fmt: skip
         return file
 
+    def _say_under_what(self, sheet: Mapping[str, object]) -> None:
+        truth = sheet.get("truth")
+        if isinstance(truth, Mapping):
+            self.text(f"The participant was simulated: of two {truth['perceives']} that differ by "
+                      f"{truth['threshold']:g} it names the larger one three times of four, and slips in "
+                      f"{100 * truth['lapse']:g} % of the trials. Its seed is {truth['seed']}.")  # fmt: skip
+        questions = sheet.get("questions")
+        if isinstance(questions, Mapping) and questions:
+            self.text("Asked: " + " ".join(f"{question}" for question in dict.fromkeys(questions.values())))
+        settings = sheet.get("settings")
+        if isinstance(settings, Mapping) and settings:
+            self._parts.append("<details><summary>Settings of all trials, but for what a trial says</summary><pre>"
+                               + html.escape("\n".join(f"{key} = {json.dumps(value)}"
+                                                       for key, value in settings.items()))
+                               + "</pre></details>")  # fmt: skip
+        if self.provenance:
+            self.text(self.provenance)
+
+
+def _write_results(file: Path, found: Mapping[str, Fit]) -> None:
+    with open(file, "w", encoding="utf-8", newline="") as out:
+        cells = csv.writer(out, lineterminator="\n")
+        cells.writerow(["condition", "value", "low", "high", "trials"])
+        for condition, f in found.items():
+            cells.writerow([condition, repr(float(f.threshold)), repr(float(f.low)), repr(float(f.high)), f.trials])
+
+
+def _read_results(file: Path) -> Dict[str, Fit]:
+    with open(file, encoding="utf-8", newline="") as opened:
+        return {row["condition"]: Fit(float(row["value"]), float(row["low"]), float(row["high"]),
+                                      int(row["trials"])) for row in csv.DictReader(opened)}  # fmt: skip
+
+
+def group_report(title: str, folder: "os.PathLike[str] | str", quantity: str, name: str
+                 ) -> Dict[str, Tuple[float, float, float]]:  # fmt: skip
+    """The page over all participants that have a report in the folder, NAME.html, with a figure and
+    a summary: of each condition the geometric mean of what was found of them, with Student's interval
+    from two participants on. Returns that; where there is no interval, its ends are not numbers."""
+    folder = Path(folder)
+    each: Dict[str, Dict[str, Fit]] = {}
+    for file in sorted(folder.glob(f"{name}-*-results.csv")):
+        number = file.name[len(name) + 1 : -len("-results.csv")]
+        if number.isdigit():
+            each[number] = _read_results(file)
+    conditions = list(dict.fromkeys(condition for found in each.values() for condition in found))
+    means = {condition: _mean_of([found[condition] for found in each.values() if condition in found])
+             for condition in conditions}  # fmt: skip
+    report = Report(title, folder)
+    lines = [sheet.get("provenance", "") for sheet in (_sheet_of(folder / f"{name}-{number}.json")
+                                                       for number in each)]  # fmt: skip
+    report.provenance = "; ".join(dict.fromkeys(str(line) for line in lines if line))
+    report.text(f"{len(each)} participant{'s' * (len(each) != 1)}: {', '.join(each)}.")
+    if any(isinstance(_sheet_of(folder / f"{name}-{number}.json").get("truth"), dict) for number in each):
+        report.text("Simulated participants are among them; the pages of each say which and how.")
+    report.figure(f"{name}-group", _group_figure(title, quantity, each, means),
+                  "Each participant's value with its interval, and beside it the geometric mean of all "
+                  "with its interval of 95 %.")  # fmt: skip
+    report.table(["condition", "participants", quantity, "from", "to"], [
+        [condition, sum(condition in found for found in each.values()),
+         *("-" if math.isnan(x) else f"{x:.4g}" for x in means[condition])]
+        for condition in conditions])  # fmt: skip
+    report.table(["participant", *conditions], [
+        [number, *(f"{found[condition].threshold:.4g}" if condition in found else "" for condition in conditions)]
+        for number, found in each.items()])  # fmt: skip
+    for line in dict.fromkeys(lines):
+        report.text(str(line))
+    report.write(name)
+    return means
+
+
+def _mean_of(found: Sequence[Fit]) -> Tuple[float, float, float]:
+    """Geometric, as thresholds and matches differ by factors."""
+    logs = [math.log(f.threshold) for f in found if f.threshold > 0]
+    if not logs:
+        return math.nan, math.nan, math.nan
+    if len(logs) == 1:
+        return math.exp(logs[0]), math.nan, math.nan
+    mean, low, high = mean_interval(logs)
+    return math.exp(mean), math.exp(low), math.exp(high)
+
+
+def _sheet_of(file: Path) -> Dict[str, object]:
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+        return found if isinstance(found, dict) else {}
+    except (OSError, ValueError):
+        return {}
+
+
+def _group_figure(title: str, quantity: str, each: Mapping[str, Mapping[str, Fit]],
+                  means: Mapping[str, Tuple[float, float, float]]) -> str:  # fmt: skip
+    ends = [x for found in each.values() for f in found.values() for x in (f.threshold, f.high)]
+    ends += [x for mean in means.values() for x in mean]
+    top = 1.1 * max([x for x in ends if math.isfinite(x)], default=1.0)
+    axes = Axes(title, "", quantity, (-0.6, len(means) - 0.4), (0, top), list(means))
+    for i, (condition, (mean, low, high)) in enumerate(means.items()):
+        colour = colours_of(means)[i]
+        there = [(number, found[condition]) for number, found in each.items() if condition in found]
+        for k, (number, f) in enumerate(there):
+            x = i - 0.35 + 0.5 * (k + 0.5) / len(there)
+            axes.bar(x, f.threshold, f.low, f.high, colour, 2)
+            if len(there) <= 12:
+                axes.text_at(x, min(f.threshold, top), number, colour)
+        if math.isfinite(mean):
+            axes.bar(i + 0.28, mean, mean if math.isnan(low) else low, mean if math.isnan(high) else high,
+                     colour, 5)  # fmt: skip
+    return axes.svg()
+
 
 def threshold_report(title: str, folder: "os.PathLike[str] | str", unit: str,
                      answers: Dict[str, List[Tuple[float, bool]]], about: str,
-                     name: str = "report", fits: Optional[Dict[str, Fit]] = None
-                     ) -> Dict[str, Fit]:  # fmt: skip
+                     name: str = "report", fits: Optional[Dict[str, Fit]] = None,
+                     run: Optional[Study] = None) -> Dict[str, Fit]:  # fmt: skip
     """Fits each condition's answers, unless they are fitted already, and writes the page of it:
-    NAME.html."""
+    NAME.html. Of a study's participant, `run`, it is NAME-PARTICIPANT.html, and NAME.html the page
+    over all participants in the folder."""
     fits = fits or {condition: fit(each) for condition, each in answers.items()}
-    report = Report(title, folder)
+    report = Report(title, folder, run)
     report.text(about)
     report.figure(f"{name}-curves", psychometric(title, unit, answers, fits),
                   "Right answers with their intervals of 95 %, and the curve of each fit.")
     report.figure(f"{name}-thresholds", intervals("Thresholds", f"threshold [{unit}]", {
         condition: (f.threshold, f.low, f.high) for condition, f in fits.items()}),
         "The difference of 75 % right answers, with the interval of 95 %.")  # fmt: skip
-    report.table(["condition", f"threshold [{unit}]", "from", "to", "trials"], [
-        [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
-        for condition, f in fits.items()])  # fmt: skip
+    report.results(name, f"threshold [{unit}]", fits)
     report.write(name)
     return fits
 
 
 def equality_report(title: str, folder: "os.PathLike[str] | str", quantity: str,
-                    matches: Dict[str, List[Tuple[float, float]]], about: str, name: str = "report"
-                    ) -> Dict[str, Fit]:  # fmt: skip
+                    matches: Dict[str, List[Tuple[float, float]]], about: str, name: str = "report",
+                    run: Optional[Study] = None) -> Dict[str, Fit]:  # fmt: skip
     """The point of subjective equality of each condition's pairs of matches, from above and below,
-    and the page of it: NAME.html. `quantity`: what was adjusted, with its unit in brackets."""
+    and the page of it: NAME.html. `quantity`: what was adjusted, with its unit in brackets. `run`: as
+    threshold_report() has it."""
     fits = {condition: equality(each) for condition, each in matches.items()}
-    report = Report(title, folder)
+    report = Report(title, folder, run)
     report.text(about)
     report.figure(f"{name}-equality", matched(title, quantity, matches, fits),
                   "What felt like the reference: each trial as a small point, and the mean of their "
                   "logarithms with its interval of 95 %.")  # fmt: skip
-    report.table(["condition", quantity, "from", "to", "trials"], [
-        [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
-        for condition, f in fits.items()])  # fmt: skip
+    report.results(name, quantity, fits)
     report.write(name)
     return fits

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import errno
 import functools
-import io
 import math
 import os
 import random
+import re
 import tempfile
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
-from limpid.errors import LimpidError, ProgramError, RequestError
+from limpid.errors import ArgumentError, ProgramError, RequestError
+from limpid.study.answers import Answers, StudyError
 from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase
 from limpid.study.orders import order_for
-from limpid.study.participants import Person, Shown, Simulated, Stimulus
+from limpid.study.participants import Person, Shown, Simulated, Stimulus, StimulusError
+from limpid.study.sheet import Sheet
+from limpid.values import number, plain, settings_of, text_of, whole
 
 WANTED = ("less", "more", "reference", "same")  # by the keys 1 to 4 of who adjusts
 COLUMNS = ("study", "participant", "row", "kind", "block", "condition", "trial", "practice", "level",
@@ -27,14 +28,13 @@ Method = Union[Staircase, Quest, ConstantStimuli]
 Who = Union[Person, Simulated]
 
 
-class StudyError(LimpidError):
-    """A study that cannot begin, or go on where it stopped."""
-
-
 def folder_for(folder: "os.PathLike[str] | str") -> Path:
     """The folder, which is there then. Raises StudyError where that cannot be, or nothing can be
     written to it."""
-    path = Path(folder)
+    try:
+        path = Path(folder)
+    except TypeError as error:
+        raise StudyError(f"{folder!r} is no folder") from error
     try:
         path.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path):
@@ -48,48 +48,42 @@ def folder_for(folder: "os.PathLike[str] | str") -> Path:
 class Study:
     """One participant of a study. The answers are in FOLDER/NAME-PARTICIPANT.csv, a row each, and the
     sessions beside it; rows that are there already are taken as they are, in their order, so that a
-    study that was cut off goes on behind them."""
+    study that was cut off goes on behind them. FOLDER/NAME-PARTICIPANT.json says under what they were
+    given. No other process can write to them meanwhile."""
 
-    def __init__(self, name: str, folder: "os.PathLike[str] | str", participant: int, who: Who) -> None:
-        """`participant`: a number from 0 on, which decides orders and chance. Raises StudyError for a
-        file that is not this study's, or a folder that cannot be written to."""
-        if participant < 0:
-            raise StudyError(f"participant: {participant} is not allowed; allowed: a number from 0 on")
-        self.name, self.participant, self.who = name, participant, who
+    def __init__(self, name: str, folder: "os.PathLike[str] | str", participant: int, who: Who,
+                 settings: Optional[Mapping[str, Any]] = None) -> None:  # fmt: skip
+        """`participant`: a number from 0 on, which decides orders and chance. `settings`: of the
+        program in all trials, by their keys; all others have their usual values, whatever the window
+        had before. What a stimulus sets holds for its interval.
+
+        Raises StudyError for a file that is not this study's, that another process writes to, whose
+        answers were given under other settings, or a folder that cannot be written to."""
+        try:
+            self.participant = whole("participant", participant)
+            chosen = settings_of(settings)
+        except ArgumentError as error:
+            raise StudyError(str(error)) from error
+        if not re.fullmatch(r"[\w.-]+( [\w.-]+)*", str(name)):
+            raise StudyError(f"name: {name!r} is not allowed; allowed: letters, digits, and - _ . within them")
+        self.name, self.who = str(name), who
         self.folder = folder_for(folder)
-        self.file = self.folder / f"{name}-{participant:03d}.csv"
+        self.file = self.folder / f"{self.name}-{self.participant:03d}.csv"
+        sheet = self.file.with_suffix(".json")
+        self._answers = Answers(self.file, COLUMNS, lambda: Sheet(sheet).who_has_it())
+        self.sheet = Sheet(sheet)
         self.rows: List[Dict[str, str]] = []
-        self._known: List[Dict[str, str]] = []
-        self._known = self._read()
-        self._next = 0
-
-    def _read(self) -> List[Dict[str, str]]:
-        """Half a row, as a crash may leave it, was no answer yet."""
-        if not self.file.exists():
+        self._known = self._answers.rows
+        if self._answers.empty:
             self._append(list(COLUMNS))
-            return []
-        data = self.file.read_bytes()
-        whole = data[: data.rfind(b"\n") + 1]
-        if len(whole) < len(data):
-            os.truncate(self.file, len(whole))
-        rows = list(csv.DictReader(io.StringIO(whole.decode())))
-        if whole and not whole.startswith(",".join(COLUMNS).encode()):
-            raise StudyError(f"{self.file}: has other columns than this study's")
-        if not whole:
-            self._append(list(COLUMNS))
-        return rows
+        with self._asking():
+            known, version = who.begin(chosen)
+        self.sheet.begin(self.name, self.participant, known, version, len(self._known))
+        self._next = self._block = 0
 
     def _append(self, cells: List[str]) -> None:
-        line = io.StringIO()
-        csv.writer(line, lineterminator="\n").writerow(cells)
-        data = line.getvalue().encode()
         try:
-            with open(self.file, "ab", buffering=0) as out:
-                before = out.tell()
-                if out.write(data) < len(data):
-                    os.truncate(out.fileno(), before)
-                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-                os.fsync(out.fileno())
+            self._answers.append(cells)
         except OSError as error:
             raise StudyError(f"{self.file}: {error.strerror}; the last answer is not in it. Make room for "
                              f"it there and start the study again with the same words: {self._goes_on()}"
@@ -104,6 +98,11 @@ class Study:
         """What goes wrong meanwhile, as where somebody closes the window, says where the answers are."""
         try:
             yield
+        except StimulusError as error:
+            raise StudyError(f"{error}. That is what the study asks for, so that starting it again ends here "
+                             "again: change the study. Limits `low` and `high` of a method are those of its "
+                             "level, which in trials of two intervals comes on top of the standard. Every "
+                             f"answer up to then is in {self.file}; {self._goes_on()}") from error  # fmt: skip
         except (ProgramError, RequestError) as error:
             ended = isinstance(error, ProgramError)
             raise StudyError(f"{error}. Every answer up to then is in {self.file}; start "
@@ -112,22 +111,25 @@ class Study:
 
     def _row(self, asked: Dict[str, Any], ask: Callable[[], Dict[str, Any]]) -> Dict[str, str]:
         """What is known of the next row, or else what is asked and written now."""
-        number = self._next
+        place = self._next
         self._next += 1
         plan = {key: _text(value) for key, value in asked.items()}
-        if number < len(self._known):
-            row = self._known[number]
-            other = [key for key, value in plan.items() if row[key] != value]
+        if place < len(self._known):
+            row = self._known[place]
+            other = [key for key, value in plan.items() if not _same(row.get(key), value)]
             if other:
-                raise StudyError(f"{self.file}: row {number + 1}: {other[0]} is {row[other[0]]}; needed: "
-                                 f"{plan[other[0]]}, as the study has it now")  # fmt: skip
+                words = self.sheet.words()
+                began = f" It began with the words: {words}" if words else ""
+                raise StudyError(f"{self.file}: row {place + 1}: {other[0]} is {row.get(other[0])}; needed: "
+                                 f"{plan[other[0]]}, as the study has it now. Start it as it began, or with "
+                                 f"another folder or participant.{began}")  # fmt: skip
         else:
             with self._asking():
                 answers = {key: _text(value) for key, value in ask().items()}
             now = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
             row = {**dict.fromkeys(COLUMNS, ""), "study": self.name,
-                   "participant": str(self.participant), "row": str(number + 1), **plan, **answers,
-                   "time": now}  # fmt: skip
+                   "participant": str(self.participant), "row": str(place + 1),
+                   "block": str(self._block or ""), **plan, **answers, "time": now}  # fmt: skip
             self._append([row[key] for key in COLUMNS])
         self.rows.append(row)
         return row
@@ -139,6 +141,7 @@ class Study:
     def blocks(self, conditions: Sequence[str]) -> Iterator[str]:
         """The conditions in this participant's order, with breaks in between."""
         for i, condition in enumerate(order_for(self.participant, conditions)):
+            self._block = i + 1
             if i > 0:
                 self.tell(f"Take a break. Part {i + 1} of {len(conditions)} comes next.")
             yield condition
@@ -176,6 +179,8 @@ class Study:
         order of chance; which one has more? `make` gives the stimulus of a value. The first `practice`
         trials are at the method's first level, are told whether they were right, and do not count.
         Returns the answers that count: (level, right)."""
+        self.sheet.ask(condition, question)
+        standard = number("standard", standard)
         counted: List[Tuple[float, bool]] = []
         first_level, trial = method.level, 0
         while trial < practice or not method.done:
@@ -214,10 +219,11 @@ class Study:
         `spread`. Each key is a row; the one that confirms has the value that was found.
 
         Returns the pairs for equality(). A trial that takes 100 keys is left, and its pair with it.
-        Raises ValueError for a number of trials that is not even."""
+        Raises ArgumentError for a number of trials that is not even."""
         if trials < 2 or trials % 2:
-            raise ValueError(f"trials come in pairs, from above and from below; found: {trials}")
-        middle = reference.level if around is None else around
+            raise ArgumentError(f"trials come in pairs, from above and from below; found: {trials}")
+        self.sheet.ask(condition, question)
+        middle = number("around", reference.level if around is None else around)
         found: List[Optional[float]] = []
         above = False
         for trial in range(practice + trials):
@@ -287,4 +293,14 @@ class Study:
 
 def _text(value: Any) -> str:
     """To the last digit, so that it is the same when it is read."""
-    return "" if value is None else repr(value) if isinstance(value, float) else str(value)
+    return "" if value is None else text_of(plain("a cell", value))
+
+
+def _same(before: Optional[str], now: str) -> bool:
+    """Of two cells, also where a number is written otherwise, as 100 and 100.0 are."""
+    if before == now:
+        return True
+    try:
+        return float(before or "") == float(now)
+    except ValueError:
+        return False

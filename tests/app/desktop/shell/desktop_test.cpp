@@ -8,10 +8,12 @@
 #include <imgui_internal.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
 
+#include "app/base/folders.h"
 #include "app/desktop/shell/commands.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
@@ -419,9 +421,93 @@ TEST_F(ADesktop, TakesTheEncodersOfADeviceThatIsInTheLoop) {
     if (change.row == 0) apply_change(recorded, change);
   }
   EXPECT_EQ(recorded.encoder_step, step) << "however little is set";
-  EXPECT_EQ(desktop->tuning.settings_to_keep().parameters.encoder_step, 2e-3);
+  EXPECT_EQ(desktop->lead.settings_to_keep().parameters.encoder_step, 2e-3);
   desktop->world.close_device();
   EXPECT_EQ(p.encoder_step, 2e-3);
+}
+
+// While a program leads, as on the control socket.
+
+TEST_F(ADesktop, CutsTheForceOfADeviceWhenAProgramHasEndedAndSettingsComeBack) {
+  Parameters& p = desktop->settings.parameters;
+  p.eta = 0.8;
+  pushed();
+  desktop->lead.begin();
+  p.eta = 0.5;
+  p.torque_limit = 0.1;
+  desktop->lead.note_program();
+  frames(3);
+  ASSERT_TRUE(armed());
+  EXPECT_TRUE(desktop->lead.end(true));
+  EXPECT_EQ(p.eta, 0.8);
+  EXPECT_TRUE(std::isnan(p.torque_limit)) << "the arm's own";
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; })) << "before it may push harder";
+  EXPECT_TRUE(said("The study has ended. Your settings are back."));
+}
+
+TEST_F(ADesktop, LeavesTheForceWhereAProgramThatHasEndedLeftAllAsItWas) {
+  pushed();
+  desktop->lead.begin();
+  desktop->lead.note_program();
+  ASSERT_TRUE(armed());
+  EXPECT_TRUE(desktop->lead.end(false));
+  frames(5);
+  EXPECT_EQ(arming(), Arming::on);
+  EXPECT_FALSE(said("Your settings are back."));
+}
+
+TEST_F(ADesktop, RemembersNothingOfADeviceThatAProgramHasSet) {
+  desktop->devices.hub().use("device");
+  desktop->devices.hub().notes("device").compensation.friction_share = 0.3;
+  plug_in(3);
+  Parameters& p = desktop->settings.parameters;
+  ASSERT_EQ(p.friction_share, 0.3);
+  desktop->lead.begin();
+  p.friction_share = 0.9;
+  p.encoder_step = 1e-3;
+  desktop->lead.note_program();
+  frames(5);
+  EXPECT_EQ(desktop->devices.hub().notes("device").compensation.friction_share, 0.3);
+  EXPECT_TRUE(desktop->lead.end(false));
+  EXPECT_EQ(p.friction_share, 0.3);
+  EXPECT_EQ(p.encoder_step, test::pushing(3).resolution.front());
+  EXPECT_TRUE(said("Your settings are back."));
+}
+
+TEST_F(ADesktop, KeepsForTheNextStartWhatThePersonHasChosenWhileAProgramLeads) {
+  Parameters& p = desktop->settings.parameters;
+  desktop->settings.recent = {"/own.h5"};
+  p.eta = 0.8;
+  desktop->lead.begin();
+  p.eta = 0.5;
+  desktop->settings.recent = {"/a.h5", "/own.h5"};
+  desktop->lead.note_program();
+  p.hand_stiffness = 222;  // of the person
+  desktop->lead.follow_person();
+  const Settings kept = desktop->lead.settings_to_keep();
+  EXPECT_EQ(kept.parameters.eta, 0.8);
+  EXPECT_EQ(kept.parameters.hand_stiffness, 222);
+  EXPECT_EQ(kept.recent, std::vector<std::string>{"/own.h5"});
+  EXPECT_TRUE(desktop->lead.end(false));
+  EXPECT_EQ(p.eta, 0.8);
+  EXPECT_EQ(p.hand_stiffness, 222);
+}
+
+TEST_F(ADesktop, GoesBackToTheSceneWhenWhatIsRecordedIsComplete) {
+  const std::string scene = document().file();
+  desktop->lead.begin_elsewhere();
+  desktop->world.open_scene(data_dir() / "assets/scenes/spheres.toml");
+  ASSERT_TRUE(until([&] { return document().file() != scene; }));
+  desktop->lead.note_program();
+  EXPECT_TRUE(desktop->lead.settings_to_keep().scene.empty());
+  record_something();
+  EXPECT_FALSE(desktop->lead.end(false)) << "what is recorded stays one run";
+  EXPECT_NE(document().file(), scene);
+  desktop->world.toggle_recording();
+  ASSERT_TRUE(until([&] { return desktop->lead.end(false); }));
+  EXPECT_EQ(document().file(), scene);
+  EXPECT_TRUE(desktop->settings.scene.empty());
+  EXPECT_FALSE(has("rubber, 500 N/m"));
 }
 
 // Another device is chosen while what the first one brought is changed and not saved.
@@ -783,9 +869,9 @@ TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   desktop->world.close_device();
   frames(2);
   broken();
-  EXPECT_EQ(desktop->tuning.settings_to_keep().parameters.hand_stiffness, 222) << "the next start";
-  EXPECT_EQ(desktop->tuning.settings_to_keep().parameters.eta, 0.8);
-  EXPECT_FALSE(desktop->tuning.settings_to_keep().before_break);
+  EXPECT_EQ(desktop->lead.settings_to_keep().parameters.hand_stiffness, 222) << "the next start";
+  EXPECT_EQ(desktop->lead.settings_to_keep().parameters.eta, 0.8);
+  EXPECT_FALSE(desktop->lead.settings_to_keep().before_break);
 }
 
 TEST_F(ADesktop, CountsBrokenPassivityAsNoStepOfUndo) {

@@ -30,6 +30,15 @@ TEST(Hand, TakesAByteOrderMark) {
   EXPECT_EQ(read_hand(dir / "a.csv").time.size(), 2u);
 }
 
+TEST(Hand, HasTheSourceThatALineBeforeTheHeaderSays) {
+  const std::string rows = "time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,0\n";
+  EXPECT_EQ(parse(rows).source, "x.csv");
+  EXPECT_EQ(parse("# source: 2 rows from Python\r\n" + rows).source, "2 rows from Python");
+  EXPECT_EQ(parse("# source: " + std::string(1000, 'a') + "\n" + rows).source.size(), 200u);
+  EXPECT_EQ(parse("# source: a\tb\x1b\n" + rows).source, "a?b?");
+  EXPECT_THROW(parse(rows + "# source: late\n"), FileError);
+}
+
 TEST(Hand, RefusesWithFileAndLine) {
   const std::string head = "time_s,x_m,y_m,z_m\n";
   struct Case {

@@ -1,0 +1,103 @@
+#include "app/desktop/shell/lead.h"
+
+#include <exception>
+#include <utility>
+
+#include "app/desktop/base/passivity_break.h"
+#include "app/desktop/shell/desktop.h"
+
+namespace limpid {
+namespace {
+
+// Into `own` what is otherwise `now` than it was `before`.
+void take_changes(Parameters& own, const Parameters& now, const Parameters& before,
+                  bool of_controller_only) {
+  if (now == before) return;
+  for (const ParameterInfo& info : parameter_table()) {
+    if (of_controller_only && !of_controller(info)) continue;
+    if (parameter_text(now, info) == parameter_text(before, info)) continue;
+    set_parameter_number(own, info, parameter_number(now, info));
+  }
+}
+
+bool same(const TwinSettings& a, const TwinSettings& b) {
+  return a.on == b.on && a.edited == b.edited && a.parameters == b.parameters;
+}
+
+}  // namespace
+
+void Lead::begin() {
+  if (on()) return;
+  own_ = d_.tuning.choices();
+  recent_ = d_.settings.recent;
+  note_program();
+}
+
+void Lead::begin_elsewhere() {
+  begin();
+  if (elsewhere_) return;
+  const Settings& now = d_.settings;
+  elsewhere_ = Elsewhere{d_.world.place(), now.scene, now.device, now.device_tip};
+}
+
+void Lead::note_program() {
+  seen_ = d_.settings.parameters;
+  seen_twin_ = d_.settings.twin.parameters;
+}
+
+void Lead::follow_person() {
+  if (!on() || passivity_broken(d_.settings)) return;
+  take_changes(own_->first, d_.settings.parameters, seen_, false);
+  take_changes(own_->twin.parameters, d_.settings.twin.parameters, seen_twin_, true);
+  note_program();
+}
+
+bool Lead::end(bool study) {
+  if (!on()) return true;
+  if (d_.live.recording() || d_.live.closing() || d_.document.loader().busy()) return false;
+  d_.tuning.end_break();
+  const Parameters first = d_.settings.parameters;
+  const TwinSettings twin = d_.settings.twin;
+  d_.tuning.take(*own_);
+  d_.settings.recent = recent_;
+  const auto before = std::exchange(elsewhere_, std::nullopt);
+  if (before || !(first == d_.settings.parameters) || !same(twin, d_.settings.twin)) {
+    // A hand on the device is not to feel another law without a word.
+    if (d_.live.loop().device_in_place()) d_.cut_force();
+    if (before) go_back(*before);
+    d_.notices.say(study ? "The study has ended. Your settings are back."
+                         : "The program that led this window has ended. Your settings are back.");
+  }
+  own_.reset();
+  return true;
+}
+
+// Changes that somebody made to the program's scene meanwhile are asked about. The world opens with
+// the settings that belong to it, and these are exact then, whatever an arm in between had fitted
+// to itself.
+void Lead::go_back(const Elsewhere& before) {
+  d_.settings.scene = before.scene;
+  d_.settings.device = before.device;
+  d_.settings.device_tip = before.device_tip;
+  d_.document.leave([this, place = before.place, own = *own_] {
+    try {
+      d_.world.go_to(place);
+      d_.tuning.take(own);
+    } catch (const std::exception& e) {
+      d_.notices.say(e.what(), true);
+    }
+  });
+}
+
+Settings Lead::settings_to_keep() const {
+  if (!on()) return d_.tuning.settings_to_keep(d_.tuning.choices());
+  Settings kept = d_.tuning.settings_to_keep(*own_);
+  kept.recent = recent_;
+  if (!elsewhere_) return kept;
+  kept.scene = elsewhere_->scene;
+  kept.device = elsewhere_->device;
+  kept.device_tip = elsewhere_->device_tip;
+  return kept;
+}
+
+}  // namespace limpid
