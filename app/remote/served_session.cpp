@@ -333,7 +333,7 @@ Answer ServedSession::twin(const Keys& keys) {
 }
 
 Answer ServedSession::picture(const Keys& keys) {
-  const fs::path file = keys.file(".png");
+  const fs::path file = keys.file_to_write(".png");
   if (newest_.empty()) throw RemoteError("picture: there is no row yet");
   std::vector<double> row(newest_.begin(),
                           newest_.begin() + static_cast<std::ptrdiff_t>(newest_.size() / 2));
