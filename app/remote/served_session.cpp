@@ -244,7 +244,7 @@ Answer ServedSession::record(const Keys& keys) {
   plan.document = world_.plan.document;
   plan.seed = world_.plan.seed;
   plan.hand.source = source();
-  plan.parameters = controls_.parameters;
+  plan.parameters = loop_.taken(controls_.parameters);
   if (of_twin_) plan.beside.push_back({*of_twin_, {}});
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
