@@ -14,6 +14,7 @@ struct AxisAdjustment {
   bool reversed = false;  // its motor pushes the other way than its reading counts
 
   double factor() const { return inverted ? -scale : scale; }
+  friend bool operator==(const AxisAdjustment&, const AxisAdjustment&) = default;
 };
 
 // A motor that is reversed is told the opposite, so that it does what it is told. Then angles

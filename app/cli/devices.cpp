@@ -1,13 +1,52 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
 
 #include "app/cli/commands.h"
+#include "app/cli/live_bench.h"
 #include "app/cli/options.h"
 #include "app/device/device_hub.h"
 
 namespace limpid {
 namespace {
+
+constexpr const char* kAskAgain = "unsaid";
+
+// Which arm a device is, as somebody says it here.
+struct ArmOptions {
+  std::string device, arm, tip;  // device: its id; empty: the one in use, or the only one
+};
+
+// Connects to it, as only that tells what it is.
+int say_arm(const ArmOptions& options) {
+  DeviceHub hub(device_store_file(), {});
+  const std::string in_use = hub.in_use();
+  choose_device(options.device, hub, "");
+  if (!hub.may_say_arm()) {
+    throw UsageError(fmt::format(
+        "--arm: {} {}", hub.present()->place.name,
+        hub.notes(hub.in_use()).arm.empty()
+            ? "says itself which arm it is, or has none"
+            : "was identified as an arm of its own; `limpid identify --forget` ends that"));
+  }
+  std::string file = options.arm == kAskAgain ? std::string() : options.arm;
+  if (!file.empty() && file != kBuiltInArm) file = std::filesystem::absolute(file).string();
+  const std::unique_ptr<Device> device = hub.open_to_look();
+  hub.say_arm(file, file.empty() ? std::string() : options.tip, &device->traits());
+  std::string said = "nobody has said any more which arm it is";
+  if (!file.empty()) {
+    const TakenArm taken = hub.arm_for(device->traits());
+    if (!taken.known) throw UsageError("--arm: " + taken.why);
+    said = taken.why;
+  }
+  hub.use(in_use);
+  if (const std::string wrong = hub.save(); !wrong.empty()) throw std::runtime_error(wrong);
+  fmt::print("{}\n", said);
+  return 0;
+}
 
 int devices() {
   fmt::print(
@@ -19,6 +58,8 @@ int devices() {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
                found.missing.empty() ? found.kind->use : found.missing);
+    const std::string arm = arm_words(hub.notes(found.place.id), *found.kind);
+    if (!arm.empty()) fmt::print("  {}\n", arm);
     if (!found.in_use_by.empty()) fmt::print("  in use by {}\n", found.in_use_by);
   }
   if (hub.found().empty()) fmt::print("no haptic device is plugged in\n");
@@ -37,8 +78,24 @@ Command declare_devices(CLI::App& app) {
       "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
       "a "
       "Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
-      "inverse3:ID@HOST:PORT.");
-  return devices;
+      "inverse3:ID@HOST:PORT.\n\nRanges and levers of its arm bound what a device's motors may do. "
+      "Which arm it is, a device that does not\nsay it itself is told once, here or in the "
+      "window's Device panel; until then it is a built-in one with as many\njoints, at little "
+      "force.");
+  auto options = std::make_shared<ArmOptions>();
+  auto* arm = command
+                  ->add_option("--arm", options->arm,
+                               fmt::format("which arm the device is: a URDF, or {}; {}: nobody has "
+                                           "said",
+                                           kBuiltInArm, kAskAgain))
+                  ->type_name("FILE.urdf");
+  command->add_option("--tip", options->tip, "the link in that URDF that the hand holds")
+      ->needs(arm);
+  command
+      ->add_option("DEVICE", options->device,
+                   "with --arm: its id, as listed here; default: the one in use")
+      ->needs(arm);
+  return [options] { return options->arm.empty() ? devices() : say_arm(*options); };
 }
 
 }  // namespace limpid

@@ -268,7 +268,9 @@ int identify_device(IdentifyOptions options) {
   const std::unique_ptr<Device> device = open_device(
       options.device, hub, fmt::format(", and \"{}\" tries it without one", kSimulated));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
-  if (options.input.device.empty()) order.guess = hub.arm_for(device->traits(), order.guess);
+  // Who names an arm here means that one, whatever it was identified as before.
+  order.guess = options.input.device.empty() ? arm_of_device(device->traits(), hub, options.input)
+                                             : narrowed(order.guess, device->traits());
   const auto move = [&](bool, IdentifyProgress& motion) {
     return run_identification(*device, order.guess, order.plan, motion, {});
   };

@@ -36,8 +36,7 @@ void LiveOptions::add(CLI::App& command) {
   command.add_flag("--yes", yes, "with --live: begin without asking");
 }
 
-std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
-                                    const std::string& otherwise) {
+void choose_device(const std::string& id, DeviceHub& hub, const std::string& otherwise) {
   std::string wanted = id.empty() ? hub.in_use() : id;
   if (const std::string named = device_named(wanted); !named.empty()) wanted = named;
   hub.take(DeviceHub::look(wanted));
@@ -49,6 +48,11 @@ std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
   hub.take(hub.found());
   if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", wanted));
   if (!hub.refusal().empty()) throw UsageError(hub.refusal());
+}
+
+std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
+                                    const std::string& otherwise) {
+  choose_device(id, hub, otherwise);
   const auto refuse = [&] [[noreturn]] {
     throw UsageError(fmt::format(
         "{}: its axes must be checked before it may push; start limpid, choose the device in the "
@@ -63,11 +67,13 @@ std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
   }
 }
 
-void say_of_arm(const DeviceTraits& traits, const ArmDescription& asked,
-                const ArmDescription& taken) {
-  if (const std::string why = arm_not_taken(traits, asked, taken); !why.empty()) {
-    fmt::print(stderr, "limpid: --device: {}\n", why);
-  }
+ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
+                             const InputOptions& input) {
+  std::optional<ArmDescription> named;
+  if (!input.device.empty() && device_named(input.device).empty()) named = arm_of(input);
+  TakenArm taken = hub.arm_for(traits, named ? &*named : nullptr);
+  fmt::print(stderr, "limpid: {}\n", taken.why);
+  return std::move(taken.arm);
 }
 
 LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {
@@ -79,9 +85,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   const DeviceTraits& traits = device->traits();
   name_ = traits.name;
   if (!traits.pushes) throw UsageError(name_ + ": has no motors");
-  const ArmDescription asked = arm_of(input);
-  plan_.arm = hub.arm_for(traits, asked);
-  if (!input.device.empty()) say_of_arm(traits, asked, plan_.arm);
+  plan_.arm = arm_of_device(traits, hub, input);
   const std::filesystem::path scene =
       input.scene.empty() ? scene_of_device(plan_.arm) : std::filesystem::path(input.scene);
   plan_.document = read_scene(scene, plan_.arm);
@@ -94,6 +98,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   limits_ = notes.limits;
   catch_interrupts();
   run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), by_rtkit());
+  plan_.parameters = run_->taken(plan_.parameters);  // that verdicts and recordings rest on
 }
 
 void LiveBench::touch(const SceneDocument& document) {
@@ -125,10 +130,11 @@ bool LiveBench::await_force() {
 
 std::unique_ptr<Recorder> LiveBench::recorder(const LiveTask& task, const Parameters& p) const {
   RunPlan plan = plan_;
-  plan.parameters = p;
+  plan.parameters = run_->taken(p);
   SessionInfo info = session_info(plan);
   info.safety = limits_text(limits_);
-  return std::make_unique<Recorder>(task.out, info, p, task.force, Recorder::kLiveRoom);
+  return std::make_unique<Recorder>(task.out, info, plan.parameters, task.force,
+                                    Recorder::kLiveRoom);
 }
 
 // What has no force says nothing of a coupling.

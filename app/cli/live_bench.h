@@ -21,14 +21,18 @@ struct LiveOptions {
   void add(CLI::App& command);
 };
 
+// Makes the device of this id the hub's, as open_device() does. Errors: UsageError.
+void choose_device(const std::string& id, DeviceHub& hub, const std::string& otherwise);
+
 // Of this id; empty: the one in use, or the only one. `otherwise`: what is said beside that none is
 // chosen. Errors: UsageError, HidError.
 std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
                                     const std::string& otherwise);
 
-// Says on stderr where a device is taken for another arm than --device names.
-void say_of_arm(const DeviceTraits& traits, const ArmDescription& asked,
-                const ArmDescription& taken);
+// The arm that the device in use is taken for, which it says on stderr; the arm of `input`, if that
+// names one by --device. Errors: as taken_arm().
+ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
+                             const InputOptions& input);
 
 // What a hand is asked to do, and what is recorded of it.
 struct LiveTask {

@@ -109,9 +109,7 @@ struct RealDevice {
     const DeviceTraits& traits = device->traits();
     if (!traits.pushes) throw UsageError(traits.name + ": has no motors");
     RunPlan& plan = world.plan;
-    const ArmDescription asked = arm_of(input);
-    plan.arm = hub.arm_for(traits, asked);
-    if (!input.device.empty()) say_of_arm(traits, asked, plan.arm);
+    plan.arm = arm_of_device(traits, hub, input);
     const fs::path scene = input.scene.empty() ? scene_of_device(plan.arm) : fs::path(input.scene);
     plan.document = read_scene(scene, plan.arm);
     plan.models = build_meshes(plan.document);

@@ -12,7 +12,6 @@
 #include "app/base/folders.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
-#include "devices/files/urdf_file.h"
 #include "devices/hid/device_list.h"
 #include "devices/hid/hid_transport.h"
 
@@ -30,64 +29,31 @@ std::optional<InverseName> inverse_name_in(const std::string& id) {
   }
 }
 
-bool alike(const ArmDescription& one, const ArmDescription& other) {
-  return std::ranges::equal(one.joints, other.joints, {}, &Joint::kind, &Joint::kind);
-}
-
-// Another arm in its place would be one that nobody has measured: it is for people to say so.
-ArmDescription identified(const std::string& file) {
-  try {
-    return read_urdf(file);
-  } catch (const FileError& error) {
-    throw FileError(
-        fmt::format("{}; the device was identified as that arm, and `limpid identify "
-                    "--forget` takes it for its usual one again",
-                    error.what()));
-  }
-}
-
-ArmDescription fitting_arm(const DeviceNotes& notes, const FoundDevice* device,
-                           const DeviceTraits& traits, const ArmDescription& present) {
-  ArmDescription arm = present;
-  if (!notes.arm.empty()) {
-    arm = identified(notes.arm);
-    if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
-  }
-  if (device != nullptr && *device->kind->arm != '\0') {
-    const ArmDescription own = read_urdf(data_dir() / "assets/devices" / device->kind->arm);
-    if (!alike(arm, own)) arm = own;
-  }
-  if (arm.dof() != traits.dof) {
-    constexpr std::array kBuiltIn{"paddle.urdf", "joystick.urdf", "omni.urdf"};
-    const auto k = static_cast<std::size_t>(traits.dof - 1);
-    if (traits.dof < 1 || k >= kBuiltIn.size()) {
-      throw FileError(
-          fmt::format("{} has {} joints; start Limpid with --device FILE.urdf, an arm of as many",
-                      traits.name, traits.dof));
-    }
-    arm = read_urdf(data_dir() / "assets/devices" / kBuiltIn[k]);
-  }
-  for (std::size_t i = 0; i < arm.joints.size() && i < traits.effort.size(); ++i) {
-    arm.joints[i].effort = std::min(arm.joints[i].effort, traits.effort[i]);
-  }
-  return arm;
-}
-
 }  // namespace
 
-std::string arm_not_taken(const DeviceTraits& traits, const ArmDescription& asked,
-                          const ArmDescription& taken) {
-  if (asked.urdf == taken.urdf) return {};
-  const auto joints = [](int n) { return fmt::format("{} joint{}", n, n == 1 ? "" : "s"); };
-  return fmt::format(
-      "{} is taken for the arm {}, not for {}: {}.", traits.name, taken.name, asked.name,
-      asked.dof() == traits.dof ? "it was identified as such, or says so itself"
-                                : fmt::format("it has {}, and {} has {}", joints(traits.dof),
-                                              asked.name, joints(asked.dof())));
+TakenArm DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription* named) const {
+  const FoundDevice* device = present();
+  return taken_arm(known(), device == nullptr ? nullptr : device->kind, traits, named);
 }
 
-ArmDescription DeviceHub::arm_for(const DeviceTraits& traits, const ArmDescription& present) const {
-  return fitting_arm(known(), DeviceHub::present(), traits, present);
+void DeviceHub::say_arm(const std::string& file, const std::string& tip,
+                        const DeviceTraits* traits) {
+  DeviceNotes& notes = DeviceHub::notes(store_.in_use);
+  notes.taken_for = file;
+  notes.taken_for_tip = tip;
+  notes.taken_as = file.empty() || traits == nullptr ? "" : what_it_is(traits->name, traits->dof);
+}
+
+bool DeviceHub::note_said_arm(const DeviceTraits& traits) {
+  DeviceNotes& notes = DeviceHub::notes(store_.in_use);
+  if (notes.taken_for.empty() || !notes.taken_as.empty()) return false;
+  notes.taken_as = what_it_is(traits.name, traits.dof);
+  return true;
+}
+
+bool DeviceHub::may_say_arm() const {
+  const FoundDevice* device = present();
+  return device != nullptr && may_be_told_its_arm(known(), *device->kind);
 }
 
 DeviceHub::DeviceHub(std::filesystem::path file, AskForPriority ask)
@@ -211,6 +177,8 @@ DeviceHub::Opening DeviceHub::opening_now() const {
   return {store_.in_use, refusal(), found_now(), known(), ask_};
 }
 
+std::unique_ptr<Device> DeviceHub::open_to_look() const { return opening_now().open(); }
+
 std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
   return [opening = opening_now()] {
     std::unique_ptr<Device> opened = opening.open();
@@ -277,13 +245,13 @@ bool DeviceHub::needs_check() const {
   return device != nullptr && device->kind->pushes && !known().checked;
 }
 
-std::function<AxisCheck()> DeviceHub::checking(const std::shared_ptr<AxisCheckProgress>& progress,
-                                               const ArmDescription& present) const {
-  return [opening = opening_now(), progress, present] {
+std::function<AxisCheck()> DeviceHub::checking(
+    const std::shared_ptr<AxisCheckProgress>& progress) const {
+  return [opening = opening_now(), progress] {
     const std::unique_ptr<Device> device = opening.open();
-    const FoundDevice* found = opening.found ? &*opening.found : nullptr;
-    const ArmDescription arm = fitting_arm(opening.notes, found, device->traits(), present);
-    return run_axis_check(*device, arm, opening.notes.limits, *progress, opening.ask);
+    const DeviceKind* kind = opening.found ? opening.found->kind : nullptr;
+    const TakenArm taken = taken_arm(opening.notes, kind, device->traits());
+    return run_axis_check(*device, taken.arm, opening.notes.limits, *progress, opening.ask);
   };
 }
 

@@ -9,16 +9,11 @@
 
 #include "app/device/axis_check_run.h"
 #include "app/device/device_store.h"
-#include "core/dynamics/arm_description.h"
+#include "app/device/taken_arm.h"
 #include "devices/hid/device_list.h"
 #include "devices/hid/hid_transport.h"
 
 namespace limpid {
-
-// Where a device is taken for another arm than the one that was asked for, for people: why; else
-// empty.
-std::string arm_not_taken(const DeviceTraits& traits, const ArmDescription& asked,
-                          const ArmDescription& taken);
 
 // It pushes, and nobody has seen yet that its motors move its axes as they are told.
 struct UncheckedError : HidError {
@@ -63,10 +58,19 @@ class DeviceHub {
   // be called from anywhere, later. Errors: HidError; UncheckedError where it has to be checked
   // first; FileError where its store refuses it.
   std::function<std::unique_ptr<Device>()> opening() const;
-  // The arm for the device in use: what it was identified as, else `present` if it has as many
-  // joints, else a built-in one. Its torque limits are no higher than the device's. Errors:
-  // FileError if there is none with so many joints, or what it was identified as cannot be read.
-  ArmDescription arm_for(const DeviceTraits& traits, const ArmDescription& present) const;
+  // The same without the check: for what moves nothing.
+  std::unique_ptr<Device> open_to_look() const;
+  // The arm that the device in use is taken for; `named`, and errors: see taken_arm().
+  TakenArm arm_for(const DeviceTraits& traits, const ArmDescription* named = nullptr) const;
+  // From now on, once saved, the device in use is taken for this arm: kBuiltInArm, or a URDF with
+  // the tip in it; empty: nobody has said. `traits`: of the device, where it is connected.
+  void say_arm(const std::string& file, const std::string& tip, const DeviceTraits* traits);
+  // The device of these traits is what was meant when somebody said it before it was connected.
+  // True if that was news.
+  bool note_said_arm(const DeviceTraits& traits);
+  // The device in use is there, and somebody may say which arm it is; nobody has.
+  bool may_say_arm() const;
+  bool asks_for_arm() const { return may_say_arm() && known().taken_for.empty(); }
   // What a device was found to be.
   struct Profile {
     std::string urdf;         // the arm
@@ -85,9 +89,8 @@ class DeviceHub {
   // tells.
   bool needs_check() const;
   // Connects to it and checks its axes, as opening() and run_axis_check(), within the limits that
-  // are set for it; `present` as in arm_for().
-  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckProgress>& progress,
-                                      const ArmDescription& present) const;
+  // are set for it, as the arm that it is taken for.
+  std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckProgress>& progress) const;
   // Writes what was changed here and takes in what other programs have changed. Returns what went
   // wrong, empty if nothing did.
   std::string save();

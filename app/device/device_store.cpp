@@ -126,8 +126,9 @@ void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
 // Errors: FileError.
 DeviceNotes read_notes(const Entry& entry) {
   DeviceNotes notes;
-  entry.no_slips({"range", "effort", "reverse", "limits", "checked", "checked_as", "arm", "delay",
-                  "torque_scale", "compensation", "axis"});
+  entry.no_slips({"range", "effort", "reverse", "limits", "checked", "checked_as", "arm",
+                  "taken_for", "taken_for_tip", "taken_as", "delay", "torque_scale", "compensation",
+                  "axis"});
   entry.take("range", 0.01, 3.2, notes.pid.range);
   entry.take("effort", 0.01, 50, notes.pid.effort);
   if (const std::optional<Entry> limits = entry.below("limits")) {
@@ -143,6 +144,9 @@ DeviceNotes read_notes(const Entry& entry) {
   entry.take("checked", notes.checked);
   entry.take("checked_as", notes.checked_as);
   entry.take("arm", notes.arm);
+  entry.take("taken_for", notes.taken_for);
+  entry.take("taken_for_tip", notes.taken_for_tip);
+  entry.take("taken_as", notes.taken_as);
   entry.take("delay", 0, 1, notes.delay);
   entry.take("torque_scale", kLeastTorqueScale, kMostTorqueScale, notes.torque_scale);
   if (const std::optional<Entry> forces = entry.below("compensation")) {
@@ -174,6 +178,9 @@ toml::table write_notes(const DeviceNotes& notes) {
                     {"checked", notes.checked},
                     {"checked_as", notes.checked_as},
                     {"arm", notes.arm},
+                    {"taken_for", notes.taken_for},
+                    {"taken_for_tip", notes.taken_for_tip},
+                    {"taken_as", notes.taken_as},
                     {"torque_scale", notes.torque_scale},
                     {"compensation", write_compensation(notes.compensation)},
                     {"axis", axes}};

@@ -33,6 +33,8 @@ struct OwnForces : CompensationSettings {
   friend bool operator==(const OwnForces&, const OwnForces&) = default;
 };
 
+inline constexpr const char* kBuiltInArm = "built-in";
+
 struct DeviceNotes {
   std::vector<AxisAdjustment> axes;  // of its joints; fewer: as they are
   PidSettings pid;                   // of a joystick: its range and its effort
@@ -40,6 +42,10 @@ struct DeviceNotes {
   bool checked = false;              // its motors were seen to move its axes as they are told
   std::string checked_as;            // what_it_is() then; empty: nobody has noted it
   std::string arm;                   // URDF of what it was identified as; empty: it was not
+  // Which arm somebody has said that it is, kBuiltInArm or a URDF, and the tip in it; empty: nobody
+  // has said.
+  std::string taken_for, taken_for_tip;
+  std::string taken_as;  // what_it_is() then; empty: it was not there
   double delay = -1;  // then found, from a reading to the torque that answers it, beyond the tick
                       // [s]; below 0: not known
   double torque_scale = 1;  // what its motors give of what they are told

@@ -25,18 +25,22 @@ LiveLoop::LiveLoop(AskForPriority ask, Dispose dispose)
 void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
                     const Vec3& home) {
   RigStart start = rest_at(arm, home);
+  auto rig = std::make_unique<Rig>(arm, scene);
+  auto twin = std::make_unique<Rig>(arm, scene);
   close();
-  rig_ = std::make_unique<Rig>(arm, scene);
-  twin_.open(arm, scene, start);
+  rig_ = std::move(rig);
+  twin_.open(std::move(twin), start);
   start.armed = virtual_armed_;
   begin(std::move(start), p);
 }
 
 void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
                     std::unique_ptr<Device> device) {
+  auto rig = std::make_unique<Rig>(arm, scene, nullptr);
   close();
-  rig_ = std::make_unique<Rig>(arm, scene, nullptr);
+  rig_ = std::move(rig);
   in_place_ = true;
+  real_ = RealDevice::of(arm, 0);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
   RigStart start{rest_pose(arm), zero, rest_pose(arm), zero, zero, Vec3::Zero(), false};
   if (DeviceReading first; device && device->read(first) && first.count > 0) {
@@ -109,7 +113,9 @@ std::size_t LiveLoop::drain(std::span<double> into) {
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
-  slots_.offer(std::make_unique<DeviceSlot>(std::move(device), dispose_, held_));
+  auto slot = std::make_unique<DeviceSlot>(std::move(device), dispose_, held_);
+  if (plugged_) real_.encoder_step = slot->encoder_step;
+  slots_.offer(std::move(slot));
 }
 
 // What the window has offered.
@@ -211,10 +217,9 @@ bool LiveLoop::due(const Controls& controls) {
   return true;
 }
 
-// A real device has the encoders that it has, whatever is set to try the virtual arm with.
 Parameters LiveLoop::for_device(Parameters p) const noexcept {
-  if (in_place_ && slot_ != nullptr) p.encoder_step = std::max(p.encoder_step, slot_->encoder_step);
-  return p;
+  if (!in_place_) return p;
+  return as_taken(p, {real_.damping, real_.torque, slot_ != nullptr ? slot_->encoder_step : 0});
 }
 
 void LiveLoop::tick(const TickTiming& timing) {

@@ -13,6 +13,7 @@
 #include "core/realtime/hand_over.h"
 #include "core/realtime/haptic_thread.h"
 #include "core/realtime/triple_buffer.h"
+#include "core/tick/as_taken.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/simulated/hands.h"
 #include "devices/simulated/rig.h"
@@ -103,10 +104,11 @@ class LiveLoop {
   ~LiveLoop();
 
   // A new world; the hand rests with the tip at `home` [m], at rest. The force is as it was on the
-  // last virtual arm, at first on. Errors: as rest_at().
+  // last virtual arm, at first on. Errors: as rest_at() and Rig; the loop goes on as it was then.
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p, const Vec3& home);
   // The same with a device in the arm's place, which has as many joints; force is off until it is
-  // armed. Starts where the device is, if it has said so already.
+  // armed. Starts where the device is, if it has said so already. Errors: as Rig; the loop goes on
+  // as it was then, and the device is let go of.
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
             std::unique_ptr<Device> device);
   // Also ends a recording: take_recorded() has it then.
@@ -122,6 +124,8 @@ class LiveLoop {
   void lead(std::unique_ptr<LedPath> path) { paths_.offer(std::move(path)); }
   bool device_in_place() const { return in_place_; }
   bool device_plugged() const { return plugged_; }  // by the window; it may be lost
+  // The settings as the loop takes them: while a real device has the arm's place, as as_taken().
+  Parameters taken(const Parameters& p) const { return device_in_place() ? as_taken(p, real_) : p; }
   // One that is done with may be in the loop's hands still: it is free once this is false.
   bool holds_device() const { return held_ > 0; }
 
@@ -203,6 +207,7 @@ class LiveLoop {
   HandOver<DeviceSlot> slots_;
   HandOver<LedPath> paths_;
   bool in_place_ = false;  // a device has the arm's place; changes while the loop stands
+  RealDevice real_;        // then: it; its encoders are the window's
   bool plugged_ = false;   // the window's
   bool virtual_armed_ = true;
 

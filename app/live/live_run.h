@@ -18,6 +18,8 @@ class LiveRun {
   void arm() { loop_.arm(); }
   void cut() { loop_.cut(); }
   void set(const Parameters& parameters) { controls_.parameters = parameters; }
+  // See LiveLoop.
+  Parameters taken(const Parameters& p) const { return loop_.taken(p); }
   // Another scene for the same arm.
   void touch(const Scene& scene);
 

@@ -5,8 +5,8 @@
 
 namespace limpid {
 
-void Twin::open(const ArmDescription& arm, const Scene& scene, const RigStart& sizes) {
-  rig_ = std::make_unique<Rig>(arm, scene);
+void Twin::open(std::unique_ptr<Rig> rig, const RigStart& sizes) {
+  rig_ = std::move(rig);
   start_ = sizes;
   running_ = false;
 }

@@ -11,8 +11,8 @@ namespace limpid {
 
 class Twin {
  public:
-  // Not the loop's: they allocate.
-  void open(const ArmDescription& arm, const Scene& scene, const RigStart& sizes);
+  // Not the loop's: they allocate. `rig`: with a simulated device, of the loop's arm and scene.
+  void open(std::unique_ptr<Rig> rig, const RigStart& sizes);
   void room_for(const RigStart& sizes) { start_ = sizes; }
   void close() {
     rig_.reset();

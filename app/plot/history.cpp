@@ -135,6 +135,7 @@ void History::mark_at(double at, std::string label, std::string key) {
   }
   const auto place = std::ranges::upper_bound(marks_, at, {}, &PlotMark::time);
   marks_.insert(place, {at, std::move(key), std::move(label)});
+  if (marks_.size() > kMostMarks) marks_.pop_front();
 }
 
 void History::replace_marks(const std::string& key, const std::vector<PlotMark>& marks) {

@@ -107,6 +107,8 @@ inline constexpr const char* kNoteMark = "note";    // of those that people set
 // used as rows come.
 class History {
  public:
+  static constexpr std::size_t kMostMarks = 500;
+
   struct Options {
     int channels = 1;
     double seconds = 60;  // how much to keep at least [s]
@@ -122,7 +124,8 @@ class History {
   void append(double time, std::span<const double> values);
 
   // `time` [s] as the loop counts it. A mark with the same key less than half a second ago is
-  // replaced, so that dragging a slider leaves one mark.
+  // replaced, so that dragging a slider leaves one mark. Of more than kMostMarks the oldest go, as
+  // each is drawn in every frame.
   void mark(double time, std::string label, std::string key = "");
   // The same at a time of the history's axis, which may be long ago.
   void mark_at(double axis_time, std::string label, std::string key);

@@ -89,6 +89,10 @@ int take_lock(const fs::path& path) {
   return lock;
 }
 
+bool says_something(std::string_view line) {
+  return line.find_first_not_of(" \t\r") != std::string_view::npos;
+}
+
 }  // namespace
 
 fs::path control_path(const std::string& name) {
@@ -227,7 +231,7 @@ void LineServer::part(Connection& c) {
   c.until = Clock::now() + kParting;
 }
 
-// For another of its lines: neither those that wait nor the answers that it does not fetch grow.
+// For the owner to take another of its lines: the answers that it does not fetch do not grow.
 bool LineServer::has_room(const Connection& c) {
   return c.unanswered < kMostUnanswered && c.out.size() < kMostUnsent;
 }
@@ -259,7 +263,8 @@ void LineServer::live() {
       if (quit_) return;
       if (events_.size() > kMostEvents) files[1].fd = -1;
       for (const auto& [id, c] : connections_) {
-        const bool listens = !c.parting && !c.ended && has_room(c);
+        // One without room is heard as well: what it says may be that the force is to be cut.
+        const bool listens = !c.parting && !c.ended && !c.too_long;
         const int wanted = (listens ? POLLIN : 0) | (c.out.empty() ? 0 : POLLOUT);
         // One that has ended would be reported all the time.
         files.push_back({c.ended && wanted == 0 ? -1 : c.file, static_cast<short>(wanted), 0});
@@ -300,48 +305,71 @@ void LineServer::serve(Connection& c, Client id, short happened) {
   const bool gone = (happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if ((happened & POLLIN) != 0) read(c);
   split(c, id);
-  while (gone && c.file >= 0 && !c.ended && !c.parting && has_room(c)) {
-    read(c);
-    split(c, id);
-  }
+  while (gone && read(c)) split(c, id);
   write(c);
   if (!gone || c.file < 0) return;
   close(c.file);
   c.file = -1;
 }
 
-void LineServer::read(Connection& c) {
-  if (c.parting || c.ended || c.in.size() > kLongestLine) return;
+// False where there was nothing to read.
+bool LineServer::read(Connection& c) {
+  if (c.file < 0 || c.parting || c.ended || c.too_long) return false;
   std::array<char, kPiece> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled next
   const ssize_t size = recv(c.file, bytes.data(), bytes.size(), 0);
   if (size > 0) {
     c.in.append(bytes.data(), static_cast<std::size_t>(size));
+    look(c);
   } else if (size == 0) {
     c.ended = true;
   } else if (errno != EAGAIN && errno != EINTR) {
     close(c.file);
     c.file = -1;
   }
+  return size > 0;
+}
+
+// At the lines that have just become whole.
+void LineServer::look(Connection& c) {
+  while (true) {
+    const std::size_t end = std::min(c.in.find('\n', c.looked), c.in.size());
+    if (end - c.looked > kLongestLine) {
+      c.in.resize(c.looked);
+      c.too_long = true;
+    }
+    if (c.too_long || end == c.in.size()) return;
+    const std::string_view line = std::string_view(c.in).substr(c.looked, end - c.looked);
+    const bool counts = says_something(line);
+    if (counts && at_once_) at_once_(line);
+    if (counts && end < kMostWaiting) {
+      c.looked = end + 1;
+      continue;
+    }
+    if (counts) ++c.dropped;
+    c.in.erase(c.looked, end + 1 - c.looked);
+  }
 }
 
 void LineServer::split(Connection& c, Client id) {
   if (c.parting) return;
   std::size_t begin = 0;
-  while (has_room(c)) {
+  while (begin < c.looked && has_room(c)) {
     const std::size_t end = c.in.find('\n', begin);
-    if (end == std::string::npos || end - begin > kLongestLine) break;
-    std::string line = c.in.substr(begin, end - begin);
-    begin = end + 1;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    if (at_once_) at_once_(line);
     ++c.unanswered;
-    events_.push_back({id, std::move(line)});
+    events_.push_back({id, c.in.substr(begin, end - begin)});
+    begin = end + 1;
     happened_.notify_one();
   }
   c.in.erase(0, begin);
-  const std::size_t first = std::min(c.in.find('\n'), c.in.size());
-  if (first <= kLongestLine) return;
-  c.in.clear();
+  c.looked -= begin;
+  if (c.looked > 0) return;
+  if (c.dropped > 0 && has_room(c)) {
+    c.out += fmt::format(
+        "{{\"id\":null,\"error\":\"{} lines found no room and were dropped: {} bytes of lines "
+        "may wait while answers are not fetched\"}}\n",
+        std::exchange(c.dropped, 0), kMostWaiting);
+  }
+  if (!c.too_long) return;
   c.out +=
       fmt::format("{{\"id\":null,\"error\":\"a line has at most {} bytes; this one has more\"}}\n",
                   kLongestLine);

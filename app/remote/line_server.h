@@ -58,8 +58,11 @@ class LineServer {
   static constexpr std::size_t kMostClients = 16;
   static constexpr std::size_t kLongestLine = std::size_t{64} << 10;  // [bytes]
   static constexpr std::size_t kMostUnanswered = 16;                  // lines of one client
-  static constexpr std::size_t kMostUnsent = std::size_t{256}
-                                             << 10;           // [bytes]; then no line of it is read
+  // Then no further line of the client is taken [bytes].
+  static constexpr std::size_t kMostUnsent = std::size_t{256} << 10;
+  // Of lines that wait to be taken; those beyond are dropped, and the client is told how many
+  // [bytes].
+  static constexpr std::size_t kMostWaiting = std::size_t{256} << 10;
   static constexpr std::chrono::milliseconds kParting{1000};  // to take what is left
 
   // Something that happened: a line came, or the client went.
@@ -68,8 +71,8 @@ class LineServer {
     std::optional<std::string> line;  // none: it is gone
   };
 
-  // `at_once` hears of every line on the server's thread, before anybody takes it. Errors: as
-  // ControlSocket.
+  // `at_once` hears of every line on the server's thread as soon as it arrives, also of one that
+  // waits or is dropped. Errors: as ControlSocket.
   explicit LineServer(const std::filesystem::path& path,
                       std::function<void(std::string_view line)> at_once = {});
   ~LineServer();
@@ -94,8 +97,11 @@ class LineServer {
   struct Connection {
     int file = -1;
     std::string in, out;
+    std::size_t looked = 0;  // so much of `in` is whole lines, of which at_once_ has heard
     std::size_t unanswered = 0;
-    bool ended = false;  // says nothing more, but may listen
+    std::size_t dropped = 0;  // lines, of which the client was not told yet
+    bool too_long = false;    // a line was; nothing after it is read
+    bool ended = false;       // says nothing more, but may listen
     bool parting = false;
     std::chrono::steady_clock::time_point until{};  // while parting
   };
@@ -105,7 +111,8 @@ class LineServer {
   void wake() const;
   void greet();
   void serve(Connection& c, Client id, short happened);
-  void read(Connection& c);
+  bool read(Connection& c);
+  void look(Connection& c);
   void split(Connection& c, Client id);
   void write(Connection& c);
   void part(Connection& c);

@@ -25,7 +25,7 @@ constexpr std::array kFollow{"channels", "rate"};
 constexpr std::array kTwin{"on", "values"};
 constexpr std::array kBlind{"on"};
 constexpr std::array kAsk{"text", "choices", "beside", "seconds"};
-constexpr std::array kPicture{"file"};
+constexpr std::array kPicture{"file", "replace"};
 
 constexpr std::array kVerbs{
     Verb{"hello", kNone, "which Limpid this is, and what it has"},
@@ -47,7 +47,7 @@ constexpr std::array kVerbs{
     Verb{"ask", kAsk,
          "a person \"text\"; answers which of the \"choices\", and after how long; \"beside\" the "
          "picture, which can be used meanwhile; for \"seconds\" only"},
-    Verb{"picture", kPicture, "into \"file\", a PNG"},
+    Verb{"picture", kPicture, "into \"file\", a PNG; one that is there with \"replace\" true only"},
     Verb{"cut", kNone, "no force, at once"},
     Verb{"bye", kNone, "ends the connection"},
 };
@@ -184,6 +184,18 @@ std::filesystem::path Keys::file(std::string_view ending) const {
                                     shown(named.string()), ending));
   }
   return named;
+}
+
+std::filesystem::path Keys::file_to_write(std::string_view ending) const {
+  std::filesystem::path named = file(ending);
+  std::error_code none;
+  if (flag_or("replace", false) || std::filesystem::symlink_status(named, none).type() ==
+                                       std::filesystem::file_type::not_found) {
+    return named;
+  }
+  throw error("file", fmt::format("{} is there already; allowed: a file that is not, or "
+                                  "\"replace\": true",
+                                  shown(named.string())));
 }
 
 double Keys::number_or(const char* key, double usual, double least, double most) const {

@@ -62,6 +62,8 @@ class Keys {
   std::optional<std::string> text_if(const char* key) const;
   // "file", to be written: a path from / on with this ending.
   std::filesystem::path file(std::string_view ending) const;
+  // The same of one that is to be written: it is not there, or may be replaced by "replace".
+  std::filesystem::path file_to_write(std::string_view ending) const;
   double number_or(const char* key, double usual, double least, double most) const;
   bool flag_or(const char* key, bool usual) const;
   // Texts, at most so many; none: there is no such key.

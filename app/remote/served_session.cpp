@@ -247,7 +247,7 @@ Answer ServedSession::record(const Keys& keys) {
   plan.document = world_.plan.document;
   plan.seed = world_.plan.seed;
   plan.hand.source = source();
-  plan.parameters = controls_.parameters;
+  plan.parameters = loop_.taken(controls_.parameters);
   if (of_twin_) plan.beside.push_back({*of_twin_, {}});
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
@@ -337,7 +337,7 @@ Answer ServedSession::twin(const Keys& keys) {
 }
 
 Answer ServedSession::picture(const Keys& keys) {
-  const fs::path file = keys.file(".png");
+  const fs::path file = keys.file_to_write(".png");
   if (newest_.empty()) throw RemoteError("picture: there is no row yet");
   std::vector<double> row(newest_.begin(),
                           newest_.begin() + static_cast<std::ptrdiff_t>(newest_.size() / 2));

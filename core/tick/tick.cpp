@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/math/subnormals.h"
+#include "core/tick/as_taken.h"
 
 namespace limpid {
 
@@ -72,9 +73,14 @@ void Tick<N>::exchange(std::unique_ptr<Contacts<N>>& contacts) {
 }
 
 template <int N>
-const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceRequest wish,
+const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceRequest wish,
                            std::span<double> row) {
   const NoSubnormals fast_at_rest;
+  std::optional<Parameters> of_device;
+  if (in.health.guarded) {
+    of_device = as_taken(given, {arm_damping_.minCoeff(), arm_limit_.maxCoeff()});
+  }
+  const Parameters& p = of_device ? *of_device : given;
   const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
   if (in.health.gap) begin_after_gap(in);
   const int periods = k_ > 0 && !in.health.gap ? in.periods : 1;
@@ -84,12 +90,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceReque
   proxy_.set_ratio(p.inertia_ratio);
   b_d_ = resolve<N>(p.damping, arm_damping_);
   limit_ = resolve<N>(p.torque_limit, arm_limit_);
-  // What the virtual arm is given to try is no more torque for a real one; nor has that one more
-  // damping, which the observer would take for a hand's force and a law would feed forward.
-  if (in.health.guarded) {
-    limit_ = limit_.cwiseMin(arm_limit_);
-    b_d_ = b_d_.cwiseMin(arm_damping_);
-  }
+  if (in.health.guarded) limit_ = limit_.cwiseMin(arm_limit_);
 
   // The device, (5), as the controller believes it to be.
   const bool goes_on = k_ > 0 && !in.health.gap;
@@ -118,7 +119,7 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceReque
   write_bodies(row);
   proxy_.contacts().want_magnet(in.magnet);
   if (BodyWorld* world = proxy_.contacts().world()) world->pull(in.pull);
-  const Vec<N> left = own_forces(p, in.health.guarded, at, T);
+  const Vec<N> left = own_forces(p, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
   const LawInput<N> now{in.measured,    v1,
                         device_,        f1_hat_,
@@ -145,11 +146,9 @@ const Vec<N>& Tick<N>::run(const Parameters& p, const Reading<N>& in, ForceReque
 }
 
 // What the motors are to give for the device's own forces; returns what of them is left to the law.
-// A real device has the friction that was found of it, whatever the virtual arm is given.
 template <int N>
-Vec<N> Tick<N>::own_forces(const Parameters& p, bool guarded, const DeviceEstimate<N>& at,
-                           double T) {
-  const Vec<N> friction = guarded ? arm_friction_ : resolve<N>(p.friction, arm_friction_);
+Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, double T) {
+  const Vec<N> friction = resolve<N>(p.friction, arm_friction_);
   loads_ = compensation_.step(p, arm_, frames_, at.x, at.v, friction, p.encoder_step, T);
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }

@@ -92,7 +92,7 @@ class Tick {
 
   // Runs tick k and writes its row, except for what only the device and the clock know (hand,
   // timing). Returns the motor torque to be held until t_k+1 [N m].
-  const Vec<N>& run(const Parameters& p, const Reading<N>& in, ForceRequest wish,
+  const Vec<N>& run(const Parameters& given, const Reading<N>& in, ForceRequest wish,
                     std::span<double> row);
 
   // Another scene, between two ticks: takes `contacts` in and gives the old ones out. Allocates
@@ -117,7 +117,7 @@ class Tick {
 
  private:
   void begin_after_gap(const Reading<N>& in);
-  Vec<N> own_forces(const Parameters& p, bool guarded, const DeviceEstimate<N>& at, double T);
+  Vec<N> own_forces(const Parameters& p, const DeviceEstimate<N>& at, double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
   void start_law(const LawStart<N>& at);
   void pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,

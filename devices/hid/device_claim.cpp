@@ -162,6 +162,18 @@ DeviceClaim::DeviceClaim(const std::string& key, const fs::path& folder) {
   }
 }
 
+DeviceClaim DeviceClaim::on_node(const fs::path& node) {
+  DeviceClaim claim;
+  claim.file_ = open(node.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (claim.file_ < 0) throw HidError(fmt::format("{}: {}", node.string(), std::strerror(errno)));
+  for (int i = 0; i < kClaimTries; ++i) {
+    if (i > 0) std::this_thread::sleep_for(kPause);
+    if (flock(claim.file_, LOCK_EX | LOCK_NB) == 0) return claim;
+  }
+  throw HidError(
+      fmt::format("{}: in use by another program, perhaps in a container", node.string()));
+}
+
 DeviceClaim::DeviceClaim(DeviceClaim&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
 
 DeviceClaim& DeviceClaim::operator=(DeviceClaim&& other) noexcept {

@@ -4,6 +4,9 @@
 // lock on a file that the programs of all users find in the same place. The kernel lets go of it
 // once the last process that has it open ends: the program itself, or the guardian that still has
 // to send its stop. The file stays; it says who took the lock last.
+//
+// A container may have such a place of its own and share the devices: the node of a device itself
+// is locked besides.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +26,9 @@ class DeviceClaim {
   // or why nobody can tell.
   explicit DeviceClaim(const std::string& key,
                        const std::filesystem::path& folder = claim_folder());
+  // Of the device's node itself, by whatever name it is known. Throws HidError: another program has
+  // it, or it cannot be opened.
+  static DeviceClaim on_node(const std::filesystem::path& node);
   DeviceClaim(DeviceClaim&& other) noexcept;
   DeviceClaim& operator=(DeviceClaim&& other) noexcept;
   ~DeviceClaim();

@@ -19,7 +19,8 @@ HidExchange::HidExchange(HidTransport& transport, HidProtocol& protocol, ReadClo
       protocol_(protocol),
       clock_(std::move(clock)),
       dof_(static_cast<std::size_t>(protocol.traits().dof)),
-      deliver_([this](std::span<const std::uint8_t> report) { deliver(report); }) {}
+      deliver_([this](std::span<const std::uint8_t> report) { deliver(report); }),
+      deliver_if_due_([this](std::span<const std::uint8_t> report) { deliver_if_due(report); }) {}
 
 bool HidExchange::read(DeviceReading& newest) noexcept {
   arrivals_.update();
@@ -88,15 +89,39 @@ void HidExchange::ask_if_silent() noexcept {
 
 void HidExchange::send() noexcept {
   if (!protocol_.traits().pushes) return;
-  const bool news = commands_.update();
+  news_ = commands_.update() || news_;
   const nanoseconds now = clock_();
-  if (!news && sent_any_ && now - sent_ < kSendPeriod) return;
+  if (!news_ && sent_any_ && now - sent_ < kSendPeriod) return;
+  news_ = overtaken_ = false;
   const Torque torque = torque_now(now);
+  const bool any = std::ranges::any_of(torque, [](double each) { return each != 0; });
   went_on_ = now;
-  protocol_.encode(std::span(torque).first(dof_), now, deliver_);
+  protocol_.encode(std::span(torque).first(dof_), now, any ? deliver_if_due_ : deliver_);
+  if (overtaken_) {
+    protocol_.undelivered();
+    const nanoseconds later = clock_();
+    if (wants_torque()) withheld();
+    const Torque none{};
+    protocol_.encode(std::span(none).first(dof_), later, deliver_);
+  }
   if (failures_ == 0) heard_ = went_on_;
   sent_ = now;
   sent_any_ = true;
+}
+
+// Before each report of a torque that is not zero.
+void HidExchange::deliver_if_due(std::span<const std::uint8_t> report) noexcept {
+  if (overtaken_) return;
+  news_ = commands_.update() || news_;
+  overtaken_ = !may_push(clock_()) || !wants_torque();
+  if (!overtaken_) deliver(report);
+}
+
+// Of the newest command, as far as the loop knows how the device is.
+bool HidExchange::wants_torque() const noexcept {
+  const Command& command = commands_.front();
+  return command.any && command.lapses == arrival_.reading.lapses &&
+         std::ranges::any_of(command.torque, [](double each) { return each != 0; });
 }
 
 bool HidExchange::may_push(nanoseconds now) const noexcept {
@@ -135,6 +160,7 @@ bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
   if (!delivered) protocol_.undelivered();
   if (failures_ >= kMostFailures) lose();
   receive(0);
+  ask_if_silent();
   // A slow endpoint is no stall; what takes longer is, and the next torque is kept back for it.
   if (const nanoseconds now = clock_(); now - went_on_ <= kSendGap) went_on_ = now;
   return delivered;

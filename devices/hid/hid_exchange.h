@@ -5,6 +5,10 @@
 // the newest reading is younger than the protocol allows; the device reports no fault and the hand
 // on it; every number is finite.
 //
+// A protocol may take several reports for a torque, and an endpoint some milliseconds for each: all
+// of that is asked before each of them. Where it does not hold any more, or the loop asks for
+// nothing by then, the rest is not sent, and zero is, at once.
+//
 // A torque that was withheld, or came to a device that had heard nothing for a while, is a lapse:
 // the force is gone, and must not come back in one report. Torques count again once the loop has
 // read of the lapse, which makes it start from zero.
@@ -72,8 +76,10 @@ class HidExchange {
   void ask_if_silent() noexcept;
   void send() noexcept;
   bool may_push(nanoseconds now) const noexcept;
+  bool wants_torque() const noexcept;
   Torque torque_now(nanoseconds now) noexcept;
   Torque withheld() noexcept;
+  void deliver_if_due(std::span<const std::uint8_t> report) noexcept;
   bool deliver(std::span<const std::uint8_t> report) noexcept;
   void lose() noexcept { lost_.store(true, std::memory_order_relaxed); }
 
@@ -91,7 +97,9 @@ class HidExchange {
   // Of the I/O thread.
   std::array<std::uint8_t, HidTransport::kMaxMessage> buffer_{};
   Arrival arrival_;
-  SendReport deliver_;
+  SendReport deliver_, deliver_if_due_;
+  bool news_ = false;       // a command has come since the last torque was sent
+  bool overtaken_ = false;  // what is being sent is not to be sent any more
   nanoseconds sent_{};
   nanoseconds heard_{};    // by the device
   nanoseconds went_on_{};  // in send(): from report to report, up to a stall

@@ -43,7 +43,8 @@ class HidProtocol {
   virtual Decoded decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept = 0;
 
   // Sends what makes the motors hold these torques [N m], one a joint, finite and within the
-  // limits. Called about every millisecond.
+  // limits; what makes a joint's zero comes first. `send` may refuse the rest: then undelivered()
+  // and zero on all joints come next. Called about every millisecond.
   virtual void encode(std::span<const double> torque, nanoseconds now,
                       const SendReport& send) noexcept = 0;
 

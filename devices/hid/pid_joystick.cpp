@@ -210,23 +210,29 @@ void PidJoystick::undelivered() noexcept {
   for (Axis& axis : axes_) axis.level = kUnknown;
 }
 
-// A force that changes is sent at once; the effects are started again long before they end, and
-// with their forces, should a report have got lost.
+// A force that changes is sent at once, one that ends before others; the effects are started again
+// long before they end, and with their forces, should a report have got lost.
 void PidJoystick::encode(std::span<const double> torque, nanoseconds now,
                          const SendReport& send) noexcept {
   const auto restart =
       std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(settings_.restart));
   bool any = false;
   const bool due = !playing_ || now - started_ >= restart;
+  std::array<std::int64_t, kMostAxes> level{};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    Axis& axis = axes_[i];
-    const double asked = i < torque.size() ? axis.sign * torque[i] / settings_.effort : 0;
-    const std::int64_t level = reports_.force_level(axis.number, asked);
-    any = any || level != 0;
-    if (level == axis.level && !(due && level != 0)) continue;
-    axis.level = level;
-    reports_.set_force(axis.force, level);
-    send(axis.force);
+    const double asked = i < torque.size() ? axes_[i].sign * torque[i] / settings_.effort : 0;
+    level[i] = reports_.force_level(axes_[i].number, asked);
+    any = any || level[i] != 0;
+  }
+  for (const bool zeros : {true, false}) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      Axis& axis = axes_[i];
+      if ((level[i] == 0) != zeros) continue;
+      if (level[i] == axis.level && !(due && level[i] != 0)) continue;
+      axis.level = level[i];
+      reports_.set_force(axis.force, axis.level);
+      send(axis.force);
+    }
   }
   if (!any || !due) return;
   for (const Axis& axis : axes_) send(axis.start);

@@ -18,6 +18,7 @@
 #include <mutex>
 #include <thread>
 
+#include "devices/hid/device_claim.h"
 #include "devices/hid/hid_transport.h"
 #include "devices/hid/report_descriptor.h"
 
@@ -215,7 +216,8 @@ class Questions {
 class HidapiTransport final : public HidTransport {
  public:
   explicit HidapiTransport(const std::string& path)
-      : descriptor_(read_descriptor(path)),
+      : claim_(DeviceClaim::on_node(path)),
+        descriptor_(read_descriptor(path)),
         numbered_(parse_report_descriptor(descriptor_).numbered),
         device_(hid_open_path(path.c_str())),
         questions_(path) {
@@ -268,6 +270,7 @@ class HidapiTransport final : public HidTransport {
   }
 
  private:
+  DeviceClaim claim_;
   std::vector<std::uint8_t> descriptor_;
   bool numbered_;
   Handle device_;

@@ -15,7 +15,7 @@ TABLE = ROOT / "app/desktop/shell/dialogs.cpp"
 SESSION = sorted((ASSETS / "sessions").glob("*.h5"))[0]
 # No key opens them, and their frames are those of the others; "ask" is a program's, and stays open
 # until it is answered.
-WITHOUT_KEY = {"about", "open arm", "find session", "ask"}
+WITHOUT_KEY = {"about", "open arm", "device arm", "find session", "ask"}
 
 
 def dialogs() -> set[str]:

@@ -173,6 +173,23 @@ class AxesOfADevice(PaddleWindow):
         self.wait("why it has none", lambda s: s["device"]["explains_force"])
 
 
+class ArmOfADevice(PaddleWindow):
+    BOOK = "checked = true\n"
+    SIZE = (1600, 880)
+
+    def test_is_asked_about_once(self) -> None:
+        self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
+        self.wait("the question", lambda s: s["device"]["arm"])
+        self.click(*self.settled()["device"]["arm"])
+        self.wait("no question", lambda s: s["device"]["arm"] is None)
+        self.wait("the device back in the loop", lambda s: s["identify"]["plugged"])
+        book = self.book.read_text()
+        self.assertRegex(book, "taken_for = .built-in.")
+        self.assertRegex(book, "taken_as = .paddle, 1 joint.")
+        self.assertIn("checked = true", book)
+        self.assertFalse(self.state()["force"])
+
+
 class IdentifyDevice(PaddleWindow):
     BOOK = "checked = true\n"
 

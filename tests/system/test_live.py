@@ -109,6 +109,23 @@ class Live(unittest.TestCase):
                 self.assertEqual(forget.status, 2, forget.err)
                 self.assertEqual(book.read_text(), text)
 
+    def test_is_told_once_which_arm_a_device_is_and_says_it_at_each_connection(self) -> None:
+        self.plug()
+        self.assertIn("until you say which it is", limpid("devices").out)
+        wrong = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/joystick.urdf")
+        self.assertEqual(wrong.status, 2)
+        self.assertIn("of 2 joints, and has 3 joints", wrong.err)
+        right = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/omni.urdf")
+        self.assertEqual(right.status, 0, right.err)
+        self.assertIn("is taken for the arm omni: so it was said", right.out)
+        self.assertIn("omni.urdf, as was said", limpid("devices").out)
+        self.assertIn("so it was said", limpid("run", "--live", "--yes", "--duration", "0.1").err)
+        self.assertEqual(limpid("devices", "socket:replay", "--arm", "unsaid").status, 0)
+        book = (self.folder / "config/limpid/devices.toml").read_text()
+        self.assertIn("checked = true", book)
+        self.assertNotIn("omni", book)
+        self.assertIn("until you say which it is", limpid("run", "--live", "--yes", "--duration", "0.1").err)
+
     def test_leaves_a_device_alone_that_another_program_has(self) -> None:
         self.plug()
         first = subprocess.Popen([LIMPID, "run", "--live", "--yes", "--duration", "30"],

@@ -215,6 +215,16 @@ class TestServe(RemoteTest):
         file = self.connect().picture(self.home / "a.png")
         self.assertEqual(Path(file).read_bytes()[:4], b"\x89PNG")
 
+    def test_a_picture_replaces_no_file_unless_that_is_asked_for(self) -> None:
+        loop = self.connect()
+        file = self.home / "mine.png"
+        file.write_text("mine")
+        with self.assertRaisesRegex(limpid.RequestError, "picture: file: .*mine.png.* is there already; .*replace"):
+            loop.picture(file)
+        self.assertEqual(file.read_text(), "mine")
+        loop.picture(file, replace=True)
+        self.assertEqual(file.read_bytes()[:4], b"\x89PNG")
+
     def test_bye_ends_the_connection_and_others_go_on(self) -> None:
         other = self.connect()
         connection = self.raw()

@@ -56,7 +56,7 @@ class TestRemoteWindow(WindowTest):
         folder = os.environ.get("LIMPID_PICTURES")
         if folder:  # beside the client that may wait for an answer
             with limpid.Client(self.path) as other:
-                other.picture(Path(folder, f"{name}.png"))
+                other.picture(Path(folder, f"{name}.png"), replace=True)
 
     def test_says_that_it_has_a_window_and_ends_with_it(self) -> None:
         self.assertEqual(self.loop.about["kind"], "window")
@@ -535,6 +535,9 @@ class TestRemoteWindow(WindowTest):
         self.loop.follow([])
         file = Path(self.loop.picture(self.home / "a.png"))
         self.assertEqual(file.read_bytes()[:4], b"\x89PNG")
+        with self.assertRaisesRegex(limpid.RequestError, "is there already"):
+            self.loop.picture(file)
+        self.loop.picture(file, replace=True)
 
 
 if __name__ == "__main__":

@@ -192,11 +192,16 @@ void Document::redo() {
   if (may_go_to(history_.next_redo(), "Nothing to redo.")) go_to(history_.redo(known_));
 }
 
-std::string Document::toml() const {
-  const SceneDocument& present = editor_.document();
-  if (!present.toml.empty()) return present.toml;
-  return scene_text(present, arm_, fs::path(file_).parent_path());
+namespace {
+
+std::string text_of(const SceneDocument& scene, const ArmDescription& arm,
+                    const std::string& file) {
+  return scene.toml.empty() ? scene_text(scene, arm, fs::path(file).parent_path()) : scene.toml;
 }
+
+}  // namespace
+
+std::string Document::toml() const { return text_of(editor_.document(), arm_, file_); }
 
 fs::path Document::own_file() const {
   const fs::path file = fs::absolute(file_).lexically_normal();
@@ -286,14 +291,20 @@ void Document::discard_and_leave() {
   leave_now();
 }
 
-// Shapes and pictures of meshes are the same for every arm.
 std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm) const {
-  const SceneDocument& present = editor_.document();
-  if (arm.urdf == arm_.urdf) return SceneEditor::World{present, editor_.models()};
-  if (!share_a_workspace(arm, arm_)) return std::nullopt;
+  return scene_for(arm, to_set_aside());
+}
+
+// Shapes and pictures of meshes are the same for every arm.
+std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm,
+                                                      const SetAside& waiting) {
+  const auto& [present, models] = *waiting.world;
+  if (arm.urdf == waiting.arm.urdf) return *waiting.world;
+  if (!share_a_workspace(arm, waiting.arm)) return std::nullopt;
   try {
     SceneDocument document =
-        parse_scene(toml(), file_, fs::path(file_).parent_path(), arm, files_of(present));
+        parse_scene(text_of(present, waiting.arm, waiting.file), waiting.file,
+                    fs::path(waiting.file).parent_path(), arm, files_of(present));
     document.models = present.models;
     for (std::size_t i = 0; i < document.scene.objects.size(); ++i) {
       if (auto* mesh = std::get_if<Mesh>(&document.scene.objects[i].shape)) {
@@ -301,14 +312,10 @@ std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm)
       }
     }
     settle_masses(document);
-    return SceneEditor::World{std::move(document), editor_.models()};
+    return SceneEditor::World{std::move(document), models};
   } catch (const std::exception&) {  // it names joints or links that this arm does not have
     return std::nullopt;
   }
-}
-
-void Document::put_aside() {
-  if (!set_aside_) set_aside_ = SetAside{file_, arm_, editor_.version().world, editor_.dirty()};
 }
 
 }  // namespace limpid

@@ -142,12 +142,18 @@ class Document {
   void leave_now();                           // after saving
   void discard_and_leave();
 
-  // The present scene with all its changes, if there is one like it for this arm.
+  // The present scene with all its changes, if there is one like it for this arm; the same of one
+  // that waits.
   std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
-  // The present scene waits, if none does yet; and comes back.
-  void put_aside();
-  bool has_set_aside() const { return set_aside_.has_value(); }
-  SetAside take_set_aside() { return *std::exchange(set_aside_, std::nullopt); }
+  static std::optional<SceneEditor::World> scene_for(const ArmDescription& arm,
+                                                     const SetAside& waiting);
+  // The present scene as one that waits; from now on it does, if none does yet; and it comes back.
+  SetAside to_set_aside() const { return {file_, arm_, editor_.version().world, editor_.dirty()}; }
+  void set_aside(SetAside scene) {
+    if (!set_aside_) set_aside_ = std::move(scene);
+  }
+  const SetAside* waiting() const { return set_aside_ ? &*set_aside_ : nullptr; }
+  void end_waiting() { set_aside_.reset(); }
   // The one that waits, if it has changes that no file has.
   const SetAside* unsaved_set_aside() const {
     return set_aside_ && set_aside_->unsaved ? &*set_aside_ : nullptr;

@@ -133,7 +133,7 @@ void DeviceController::watch() {
   }
   const std::uint32_t pressed = buttons_.take(snapshot.reading.buttons);
   if ((pressed & 1) != 0) requests_.first_button();
-  if ((pressed & 2) != 0) live_.toggle_force();
+  if ((pressed & 2) != 0) requests_.second_button();
 }
 
 void DeviceController::connect() {
@@ -150,6 +150,7 @@ void DeviceController::take_connected() {
       return live_.let_go(std::move(*ready));
     }
     const DeviceTraits traits = (*ready)->traits();
+    if (hub_.note_said_arm(traits)) save();
     requests_.open(std::move(*ready));
     problem_.clear();
     notices_.say(
@@ -181,7 +182,7 @@ void DeviceController::start_check() {
   progress_ = std::make_shared<AxisCheckProgress>();
   problem_.clear();
   connecting_id_ = hub_.in_use();
-  check_ = live_.device_tasks().run(hub_.checking(progress_, live_.stage().arm()));
+  check_ = live_.device_tasks().run(hub_.checking(progress_));
 }
 
 void DeviceController::follow_check() {
@@ -232,6 +233,17 @@ void DeviceController::connect_anew() {
   save();
   if (live_.loop().device_plugged()) lend();
   take_back();
+}
+
+void DeviceController::say_arm(const NamedArm& arm) {
+  if (live_.recording()) {
+    return notices_.say("Stop the recording before saying which arm the device is.", true);
+  }
+  cancel_check();
+  hub_.say_arm(arm.file, arm.tip, nullptr);
+  problem_.clear();
+  retry_at_ = {};
+  connect_anew();
 }
 
 void DeviceController::lend() {

@@ -17,13 +17,19 @@
 
 namespace limpid {
 
+// A URDF and the tip in it.
+struct NamedArm {
+  std::string file, tip;
+};
+
 // What it asks for that changes more than the loop.
 struct DeviceRequests {
   std::function<void(std::unique_ptr<Device>)> open;  // this device into the loop
   // The virtual arm by the mouse; `then` just before, once nothing that is not saved keeps the
   // device in the loop.
   std::function<void(std::function<void()> then)> close;
-  std::function<void()> first_button;
+  std::function<void()> first_button, second_button;
+  std::function<NamedArm()> open_arm;  // that the window has, whatever device is in its place
 };
 
 class DeviceController {
@@ -60,6 +66,11 @@ class DeviceController {
   }
   // What goes on in it; null: none does.
   const AxisCheckProgress* check() const { return check_.valid() ? progress_.get() : nullptr; }
+
+  // Which arm the device in use is: kBuiltInArm, or a file; empty: nobody has said. It is connected
+  // anew for it.
+  void say_arm(const NamedArm& arm);
+  NamedArm open_arm() const { return requests_.open_arm(); }
 
   // The device in use leaves the loop, without force, and stays away until it is taken back.
   void lend();

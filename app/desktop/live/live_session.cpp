@@ -188,6 +188,11 @@ void LiveSession::note(const Moment& at, const std::string& text) {
   } else if (at.row) {
     notices_.say("The recording that it was to be kept with has ended: the mark is in the plots.");
   }
+  if (stage_->history.marks().size() == History::kMostMarks) {
+    notices_.say_once(fmt::format("The plots show the newest {} marks only; a recording keeps all.",
+                                  History::kMostMarks),
+                      false);
+  }
   stage_->history.mark_at(at.time, text, kNoteMark);
 }
 

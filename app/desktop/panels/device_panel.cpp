@@ -18,6 +18,7 @@ namespace limpid {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr std::size_t kAxesOfACap = 6;
 
 void choice(DeviceController& devices, const char* label, const std::string& id, const char* help) {
   if (ImGui::RadioButton(label, devices.hub().in_use() == id)) devices.use(id);
@@ -137,6 +138,30 @@ bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p
   return wanted;
 }
 
+// Which arm the device is; true where a file is to be chosen for it.
+bool arm_question(DeviceController& devices, const LiveSession& live) {
+  const DeviceHub& hub = devices.hub();
+  if (!hub.may_say_arm()) return false;
+  const bool in_place = live.loop().device_in_place();
+  if (in_place) read_out("arm", live.stage().arm().name, {}, "That the device is taken for.");
+  if (!hub.asks_for_arm()) {
+    if (ImGui::SmallButton("Another arm...")) devices.say_arm({});
+    tooltip("Asks again which arm the device is.");
+    return false;
+  }
+  ImGui::TextWrapped(
+      "Which arm is it? Its ranges and levers bound the force. Until you say so it is a built-in "
+      "one, with little force, or none where there is none of as many joints.");
+  if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
+  tooltip("assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
+  ImGui::SameLine();
+  const NamedArm open = devices.open_arm();
+  if (noted_button(kOpenArmButton)) devices.say_arm(open);
+  tooltip(fmt::format("{}", open.file).c_str());
+  ImGui::SameLine();
+  return noted_button(kArmOfFileButton);
+}
+
 // What the motors take of the device's own forces off the hand.
 void compensation(const ArmDescription& arm, Parameters& p) {
   if (!section("Compensation", true)) return;
@@ -199,9 +224,10 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   tooltip("Where it is now becomes zero.");
   auto scale = static_cast<float>(axis.scale);
   ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());
-  ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f",
-                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-  axis.scale = static_cast<double>(scale);
+  if (ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    axis.scale = static_cast<double>(scale);
+  }
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip(
       "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
@@ -210,23 +236,28 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   return changed;
 }
 
-bool joystick_settings(PidSettings& pid) {
+// True once they were changed.
+bool joystick_settings(DeviceNotes& notes) {
   bool changed = false;
-  auto effort = static_cast<float>(pid.effort);
-  auto range = static_cast<float>(pid.range * kDegrees);
+  auto effort = static_cast<float>(notes.pid.effort);
   ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
-  ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m",
-                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+  if (ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    notes.pid.effort = static_cast<double>(effort);
+    notes.torque_scale = 1;  // which was found with the other one
+  }
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip(
       "The joystick's own torque at full force, measured or from its data sheet: USB gives "
       "forces without a unit. Too low a value here makes it push too hard.");
+  auto range = static_cast<float>(notes.pid.range * kDegrees);
   ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
-  ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0", ImGuiSliderFlags_AlwaysClamp);
+  if (ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0",
+                         ImGuiSliderFlags_AlwaysClamp)) {
+    notes.pid.range = static_cast<double>(range) / kDegrees;
+  }
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip("How far the stick tilts to each side.");
-  pid.effort = static_cast<double>(effort);
-  pid.range = static_cast<double>(range) / kDegrees;
   return changed;
 }
 
@@ -252,55 +283,74 @@ bool limit_sliders(SafetyLimits& limits) {
   return changed;
 }
 
+// True once an axis was changed.
+bool axis_rows(DeviceNotes& notes, std::span<const double> angles, std::span<const Joint> joints) {
+  std::vector<AxisAdjustment> axes = notes.axes;
+  axes.resize(std::max(axes.size(), angles.size()));
+  const std::vector<AxisAdjustment> before = axes;
+  bool changed = false;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const Joint* joint = joints.empty() ? nullptr : &joints[i];
+    changed = axis_row(axes[i], i, angles[i], joint) || changed;
+  }
+  if (axes == before) return changed;
+  if (!std::ranges::equal(before, axes, {}, &AxisAdjustment::reversed, &AxisAdjustment::reversed)) {
+    notes.checked = false;
+  }
+  notes.axes = axes;
+  return changed;
+}
+
 void adjustments(DeviceController& devices, const LiveSession& live) {
   const FoundDevice* found = devices.hub().present();
   if (found == nullptr || !live.loop().device_plugged()) return;
-  DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
-  const DeviceReading& reading = live.loop().snapshot().reading;
-  const std::vector<Joint>& of_arm = live.stage().arm().joints;
   const bool in_place = live.loop().device_in_place();
-  const std::size_t joints = in_place ? of_arm.size() : 6;
-  notes.axes.resize(std::max(notes.axes.size(), joints));
-  const std::vector<AxisAdjustment> before = notes.axes;
-  bool changed = false;
-  for (std::size_t i = 0; i < joints; ++i) {
-    changed = axis_row(notes.axes[i], i, reading.x[i], in_place ? &of_arm[i] : nullptr) || changed;
+  std::span<const Joint> joints;
+  if (in_place) joints = live.stage().arm().joints;
+  const std::size_t count = in_place ? joints.size() : kAxesOfACap;
+  DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
+  const NotesEdited edited =
+      draw_notes(notes, std::span(live.loop().snapshot().reading.x).first(count), joints,
+                 found->kind->uncalibrated, live.recording());
+  if (edited.anew) {
+    devices.connect_anew();
+  } else if (edited.limits) {
+    devices.save();
   }
-  if (!std::ranges::equal(before, notes.axes, {}, &AxisAdjustment::reversed,
-                          &AxisAdjustment::reversed)) {
-    notes.checked = false;
-  }
-  if (found->kind->uncalibrated) {
-    const double effort = notes.pid.effort;
-    changed = joystick_settings(notes.pid) || changed;
-    if (notes.pid.effort != effort) notes.torque_scale = 1;  // which was found with the other one
-  }
-  if (changed) devices.connect_anew();
-  if (!live.loop().device_in_place()) return;
-  ImGui::BeginDisabled(live.recording());
-  if (limit_sliders(notes.limits)) devices.save();
-  ImGui::EndDisabled();
 }
 
 }  // namespace
+
+NotesEdited draw_notes(DeviceNotes& notes, std::span<const double> angles,
+                       std::span<const Joint> joints, bool uncalibrated, bool limits_fixed) {
+  NotesEdited edited;
+  edited.anew = axis_rows(notes, angles, joints);
+  if (uncalibrated) edited.anew = joystick_settings(notes) || edited.anew;
+  if (joints.empty()) return edited;
+  ImGui::BeginDisabled(limits_fixed);
+  edited.limits = limit_sliders(notes.limits);
+  ImGui::EndDisabled();
+  return edited;
+}
 
 Parameters reckoning_with(Parameters p, double delay) {
   set_parameter_number(p, *find_parameter("model.delay"), delay / p.tick);
   return p;
 }
 
-bool draw_device_panel(DeviceController& devices, const LiveSession& live, const PadChoice& pads,
-                       Parameters& p) {
-  bool identify = false;
+DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveSession& live,
+                                  const PadChoice& pads, Parameters& p) {
+  DevicePanelAsks asks;
   choices(devices, pads);
   status(devices, live.loop());
   if (!devices.hub().in_use().empty()) {
-    identify = knowledge(devices, live, p);
+    asks.arm_file = arm_question(devices, live);
+    asks.identify = knowledge(devices, live, p);
     if (live.loop().device_in_place()) compensation(live.stage().arm(), p);
     adjustments(devices, live);
   }
   ImGui::Separator();
-  return identify;
+  return asks;
 }
 
 }  // namespace limpid

@@ -34,9 +34,10 @@ void muted(const std::string& text) {
 void part_slider(const char* label, double& part, float least, float most, const char* help) {
   auto per_cent = static_cast<float>(100 * part);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
-  ImGui::SliderFloat(label, &per_cent, 100 * least, 100 * most, "%.0f %%",
-                     ImGuiSliderFlags_AlwaysClamp);
-  part = static_cast<double>(per_cent) / 100;
+  if (ImGui::SliderFloat(label, &per_cent, 100 * least, 100 * most, "%.0f %%",
+                         ImGuiSliderFlags_AlwaysClamp)) {
+    part = static_cast<double>(per_cent) / 100;
+  }
   tooltip(help);
 }
 

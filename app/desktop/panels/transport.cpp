@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
@@ -67,11 +68,12 @@ std::optional<std::size_t> draw_marks(const PlayedSession& session) {
   const float pad = 2 + 0.5f * grab;
   const double duration = session.player().duration();
   std::optional<std::size_t> found;
-  float nearest = 5 * scale;
+  float nearest = 5 * scale, drawn = -1;
   const float mouse = ImGui::GetIO().MousePos.x;
   for (std::size_t i = 0; i < session.marks().size(); ++i) {
     const auto part = static_cast<float>(session.time_of(session.marks()[i]) / duration);
     const float x = std::round(from.x + pad + part * (to.x - from.x - 2 * pad));
+    if (std::exchange(drawn, x) == x) continue;  // a recording may have thousands
     const float r = 4 * scale;
     note_at(fmt::format("mark {}", i).c_str(), {x, 0.5f * (from.y + to.y)});
     ImDrawList& list = *ImGui::GetWindowDrawList();

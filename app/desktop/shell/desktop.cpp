@@ -161,7 +161,9 @@ Desktop::Desktop(Settings first, const AskForPriority& ask)
           live, notices, ask,
           {.open = [this](std::unique_ptr<Device> device) { world.open_device(std::move(device)); },
            .close = [this](const std::function<void()>& then) { world.close_device(then); },
-           .first_button = [this] { pick_up_or_next_law(); }}),
+           .first_button = [this] { pick_up_or_next_law(); },
+           .second_button = [this] { toggle_force(); },
+           .open_arm = [this] { return world.arm_file(); }}),
       identify(live, devices, notices),
       playback(notices),
       sweep(notices),
@@ -274,6 +276,7 @@ void Desktop::follow_playback(double dt) {
     if (const auto names = played->names_now()) played->stage().name_runs(*names);
   }
   if (!another) return;
+  if (live.loop().device_in_place()) live.loop().cut();  // what pushes would not be on the screen
   tuning.end_break();
   const PlayedSession& opened = *playback.shown();
   const std::size_t k = opened.row_to_show();
@@ -319,6 +322,16 @@ Focus Desktop::focus() const {
           .playback = playback.on(),
           .selection = document.editor().selected().has_value(),
           .transform = transform.follows()};
+}
+
+void Desktop::toggle_force() {
+  if (!live.force_armed() && playback.on() && live.loop().device_in_place()) {
+    return notices.say(
+        "A recording is on the screen, not what the device would push in. Go back to live "
+        "(Backspace), then arm the force.",
+        true);
+  }
+  live.toggle_force();
 }
 
 void Desktop::cut_force() {

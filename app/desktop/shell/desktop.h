@@ -143,6 +143,8 @@ class Desktop {
 
   // Who has the keys at this moment.
   Focus focus() const;
+  // A real device is armed only where its world is on the screen.
+  void toggle_force();
   // Of the arm, of a check of its axes, and of a device that is moved by itself.
   void cut_force();
   // Closes what is open first; where nothing is, and on a real device, it cuts the force.

@@ -212,6 +212,13 @@ DrawDialog open_arm(Desktop& d) {
                       [](Desktop& desktop, const fs::path& file) { desktop.world.open_arm(file); });
 }
 
+DrawDialog device_arm(Desktop& d) {
+  return ask_for_file(d, {.title = "The device's arm", .action = "Take", .extensions = {".urdf"}},
+                      [](Desktop& desktop, const fs::path& file) {
+                        desktop.devices.say_arm({file.string(), ""});
+                      });
+}
+
 DrawDialog arm_tip(Desktop& d) {
   return [&d, question = std::make_shared<TipQuestion>()](bool& open, ScreenRect) {
     if (!d.world.tips()) return;
@@ -328,6 +335,7 @@ constexpr std::array kDialogs{
     DialogKind{"add model", kModal, add_model},
     DialogKind{"open scene", kModal, open_scene},
     DialogKind{"open arm", kModal, open_arm},
+    DialogKind{"device arm", kModal, device_arm},
     DialogKind{"arm tip", kModal, arm_tip},
     DialogKind{"expand xacro", kModal, expand_xacro},
     DialogKind{"save scene", kModal, save_scene_as},

@@ -136,13 +136,16 @@ nlohmann::json recorded(Desktop& d) {
           {"at", session->player().time()}};
 }
 
-// `check`: where the button is that begins the check of its axes; null while it is not there [px].
+// `check`: where the button is that begins the check of its axes; `arm`: the one that takes it for
+// the built-in arm; null while they are not there [px].
 nlohmann::json state_of(const DeviceController& controller) {
   const auto check = noted_place(kSidePanel, kCheckAxes);
+  const auto arm = noted_place(kSidePanel, kBuiltInArmButton);
   return {{"in_use", controller.hub().in_use()},
           {"problem", controller.problem()},
           {"waits_for_choice", controller.waits_for_choice()},
           {"check", check ? place(*check) : nlohmann::json()},
+          {"arm", arm ? place(*arm) : nlohmann::json()},
           {"checking", controller.check() != nullptr},
           {"explains_force", noted_place(kSidePanel, "force").has_value()}};
 }

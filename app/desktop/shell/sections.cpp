@@ -59,9 +59,10 @@ DrawSection device_section(Desktop& d) {
   return [&d](const Act&) {
     Parameters& parameters = d.settings.parameters;
     const ArmDescription& arm = d.shown.stage().arm();
-    if (draw_device_panel(d.devices, d.live, {d.pads.all(), d.settings.gamepad}, parameters)) {
-      d.dialog.open("identify");
-    }
+    const DevicePanelAsks asks =
+        draw_device_panel(d.devices, d.live, {d.pads.all(), d.settings.gamepad}, parameters);
+    if (asks.identify) d.dialog.open("identify");
+    if (asks.arm_file) d.dialog.open("device arm");
     say_for_rerun(d);
     if (!d.live.loop().device_in_place()) {
       draw_parameters(
@@ -82,8 +83,8 @@ DrawSection analysis_section(Desktop& d) {
     const auto pose = shown.channels().layout().in(d.shown.row(), Column::device_position);
     PlayedSession* session = d.playback.shown();
     const Scene& scene = session ? session->document().scene : d.document.scene();
-    panel->draw(session ? session->settings() : d.tuning.edited(), shown.arm(), scene, pose,
-                d.settings.band);
+    panel->draw(session ? session->settings() : d.live.loop().taken(d.tuning.edited()), shown.arm(),
+                scene, pose, d.settings.band);
   };
 }
 
@@ -92,7 +93,7 @@ DrawSection timing_section(Desktop& d) {
     const LiveLoop& loop = d.live.loop();
     draw_timing(loop, quality_text(d), d.frame_time);
     if (!loop.device_in_place()) return;
-    of_device->draw(loop.device_pace(), d.live.stage().arm(), d.settings.parameters,
+    of_device->draw(loop.device_pace(), d.live.stage().arm(), loop.taken(d.settings.parameters),
                     d.document.scene(), loop.layout().in(d.live.row(), Column::device_position));
   };
 }

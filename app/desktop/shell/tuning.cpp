@@ -79,22 +79,33 @@ void Tuning::use_preset(const std::string& name) {
 // Gains that suited the arm before may be far too stiff for this one. What a device's motors give
 // for its own weight is the device's, remembered with it: nothing of it is left to an arm that
 // comes after it.
-void Tuning::suit(const ArmDescription& arm, const DeviceTraits* device) {
-  if (!fitted_for_ || fitted_for_->urdf != arm.urdf) {
+Tuning::Suited Tuning::suited(const ArmDescription& arm, const DeviceTraits* device) const {
+  Suited s{settings_.parameters, settings_.twin.parameters, fitted_for_, of_virtual_, device_,
+           encoder_of_device_};
+  if (!s.fitted_for || s.fitted_for->urdf != arm.urdf) {
     const ArmDescription* before = fitted_for_ ? &*fitted_for_ : nullptr;
-    refit(settings_.parameters, before, &arm);
-    refit(settings_.twin.parameters, before, &arm);
-    fitted_for_ = arm;
+    refit(s.first, before, &arm);
+    refit(s.twin, before, &arm);
+    s.fitted_for = arm;
   }
-  Parameters& now = settings_.parameters;
-  const OfVirtualArm of_virtual = of_virtual_ ? *of_virtual_ : OfVirtualArm::of(now);
-  of_virtual_.reset();
-  of_virtual.give(now);
-  if (device == nullptr) return;
-  of_virtual_ = of_virtual;
-  device_ = devices_.hub().in_use();
-  devices_.hub().notes(device_).compensation.give(now);
-  now.encoder_step = encoder_of_device_ = encoder_step_of(*device);
+  const OfVirtualArm of_virtual = s.of_virtual ? *s.of_virtual : OfVirtualArm::of(s.first);
+  s.of_virtual.reset();
+  of_virtual.give(s.first);
+  if (device == nullptr) return s;
+  s.of_virtual = of_virtual;
+  s.device = devices_.hub().in_use();
+  devices_.hub().notes(s.device).compensation.give(s.first);
+  s.first.encoder_step = s.encoder_of_device = encoder_step_of(*device);
+  return s;
+}
+
+void Tuning::take(Suited suited) {
+  settings_.parameters = suited.first;
+  settings_.twin.parameters = suited.twin;
+  fitted_for_ = std::move(suited.fitted_for);
+  of_virtual_ = suited.of_virtual;
+  device_ = std::move(suited.device);
+  encoder_of_device_ = suited.encoder_of_device;
 }
 
 void Tuning::note_compensation() {
@@ -109,7 +120,7 @@ void Tuning::note_compensation() {
 
 void Tuning::analyze_anew() {
   const ArmDescription& arm = live_.stage().arm();
-  analysis_ = analyze(arm, rest_pose(arm), settings_.parameters, std::nullopt);
+  analysis_ = analyze(arm, rest_pose(arm), live_.loop().taken(settings_.parameters), std::nullopt);
 }
 
 void Tuning::update() {
@@ -125,7 +136,8 @@ void Tuning::update() {
   analysed_twin_ = twin;
   analysed_of_twin_ = edits_twin();
   const Stage& shown = playback_.on() ? playback_.shown()->stage() : live_.stage();
-  analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), edited(), std::nullopt);
+  const Parameters p = playback_.on() ? edited() : live_.loop().taken(edited());
+  analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), p, std::nullopt);
 }
 
 // One hand, one device, one world for both; what the plots call them.

@@ -15,6 +15,18 @@
 namespace limpid {
 
 class Tuning {
+  // While a device is in the arm's place, what is the virtual arm's.
+  struct OfVirtualArm {
+    OwnForces forces;
+    double encoder_step;  // [rad]
+
+    static OfVirtualArm of(const Parameters& p) { return {OwnForces::of(p), p.encoder_step}; }
+    void give(Parameters& p) const {
+      forces.give(p);
+      p.encoder_step = encoder_step;
+    }
+  };
+
  public:
   Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
          Playback& playback);
@@ -35,9 +47,18 @@ class Tuning {
   void reset();  // all to their usual values
   void use_preset(const std::string& name);
 
-  // An arm comes into the loop, perhaps a real device in its place: gains that suit it, and what
-  // its motors give for its own weight; with the encoders that it has. Null: the virtual arm.
-  void suit(const ArmDescription& arm, const DeviceTraits* device);
+  // What the settings become when an arm comes into the loop, perhaps a real device in its place:
+  // gains that suit it, and what its motors give for its own weight; with the encoders that it has.
+  // `device` null: the virtual arm. They are the settings once they are taken.
+  struct Suited {
+    Parameters first, twin;
+    std::optional<ArmDescription> fitted_for;
+    std::optional<OfVirtualArm> of_virtual;
+    std::string device;
+    double encoder_of_device = 0;  // [rad]
+  };
+  Suited suited(const ArmDescription& arm, const DeviceTraits* device) const;
+  void take(Suited suited);
   void keep_as_they_are_for(const ArmDescription& arm) { fitted_for_ = arm; }
   // The arm that is there now is the one that analysis() is of.
   void analyze_anew();
@@ -70,20 +91,9 @@ class Tuning {
   DeviceController& devices_;
   Playback& playback_;
   std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
-  // While a device is in the arm's place, what is the virtual arm's.
-  struct OfVirtualArm {
-    OwnForces forces;
-    double encoder_step;  // [rad]
-
-    static OfVirtualArm of(const Parameters& p) { return {OwnForces::of(p), p.encoder_step}; }
-    void give(Parameters& p) const {
-      forces.give(p);
-      p.encoder_step = encoder_step;
-    }
-  };
-  std::optional<OfVirtualArm> of_virtual_;
-  std::string device_;            // then: its id
-  double encoder_of_device_ = 0;  // then [rad]
+  std::optional<OfVirtualArm> of_virtual_;    // while a device is in the arm's place
+  std::string device_;                        // then: its id
+  double encoder_of_device_ = 0;              // then [rad]
   Analysis analysis_;
   Parameters analysed_, analysed_twin_;  // that marks and analysis know
   bool analysed_of_twin_ = false;

@@ -345,7 +345,7 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
 }
 
 Answer WindowRemote::picture(const Keys& keys) {
-  const fs::path file = keys.file(".png");
+  const fs::path file = keys.file_to_write(".png");
   std::erase_if(saved_, [&](const SavedPicture& each) { return each.file == file; });
   if (!d_.asked.picture.empty()) throw RemoteError("picture: another one is being saved");
   d_.asked.picture = file;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ctime>
 #include <functional>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
@@ -31,8 +32,10 @@ constexpr auto kBetweenWorlds = std::chrono::milliseconds(33);
 
 // What the loop takes from an arm once, when it is opened.
 bool same_limits(const ArmDescription& one, const ArmDescription& other) {
-  return one.delay == other.delay &&
-         std::ranges::equal(one.joints, other.joints, {}, &Joint::effort, &Joint::effort);
+  const auto same = [](const Joint& a, const Joint& b) {
+    return a.effort == b.effort && a.lower == b.lower && a.upper == b.upper;
+  };
+  return one.delay == other.delay && std::ranges::equal(one.joints, other.joints, same);
 }
 
 // Earlier ones change what later ones go into.
@@ -118,9 +121,10 @@ void World::open_last(const std::string& device, const std::string& tip, const s
 void World::open(ArmDescription arm, SceneDocument document, MeshModels models,
                  std::unique_ptr<Device> device, bool saved) {
   d_.tuning.end_break();
-  d_.tuning.suit(arm, device ? &device->traits() : nullptr);
-  d_.live.open(std::move(arm), std::move(document), models, d_.settings.parameters,
-               d_.settings.plot_length, std::move(device));
+  Tuning::Suited suited = d_.tuning.suited(arm, device ? &device->traits() : nullptr);
+  d_.live.open(std::move(arm), std::move(document), models, suited.first, d_.settings.plot_length,
+               std::move(device));
+  d_.tuning.take(std::move(suited));
   take_stage(std::move(models), saved);
 }
 
@@ -245,18 +249,11 @@ void World::open_device(std::unique_ptr<Device> device) {
     }
     return d_.live.loop().plug(std::move(device));
   }
-  // A device lowers the arm's limits to its own: the next one begins with those of the arm's file.
   const bool in_place = d_.live.loop().device_in_place();
-  const bool lowered = in_place && arm_of_file_ && arm_of_file_->urdf == present.urdf;
-  const ArmDescription before = lowered ? *arm_of_file_ : present;
-  const ArmDescription arm = d_.devices.hub().arm_for(traits, before);
-  DeviceTraits without_limits = traits;
-  without_limits.effort.clear();
-  arm_of_file_ = d_.devices.hub().arm_for(without_limits, before);
-  if (const std::string why = arm_not_taken(traits, before, arm);
-      !why.empty() && !in_place && !built_in_arm()) {
-    d_.notices.say(why);
-  }
+  const TakenArm taken = d_.devices.hub().arm_for(traits);
+  d_.notices.say(taken.why, !taken.known);
+  if (!in_place) virtual_arm_ = present;
+  const ArmDescription& arm = taken.arm;
   const bool same_arm = in_place && arm.urdf == present.urdf;
   if (same_arm && same_limits(arm, present)) return d_.live.loop().plug(std::move(device));
   d_.playback.close();
@@ -270,44 +267,66 @@ void World::close_device(const std::function<void()>& then) {
     d_.live.loop().plug(nullptr);
     return then();
   }
-  ArmDescription arm;
-  try {
-    arm = read_urdf(device_file_, device_tip_, consent(device_file_));
-  } catch (const std::exception& e) {
-    d_.notices.say(e.what(), true);
-    arm = read_urdf(default_device());
-  }
-  if (d_.document.has_set_aside()) {
-    return d_.document.leave([this, arm, then] {
-      then();
-      take_up_set_aside(arm);
-    });
-  }
-  then();
-  try {
-    change_arm(arm, nullptr);
-  } catch (const std::exception& e) {
-    d_.notices.say(e.what(), true);
-    change_arm(read_urdf(default_device()), nullptr);
-  }
+  const auto leave = [this, then] {
+    if (virtual_arm_again()) then();
+  };
+  if (d_.document.waiting() != nullptr) return d_.document.leave(leave);
+  leave();
 }
 
+// The virtual arm as its file has it by now, else as it was, else the one that the scene which
+// waits was last in; the first that is taken. False, and the device stays, where none is.
+bool World::virtual_arm_again() {
+  std::vector<ArmDescription> arms;
+  try {
+    arms.push_back(read_urdf(device_file_, device_tip_, consent(device_file_)));
+  } catch (const std::exception& e) {
+    d_.notices.say(fmt::format("{} The arm is as it was before.", e.what()), true);
+  }
+  if (virtual_arm_) arms.push_back(*virtual_arm_);
+  if (const SetAside* waiting = d_.document.waiting()) arms.push_back(waiting->arm);
+  std::string why;
+  for (const ArmDescription& arm : arms) {
+    try {
+      if (d_.document.waiting() != nullptr) {
+        take_up_set_aside(arm);
+      } else {
+        change_arm(arm, nullptr);
+      }
+      return true;
+    } catch (const std::exception& e) {
+      why = e.what();
+    }
+  }
+  d_.notices.say(fmt::format("The device stays in the arm's place: {}", why), true);
+  return false;
+}
+
+// What there is goes on where the arm or its scene is refused.
 void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device) {
   if (auto scene = d_.document.scene_for(arm)) {
     return open(arm, std::move(scene->document), std::move(scene->models), std::move(device),
                 !d_.document.editor().dirty());
   }
-  d_.document.put_aside();
+  SetAside present = d_.document.to_set_aside();
   const std::filesystem::path file = scene_of_device(arm);
-  d_.document.set_file(file.string());
   open(arm, read_scene(file, arm), {}, std::move(device));
+  d_.document.set_aside(std::move(present));
+  d_.document.set_file(file.string());
 }
 
-// What was open before a device brought its own scene, with its changes.
+// What was open before a device brought its own scene, with its changes. It goes on waiting where
+// this arm has no such scene.
 void World::take_up_set_aside(const ArmDescription& arm) {
-  const SetAside before = d_.document.take_set_aside();
-  d_.document.set_file(before.file);
-  open(arm, before.world->document, before.world->models, nullptr, !before.unsaved);
+  const SetAside& waiting = *d_.document.waiting();
+  auto scene = Document::scene_for(arm, waiting);
+  if (!scene) {
+    throw std::runtime_error(fmt::format("the scene {} that waits is of another arm than {}",
+                                         fs::path(waiting.file).filename().string(), arm.name));
+  }
+  open(arm, std::move(scene->document), std::move(scene->models), nullptr, !waiting.unsaved);
+  d_.document.set_file(waiting.file);
+  d_.document.end_waiting();
 }
 
 World::Place World::place() const {
@@ -512,7 +531,7 @@ void World::start_recording(fs::path file) {
   plan.document = d_.document.editor().document();
   plan.document.toml = d_.document.toml();
   plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
-  plan.parameters = d_.settings.parameters;
+  plan.parameters = d_.live.loop().taken(d_.settings.parameters);
   if (d_.settings.twin.on) plan.beside.push_back({d_.settings.twin.parameters, {}});
   hand_scene_over(true);
   if (plan.layout().bodies() != d_.live.loop().layout().bodies()) {

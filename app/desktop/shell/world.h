@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/desktop/document/document.h"
+#include "app/desktop/live/device_controller.h"
 #include "app/desktop/live/live_session.h"
 #include "devices/files/urdf_file.h"
 
@@ -39,6 +40,8 @@ class World {
   // Another arm in place of the virtual one, with its pictures and the gains that suit it.
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
   bool built_in_arm() const;
+  // The virtual arm's, whatever device is in its place.
+  NamedArm arm_file() const { return {device_file_, device_tip_}; }
   // The arm that the dialog "expand xacro" asks about, and the answer that it may be expanded.
   const std::optional<XacroToExpand>& xacro() const { return xacro_; }
   void expand_xacro();
@@ -85,6 +88,7 @@ class World {
   Xacro consent(const std::filesystem::path& file) const;
   void ask_about(const XacroToExpand& arm);
   std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
+  bool virtual_arm_again();
   void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);
   void take_up_set_aside(const ArmDescription& arm);
   void open_sweep(const std::filesystem::path& table);  // in its map
@@ -99,7 +103,7 @@ class World {
 
   Desktop& d_;
   std::string device_file_, device_tip_;
-  std::optional<ArmDescription> arm_of_file_;  // of the device in the arm's place
+  std::optional<ArmDescription> virtual_arm_;  // that a device has the place of
   std::string first_scene_;                    // the start's, while its models come in
   std::optional<TipsToChoose> tips_;
   std::optional<XacroToExpand> xacro_;

@@ -208,10 +208,12 @@ class Client:
         return Answer("" if none else str(found["answer"]), -1 if none else int(found["index"]),
                       float(found["seconds"]), int(found["tick"]))  # fmt: skip
 
-    def picture(self, file: PathLike) -> str:
-        """Saves a picture, a PNG."""
-        path = os.path.abspath(path_of("file", file))
-        return str(self._request("picture", {"file": path}, max(self.timeout, 60.0))["file"])
+    def picture(self, file: PathLike, replace: bool = False) -> str:
+        """Saves a picture, a PNG; over one that is there only with `replace`."""
+        asked: Dict[str, Any] = {"file": os.path.abspath(path_of("file", file))}
+        if replace:
+            asked["replace"] = True
+        return str(self._request("picture", asked, max(self.timeout, 60.0))["file"])
 
     def cut(self) -> None:
         """No force, at once. On a real device only a person arms it again."""

@@ -12,7 +12,6 @@
 #include "app/run/urdf_writer.h"
 #include "devices/files/text_file.h"
 #include "devices/files/urdf_file.h"
-#include "tests/support/built_in.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/temp_dir.h"
 
@@ -343,7 +342,7 @@ TEST_F(AHub, OpensNothingThatItsBookRefuses) {
   write("[device.a]\nchecked = true\n[device.a.limits]\ntip_force = \"1\"\n");
   EXPECT_THAT(hub(kPushes).refusal(), testing::HasSubstr("limits.tip_force"));
   EXPECT_EQ(refusal_to_open(), hub_->refusal());
-  EXPECT_THROW(hub_->checking(std::make_shared<AxisCheckProgress>(), test::omni())(), FileError);
+  EXPECT_THROW(hub_->checking(std::make_shared<AxisCheckProgress>())(), FileError);
   hub_->use("b");
   EXPECT_EQ(hub_->refusal(), "") << "another device";
   write("in_use = \n");
@@ -407,15 +406,34 @@ DeviceTraits joints(int count, double effort) {
 TEST(ArmForADevice, HasAsManyJointsAndPushesNoHarder) {
   const ArmDescription omni = read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/omni.urdf");
   const test::TempDir dir;
-  const DeviceHub hub(dir / "devices.toml", {});
-  const ArmDescription same = hub.arm_for(joints(3, 0.01), omni);
+  DeviceHub hub(dir / "devices.toml", {});
+  hub.use("a device");
+  hub.say_arm(kBuiltInArm, "", nullptr);
+  const ArmDescription same = hub.arm_for(joints(3, 0.01)).arm;
   EXPECT_EQ(same.urdf, omni.urdf);
   for (const Joint& joint : same.joints) EXPECT_EQ(joint.effort, 0.01);
-  const ArmDescription strong = hub.arm_for(joints(3, 100), omni);
+  const ArmDescription strong = hub.arm_for(joints(3, 100)).arm;
   EXPECT_EQ(strong.joints[1].effort, omni.joints[1].effort);
-  EXPECT_EQ(hub.arm_for(joints(2, 0.2), omni).dof(), 2);
-  EXPECT_EQ(hub.arm_for(joints(1, 0.2), omni).dof(), 1);
-  EXPECT_THROW(hub.arm_for(joints(5, 1), omni), FileError);
+  EXPECT_EQ(hub.arm_for(joints(2, 0.2)).arm.dof(), 2);
+  EXPECT_EQ(hub.arm_for(joints(1, 0.2)).arm.dof(), 1);
+  EXPECT_THROW(hub.arm_for(joints(5, 1)), FileError);
+}
+
+TEST(ArmForADevice, IsRememberedWithTheDeviceThatAnsweredThen) {
+  const test::TempDir dir;
+  {
+    DeviceHub hub(dir / "devices.toml", {});
+    hub.use("a device");
+    hub.say_arm(kBuiltInArm, "", nullptr);
+    EXPECT_TRUE(hub.note_said_arm(joints(3, 1)));
+    EXPECT_FALSE(hub.note_said_arm(joints(2, 1))) << "the first that answers is it";
+    EXPECT_EQ(hub.save(), "");
+  }
+  DeviceHub hub(dir / "devices.toml", {});
+  EXPECT_TRUE(hub.arm_for(joints(3, 1)).known);
+  EXPECT_FALSE(hub.arm_for(joints(2, 1)).known) << "another device under its id";
+  hub.say_arm("", "", nullptr);
+  EXPECT_FALSE(hub.arm_for(joints(3, 1)).known);
 }
 
 TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
@@ -435,8 +453,8 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
     EXPECT_EQ(hub.save(), "");
   }
   DeviceHub hub(dir / "devices.toml", {});
-  EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, 0.123);
-  EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).delay, 0.0021)
+  EXPECT_EQ(hub.arm_for(joints(3, 0.3)).arm.links[1].mass, 0.123);
+  EXPECT_EQ(hub.arm_for(joints(3, 0.3)).arm.delay, 0.0021)
       << "its file lacks it, the store does not";
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, taken_off);
   Parameters given;
@@ -446,7 +464,7 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").delay, 0.0021);
   std::filesystem::remove_all(dir / "data");
   try {
-    hub.arm_for(joints(3, 0.3), omni);
+    hub.arm_for(joints(3, 0.3));
     ADD_FAILURE() << "an arm that nobody has measured in its place";
   } catch (const FileError& error) {
     EXPECT_NE(std::string(error.what()).find("--forget"), std::string::npos) << error.what();
@@ -454,7 +472,7 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   hub.forget_arm();
   EXPECT_LT(hub.notes("1209:4c50:a/b c").delay, 0);
   EXPECT_EQ(hub.notes("1209:4c50:a/b c").compensation, OwnForces{});
-  EXPECT_EQ(hub.arm_for(joints(3, 0.3), omni).links[1].mass, omni.links[1].mass);
+  EXPECT_EQ(hub.arm_for(joints(3, 0.3)).arm.links[1].mass, omni.links[1].mass);
 }
 
 // What is found the second time was found with the first correction in place.

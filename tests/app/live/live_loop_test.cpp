@@ -91,6 +91,56 @@ TEST(LiveLoop, LeadsTheHandAlongAPathTickByTick) {
   }
 }
 
+// What is asked for may not fit: a scene that was read for an arm of more joints.
+TEST(LiveLoop, GoesOnAsItWasWhereAnArmOrASceneIsRefused) {
+  Scene of_another;
+  of_another.add({.name = "stop", .shape = JointStop{.joint = 3}});
+  LiveLoop loop({});
+  loop.open(test::omni(), test::omni_scene("table.toml"), {}, kHome);
+  let_live(loop, 5);
+  EXPECT_THROW(loop.open(test::omni(), of_another, {}, kHome), std::invalid_argument);
+  let_live(loop, 5);
+  EXPECT_THROW(loop.open(test::omni(), of_another, {}, std::make_unique<test::FakeDevice>(3)),
+               std::invalid_argument);
+  let_live(loop, 5);
+  EXPECT_FALSE(loop.device_in_place());
+  loop.open(test::omni(), Scene{}, {}, std::make_unique<test::FakeDevice>(3));
+  let_live(loop, 5);
+  EXPECT_THROW(loop.open(test::omni(), of_another, {}, kHome), std::invalid_argument);
+  let_live(loop, 5);
+  EXPECT_TRUE(loop.device_in_place());
+  EXPECT_EQ(loop.layout().dof(), 3);
+}
+
+// The virtual arm is tried with more than the device is given: who reckons with the settings is
+// told what the loop makes of them.
+TEST(LiveLoop, SaysWhatItMakesOfSettingsForARealDevice) {
+  const ArmDescription arm = test::omni();
+  Parameters set;
+  set.damping = 5;
+  set.torque_limit = 5;
+  set.friction = 0.03;
+  set.device_delay = 2;
+  LiveLoop loop({});
+  loop.open(arm, Scene{}, set, kHome);
+  EXPECT_EQ(loop.taken(set), set);
+  auto device = std::make_unique<test::FakeDevice>(3);
+  const double step = encoder_step_of(device->traits());
+  loop.open(arm, Scene{}, set, std::move(device));
+  const Parameters taken = loop.taken(set);
+  EXPECT_TRUE(std::isnan(taken.damping)) << "as the arm's file says";
+  EXPECT_TRUE(std::isnan(taken.torque_limit));
+  EXPECT_TRUE(std::isnan(taken.friction));
+  EXPECT_EQ(taken.device_delay, 0);
+  EXPECT_EQ(taken.encoder_step, step);
+  set.damping = 1e-4;
+  set.torque_limit = 0.1;
+  set.encoder_step = 2e-3;
+  EXPECT_EQ(loop.taken(set).damping, 1e-4) << "less may be tried";
+  EXPECT_EQ(loop.taken(set).torque_limit, 0.1);
+  EXPECT_EQ(loop.taken(set).encoder_step, 2e-3);
+}
+
 TEST(LiveLoop, HoldsTheHandAtAPathsBeginningUntilARecordingBegins) {
   const test::TempDir dir;
   const ArmDescription arm = test::omni();

@@ -221,6 +221,20 @@ TEST(History, MarksOfASecondRunStandInThatRun) {
   EXPECT_NEAR(history.marks()[2].time, history.time(1300), 1e-9);
 }
 
+// Each is drawn in every frame, and a program may set thousands a second.
+TEST(HistoryMarks, AreBoundedAndTheOldestGoFirst) {
+  History history({.channels = 1, .seconds = 60});
+  const std::size_t all = 3 * History::kMostMarks;
+  for (std::size_t i = 0; i < all; ++i) {
+    const double time = 0.001 * static_cast<double>(i);
+    history.append(time, std::array{0.0});
+    history.mark_at(time, std::to_string(i), kNoteMark);
+  }
+  ASSERT_EQ(history.marks().size(), History::kMostMarks);
+  EXPECT_EQ(history.marks().back().label, std::to_string(all - 1));
+  EXPECT_EQ(history.marks().front().label, std::to_string(all - History::kMostMarks));
+}
+
 // Somebody marks a moment of before while settings go on changing.
 TEST(HistoryMarks, StandInTheOrderOfTheirTimesWheneverTheyWereSet) {
   History history({.channels = 1, .seconds = 60});

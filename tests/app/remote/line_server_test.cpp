@@ -87,6 +87,18 @@ class LineServerTest : public testing::Test {
     ASSERT_EQ(server->clients(), count);
   }
 
+  void listen_for_cut() {
+    server.reset();
+    server = std::make_unique<LineServer>(
+        path, [this](std::string_view line) { cut = cut || line == "cut"; });
+  }
+  bool cut_is_heard() const {
+    const auto end = std::chrono::steady_clock::now() + 5s;
+    while (!cut && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+    return cut;
+  }
+
+  std::atomic<bool> cut{false};
   test::TempDir dir;
   std::filesystem::path path = dir / "sockets" / "a.control";
   std::atomic<int> heard{0};
@@ -148,7 +160,7 @@ TEST_F(LineServerTest, RefusesALongLineAndEndsTheConnection) {
   EXPECT_EQ(event()->line, std::nullopt);
 }
 
-TEST_F(LineServerTest, ReadsNoFurtherThanItsAnswersGo) {
+TEST_F(LineServerTest, TakesNoFurtherThanItsAnswersGo) {
   Peer peer(path);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(peer.say(std::to_string(i) + "\n"));
   for (std::size_t i = 0; i < LineServer::kMostUnanswered; ++i) {
@@ -171,7 +183,7 @@ TEST_F(LineServerTest, OffersNothingToOneThatDoesNotRead) {
   EXPECT_EQ(peer.line(), line);
 }
 
-TEST_F(LineServerTest, ReadsNothingMoreOfOneThatDoesNotFetchItsAnswers) {
+TEST_F(LineServerTest, TakesNothingMoreOfOneThatDoesNotFetchItsAnswers) {
   Peer peer(path);
   std::size_t answered = 0;
   const std::string answer(20'000, 'x');
@@ -183,6 +195,54 @@ TEST_F(LineServerTest, ReadsNothingMoreOfOneThatDoesNotFetchItsAnswers) {
     server->wait_until(std::chrono::steady_clock::now() + 100ms);
   }
   EXPECT_LT(answered, 200u);
+}
+
+// A controller that never reads must be able to stop what it has set going.
+TEST_F(LineServerTest, HearsTheCutOfAClientThatHasNotFetched400Answers) {
+  listen_for_cut();
+  Peer peer(path);
+  const std::string answer(2000, 'x');  // more in all than server and system keep
+  for (int i = 0; i < 400; ++i) ASSERT_TRUE(peer.say("get\n"));
+  while (true) {
+    server->wait_until(std::chrono::steady_clock::now() + 100ms);
+    const auto each = server->take();
+    if (!each) break;
+    server->answer(each->from, answer);
+  }
+  ASSERT_TRUE(peer.say("cut\n"));
+  EXPECT_TRUE(cut_is_heard());
+}
+
+TEST_F(LineServerTest, HearsTheCutBehindSixteenLinesThatNobodyHasAnswered) {
+  listen_for_cut();
+  Peer peer(path);
+  for (std::size_t i = 0; i < 2 * LineServer::kMostUnanswered; ++i) ASSERT_TRUE(peer.say("set\n"));
+  ASSERT_TRUE(peer.say("cut\n"));
+  EXPECT_TRUE(cut_is_heard());
+  for (std::size_t i = 0; i < LineServer::kMostUnanswered; ++i) EXPECT_EQ(event()->line, "set");
+}
+
+// Else a program could fill the memory, or be stopped from saying more.
+TEST_F(LineServerTest, DropsLinesThatFindNoRoomCountsThemAndHearsTheCutAmongThem) {
+  listen_for_cut();
+  Peer peer(path);
+  const std::string line(1023, 'x');
+  const std::size_t kept = LineServer::kMostWaiting / 1024, more = 50;
+  const std::size_t taken = LineServer::kMostUnanswered;
+  for (std::size_t i = 0; i < taken + kept + more; ++i) ASSERT_TRUE(peer.say(line + "\n"));
+  ASSERT_TRUE(peer.say("cut\n"));
+  ASSERT_TRUE(cut_is_heard());
+  std::size_t answered = 0;
+  for (auto each = event(); answered < taken + kept; each = event()) {
+    ASSERT_TRUE(each && each->line == line) << answered;
+    server->answer(each->from, "ok");
+    if (++answered == taken + kept) break;
+  }
+  std::string told;
+  for (std::size_t i = 0; i < answered + 1; ++i) {
+    if (const std::string each = peer.line(); each != "ok") told += each;
+  }
+  EXPECT_THAT(told, HasSubstr("51 lines found no room"));
 }
 
 TEST_F(LineServerTest, TakesTheLastLineOfOneThatHasHungUp) {

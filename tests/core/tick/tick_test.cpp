@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/tick/as_taken.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
 #include "tests/support/wisher.h"
@@ -330,6 +331,31 @@ TEST(Tick, BelievesNoMoreDampingOfARealArmThanItsFileHas) {
   EXPECT_NE(estimates(5, false), estimates(kFromArm, false));
   EXPECT_EQ(estimates(5, true), estimates(kFromArm, true));
   EXPECT_NE(estimates(0, true), estimates(kFromArm, true)) << "less may be tried";
+}
+
+// The rows of a real arm are those of the settings that the loop says it takes, and of these alone.
+TEST(Tick, TakesTheSettingsOfARealArmAsTheFunctionSaysThatAllOthersAsk) {
+  const ArmDescription arm = random_arm(3, 133);
+  const auto rows_of = [&](const Parameters& p) {
+    Tick<3> tick(arm, stop());
+    tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
+    Rows rows(tick.layout());
+    for (std::size_t k = 0; k < 300; ++k) {
+      const Vec<3> x = led(3, k, p.tick);
+      tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = true}}, ForceRequest::arm, rows.add());
+    }
+    return Eigen::VectorXd(rows.vec(299, Column::commanded_torque));
+  };
+  Parameters set;
+  set.damping = 5;
+  set.torque_limit = 1e3;
+  set.friction = 0.5;
+  set.friction_share = 0.7;
+  set.device_delay = 3;
+  EXPECT_EQ(rows_of(set), rows_of(as_taken(set, RealDevice::of(arm, 0))));
+  set.damping = 1e-4;
+  set.torque_limit = 1e-3;
+  EXPECT_EQ(rows_of(set), rows_of(as_taken(set, RealDevice::of(arm, 0))));
 }
 
 // There law, observer and contacts begin anew from where things are.

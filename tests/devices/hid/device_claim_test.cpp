@@ -220,6 +220,25 @@ TEST_F(AClaim, IsRefusedWhereNobodyCanTell) {
   }
 }
 
+// As two containers see it that share the node and no folder of claims.
+TEST_F(AClaim, OfANodeIsOneProgramsByWhateverNameItIsOpened) {
+  const fs::path node = dir / "hidraw0", other = dir / "other name";
+  std::ofstream(node) << "";
+  fs::create_hard_link(node, other);
+  {
+    const DeviceClaim first = DeviceClaim::on_node(node);
+    EXPECT_TRUE(first.held());
+    try {
+      DeviceClaim::on_node(other);
+      FAIL() << "two have one device";
+    } catch (const HidError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("in use by another program, perhaps in a container"));
+    }
+  }
+  EXPECT_TRUE(DeviceClaim::on_node(other).held());
+  EXPECT_THROW(DeviceClaim::on_node(dir / "no such node"), HidError);
+}
+
 TEST_F(AClaim, IsLookedForWhereEveryUserMayMakeFiles) {
   fs::create_directory(dir / "own");
   fs::permissions(dir / "own", fs::perms::owner_all);

@@ -40,7 +40,7 @@ struct Wire {
 class WiredDevice final : public Device {
  public:
   WiredDevice(int dof, std::shared_ptr<Wire> wire, double effort = 0.5)
-      : traits_(test::pushing(dof, 1, effort)),
+      : traits_(test::pushing(dof, 3, effort)),
         rest_(static_cast<std::size_t>(dof)),
         wire_(std::move(wire)) {
     if (dof == 3) Eigen::Map<Eigen::Vector3d>(rest_.data()) = rest_pose(test::omni());
@@ -206,6 +206,24 @@ TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
   expect_off("playback and re-run");
   desktop->playback.close();
   expect_off("going back to live");
+}
+
+// What it would push in then is not on the screen.
+TEST_F(ADesktop, HasNoForceOnARealDeviceWhileARecordingIsShown) {
+  const auto wire = pushed();
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+  EXPECT_EQ(wire->torque, 0);
+  run("device.force");
+  wire->buttons = 2;
+  frames(70);
+  EXPECT_EQ(arming(), Arming::off);
+  EXPECT_TRUE(said("Go back to live"));
+  wire->buttons = 0;
+  desktop->playback.close();
+  frames(5);
+  EXPECT_TRUE(until_on([&] { run("device.force"); }));
 }
 
 TEST_F(ADesktop, TakesTheForceOfARealDeviceAwayBeforeAnythingChanges) {
@@ -510,6 +528,31 @@ TEST_F(ADesktop, GoesBackToTheSceneWhenWhatIsRecordedIsComplete) {
   EXPECT_FALSE(has("rubber, 500 N/m"));
 }
 
+// What was set to try the virtual arm with is no damping of the device: the verdict and the
+// recording are of what the loop takes.
+TEST_F(ADesktop, JudgesAndRecordsARealDeviceByWhatTheLoopTakes) {
+  Parameters& p = desktop->settings.parameters;
+  plug_in(2);
+  p.k_vc = 20;
+  frames(2);
+  const Analysis by_file = desktop->tuning.analysis();
+  EXPECT_FALSE(by_file.condition3.holds);
+  p.damping = 0.1;
+  p.torque_limit = 5;
+  frames(2);
+  EXPECT_EQ(desktop->tuning.analysis().condition3.holds, by_file.condition3.holds);
+  EXPECT_EQ(desktop->tuning.analysis().eta_min, by_file.eta_min);
+  record_something();
+  desktop->world.toggle_recording();
+  ASSERT_TRUE(until([&] { return said("Recorded"); }));
+  const Session session = read_session(recordings().at(0));
+  Parameters recorded = session_parameters(session, "");
+  EXPECT_TRUE(std::isnan(recorded.damping)) << "that of the file";
+  EXPECT_TRUE(std::isnan(recorded.torque_limit));
+  for (const SettingChange& change : session.changes) apply_change(recorded, change);
+  EXPECT_TRUE(std::isnan(recorded.damping));
+}
+
 // Another device is chosen while what the first one brought is changed and not saved.
 TEST_F(ADesktop, KeepsADevicesLimitsWhileItAsksWhatBecomesOfChanges) {
   desktop->devices.hub().use("device");
@@ -536,8 +579,43 @@ TEST_F(ADesktop, KeepsADevicesLimitsWhileItAsksWhatBecomesOfChanges) {
   EXPECT_TRUE(until([&] { return wire->closed == 1; }));
 }
 
+// A stranger's arm with links of a metre was opened before; the device has 3 N m.
+TEST_F(ADesktop, TakesADeviceForABuiltInArmWhateverIsOpenUntilSomebodyHasSaidWhichItIs) {
+  const fs::path file = dir / "long.urdf";
+  std::string text = test::omni().urdf;
+  for (std::size_t at = 0; (at = text.find("\"0.135 0 0\"", at)) != std::string::npos;) {
+    text.replace(at, 11, "\"1 0 0\"");
+  }
+  for (std::size_t at = 0; (at = text.find("effort=\"0.", at)) != std::string::npos;) {
+    text.replace(at, 10, "effort=\"9");
+  }
+  text.replace(text.find("name=\"omni\""), 11, "name=\"long\"");
+  std::ofstream(file) << text;
+  desktop->world.open_arm(file);
+  ASSERT_TRUE(until([&] { return desktop->live.stage().arm().name == "long"; }));
+  desktop->devices.hub().use("device");
+  const auto open = [&] {
+    desktop->world.open_device(std::make_unique<WiredDevice>(3, std::make_shared<Wire>(), 3));
+    await_device();
+    return desktop->live.stage().arm();
+  };
+  const ArmDescription first = open();
+  EXPECT_EQ(first.urdf, test::omni().urdf);
+  for (const Joint& joint : first.joints) EXPECT_LE(joint.effort, 0.5);
+  EXPECT_TRUE(said("is taken for the arm omni"));
+  const NamedArm asked = desktop->world.arm_file();
+  EXPECT_EQ(asked.file, file.string()) << "that the question offers";
+  desktop->devices.hub().say_arm(asked.file, asked.tip, nullptr);
+  const ArmDescription second = open();
+  EXPECT_EQ(second.name, "long");
+  for (const Joint& joint : second.joints) EXPECT_LE(joint.effort, 3) << "the device's own limit";
+  EXPECT_TRUE(said("is taken for the arm long"));
+}
+
 // Plugged in again with another full force, as its settings have it by then.
 TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
+  desktop->devices.hub().use("device");
+  desktop->devices.hub().say_arm(kBuiltInArm, "", nullptr);
   const auto efforts = [&] {
     std::vector<double> all;
     for (const Joint& joint : desktop->live.stage().arm().joints) all.push_back(joint.effort);
@@ -634,6 +712,54 @@ TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
   EXPECT_TRUE(has("mine"));
   EXPECT_TRUE(document().editor().dirty());
   EXPECT_EQ(document().file(), file);
+}
+
+// An arm of four joints, a scene that is at its fourth; a device sets both aside, and the arm's
+// file is not what it was when they are to come back.
+struct ADesktopWithFourJoints : ADesktop {
+  void expect_both_back(const std::function<void(const fs::path&)>& spoil);
+};
+
+void ADesktopWithFourJoints::expect_both_back(const std::function<void(const fs::path&)>& spoil) {
+  const fs::path file = dir / "four.urdf";
+  std::string text = test::omni().urdf;
+  const std::string end = "</robot>";
+  const auto tip = text.find("<joint name=\"tip\" type=\"fixed\">");
+  text.replace(tip, 33,
+               "<joint name=\"tip\" type=\"revolute\"><axis xyz=\"0 1 0\"/>"
+               "<limit lower=\"-1\" upper=\"1\" effort=\"0.1\" velocity=\"10\"/>");
+  const auto link = text.find("<link name=\"tip\"/>");
+  ASSERT_NE(link, std::string::npos);
+  text.replace(link, 18,
+               "<link name=\"tip\"><inertial><mass value=\"0.01\"/><inertia ixx=\"1e-5\" "
+               "iyy=\"1e-5\" izz=\"1e-5\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>");
+  std::ofstream(file) << text;
+  desktop->world.open_arm(file);
+  ASSERT_TRUE(until([&] { return desktop->live.stage().arm().dof() == 4; }));
+  desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
+  desktop->world.add_object({.name = "stop", .shape = JointStop{.joint = 3, .angle = 0.5}});
+  ASSERT_TRUE(has("stop"));
+  plug_in(2);
+  ASSERT_FALSE(has("mine"));
+  spoil(file);
+  bool told = false;
+  desktop->world.close_device([&] { told = true; });
+  frames(3);
+  EXPECT_TRUE(told);
+  EXPECT_FALSE(loop().device_in_place());
+  EXPECT_EQ(desktop->live.stage().arm().dof(), 4);
+  EXPECT_TRUE(has("mine"));
+  EXPECT_TRUE(has("stop"));
+  EXPECT_TRUE(document().editor().dirty());
+  EXPECT_TRUE(loop().status().running);
+}
+
+TEST_F(ADesktopWithFourJoints, KeepsArmAndSceneThatWerePutAsideWhenTheArmsFileIsGone) {
+  expect_both_back([](const fs::path& file) { fs::remove(file); });
+}
+
+TEST_F(ADesktopWithFourJoints, KeepsArmAndSceneThatWerePutAsideWhenTheFileHasAnotherArm) {
+  expect_both_back([](const fs::path& file) { std::ofstream(file) << test::omni().urdf; });
 }
 
 TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {

@@ -1,0 +1,50 @@
+// A strong device of which nobody has said which arm it is, pushed against a stiff wall: what its
+// motors give is felt at its own tip, whatever levers the arm has that it is taken for.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "app/device/taken_arm.h"
+#include "tests/support/built_in.h"
+#include "tests/support/device_traits.h"
+#include "tests/vm/simulated_desk.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double kStrong = 3;       // of its motors [N m]
+constexpr double kOwnLever = 0.05;  // of the device, which the arm in use does not have [m]
+
+// The largest torque while a strong hand leans the device through the side of its gate.
+double pushed(const ArmDescription& arm) {
+  Scene gate = read_scene(assets_dir() / "devices/joystick.toml", arm).scene;
+  std::erase_if(gate.objects, has_shape<Sphere>);
+  Parameters p;
+  p.kind = CouplingKind::standard;
+  p.k_vc = 30;
+  auto model = std::make_unique<RawDeviceModel>(
+      RawDeviceLayout{.joints = 2, .torque_limit = kStrong, .physics = stick_axis(1)});
+  SimulatedDesk<RawDeviceModel> desk(arm, gate, std::move(model), p);
+  AxisPhysics hand = stick_axis(0);
+  hand.stiffness = 30;
+  hand.damping = 0.5;
+  hand.path = lean_right;
+  desk.model->hand().axis(0) = hand;
+  desk.push();
+  return desk.model->forces().largest();
+}
+
+TEST(AnotherArm, IsHeldTo10NAtAShortLeverUntilSomebodyHasSaidWhichItIs) {
+  const DeviceKind raw{.key = "raw"};
+  const DeviceTraits traits = pushing(2, kRange, kStrong);
+  const TakenArm taken = taken_arm({}, &raw, traits);
+  ASSERT_FALSE(taken.known);
+  const double torque = pushed(taken.arm);
+  std::printf("| raw, nobody has said which arm it is | %.3f N m of %.1f | %.1f N at %.2f m |\n",
+              torque, kStrong, torque / kOwnLever, kOwnLever);
+  EXPECT_GT(torque, 0.3) << "it does push";
+  EXPECT_LE(torque / kOwnLever, SafetyLimits{}.tip_force + 1e-6);
+}
+
+}  // namespace
+}  // namespace limpid::test
