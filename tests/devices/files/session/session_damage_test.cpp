@@ -1,4 +1,5 @@
 // Session files that are cut, scrambled, or made by programs that got them wrong.
+#include <fcntl.h>
 #include <hdf5.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <functional>
 #include <random>
 
+#include "core/base/descriptor.h"
 #include "core/coupling/laws.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/files/session/session.h"
