@@ -92,7 +92,7 @@ int make_video(const std::string& file, const VideoOptions& options, double text
   FilmOrder order = order_of(options, text_scale);
   order.title = fs::path(file).stem().string();
   const Session session = read_session(file);
-  ToldSteps told = told_in(file);
+  ToldSteps told = told_in(session, file);
   order.steps = std::move(told.steps);
   if (!told.title.empty()) order.title = told.title;
   cut(order, session, file);

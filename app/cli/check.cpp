@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -110,6 +111,29 @@ void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
   }
 }
 
+// Moments that no link can have: CAD exports them in g mm^2, or a person has taken any.
+void list_inertias(const ArmDescription& arm, CheckReport& report) {
+  constexpr double kRounded = 1.01;  // moments of a thin plate, as files round them
+  const double reach = farthest_tip(arm).distance;
+  for (const Link& link : arm.links) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
+    const Vec3 moments = solver.eigenvalues();
+    if (2 * moments.z() > kRounded * moments.sum()) {
+      report.warnings.push_back(fmt::format(
+          "link '{}': no body has principal moments of {:.3g}, {:.3g} and {:.3g} kg m^2: none may "
+          "be more than the other two together",
+          link.name, moments.x(), moments.y(), moments.z()));
+    }
+    const double ring = std::sqrt(moments.z() / link.mass);
+    if (link.mass > 0 && ring > std::max(1.0, 2 * reach)) {
+      report.warnings.push_back(fmt::format(
+          "link '{}': {:.3g} kg m^2 and {:.3g} kg are a ring of {:.3g} m radius; are its moments "
+          "in kg m^2?",
+          link.name, moments.z(), link.mass, ring));
+    }
+  }
+}
+
 CheckReport on_arm(const std::string& file, const InputOptions& input) {
   const ArmDescription arm = load_arm(file, input.tip, Xacro::expand).arm;
   CheckReport report{{}, arm.warnings};
@@ -125,6 +149,7 @@ CheckReport on_arm(const std::string& file, const InputOptions& input) {
   const Eigen::VectorXd rest = rest_pose(arm);
   const Eigen::MatrixXd M = arm_at(arm, rest).M;
   list_joints(arm, M, report);
+  list_inertias(arm, report);
   const Parameters p = make_parameters(input, arm);
   list_gains(arm, rest, p, report);
   list_limits(p, report);

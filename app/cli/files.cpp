@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <span>
@@ -33,74 +34,96 @@ std::string contacts(const Session& session) {
 }
 
 // Those of the first row. What another version wrote and this one does not know is left out.
-void print_settings(const Session& session, const std::string& file) {
+std::string settings_text(const Session& session, const std::string& file) {
   try {
     const Parameters p = session_parameters(session, file);
-    fmt::print("coupling at first        {}, eta {:.3g}\n", name(p.kind), p.eta);
-    if (!p.linked()) return;
-    fmt::print("link at first            {} ticks each way, jitter {}, loss {:.3g}\n", p.link_delay,
-               p.link_jitter, p.link_loss);
+    std::string text =
+        fmt::format("coupling at first        {}, eta {:.3g}\n", name(p.kind), p.eta);
+    if (!p.linked()) return text;
+    return text +
+           fmt::format("link at first            {} ticks each way, jitter {}, loss {:.3g}\n",
+                       p.link_delay, p.link_jitter, p.link_loss);
   } catch (const std::exception&) {
-    return;
+    return {};
   }
 }
 
-int info(const InfoOptions& options) {
-  keep_apart("--csv", options.csv, std::span(&options.session, 1));
-  const Session session = read_session(options.session);
-  const SessionInfo& i = session.info;
-  const auto arm = recorded_arm(i);
-  const std::vector<bool> slides = arm ? slides_of(*arm) : i.slides;
-  Summary summary(session.layout, slides);
-  for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
-  fmt::print("{}\n", options.session);
-  fmt::print("created                  {} by limpid {}\n", i.created, i.app_version);
-  if (!i.build.empty()) fmt::print("build                    {}\n", i.build);
-  fmt::print("hand                     {}\n", i.source);
-  print_settings(session, options.session);
+std::string about(const SessionInfo& i) {
+  std::string text =
+      fmt::format("created                  {} by limpid {}\n", i.created, i.app_version);
+  if (!i.build.empty()) text += fmt::format("build                    {}\n", i.build);
+  return text + fmt::format("hand                     {}\n", i.source);
+}
+
+std::string what_moves(const SessionInfo& i) {
+  std::string text;
   if (!i.safety.empty()) {
     std::string limits = i.safety;
     std::ranges::replace(limits, '\n', ' ');
-    fmt::print("limits of force          {}\n", limits);
+    text += fmt::format("limits of force          {}\n", limits);
   }
-  fmt::print("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick, i.seed);
+  text += fmt::format("arm                      {} joints, tick {} s, seed {}\n", i.dof, i.tick,
+                      i.seed);
   if (!i.bodies.empty()) {
-    fmt::print("objects that move        {}\n", fmt::join(i.bodies, ", "));
+    text += fmt::format("objects that move        {}\n", fmt::join(i.bodies, ", "));
   }
-  fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
-  if (session.twin) {
-    Summary twin(session.layout, slides);
-    for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
-    fmt::print("two runs on one hand\n{}", Summary::beside(summary, "first", twin, "twin"));
-  } else {
-    fmt::print("{}", summary.text());
-  }
-  fmt::print("{}", force_tally(session));
-  fmt::print("contacts                 {}\n", contacts(session));
-  if (const ToldSteps told = told_in(options.session); !told.steps.empty()) {
-    fmt::print("story                    {}, {} steps\n", told.title, told.steps.size());
-  }
+  return text;
+}
+
+std::string numbers(const Session& session) {
+  const auto arm = recorded_arm(session.info);
+  const std::vector<bool> slides = arm ? slides_of(*arm) : session.info.slides;
+  Summary summary(session.layout, slides);
+  for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
+  if (!session.twin) return summary.text();
+  Summary twin(session.layout, slides);
+  for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
+  return "two runs on one hand\n" + Summary::beside(summary, "first", twin, "twin");
+}
+
+std::string happened(const Session& session) {
+  std::string text;
+  const auto seconds = [&](std::uint64_t row) {
+    return static_cast<double>(row) * session.info.tick;
+  };
   for (const SettingChange& change : session.changes) {
-    fmt::print("from {:8.3f} s          {}\n", static_cast<double>(change.row) * i.tick,
-               change.setting);
+    text += fmt::format("from {:8.3f} s          {}\n", seconds(change.row), change.setting);
   }
   for (const Mark& mark : session.marks) {
-    fmt::print("mark {:8.3f} s          {}\n", static_cast<double>(mark.tick) * i.tick, mark.text);
+    text += fmt::format("mark {:8.3f} s          {}\n", seconds(mark.tick), mark.text);
   }
-  if (!options.csv.empty()) {
-    write_csv(session, options.csv, options.force);
-    fmt::print("written as {}\n", options.csv);
+  return text;
+}
+
+int info(const InfoOptions& options) {
+  const bool to_stdout = options.csv == kStandardOutput;
+  if (!to_stdout) keep_apart("--csv", options.csv, std::span(&options.session, 1));
+  const Session session = read_session(options.session);
+  std::string text = options.session + "\n" + about(session.info) +
+                     settings_text(session, options.session) + what_moves(session.info) +
+                     fmt::format("length                   {:.3f} s\n",
+                                 static_cast<double>(session.size()) * session.info.tick) +
+                     numbers(session) + force_tally(session) +
+                     fmt::format("contacts                 {}\n", contacts(session));
+  if (const ToldSteps told = told_in(session, options.session); !told.steps.empty()) {
+    text += fmt::format("story                    {}, {} steps\n", told.title, told.steps.size());
   }
+  // A table on standard output stands there alone.
+  fmt::print(to_stdout ? stderr : stdout, "{}{}", text, happened(session));
+  if (options.csv.empty()) return 0;
+  std::fflush(stdout);
+  write_csv(session, options.csv, options.force);
+  if (!to_stdout) fmt::print("written as {}\n", options.csv);
   return 0;
 }
 
 struct RecoverOptions {
-  std::string part;
+  std::string part, out;
   bool force = false;
 };
 
 int recover(const RecoverOptions& options) {
-  const Recovered recovered = recover_session(options.part, options.force);
+  const Recovered recovered = recover_session(options.part, options.force, options.out);
   fmt::print("{} ticks recovered in {}\n", recovered.rows, recovered.file.string());
   return 0;
 }
@@ -111,7 +134,8 @@ Command declare_info(CLI::App& app) {
   auto* command = app.add_subcommand("info", "what a recording holds");
   auto options = std::make_shared<InfoOptions>();
   command->add_option("SESSION.h5", options->session, "the recording")->type_name("")->required();
-  command->add_option("--csv", options->csv, "write it as a table")->type_name("OUT.csv");
+  command->add_option("--csv", options->csv, "write it as a table; - is standard output")
+      ->type_name("OUT.csv");
   command->add_flag("--force", options->force, "replace OUT.csv if it exists");
   return [options] { return info(*options); };
 }
@@ -123,7 +147,9 @@ Command declare_recover(CLI::App& app) {
   command->add_option("SESSION.h5.part", options->part, "the leftover, with .part at its end")
       ->type_name("")
       ->required();
-  command->add_flag("--force", options->force, "replace SESSION.h5 if it exists");
+  command->add_option("--out", options->out, "another name or disk, in place of SESSION.h5")
+      ->type_name("OUT.h5");
+  command->add_flag("--force", options->force, "replace the file if it exists");
   return [options] { return recover(*options); };
 }
 

@@ -241,6 +241,9 @@ int run(const RunOptions& options) {
     recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
                      options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom, plan.twin());
     tell_start(*recorder, plan);
+    if (const std::string note = lock_note(*recorder); !note.empty()) {
+      fmt::print(stderr, "limpid: note: {}\n", note);
+    }
   }
   RunLog log(plan, recorder ? &*recorder : nullptr, !options.realtime);
   const auto began = std::chrono::steady_clock::now();

@@ -330,6 +330,7 @@ void check_format(const fs::path& out, const VideoFormat& format, VideoKind kind
 // A folder for pictures that is there, or can be.
 void check_pictures(const fs::path& folder, bool force) {
   std::error_code error;
+  check_name(folder);
   if (!fs::exists(folder, error)) return check_folder(folder);
   if (!fs::is_directory(folder, error)) {
     throw FileError(fmt::format("{}: not a directory", folder.string()));

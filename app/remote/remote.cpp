@@ -61,6 +61,7 @@ bool Remote::turn() {
     any = true;
   }
   follow_up();
+  tell_trouble();
   for (auto& [client, follower] : followers_) flush(client, follower);
   return any;
 }
@@ -68,10 +69,12 @@ bool Remote::turn() {
 void Remote::take(const LineServer::Event& event) {
   if (!event.line) {
     followers_.erase(event.from);
+    here_.erase(event.from), untold_.erase(event.from);
     std::erase_if(pending_, [&](const Pending& p) { return p.client == event.from; });
     host_.gone(event.from);
     return;
   }
+  here_.insert(event.from);
   json id;
   try {
     const Request request = read_request(*event.line, id);
@@ -117,6 +120,17 @@ void Remote::follow_up() {
   }
   pending_.insert(pending_.begin(), std::make_move_iterator(left.begin()),
                   std::make_move_iterator(left.end()));
+}
+
+// Once to each; whoever has no room for it now hears of it later.
+void Remote::tell_trouble() {
+  if (std::string now = host_.trouble(); now != trouble_) {
+    trouble_ = std::move(now);
+    untold_ = trouble_.empty() ? std::set<Client>() : here_;
+  }
+  if (untold_.empty()) return;
+  const std::string line = json_line({{"event", "trouble"}, {"error", trouble_}});
+  std::erase_if(untold_, [&](Client client) { return server_.offer(client, line); });
 }
 
 json Remote::hello() const {

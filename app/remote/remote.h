@@ -56,6 +56,9 @@ struct RemoteHost {
   std::function<std::uint64_t()> tick;                     // of the newest row
   // By the names of their verbs; those that are missing need a window.
   std::map<std::string, Action> actions;
+  // What has gone wrong by itself and lasts, in words, as a recording that has ended on a full
+  // disk; empty: nothing. Every client is told at once.
+  std::function<std::string()> trouble = [] { return std::string(); };
   std::function<void(LineServer::Client)> gone = [](LineServer::Client) {};
 };
 
@@ -115,11 +118,14 @@ class Remote {
   nlohmann::json follow(const Keys& keys, Client client);
   std::vector<Wanted> find(const std::vector<std::string>& names, const std::string& verb) const;
   void follow_up();
+  void tell_trouble();
   void flush(Client client, Follower& follower);
 
   RemoteHost host_;
   std::map<Client, Follower> followers_;
   std::vector<Pending> pending_;
+  std::set<Client> here_, untold_;  // who has asked for anything; who does not know `trouble_` yet
+  std::string trouble_;
   std::vector<double> values_, twin_values_;
   LineServer server_;  // last: it goes first
 };

@@ -118,6 +118,7 @@ RemoteHost ServedSession::host() {
   host.row = [half] { return half(false); };
   host.twin_row = [half] { return half(true); };
   host.tick = [this] { return tick_; };
+  host.trouble = [this] { return recording_.trouble; };
   const auto add = [&](const char* verb, auto action) {
     host.actions[verb] = [action](const Keys& keys, LineServer::Client) { return action(keys); };
   };
@@ -172,6 +173,7 @@ json ServedSession::state() const {
   state.update({{"scene", world_.plan.document.title},
                 {"objects", world_.plan.document.scene.objects.size()},
                 {"recording", recording()},
+                {"trouble", recording_.trouble.empty() ? json() : json(recording_.trouble)},
                 {"twin", of_twin_.has_value()},
                 {"hand", nullptr}});
   if (world_.led) {
@@ -283,8 +285,17 @@ Answer ServedSession::stop() {
 
 void ServedSession::follow_recording() {
   try {
-    if (ready(recording_.opening)) loop_.record(recording_.opening.get());
-    if (loop_.recording() && loop_.recorder()->failed()) loop_.stop_recording();
+    if (ready(recording_.opening)) {
+      auto recorder = recording_.opening.get();
+      if (const std::string note = lock_note(*recorder); !note.empty()) {
+        fmt::print(stderr, "limpid: note: {}\n", note);
+      }
+      loop_.record(std::move(recorder));
+    }
+    if (loop_.recording() && loop_.recorder()->failed()) {
+      recording_.trouble = why_it_ended(*loop_.recorder());
+      loop_.stop_recording();
+    }
     if (std::shared_ptr<Recorder> done = loop_.take_recorded()) {
       recording_.rows = done->rows();
       recording_.dropped = done->dropped();

@@ -61,6 +61,7 @@ class ServedSession {
     std::filesystem::path file;
     std::uint64_t rows = 0, dropped = 0;  // dropped: that found no room
     std::string failure;
+    std::string trouble;  // why it ended by itself, for people; empty: it did not
     bool complete = false;
   };
 

@@ -73,9 +73,14 @@ Condition3 condition3(const ArmDescription& arm, const Parameters& p) {
 
 std::string basis_text(const ArmDescription& arm, const Parameters& p) {
   const std::string delay = fmt::format("a delay of {:.1f} ms", 1e3 * device_delay(arm, p));
-  const char* const b_d = std::isnan(p.damping) ? "damping" : "damping as set";
-  if (arm.delay) return fmt::format("inertia, {} and {}, measured", b_d, delay);
-  return fmt::format("inertia and {} as its file has them, {}", b_d,
+  const bool set = !std::isnan(p.damping);
+  if (arm.delay) {
+    return set ? fmt::format("inertia and {}, measured; damping as set", delay)
+               : fmt::format("inertia, damping and {}, measured", delay);
+  }
+  return fmt::format("{}, {}",
+                     set ? "inertia as its file has it, damping as set"
+                         : "inertia and damping as its file has them",
                      p.delay + p.device_delay > 0 ? delay + " as set" : "no delay: assumed");
 }
 

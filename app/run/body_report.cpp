@@ -21,6 +21,7 @@ constexpr double kHurts = 0.2;           // [J]
 // As deep as 50 g that fall 10 cm press a point in; deeper than half of it, and the other side is
 // nearer [m].
 constexpr double kThinBody = 0.004;
+constexpr double kFarFetched = 100;  // times the inertia of a solid
 
 // The box around a mesh, in its object's frame: as a box at a pose.
 std::pair<Box, Pose> box_around(const Mesh& mesh) {
@@ -139,6 +140,15 @@ void warn(const Object& object, const Scene& scene, const Vec3& root, double rea
         "'{}': no body has an inertia of [{:.4g}, {:.4g}, {:.4g}] kg m^2: none of the three may "
         "be more than the other two together",
         object.name, i.x(), i.y(), i.z()));
+  }
+  // Mass at the ends of a rod has three times the inertia of the rod.
+  const MassProperties solid = solid_mass_properties(object, 1);
+  const double usual = object.body->mass * solid.inertia.diagonal().maxCoeff() / solid.mass;
+  if (object.body->inertia && object.body->inertia->maxCoeff() > kFarFetched * usual) {
+    report.warnings.push_back(fmt::format(
+        "'{}': an inertia of {:.3g} kg m^2 is {:.0f} times that of a solid of its shape and mass; "
+        "are its moments in kg m^2?",
+        object.name, object.body->inertia->maxCoeff(), object.body->inertia->maxCoeff() / usual));
   }
 }
 

@@ -1,10 +1,14 @@
 #include "app/run/recorder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <exception>
 #include <utility>
+
+#include "devices/files/atomic_file.h"
 
 namespace limpid {
 namespace {
@@ -71,6 +75,10 @@ bool Recorder::changed(const Parameters& now, std::size_t lane) noexcept {
 void Recorder::mark(Mark mark) {
   check_mark(mark, out_);
   const std::lock_guard lock(marks_mutex_);
+  if (marked_ == kMostMarks) {
+    throw FileError(fmt::format("{}: has {} marks, and takes no more", out_.string(), marked_));
+  }
+  ++marked_;
   marks_.push_back(std::move(mark));
 }
 
@@ -155,6 +163,18 @@ void Recorder::write_changes() {
     }
     known = change->parameters;
   }
+}
+
+std::string lock_note(const Recorder& recorder) {
+  if (recorder.is_locked()) return {};
+  return fmt::format("{}: its file system has no locks; no other program may record into it",
+                     recorder.out().string());
+}
+
+std::string why_it_ended(const Recorder& recorder) {
+  return fmt::format(
+      "the recording has ended by itself: {}; `limpid recover {}` saves what is there",
+      recorder.error(), part_of(recorder.out()).string());
 }
 
 }  // namespace limpid

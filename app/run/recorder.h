@@ -41,7 +41,8 @@ class Recorder {
   void begins(std::span<const double> world, std::size_t lane = kMainLane) noexcept;
 
   // The owner's side.
-  // What somebody notes at a row that was pushed. Errors: FileError for a text that is too long.
+  // What somebody notes at a row that was pushed. Errors: FileError for a text that is too long, or
+  // where kMostMarks are kept already.
   void mark(Mark mark);
   std::uint64_t newest() const noexcept { return rows() > 0 ? rows() - 1 : 0; }  // row
   std::size_t stride() const noexcept { return ring_.stride(); }                 // doubles a push
@@ -49,7 +50,8 @@ class Recorder {
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
-  std::string error() const;  // once failed
+  std::string error() const;                              // once failed
+  bool is_locked() const { return writer_.is_locked(); }  // against other programs
   const std::filesystem::path& out() const { return out_; }
   // Writes what is left, closes and renames. Errors: FileError, also for what failed before.
   void finish();
@@ -83,7 +85,14 @@ class Recorder {
   std::string error_;
   std::mutex marks_mutex_;
   std::vector<Mark> marks_;  // not handed on yet
+  std::size_t marked_ = 0;
   std::thread thread_;
 };
+
+// What is said of one whose file system has no locks, for people; empty of any other.
+std::string lock_note(const Recorder& recorder);
+
+// Of one that has failed: that it ended by itself, and what saves it, for people.
+std::string why_it_ended(const Recorder& recorder);
 
 }  // namespace limpid

@@ -94,6 +94,7 @@ std::string force_tally(const Session& session) {
     ++ticks[state];
     ++without;
   }
+  if (session.size() == 0) return "rows                     none: nothing was recorded\n";
   if (without == 0) return "force                    on all the time\n";
   const auto seconds = [&](std::size_t count) {
     return static_cast<double>(count) * session.info.tick;

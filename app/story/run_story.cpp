@@ -7,7 +7,6 @@
 
 #include "app/run/replay.h"
 #include "app/story/story.h"
-#include "devices/files/session/session_story.h"
 #include "devices/files/toml_reader.h"
 
 namespace limpid {
@@ -73,8 +72,8 @@ ToldSteps read_told(const std::string& text, const std::string& where) {
   return told;
 }
 
-ToldSteps told_in(const std::filesystem::path& session) {
-  return read_told(attached_story(session), session.string() + ": story");
+ToldSteps told_in(const Session& session, const std::filesystem::path& file) {
+  return read_told(session.info.story, file.string() + ": story");
 }
 
 namespace {
@@ -148,7 +147,9 @@ std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& st
 
 void write_session(const Session& session, const ToldSteps& told, const std::filesystem::path& out,
                    bool force) {
-  SessionWriter writer(out, session.info, force);
+  SessionInfo info = session.info;
+  info.story = told_text(told);
+  SessionWriter writer(out, info, force);
   const Session* runs[] = {&session, session.twin.get()};
   for (std::size_t lane = 0; lane < 2 && runs[lane] != nullptr; ++lane) {
     writer.append_world(runs[lane]->world, lane);
@@ -158,7 +159,6 @@ void write_session(const Session& session, const ToldSteps& told, const std::fil
     }
   }
   writer.close();
-  attach_story(out, told_text(told));
 }
 
 }  // namespace limpid

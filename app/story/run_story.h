@@ -22,8 +22,8 @@ struct ToldSteps {
 std::string told_text(const ToldSteps& told);
 ToldSteps read_told(const std::string& text, const std::string& where);
 
-// Of a session's file. Errors: as attached_story() and read_told().
-ToldSteps told_in(const std::filesystem::path& session);
+// Of a session, read from `file`. Errors: as read_told().
+ToldSteps told_in(const Session& session, const std::filesystem::path& file);
 
 // What one run did in one step.
 struct StepNumbers {

@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <stdexcept>
 #include <vector>
 
@@ -62,13 +63,16 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #endif
 
-// What reading a file, memory, and an orderly end take.
+// What reading a file, memory, and an orderly end take. None of these has another use: calls that
+// have are allowed by their arguments, below. Writing goes to descriptors that are open for it.
 constexpr int kAllowed[] = {
     SYS_read,
     SYS_pread64,
     SYS_readv,
     SYS_write,
+    SYS_pwrite64,
     SYS_writev,
+    SYS_ftruncate,
     SYS_close,
     SYS_lseek,
     SYS_fstat,
@@ -78,10 +82,8 @@ constexpr int kAllowed[] = {
     SYS_faccessat,
     SYS_faccessat2,
     SYS_getcwd,
-    SYS_fcntl,
     SYS_munmap,
     SYS_mremap,
-    SYS_madvise,
     SYS_brk,
     SYS_futex,
     SYS_exit,
@@ -97,7 +99,6 @@ constexpr int kAllowed[] = {
     SYS_restart_syscall,
     SYS_sched_yield,
     SYS_clock_nanosleep,
-    SYS_flock,
     SYS_sysinfo,
 #ifdef __x86_64__
     SYS_stat,
@@ -108,7 +109,8 @@ constexpr int kAllowed[] = {
 #endif
 };
 
-// Of an argument its lower half; no flag and no process has more.
+// Of an argument its lower half; no flag and no process has more. Both kinds of processor have it
+// first.
 constexpr std::uint32_t argument(unsigned i) {
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + i * sizeof(std::uint64_t));
 }
@@ -123,6 +125,7 @@ class Filter {
   }
 
   void allow(int call) { when(call, 1), answer(SECCOMP_RET_ALLOW); }
+  // Where none of these bits is set in the argument.
   void allow_without(int call, unsigned which, std::uint32_t flags) {
     when(call, 4);
     load(argument(which));
@@ -130,10 +133,25 @@ class Filter {
     answer(SECCOMP_RET_ALLOW);
     answer(SECCOMP_RET_ERRNO | EACCES);
   }
-  void allow_with(int call, unsigned which, std::uint32_t value) {
-    when(call, 4);
+  // Where the argument is one of these.
+  void allow_with(int call, unsigned which, std::initializer_list<std::uint32_t> values) {
+    const auto count = static_cast<std::uint8_t>(values.size());
+    when(call, static_cast<std::uint8_t>(count + 3));
     load(argument(which));
-    add(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 1);
+    std::uint8_t left = count;
+    for (const std::uint32_t value : values) add(BPF_JMP | BPF_JEQ | BPF_K, value, left--, 0);
+    answer(SECCOMP_RET_ERRNO | EPERM);
+    answer(SECCOMP_RET_ALLOW);
+  }
+  // Where the first argument is 0, and the pointer that is the argument is null.
+  void allow_asking(int call, unsigned pointer) {
+    when(call, 8);
+    load(argument(0));
+    add(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 5);
+    load(argument(pointer));
+    add(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 3);
+    load(argument(pointer) + sizeof(std::uint32_t));
+    add(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 1);
     answer(SECCOMP_RET_ALLOW);
     answer(SECCOMP_RET_ERRNO | EPERM);
   }
@@ -167,8 +185,11 @@ void restrict_calls() {
 #ifdef __x86_64__
   filter.allow_without(SYS_open, 1, kWrites);
 #endif
-  filter.allow_with(SYS_tgkill, 0, static_cast<std::uint32_t>(::getpid()));  // abort()
-  filter.allow_with(SYS_prlimit64, 0, 0);                                    // of itself
+  // Others of its many uses send signals: F_SETOWN, F_SETSIG, F_NOTIFY, O_ASYNC by F_SETFL.
+  filter.allow_with(SYS_fcntl, 1, {F_GETFD, F_SETFD, F_GETFL, F_DUPFD_CLOEXEC});
+  filter.allow_with(SYS_madvise, 2, {MADV_DONTNEED, MADV_FREE});               // free()
+  filter.allow_with(SYS_tgkill, 0, {static_cast<std::uint32_t>(::getpid())});  // abort()
+  filter.allow_asking(SYS_prlimit64, 2);  // its own limits, which it cannot change
   if (!filter.install()) refuse();
 }
 

@@ -5,10 +5,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <cstring>
+#include <random>
 #include <thread>
 
 #include "core/base/descriptor.h"
@@ -24,13 +25,6 @@ namespace fs = std::filesystem;
   throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(code)));
 }
 
-// Other computers, too, may write in the same folder.
-std::string this_process() {
-  std::array<char, 256> host{};
-  ::gethostname(host.data(), host.size() - 1);
-  return fmt::format("{}.{}", host.data(), ::getpid());
-}
-
 // A pipe or a device, as /dev/stdout: another file in its place would be the end of it.
 void write_into(const fs::path& file, std::span<const unsigned char> bytes) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
@@ -40,35 +34,6 @@ void write_into(const fs::path& file, std::span<const unsigned char> bytes) {
   if (code != 0) fail(file, code);
 }
 
-// A new file that is gone again unless it is kept.
-class Draft {
- public:
-  explicit Draft(const fs::path& file)
-      : path_(file.string() + fmt::format(".{}.new", this_process())),
-        descriptor_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail(file, errno);
-  }
-  ~Draft() {
-    ::close(descriptor_);
-    if (!kept_) ::unlink(path_.c_str());
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-
-  bool write(std::span<const unsigned char> bytes) {
-    return write_all(descriptor_, bytes) && ::fsync(descriptor_) == 0;
-  }
-  bool keep_as(const fs::path& file) {
-    kept_ = ::rename(path_.c_str(), file.c_str()) == 0;
-    return kept_;
-  }
-
- private:
-  std::string path_;
-  int descriptor_;
-  bool kept_ = false;
-};
-
 // The name itself survives a power cut only once its folder is on the disk, too.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -77,17 +42,61 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+// That nobody else takes, on whatever computer. Short: names have 255 bytes at most.
+fs::path fresh_name(const fs::path& folder) {
+  std::random_device chance;
+  return folder / fmt::format(".limpid-{:08x}{:08x}.new", chance(), chance());
+}
+
 }  // namespace
+
+Draft::Draft(const fs::path& file)
+    : file_(file),
+      descriptor_(::open(folder_of(file).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666)) {
+  if (descriptor_ >= 0) return;
+  // Some file systems have no files without a name.
+  name_ = fresh_name(folder_of(file));
+  descriptor_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(file, errno);
+}
+
+Draft::~Draft() {
+  ::close(descriptor_);
+  if (!name_.empty()) ::unlink(name_.c_str());
+}
+
+void Draft::keep() {
+  if (::fsync(descriptor_) != 0) fail(file_, errno);
+  if (name_.empty()) {
+    const fs::path name = fresh_name(folder_of(file_));
+    const std::string here = fmt::format("/proc/self/fd/{}", descriptor_);
+    if (::linkat(AT_FDCWD, here.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      fail(file_, errno);
+    }
+    name_ = name;
+  }
+  if (::rename(name_.c_str(), file_.c_str()) != 0) fail(file_, errno);
+  name_.clear();
+  sync_folder(folder_of(file_));
+}
+
+fs::path past_links(const fs::path& file) {
+  std::error_code none;
+  return fs::is_symlink(file, none) ? fs::weakly_canonical(file, none) : file;
+}
 
 void write_atomically(const fs::path& file, std::span<const unsigned char> bytes) {
   std::error_code none;
-  // What a link points to is replaced, not the link.
-  const fs::path target = fs::is_symlink(file, none) ? fs::weakly_canonical(file, none) : file;
+  const fs::path target = past_links(file);
   const NoFileSizeSignal no_signal;
   if (fs::is_other(target, none)) return write_into(target, bytes);
   Draft draft(target);
-  if (!draft.write(bytes) || !draft.keep_as(target)) fail(file, errno);
-  sync_folder(fs::absolute(target).parent_path());
+  if (!write_all(draft.descriptor(), bytes)) fail(file, errno);
+  draft.keep();
 }
 
 std::string try_write_atomically(const std::filesystem::path& file, std::string_view text) {
@@ -167,13 +176,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kPart = ".part";
+// As long as a name may be, less what goes behind it: .part, and of a video .frames.
+constexpr std::size_t kLongestName = NAME_MAX - 12;
 
 [[noreturn]] void fail(const fs::path& file, const char* what, int code) {
   throw FileError(fmt::format("{}: {}: {}", file.string(), what, std::strerror(code)));
-}
-
-fs::path directory_of(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
 void sync(const fs::path& file, int flags) {
@@ -194,7 +201,7 @@ fs::path part_of(const fs::path& out) {
 
 void check_folder(const fs::path& out) {
   std::error_code error;
-  const fs::path directory = directory_of(out);
+  const fs::path directory = folder_of(out);
   if (const std::string why = why_not_found(directory, "no such directory"); !why.empty()) {
     throw FileError(fmt::format("{}: {}: {}", out.string(), why, directory.string()));
   }
@@ -205,8 +212,18 @@ void check_folder(const fs::path& out) {
     fail(out, "cannot write there", errno);
 }
 
+void check_name(const fs::path& out) {
+  if (const std::size_t size = out.filename().native().size(); size > kLongestName) {
+    throw FileError(
+        fmt::format("{}: a name of {} bytes; allowed: at most {}, as more goes behind "
+                    "it while it is written",
+                    out.string(), size, kLongestName));
+  }
+}
+
 void check_place(const fs::path& out, bool force) {
   std::error_code error;
+  check_name(out);
   if (out.filename().empty()) {
     throw FileError(fmt::format("'{}': not the name of a file", out.string()));
   }
@@ -232,7 +249,7 @@ void publish(const fs::path& finished, const fs::path& out, bool force) {
   }
   fs::rename(finished, out, error);
   if (error) fail(out, "cannot rename to it", error.value());
-  sync(directory_of(out), O_RDONLY | O_DIRECTORY);
+  sync(folder_of(out), O_RDONLY | O_DIRECTORY);
 }
 
 }  // namespace limpid

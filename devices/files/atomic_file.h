@@ -36,6 +36,30 @@ class NoFileSizeSignal {
   sigset_t before_{};
 };
 
+// A new file in the folder of `file`, without a name of its own where the file system has such. It
+// is gone, also with the process, unless it is kept.
+class Draft {
+ public:
+  // Errors of both: FileError naming `file`.
+  explicit Draft(const std::filesystem::path& file);
+  ~Draft();
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  int descriptor() const { return descriptor_; }  // for reading and writing
+  bool has_name() const { return !name_.empty(); }
+  // Goes on to the disk and takes the name `file`, in place of what has it. A link is replaced:
+  // see past_links().
+  void keep();
+
+ private:
+  std::filesystem::path file_, name_;
+  int descriptor_;
+};
+
+// What a link leads to, and any other file itself.
+std::filesystem::path past_links(const std::filesystem::path& file);
+
 // Puts the bytes on the disk beside `file` and gives them its name then. Errors: FileError; the
 // file is then as it was. Pipes and devices are written into instead.
 void write_atomically(const std::filesystem::path& file, std::span<const unsigned char> bytes);
@@ -63,6 +87,8 @@ void keep_unread(const std::filesystem::path& file);
 // OUT -> OUT.part
 std::filesystem::path part_of(const std::filesystem::path& out);
 
+// Whether the name leaves room for what goes behind it. Errors: FileError.
+void check_name(const std::filesystem::path& out);
 // Whether there can be a new file in the folder of `out`, before it is made. Errors: FileError.
 void check_folder(const std::filesystem::path& out);
 // The same for `out` itself, which must not be a folder, nor, without `force`, a file.

@@ -91,6 +91,12 @@ void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places) {
 
 namespace {
 
+// Whether it has a length that can be made 1.
+bool is_direction(const Vec3& axis) {
+  return axis.allFinite() && axis.stableNorm() > 1e-9 &&
+         std::abs(axis.stableNormalized().norm() - 1) < 1e-9;
+}
+
 bool has_no_inertia(const Joint& joint, const Link& link) {
   if (slides(joint)) return !(link.mass > 0);
   return about_origin(link).isZero(0);
@@ -271,11 +277,11 @@ class Chain {
     held_.push_back(joint.name);
     const Vec3 axis = vector(joint.axis);
     const double at = held_at(joint);
-    if (!axis.allFinite() || !(axis.norm() > 1e-9) || at == 0) return there;
+    if (!is_direction(axis) || at == 0) return there;
     if (joint.type == urdf::Joint::PRISMATIC) {
-      there.translate(Vec3(at * axis.normalized()));
+      there.translate(Vec3(at * axis.stableNormalized()));
     } else {
-      there.rotate(turn(at, axis.normalized()));
+      there.rotate(turn(at, axis.stableNormalized()));
     }
     return there;
   }
@@ -311,10 +317,10 @@ class Chain {
     out.name = joint.name;
     out.origin = origin;
     const Vec3 axis = vector(joint.axis);
-    if (!axis.allFinite() || !(axis.norm() > 1e-9)) {
+    if (!is_direction(axis)) {
       places_.refuse_joint(joint.name, "axis is zero or not finite; needed: a direction");
     }
-    out.axis = axis.normalized();
+    out.axis = axis.stableNormalized();
     const bool slides = joint.type == urdf::Joint::PRISMATIC;
     if (slides || joint.type == urdf::Joint::REVOLUTE) {
       out.lower = limit_of(joint, &urdf::JointLimits::lower, 0);

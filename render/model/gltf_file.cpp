@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -309,6 +310,33 @@ void give_views(json& gltf) {
   }
 }
 
+// A percent sign that begins no encoded character stands for itself, as in names that were never
+// encoded. "" of a name that needs no change.
+std::string with_percents_encoded(const std::string& uri) {
+  const auto hex = [&](std::size_t at) {
+    return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])) != 0;
+  };
+  std::string encoded;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    encoded += uri[i];
+    if (uri[i] == '%' && !(hex(i + 1) && hex(i + 2))) encoded += "25";
+  }
+  return encoded.size() == uri.size() ? std::string() : encoded;
+}
+
+void encode_percents(json& gltf) {
+  for (const char* key : {"buffers", "images"}) {
+    for (json& object : gltf_list(gltf, key)) {
+      if (!object.is_object() || !object.contains("uri") || !object["uri"].is_string()) continue;
+      const auto& uri = object["uri"].get_ref<const std::string&>();
+      if (uri.starts_with("data:")) continue;
+      if (std::string encoded = with_percents_encoded(uri); !encoded.empty()) {
+        object["uri"] = std::move(encoded);
+      }
+    }
+  }
+}
+
 // The file with what tinygltf would not understand in other words.
 std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
                                     std::span<const unsigned char> text, bool binary,
@@ -317,7 +345,8 @@ std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
   if (shrink_fallbacks(gltf) > (binary ? 1 : 0))
     refuse(name, "has more than one buffer without a uri");
   give_views(gltf);
-  for (const char* key : {"buffers", "bufferViews", "accessors", "meshes"})
+  encode_percents(gltf);
+  for (const char* key : {"buffers", "images", "bufferViews", "accessors", "meshes"})
     if (gltf[key].empty()) gltf.erase(key);  // a list must not be
   const std::string changed = gltf.dump();
   if (!binary) return {changed.begin(), changed.end()};
@@ -349,7 +378,8 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
   const bool binary = text.empty();
   if (binary) text = json_of_glb(bytes, name);
   std::vector<unsigned char> changed;
-  if (guard_gltf_json(text, name) > (binary ? 1 : 0) || contains(text, kDracoExtension)) {
+  if (guard_gltf_json(text, name) > (binary ? 1 : 0) || contains(text, kDracoExtension) ||
+      contains(text, "%")) {
     changed = reworded(bytes, text, binary, name);
     bytes = changed;
     text = binary ? json_of_glb(bytes, name) : bytes;

@@ -268,9 +268,50 @@ class Info(WithAnArm):
     def test_a_table_that_cannot_be_written_is_said(self) -> None:
         out = self.record(*self.arm, "--duration", "0.05")
         result = limpid("info", out, "--csv", "/dev/full", "--force")
-        self.assertEqual((result.status, len(result.error_lines)), (1, 1), result.err)
+        self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
         self.assertIn("/dev/full", result.err)
         self.assertIn("No space left", result.err)
+
+    def test_a_table_on_standard_output_stands_there_alone(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.05")
+        result = limpid("info", out, "--csv", "-")
+        self.assertEqual(result.status, 0, result.err)
+        header, *lines = list(csv.reader(result.out.splitlines()))
+        self.assertEqual(header[0], "time_s")
+        self.assertEqual({len(line) for line in lines}, {len(header)})
+        self.assertEqual(len(lines), 50)
+        self.assertIn("length", result.err)
+        self.assertFalse(Path("-").exists())
+
+    def test_a_table_in_a_folder_that_is_not_there_is_refused_as_all_files_are(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.05")
+        result = limpid("info", out, "--csv", self.directory / "nowhere/a.csv")
+        self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+
+
+class Inertias(SystemTest):
+    """Of links: what no body has is said, and what bodies have is not."""
+
+    def checked(self, mass: float, moments: tuple[float, float, float]) -> str:
+        file = self.out(".urdf")
+        x, y, z = moments
+        file.write_text(f"""<robot name="r"><link name="base"/>
+            <joint name="j" type="revolute"><parent link="base"/><child link="l"/><axis xyz="0 0 1"/>
+            <limit lower="-1.5" upper="1.5" effort="1" velocity="10"/><dynamics damping="0.02"/></joint>
+            <link name="l"><inertial><origin xyz="0.05 0 0"/><mass value="{mass}"/>
+            <inertia ixx="{x}" ixy="0" ixz="0" iyy="{y}" iyz="0" izz="{z}"/></inertial></link>
+            <joint name="t" type="fixed"><parent link="l"/><child link="tip"/><origin xyz="0.15 0 0"/></joint>
+            <link name="tip"/></robot>""")
+        return limpid("check", file).out
+
+    def test_what_no_body_has_is_a_warning(self) -> None:
+        self.assertIn("are its moments in kg m^2?", self.checked(0.1, (100, 100, 100)))
+        self.assertIn("more than the other two together", self.checked(0.1, (1e-5, 1e-5, 1e-3)))
+
+    def test_a_rod_and_a_plate_are_fine(self) -> None:
+        rod, plate = (1e-7, 1.9e-4, 1.9e-4), (1.2e-4, 1.2e-4, 2.41e-4)
+        for moments in (rod, plate):
+            self.assertTrue(self.checked(0.1, moments).endswith("fine\n"), moments)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import signal
+import subprocess
 import time
 import unittest
 from pathlib import Path
@@ -15,7 +17,7 @@ import numpy as np
 
 from limpid_check.checks import verify
 from limpid_check.session import DATASETS, read_session
-from support import ASSETS, Started, SystemTest, WithAnArm, limpid
+from support import ASSETS, LIMPID, Started, SystemTest, WithAnArm, limpid
 
 
 def live_rows(part: Path) -> int:
@@ -179,6 +181,81 @@ class Recording(WithAnArm):
         self.assertTrue(self.part(out).exists())
         self.assertEqual(limpid("recover", "--force", self.part(out)).status, 0)
         self.assertGreaterEqual(len(read_session(out)), 100)
+
+
+class Places(WithAnArm):
+    """Where a recording may lie."""
+
+    NO_LOCKS = """#include <errno.h>
+        #include <fcntl.h>
+        #include <stdarg.h>
+        #include <sys/syscall.h>
+        #include <unistd.h>
+        int flock(int fd, int how) { (void)fd, (void)how; errno = ENOLCK; return -1; }
+        static int control(int fd, int what, long given) {
+          if (what == 37 || what == 6) { errno = ENOLCK; return -1; }
+          return (int)syscall(SYS_fcntl, fd, what, given);
+        }
+        int fcntl(int fd, int what, ...) {
+          va_list all; va_start(all, what); long given = va_arg(all, long); va_end(all);
+          return control(fd, what, given);
+        }
+        int fcntl64(int fd, int what, ...) {
+          va_list all; va_start(all, what); long given = va_arg(all, long); va_end(all);
+          return control(fd, what, given);
+        }"""
+
+    def test_without_locks_it_is_recorded_and_that_is_said(self) -> None:
+        source, library, out = self.out(".c"), self.out(".so"), self.out()
+        source.write_text(self.NO_LOCKS)
+        subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source], check=True)
+        words = [str(word) for word in (LIMPID, "run", *self.arm, "--duration", "0.2", "--record", out)]
+        done = subprocess.run(words, env={**os.environ, "LD_PRELOAD": str(library)}, text=True,
+                              capture_output=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("has no locks", done.stderr)
+        self.assertEqual(len(read_session(out)), 200)
+
+    def test_a_name_that_is_too_long_is_refused_in_a_line(self) -> None:
+        long = self.directory / ("x" * 249 + ".h5")
+        done = limpid("run", *self.arm, "--duration", "0.1", "--record", long)
+        self.assertEqual((done.status, len(done.error_lines)), (2, 1), done.err)
+        self.assertIn("a name of 252 bytes", done.err)
+        fits = self.directory / ("x" * 240 + ".h5")
+        self.record(*self.arm, "--duration", "0.1", out=fits)
+
+    def test_a_part_that_is_a_link_is_not_followed(self) -> None:
+        out, mine = self.out(), self.out(".txt")
+        mine.write_text("mine")
+        self.part(out).symlink_to(mine)
+        done = limpid("run", *self.arm, "--duration", "0.1", "--record", out, "--force")
+        self.assertEqual(done.status, 2)
+        self.assertIn("is a link", done.err)
+        self.assertEqual(mine.read_text(), "mine")
+        mine.unlink()
+        done = limpid("run", *self.arm, "--duration", "0.1", "--record", out)
+        self.assertEqual(done.status, 2)
+        self.assertFalse(mine.exists())
+
+    def test_recover_puts_it_where_it_is_told(self) -> None:
+        out, elsewhere = self.out(), self.directory / "elsewhere.h5"
+        words = ["run", *self.arm, "--realtime", "--duration", "60", "--record", out]
+        with Started(*words) as started:
+            wait_for_rows(started, self.part(out), 100)
+            started.stop(signal.SIGKILL)
+        done = limpid("recover", self.part(out), "--out", elsewhere)
+        self.assertEqual(done.status, 0, done.err)
+        self.assertGreaterEqual(len(read_session(elsewhere)), 100)
+        self.assertFalse(out.exists() or self.part(out).exists())
+
+    def test_it_is_packed_and_nothing_else_is_left(self) -> None:
+        out = self.record(*self.arm, "--duration", "2")
+        with h5py.File(out, "r") as file:
+            time = file["time"]
+            self.assertEqual((time.compression, time.shuffle), ("gzip", True))
+            rows = sum(file[name].size * 8 for name in DATASETS)
+        self.assertLess(out.stat().st_size, rows)
+        self.assertEqual([p.name for p in self.directory.glob(".limpid-*")], [])
 
 
 class ShippedSessions(SystemTest):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -115,6 +116,25 @@ class TestServe(RemoteTest):
         self.assertGreater(times[0], 0.2)
         self.assertGreater(times[1], times[0] + 0.15)
         self.assertLess(times[1], session.time[-1])
+
+    def test_a_recording_that_ends_by_itself_is_said_at_once_to_everybody(self) -> None:
+        writes, listens = self.connect(), self.connect()
+        out = self.home / "full.h5"
+        self.assertIsNone(writes.state()["trouble"])
+        # As on a full disk: files may not grow beyond this.
+        resource.prlimit(self.process.pid, resource.RLIMIT_FSIZE, (1 << 20, resource.RLIM_INFINITY))
+        writes.record(out)
+        for client in (writes, listens):
+            with self.assertRaisesRegex(limpid.RecordingError, "File too large.*limpid recover"):
+                self.wait("the end of the recording", lambda: client.mark("once more") < 0)
+        state = listens.state()
+        self.assertFalse(state["recording"])
+        self.assertIn("File too large", state["trouble"])
+        resource.prlimit(self.process.pid, resource.RLIMIT_FSIZE,
+                         (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        writes.record(self.home / "next.h5")
+        self.assertIsNone(writes.state()["trouble"])
+        self.assertGreater(writes.stop()["rows"], 0)
 
     def test_a_hand_waits_for_the_recording_and_is_led_from_its_first_point(self) -> None:
         hand = limpid.runs.write_hand(PATH, self.home / "hand.csv")

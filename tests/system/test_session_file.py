@@ -175,13 +175,18 @@ class SessionFile(SystemTest):
                 names = [n for n in datasets(file) if n.startswith(run) and "twin/" not in n[len(run):]]
                 for name in names:
                     data, short = file[name], name[len(run):]
-                    if short.startswith(("check/", "events/", "marks/")) or short in ("time", "joint", "axis"):
+                    if short.startswith(("check/", "events/", "marks/")) or short in ("time", "joint", "axis",
+                                                                                             "contact_axis"):
                         continue
                     self.assertEqual(data.dims[0][0], time, name)
                     if data.ndim == 2 and data.shape[1] == 4:
                         self.assertEqual(data.dims[1][0], file["joint"], name)
                     if data.ndim == 2 and data.shape[1] == 3:
                         self.assertEqual(data.dims[1][0], file["axis"], name)
+                    if data.ndim == 2 and data.shape[1] == 12:
+                        self.assertEqual(data.dims[1][0], file["contact_axis"], name)
+                    # xarray opens a group where all dimensions have one
+                    self.assertTrue(all(len(dimension) == 1 for dimension in data.dims), name)
             self.assertEqual([text(n) for n in file["joint"]],
                              [text(n) for n in file.attrs["joints"]])
 

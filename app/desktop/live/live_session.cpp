@@ -252,13 +252,17 @@ void LiveSession::record(const RunPlan& plan, const fs::path& file) {
 void LiveSession::follow_recording() {
   try {
     if (auto recorder = take_ready(opening_)) {
+      if (const std::string note = lock_note(**recorder); !note.empty()) notices_.say(note);
       loop_.record(std::move(*recorder));
       mark("recording", "rec");
     }
-    if (loop_.recording() && loop_.recorder()->failed()) loop_.stop_recording();
+    if (loop_.recording() && loop_.recorder()->failed()) {
+      last_.trouble = why_it_ended(*loop_.recorder());
+      loop_.stop_recording();
+    }
     if (std::shared_ptr<Recorder> done = loop_.take_recorded()) {
       recorded_ = done->out();
-      last_ = {done->out(), done->rows(), done->dropped(), false};
+      last_ = {done->out(), done->rows(), done->dropped(), false, std::move(last_.trouble)};
       closing_ = file_tasks_.run([done] {
         done->finish();
         const std::uint64_t dropped = done->dropped();

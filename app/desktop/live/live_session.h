@@ -78,6 +78,7 @@ class LiveSession {
     std::filesystem::path file;
     std::uint64_t rows = 0, dropped = 0;  // dropped: that found no room
     bool complete = false;
+    std::string trouble = {};  // why it ended by itself, for people; empty: it did not
   };
   const Recorded& last_recording() const { return last_; }
   // Waits until what is recorded is complete, after the loop has been closed. Errors: FileError.

@@ -194,6 +194,12 @@ void recording_controls(const LiveSession& live, double tick, const Act& act) {
   } else if (button("Play", "Plays the last recording, or opens one (P).")) {
     act("session.play");
   }
+  const std::string& trouble = live.last_recording().trouble;
+  if (recording || trouble.empty()) return;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextColored(colour_vector(current_palette().broken), "the recording ended");
+  tooltip(trouble.c_str());
+  ImGui::SameLine();
 }
 
 // Of the virtual arm: its speed, or tick by tick.

@@ -60,7 +60,7 @@ LoadedSession load_session(const fs::path& file) {
   RunPlan world = replay(*session, file.string(), {});
   const std::span<const double> twin =
       session->twin ? std::span<const double>(session->twin->rows) : std::span<const double>();
-  std::vector<StoryStep> steps = told_in(file).steps;
+  std::vector<StoryStep> steps = told_in(*session, file).steps;
   History history = history_of(*session, file.string(), world.arm, twin, steps);
   return {.file = file,
           .session = std::move(session),

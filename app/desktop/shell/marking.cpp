@@ -102,8 +102,10 @@ bool Marking::last() const {
 
 void Marking::change(Marks marks) {
   PlayedSession& session = *playback_.shown();
-  if (std::exchange(file_, session.file()) != session.file()) done_.clear();
+  if (std::exchange(file_, session.file()) != session.file()) done_.clear(), known_.clear();
   undone_.clear();
+  const Marks& before = session.marks();
+  known_.insert(known_.end(), before.begin(), before.end());
   done_.push_back(session.marks());
   session.show(std::move(marks));
   save(session.marks());  // in the order of their ticks
@@ -113,6 +115,7 @@ void Marking::step(std::vector<Marks>& from, std::vector<Marks>& to) {
   PlayedSession* session = playback_.shown();
   if (!last() || from.empty()) return;
   to.push_back(session->marks());
+  known_.insert(known_.end(), to.back().begin(), to.back().end());
   session->show(from.back());
   save(std::exchange(from.back(), {}));
   from.pop_back();
@@ -121,9 +124,9 @@ void Marking::step(std::vector<Marks>& from, std::vector<Marks>& to) {
 // One after the other beside the window; what is not written stays in the plots, and is said.
 void Marking::save(Marks marks) {
   then_ = settings_.parameters;
-  live_.save_beside([file = playback_.shown()->file(), marks = std::move(marks)] {
+  live_.save_beside([file = playback_.shown()->file(), marks = std::move(marks), known = known_] {
     try {
-      write_marks(file, marks);
+      write_marks(file, marks, known);
       return PlotNotice{fmt::format("The marks are kept in {}.", file.filename().string())};
     } catch (const std::exception& e) {
       return PlotNotice{fmt::format("{}. The marks are in the plots only.", e.what()), true};

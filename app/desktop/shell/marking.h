@@ -62,6 +62,7 @@ class Marking {
   std::filesystem::path file_;  // whose steps these are
   Parameters then_;             // the settings at the last of them
   std::vector<Marks> done_, undone_;
+  Marks known_;  // all that the file had, as far as this window knows
 };
 
 }  // namespace limpid

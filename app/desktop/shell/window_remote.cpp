@@ -100,6 +100,7 @@ RemoteHost WindowRemote::host() {
   host.row = [this] { return d_.live.row(); };
   host.twin_row = [this] { return d_.live.twin_row(); };
   host.tick = [this] { return tick_; };
+  host.trouble = [this] { return d_.live.last_recording().trouble; };
   host.gone = [this](LineServer::Client client) { gone(client); };
   add_actions(host);
   return host;
@@ -139,11 +140,13 @@ std::string WindowRemote::last_complaint(const char* otherwise) const {
 
 json WindowRemote::state() const {
   const Stage& stage = d_.live.stage();
+  const std::string& trouble = d_.live.last_recording().trouble;
   json state = loop_state(d_.live.loop(), stage.arm());
   state.update({{"scene", stage.document().title},
                 {"file", d_.document.file()},
                 {"objects", d_.document.scene().objects.size()},
                 {"recording", d_.live.recording()},
+                {"trouble", trouble.empty() ? json() : json(trouble)},
                 {"playing", d_.playback.on()},
                 {"twin", d_.settings.twin.on},
                 {"blind", d_.blind},

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Type
 
-from limpid.errors import ArgumentError, LimpidError, ProgramError, RequestError
+from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError
 from limpid.program import find_program, setting_words
 from limpid.runs import hand_file
 from limpid.values import Hand, PathLike, names_of, path_of, plain, settings_of
@@ -57,7 +57,9 @@ def control_path(name: str = "control") -> Path:
 class Client:
     """A connection to a running program. All calls raise RequestError where the program refuses what
     is asked for, ArgumentError for what cannot be asked, and ProgramError where the program has ended,
-    does not answer within `timeout` [s], or the connection is closed."""
+    does not answer within `timeout` [s], or the connection is closed. Where a recording ends by
+    itself, as on a full disk, the next call does what it is asked for and then raises
+    RecordingError, once."""
 
     def __init__(self, path: PathLike, timeout: float = 30.0) -> None:
         """Connects to the socket `path`. Raises ProgramError where nobody listens there."""
@@ -74,6 +76,7 @@ class Client:
         self._next_id = 0
         self._answers: Dict[int, Dict[str, Any]] = {}
         self._rows: Deque[Dict[str, Any]] = collections.deque(maxlen=KEPT_MESSAGES)
+        self._trouble: Optional[str] = None  # that nobody has heard of
         self._process: Optional["subprocess.Popen[bytes]"] = None
         try:
             self.about: Dict[str, Any] = self.request("hello")
@@ -99,7 +102,8 @@ class Client:
         return dict(self.request("get", **asked)["values"])
 
     def state(self) -> Dict[str, Any]:
-        """What is open and how the loop is: arm, scene, force, recording, ticks, late, missed."""
+        """What is open and how the loop is: arm, scene, force, recording, ticks, late, missed;
+        `trouble`: why the last recording ended by itself, or None."""
         return dict(self.request("get", keys=[])["state"])
 
     def set(self, values: Optional[Mapping[str, Any]] = None, twin: bool = False, reset: bool = False,
@@ -170,6 +174,7 @@ class Client:
         end = time.monotonic() + seconds
         while self._receive(max(0.0, end - time.monotonic())):
             pass
+        self._raise_trouble()
         ticks: List[int] = []
         values: List[List[Optional[float]]] = []
         dropped = 0
@@ -250,9 +255,15 @@ class Client:
             if left <= 0 or not self._receive(left):
                 raise ProgramError(f"{verb}: no answer within {timeout:g} s")
         answer = self._answers.pop(number)
+        self._raise_trouble()
         if "error" in answer:
             raise RequestError(str(answer["error"]))
         return dict(answer["ok"])
+
+    def _raise_trouble(self) -> None:
+        trouble, self._trouble = self._trouble, None
+        if trouble is not None:
+            raise RecordingError(trouble)
 
     def _send(self, data: bytes, end: float) -> None:
         self._stay_open()
@@ -293,6 +304,10 @@ class Client:
     def _take(self, message: Dict[str, Any]) -> None:
         if "rows" in message:
             self._rows.append(message)
+        elif message.get("event") == "trouble":
+            self._trouble = str(message["error"])
+        elif "event" in message:
+            pass  # of a newer program
         elif isinstance(message.get("id"), int):
             self._answers[message["id"]] = message
         else:

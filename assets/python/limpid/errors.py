@@ -14,5 +14,10 @@ class RequestError(LimpidError):
     allowed."""
 
 
+class RecordingError(LimpidError):
+    """A recording has ended by itself, as on a full disk: the message says why, and what saves what
+    was recorded until then."""
+
+
 class ProgramError(LimpidError):
     """The program is missing, did not start, refused its input or has ended."""

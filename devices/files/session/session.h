@@ -30,8 +30,10 @@ inline constexpr const char* kEventSettingPath = "/events/setting";
 inline constexpr const char* kMarkTickPath = "/marks/tick";
 inline constexpr const char* kMarkTextPath = "/marks/text";
 inline constexpr std::size_t kMarkLength = 200;  // bytes of UTF-8
+inline constexpr std::size_t kMostMarks = 100'000;
 inline constexpr const char* kWorldPath = "/objects/state";
 inline constexpr std::size_t kMostWorld = 100'000;  // numbers
+inline constexpr const char* kStory = "story";      // attribute of the root
 inline constexpr const char* kBodyNames = "names";  // attribute of what is said of each body
 
 // What a row reads as that was announced but never written, in recordings of the first edition: a
@@ -58,6 +60,7 @@ struct SessionInfo {
   std::string safety;       // the safety limits in force (TOML); empty if none were recorded
   std::string device_urdf;  // whole text
   std::string scene;        // whole text (TOML)
+  std::string story;        // that it tells: captions and the like; empty: none
   SceneFiles models;        // that the scene's text names
   // Whose rows they are. Readers leave it out: device_urdf has it. A file that is written without
   // it has neither tips nor names of joints.
@@ -111,10 +114,11 @@ struct Session {
 // Which of a twin's runs.
 inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 
-// Writes OUT.h5.part while running (SWMR: readable live) and renames it to OUT.h5 when closed.
-// Rows reach the disk at least every three quarters of a second of ticks. Not for the haptic
-// thread. Errors: FileError if OUT exists and `force` is not set, the place cannot be written, or a
-// write fails (disk full); after a failed write the .part keeps what had been flushed.
+// Writes OUT.h5.part while running (SWMR: readable live), which OUT.h5 takes the place of when it
+// is closed: the same, packed where the file system has files without a name and room for it. Rows
+// reach the disk at least every three quarters of a second of ticks. Not for the haptic thread.
+// Errors: FileError if OUT exists and `force` is not set, the place cannot be written, or a write
+// fails (disk full); after a failed write the .part keeps what had been flushed.
 class SessionWriter {
  public:
   SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force);
@@ -132,6 +136,7 @@ class SessionWriter {
   void close();                        // flush, close, rename
   std::uint64_t rows_written() const;  // handed over so far
   const std::filesystem::path& part() const;
+  bool is_locked() const;  // against other programs; false where the file system has no locks
 
  private:
   struct File;
@@ -145,17 +150,22 @@ Session read_session(const std::filesystem::path& file);
 
 // Errors: FileError naming `file`, for a text that is longer than is kept.
 void check_mark(const Mark& mark, const std::filesystem::path& file);
-// Puts these in place of the marks of a session that is complete. A copy gets them and takes the
-// session's place once it is on the disk: the session is there, whole, at any moment. Errors:
-// FileError, and the session is as before.
-void write_marks(const std::filesystem::path& session, std::span<const Mark> marks);
+// Puts `marks` in place of the marks of a session that is complete; what is neither among them nor
+// `known` is another program's mark, and stays. A copy gets them, by a program in a sandbox, and
+// takes the session's place once it is on the disk: the session is there, whole, at any moment.
+// Errors: FileError, and the session is as before; for one that another program changed meanwhile,
+// or where there would be more than kMostMarks.
+void write_marks(const std::filesystem::path& session, std::span<const Mark> marks,
+                 std::span<const Mark> known);
 
-// Makes OUT.h5 of OUT.h5.part (through a clean copy) and removes the .part. Returns the new path
-// and the rows saved. Errors: as read_session; FileError if OUT.h5 exists and not `force`.
+// Makes OUT.h5 (or `to`, where that is given) of OUT.h5.part (through a clean copy) and removes the
+// .part. Returns the new path and the rows saved. Errors: as read_session; FileError if the new
+// file exists and not `force`, or there are no rows; the .part stays then.
 struct Recovered {
   std::filesystem::path file;
   std::uint64_t rows = 0;
 };
-Recovered recover_session(const std::filesystem::path& part, bool force);
+Recovered recover_session(const std::filesystem::path& part, bool force,
+                          const std::filesystem::path& to = {});
 
 }  // namespace limpid

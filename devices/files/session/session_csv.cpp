@@ -1,6 +1,8 @@
 #include "devices/files/session/session_csv.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -8,13 +10,12 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "core/base/descriptor.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_source.h"
@@ -137,43 +138,68 @@ class Table {
 
 }  // namespace
 
-void write_csv(const Session& session, const std::filesystem::path& out, bool force) {
-  std::error_code none;
-  if (!force && std::filesystem::exists(out, none)) {
-    throw FileError(fmt::format("{}: exists already; --force replaces it", out.string()));
+namespace {
+
+constexpr std::size_t kAtOnce = 1 << 16;  // bytes
+
+// Lines to a descriptor, some at a time.
+class Lines {
+ public:
+  Lines(const std::filesystem::path& out, int to) : out_(out), to_(to) {}
+
+  template <class Values>
+  void add(const Values& values) {
+    fmt::format_to(std::back_inserter(text_), "{}\n", fmt::join(values, ","));
+    if (text_.size() >= kAtOnce) flush();
   }
+  void flush() {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(text_.data());
+    if (!write_all(to_, {bytes, text_.size()})) {
+      throw FileError(fmt::format("{}: not written: {}", out_.string(), std::strerror(errno)));
+    }
+    text_.clear();
+  }
+
+ private:
+  std::filesystem::path out_;
+  int to_;
+  fmt::memory_buffer text_;
+};
+
+void write_table(const Session& session, Lines&& lines) {
   const auto arm = recorded_arm(session.info);
   std::vector<Table> runs;
   runs.emplace_back(session, arm.get());
   if (session.twin) runs.emplace_back(*session.twin, arm.get());
   std::vector<std::string> names;
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name(i == 0 ? "" : "twin_", names);
-  // What is replaced stays until all is written.
-  const bool device =
-      std::filesystem::exists(out, none) && !std::filesystem::is_regular_file(out, none);
-  const std::filesystem::path written = device ? out : part_of(out);
-  errno = 0;
-  std::ofstream file(written, std::ios::binary);
-  fmt::memory_buffer line;
-  const auto write_line = [&](const auto& values) {
-    line.clear();
-    fmt::format_to(std::back_inserter(line), "{}\n", fmt::join(values, ","));
-    file.write(line.data(), static_cast<std::streamsize>(line.size()));
-  };
-  write_line(names);
+  lines.add(names);
   std::vector<double> numbers;
-  for (std::size_t k = 0; k < session.size() && file; ++k) {
+  for (std::size_t k = 0; k < session.size(); ++k) {
     numbers.clear();
     for (Table& run : runs) run.add(k, numbers);
-    write_line(numbers);
+    lines.add(numbers);
   }
-  file.close();
-  if (!file) {
-    const std::string why = std::strerror(errno != 0 ? errno : EIO);
-    if (!device) std::filesystem::remove(written, none);
-    throw std::runtime_error(fmt::format("{}: not written: {}", out.string(), why));
+  lines.flush();
+}
+
+}  // namespace
+
+void write_csv(const Session& session, const std::filesystem::path& out, bool force) {
+  const NoFileSizeSignal no_signal;
+  if (out == kStandardOutput) return write_table(session, {"standard output", STDOUT_FILENO});
+  std::error_code none;
+  if (std::filesystem::is_other(out, none)) {
+    const Descriptor into(::open(out.c_str(), O_WRONLY | O_CLOEXEC));
+    return write_table(session, {out, *into});
   }
-  if (!device) publish(written, out, force);
+  if (!force && std::filesystem::exists(out, none)) {
+    throw FileError(fmt::format("{}: exists already; --force replaces it", out.string()));
+  }
+  check_folder(out);
+  Draft draft(past_links(out));
+  write_table(session, {out, draft.descriptor()});
+  draft.keep();
 }
 
 }  // namespace limpid

@@ -7,6 +7,8 @@
 
 namespace limpid {
 
+inline constexpr const char* kStandardOutput = "-";  // as the name of a table
+
 // One row a tick, one column a number, as a session file of this version has them: names as the
 // datasets, joints counted from 1, each with its unit: time_s, device_position_1_rad, ...
 // device_tip_x_m, ...; of a twin its second run behind, twin_time_s, ... Every value reads back to

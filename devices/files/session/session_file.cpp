@@ -1,8 +1,6 @@
 #include "devices/files/session/session_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
 #include <ctime>
@@ -11,6 +9,7 @@
 
 #include "core/dynamics/arm_description.h"
 #include "devices/files/atomic_file.h"
+#include "devices/files/session/hdf5_descriptor.h"
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_lane.h"
@@ -76,6 +75,7 @@ void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem
   hdf5::write_text(root, "device_urdf", info.device_urdf, file);
   hdf5::write_text(root, "scene", info.scene, file);
   hdf5::write_text(root, "safety_limits", info.safety, file);
+  if (!info.story.empty()) hdf5::write_text(root, kStory, info.story, file);
   write_arm(root, info, file);
 }
 
@@ -144,22 +144,14 @@ hdf5::Properties placed_within_pages() {
 
 }  // namespace
 
-void write_nowhere(const hdf5::File& file) {
-  void* descriptor = nullptr;
-  const int null_device = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) >= 0 && null_device >= 0) {
-    ::dup2(null_device, *static_cast<int*>(descriptor));
-  }
-  if (null_device >= 0) ::close(null_device);
-}
-
-SessionFile::SessionFile(std::filesystem::path path, const SessionInfo& about)
-    : path_(std::move(path)), layout_(about.layout()) {
+SessionFile::SessionFile(std::filesystem::path path, int descriptor, const SessionInfo& about,
+                         Storage storage)
+    : path_(std::move(path)), storage_(storage), layout_(about.layout()) {
   SessionInfo info = about;
   if (info.arm) info.slides = slides_of(*info.arm);
-  lanes_.emplace_back(path_, info);
-  if (info.twin) lanes_.emplace_back(path_, info);
-  guarded([&] { create(info); });
+  lanes_.emplace_back(path_, info, storage);
+  if (info.twin) lanes_.emplace_back(path_, info, storage);
+  guarded([&] { create(descriptor, info); });
 }
 
 SessionFile::~SessionFile() { abandon(); }
@@ -177,9 +169,9 @@ void SessionFile::guarded(Work work) {
   }
 }
 
-void SessionFile::create(const SessionInfo& info) {
+void SessionFile::create(int descriptor, const SessionInfo& info) {
   const hdf5::Properties creation = placed_within_pages();
-  const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
+  const hdf5::Properties access = hdf5::access_by(descriptor, path_);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   // Without a cache for them (the file's: starting to write makes HDF5 forget a dataset's own) and
   // without filling, rows are written where they belong and nowhere else.
@@ -198,8 +190,9 @@ void SessionFile::create(const SessionInfo& info) {
     lanes_[kTwinLane].create(twin.get());
   }
   hdf5::Scales scales;
-  if (info.arm) scales = hdf5::create_scales(file_.get(), *info.arm, path_);
+  if (info.arm) scales = hdf5::create_scales(file_.get(), *info.arm, info.bodies, path_);
   for (const SessionLane& lane : lanes_) lane.attach(scales);
+  if (storage_ == Storage::packed) return;
   starting_ = true;
   check(H5Fstart_swmr_write(file_.get()) >= 0, path_, "cannot write");
   starting_ = false;
@@ -232,6 +225,9 @@ void SessionFile::append(const SettingChange& change, std::size_t lane) {
 
 void SessionFile::append(const Mark& mark) {
   check_mark(mark, path_);
+  if (marks_.count() >= kMostMarks) {
+    throw FileError(fmt::format("{}: {} marks are kept; no more", path_.string(), kMostMarks));
+  }
   if (!file_) throw FileError(fmt::format("{}: not open for writing any more", path_.string()));
   marks_.append(mark);
 }
@@ -261,16 +257,11 @@ void SessionFile::close() {
 void SessionFile::abandon() {
   if (!file_) return;
   const hdf5::Quiet quiet;
-  if (starting_) {
-    // HDF5 1.14 crashes when it closes a file whose start failed. As it stays open, no other file
-    // gets its place on the disk, which HDF5 would take for the same one.
-    for (SessionLane& lane : lanes_) lane.abandon();
-    marks_.close();
-    return file_.leave_open();
-  }
-  write_nowhere(file_);
+  hdf5::write_nowhere(file_);
   for (SessionLane& lane : lanes_) lane.abandon();
   marks_.close();
+  // HDF5 1.14 crashes when it closes a file whose start failed.
+  if (starting_) return file_.leave_open();
   file_.close();
 }
 

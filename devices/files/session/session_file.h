@@ -32,19 +32,19 @@ void write_models(hid_t root, const SceneFiles& models, const std::filesystem::p
 // than a file of this size can hold.
 SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
 
-// HDF5 cannot forget what it has not written yet: closing writes, and fails for ever on a full
-// disk. So it gets the null device in place of the file and may write there what it likes.
-void write_nowhere(const hdf5::File& file);
-
 // A file that survives being killed, by HDF5's rules (single writer, multiple readers: everything
 // is created before writing starts) and one of its own. HDF5 rewrites some things in place: how
 // long a column is, where its chunks lie. The kernel may cut such a write short where one page of
 // memory ends and the next begins; so each of them must lie within a page.
 //
-// Errors: FileError. After one, the file stays as the last flush left it and takes nothing more.
+// A packed file has none of this until it is closed.
+//
+// Errors: FileError naming `path`. After one, the file stays as the last flush left it and takes
+// nothing more.
 class SessionFile {
  public:
-  SessionFile(std::filesystem::path path, const SessionInfo& info);
+  // `descriptor`: of an empty file, open for reading and writing for as long as this is.
+  SessionFile(std::filesystem::path path, int descriptor, const SessionInfo& info, Storage storage);
   ~SessionFile();  // without close(): the file stays as the last flush left it
   SessionFile(const SessionFile&) = delete;
   SessionFile& operator=(const SessionFile&) = delete;
@@ -57,12 +57,13 @@ class SessionFile {
   std::uint64_t rows() const { return lanes_.front().rows(); }
 
  private:
-  void create(const SessionInfo& info);
+  void create(int descriptor, const SessionInfo& info);
   void abandon();
   template <class Work>
   void guarded(Work work);
 
   std::filesystem::path path_;
+  Storage storage_;
   RowLayout layout_;
   std::vector<SessionLane> lanes_;
   MarkTable marks_;

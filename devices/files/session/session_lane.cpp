@@ -1,5 +1,6 @@
 #include "devices/files/session/session_lane.h"
 
+#include <fmt/format.h>
 #include <hdf5_hl.h>
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 
 namespace limpid::hdf5 {
 namespace {
+
+constexpr unsigned kLevel = 1;  // the fastest
 
 Dataset create_names(hid_t root, const char* name, const std::vector<std::string>& names,
                      const std::filesystem::path& file) {
@@ -40,11 +43,22 @@ Dataset create_names(hid_t root, const char* name, const std::vector<std::string
 
 }  // namespace
 
-Scales create_scales(hid_t root, const ArmDescription& arm, const std::filesystem::path& file) {
-  std::vector<std::string> joints;
+Scales create_scales(hid_t root, const ArmDescription& arm, const std::vector<std::string>& bodies,
+                     const std::filesystem::path& file) {
+  std::vector<std::string> joints, contacts;
   for (const Joint& joint : arm.joints) joints.push_back(joint.name);
-  return {create_names(root, "joint", joints, file),
-          create_names(root, "axis", {"x", "y", "z"}, file)};
+  for (int i = 1; i <= kRowContacts; ++i) {
+    for (const char axis : {'x', 'y', 'z'}) contacts.push_back(fmt::format("{} of {}", axis, i));
+  }
+  Scales scales;
+  scales.joint = create_names(root, "joint", joints, file);
+  scales.axis = create_names(root, "axis", {"x", "y", "z"}, file);
+  scales.contact = create_names(root, "contact_axis", contacts, file);
+  if (bodies.empty()) return scales;
+  scales.object = create_names(root, "object", bodies, file);
+  scales.pose = create_names(root, "pose", {"x", "y", "z", "qw", "qx", "qy", "qz"}, file);
+  scales.motion = create_names(root, "motion", {"vx", "vy", "vz", "wx", "wy", "wz"}, file);
+  return scales;
 }
 
 void make_scale(const Dataset& dataset, const char* name, const std::filesystem::path& file) {
@@ -56,18 +70,24 @@ void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimensi
   check(H5DSattach_scale(dataset.get(), scale.get(), dimension) >= 0, file, "cannot write");
 }
 
-Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, hsize_t chunk,
+Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, Chunks how,
                        std::optional<double> fill) {
   const Properties creation(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_fill_time(creation.get(), fill ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
+  // The last chunk is packed whole, and must not hold what was in memory by chance.
+  const bool filled = fill || how.packed;
+  H5Pset_fill_time(creation.get(), filled ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
   if (fill) H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &*fill);
   const std::array<hsize_t, 3> none{0, row.width, row.each_body};
   const std::array<hsize_t, 3> unlimited{H5S_UNLIMITED, row.width, row.each_body};
-  const std::array<hsize_t, 3> chunks{chunk, row.width, row.each_body};
+  const std::array<hsize_t, 3> chunks{how.rows, row.width, row.each_body};
   const Dataspace space(H5Screate_simple(row.rank, none.data(), unlimited.data()));
   const Properties links(H5Pcreate(H5P_LINK_CREATE));
   H5Pset_create_intermediate_group(links.get(), 1);
   H5Pset_chunk(creation.get(), row.rank, chunks.data());
+  if (how.packed) {
+    H5Pset_shuffle(creation.get());
+    H5Pset_deflate(creation.get(), kLevel);
+  }
   return Dataset(
       H5Dcreate2(file, path, type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
 }
@@ -104,9 +124,10 @@ constexpr double kFlushSeconds = 0.75;  // rows reach the disk at least this oft
 constexpr double kMostBlockRows = 16384;
 constexpr std::uint64_t kMostRows = 4096;  // at once: more would not stay in the processor's cache
 constexpr std::uint64_t kBlocksPerChunk = 16;
-constexpr hsize_t kEventChunk = 64;
-constexpr hsize_t kSumChunk = 64;
-constexpr hsize_t kWorldChunk = 1024;
+constexpr hsize_t kMostChunkBytes = 1 << 20;  // of one that is packed
+constexpr hdf5::Chunks kEventChunk{64};
+constexpr hdf5::Chunks kSumChunk{64};
+constexpr hdf5::Chunks kWorldChunk{1024};
 
 constexpr hdf5::RowShape kOne;
 constexpr hdf5::RowShape table(hsize_t width) { return {2, width}; }
@@ -150,11 +171,13 @@ std::uint64_t rows_of_block(double tick) {
 
 }  // namespace
 
-SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info)
+SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info, Storage storage)
     : path_(std::move(path)),
+      storage_(storage),
       layout_(info.layout()),
       bodies_(info.bodies),
-      block_rows_(rows_of_block(info.tick)),
+      sum_rows_(rows_of_block(info.tick)),
+      block_rows_(storage == Storage::packed ? std::max(kMostRows, sum_rows_) : sum_rows_),
       most_rows_(std::max(block_rows_, kMostRows)),
       pending_(std::make_unique_for_overwrite<double[]>(
           most_rows_ * static_cast<std::size_t>(layout_.stride()))),
@@ -190,11 +213,19 @@ hdf5::RowShape SessionLane::shape(const ColumnInfo& column) const {
   return single ? kOne : table(width);  // N x 1 for a single joint
 }
 
+hdf5::Chunks SessionLane::chunks(hdf5::RowShape shape) const {
+  if (storage_ == Storage::safe) return {kBlocksPerChunk * block_rows_};
+  const hsize_t bytes = shape.width * shape.each_body * sizeof(double);
+  return {
+      std::min<hsize_t>(block_rows_, std::bit_floor(std::max<hsize_t>(kMostChunkBytes / bytes, 1))),
+      true};
+}
+
 void SessionLane::create_column(hid_t group, const ColumnInfo& column) {
   hdf5::Dataset& dataset = columns_[column_index(column.column)];
   dataset =
       create_growing(group, within_group(column.path), column.byte ? H5T_STD_U8LE : H5T_IEEE_F64LE,
-                     shape(column), kBlocksPerChunk * block_rows_, mostly(column.column));
+                     shape(column), chunks(shape(column)), mostly(column.column));
   check(static_cast<bool>(dataset), path_, "cannot write");
   if (of_each_body(column) > 0) hdf5::write_texts(dataset.get(), kBodyNames, bodies_, path_);
   const std::vector<std::string> units = units_.units(column);
@@ -209,9 +240,9 @@ void SessionLane::create_column(hid_t group, const ColumnInfo& column) {
 void SessionLane::create_derived(hid_t group) {
   for (std::size_t i = 0; i < kDerived; ++i) {
     const DerivedInfo& info = kDerivedInfo[i];
-    derived_columns_[i] = create_growing(group, within_group(info.path), H5T_IEEE_F64LE, table(3),
-                                         kBlocksPerChunk * block_rows_,
-                                         i == kTotalForce ? std::optional(0.0) : std::nullopt);
+    derived_columns_[i] =
+        create_growing(group, within_group(info.path), H5T_IEEE_F64LE, table(3), chunks(table(3)),
+                       i == kTotalForce ? std::optional(0.0) : std::nullopt);
     check(static_cast<bool>(derived_columns_[i]), path_, "cannot write");
     hdf5::write_text(derived_columns_[i].get(), "unit", info.unit, path_);
     hdf5::write_text(derived_columns_[i].get(), "what", info.what, path_);
@@ -219,8 +250,9 @@ void SessionLane::create_derived(hid_t group) {
 }
 
 void SessionLane::create_rounding(hid_t group) {
-  rounding_column_ = create_growing(group, within_group(kRoundingPath), H5T_STD_I8LE,
-                                    table(units_.scaled().size()), kBlocksPerChunk * block_rows_);
+  const hdf5::RowShape shape = table(units_.scaled().size());
+  rounding_column_ =
+      create_growing(group, within_group(kRoundingPath), H5T_STD_I8LE, shape, chunks(shape));
   check(static_cast<bool>(rounding_column_), path_, "cannot write");
   hdf5::write_text(rounding_column_.get(), "unit", "-", path_);
   hdf5::write_text(rounding_column_.get(), "what",
@@ -242,6 +274,14 @@ void SessionLane::attach(const hdf5::Scales& scales) const {
     if (of_axes(column.width) && scales.axis) {
       hdf5::attach_scale(dataset, scales.axis, 1, path_);
     }
+    if (column.width == ColumnWidth::contacts && scales.contact) {
+      hdf5::attach_scale(dataset, scales.contact, 1, path_);
+    }
+    if (of_each_body(column) > 0 && scales.object) {
+      const bool poses = column.width == ColumnWidth::poses;
+      hdf5::attach_scale(dataset, scales.object, 1, path_);
+      hdf5::attach_scale(dataset, poses ? scales.pose : scales.motion, 2, path_);
+    }
   }
   if (!deriver_) return;
   for (const hdf5::Dataset& dataset : derived_columns_) {
@@ -256,6 +296,8 @@ void SessionLane::create_events(hid_t group) {
   event_setting_ =
       create_growing(group, within_group(kEventSettingPath), text.get(), kOne, kEventChunk);
   check(event_row_ && event_setting_, path_, "cannot write");
+  hdf5::make_scale(event_row_, "row", path_);
+  hdf5::attach_scale(event_setting_, event_row_, 0, path_);
   hdf5::write_text(event_row_.get(), "unit", "-", path_);
   hdf5::write_text(event_row_.get(), "what", "row from which the setting holds", path_);
   hdf5::write_text(event_setting_.get(), "unit", "-", path_);
@@ -265,6 +307,7 @@ void SessionLane::create_events(hid_t group) {
 void SessionLane::create_world(hid_t group) {
   world_ = create_growing(group, within_group(kWorldPath), H5T_IEEE_F64LE, kOne, kWorldChunk);
   check(static_cast<bool>(world_), path_, "cannot write");
+  hdf5::make_scale(world_, "state", path_);
   hdf5::write_text(world_.get(), "unit", "-", path_);
   hdf5::write_text(world_.get(), "what",
                    "what the loop keeps of objects that move, at the first row: for the program, "
@@ -278,7 +321,7 @@ void SessionLane::append_world(std::span<const double> world) {
 }
 
 void SessionLane::create_check(hid_t group) {
-  const auto rows = static_cast<std::int64_t>(block_rows_);
+  const auto rows = static_cast<std::int64_t>(sum_rows_);
   sums_ = create_growing(group, within_group(kCheckPath), H5T_STD_U64LE,
                          table(count_summed(layout_)), kSumChunk);
   check(static_cast<bool>(sums_), path_, "cannot write");
@@ -350,8 +393,8 @@ void SessionLane::write_check() {
     return ColumnValues{pending(column.column), width, width};
   });
   std::vector<std::uint64_t> sums;
-  for (std::uint64_t from = 0; from < pending_rows_; from += block_rows_) {
-    const auto of_block = column_sums(columns, from, std::min(block_rows_, pending_rows_ - from));
+  for (std::uint64_t from = 0; from < pending_rows_; from += sum_rows_) {
+    const auto of_block = column_sums(columns, from, std::min(sum_rows_, pending_rows_ - from));
     for (std::size_t i = 0; i < kColumns; ++i) {
       if (summed(layout_, kColumnInfo[i])) sums.push_back(of_block[i]);
     }

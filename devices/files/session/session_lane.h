@@ -20,16 +20,18 @@ namespace limpid::hdf5 {
 
 // What the rows and columns of a session's datasets stand for, in HDF5's own way: dimension scales.
 
-// The scales that the whole file has once: /joint, the names of the joints, and /axis, x, y, z.
-// Invalid in a file whose arm is not known.
+// The scales that the whole file has once: /joint, the names of the joints, /axis, x, y, z, and
+// /contact_axis, those of each contact. Where bodies move /object has their names, /pose and
+// /motion what is said of each. Invalid in a file whose arm is not known.
 struct Scales {
-  Dataset joint, axis;
+  Dataset joint, axis, contact, object, pose, motion;
 };
 // Errors: FileError naming `file`.
-Scales create_scales(hid_t root, const ArmDescription& arm, const std::filesystem::path& file);
+Scales create_scales(hid_t root, const ArmDescription& arm, const std::vector<std::string>& bodies,
+                     const std::filesystem::path& file);
 
 void make_scale(const Dataset& dataset, const char* name, const std::filesystem::path& file);
-// Says that `scale` numbers the dataset's rows (0) or columns (1).
+// Says that `scale` numbers the dataset's rows (0), columns (1), or what is within those (2).
 void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimension,
                   const std::filesystem::path& file);
 
@@ -46,9 +48,15 @@ struct RowShape {
   hsize_t each_body = 1;  // of rank 3; `width` counts bodies then
 };
 
+// How rows lie in a file.
+struct Chunks {
+  hsize_t rows = 1;     // in one
+  bool packed = false;  // by deflate, after their bytes were put in another order
+};
+
 // A list or table of such rows; invalid if it cannot be created. `fill`: what rows read as that are
 // announced and never written; none: as anything.
-Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, hsize_t chunk,
+Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, Chunks chunks,
                        std::optional<double> fill = std::nullopt);
 
 // Appends `count` rows behind the first `from` and flushes them; without data they are what the
@@ -60,6 +68,10 @@ void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row
 }  // namespace limpid::hdf5
 namespace limpid {
 
+// What a session's file is for: `safe` may be killed at any moment while it is written, `packed`
+// takes little room once it is closed.
+enum class Storage { safe, packed };
+
 // Rows go straight behind those that are there, in blocks, without a filter, so that nothing that
 // was written is ever written again. A block is a power of two of rows, 512 at 1 kHz: what the
 // kernel is given then begins and ends where pages of memory do, which is half the work for it.
@@ -70,11 +82,14 @@ namespace limpid {
 // chunk 8176 on. A chunk therefore holds eight seconds of ticks, 16 blocks: a recording may last
 // 18 hours.
 //
+// A packed lane has blocks of at least 4096 rows, and chunks that a block fills whole: each is
+// packed once.
+//
 // Errors of all but the constructor: FileError naming `path`.
 class SessionLane {
  public:
   // Nothing is created yet.
-  SessionLane(std::filesystem::path path, const SessionInfo& info);
+  SessionLane(std::filesystem::path path, const SessionInfo& info, Storage storage);
 
   void create(hid_t group);  // of the file: its root, or a group below
   // Says of each dataset what its rows and columns stand for.
@@ -97,6 +112,7 @@ class SessionLane {
   void create_events(hid_t group);
   void create_world(hid_t group);
   hdf5::RowShape shape(const ColumnInfo& column) const;
+  hdf5::Chunks chunks(hdf5::RowShape shape) const;
   void create_check(hid_t group);
   double* pending(Column column) const;
   void sort_in(std::span<const double> rows);
@@ -109,10 +125,12 @@ class SessionLane {
   void write_check();
 
   std::filesystem::path path_;
+  Storage storage_;
   RowLayout layout_;
   std::vector<std::string> bodies_;
-  std::uint64_t block_rows_;
-  std::uint64_t most_rows_;  // that are written at once: whole blocks
+  std::uint64_t sum_rows_;    // that each of the sums is over
+  std::uint64_t block_rows_;  // as many of those as are written together
+  std::uint64_t most_rows_;   // that are written at once: whole blocks
   std::uint64_t flushed_rows_ = 0;
   std::uint64_t pending_rows_ = 0;
   std::uint64_t flushed_changes_ = 0;

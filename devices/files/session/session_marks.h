@@ -21,6 +21,7 @@ class MarkTable {
   void append(const Mark& mark) { waiting_.push_back(mark); }
   void flush(const std::filesystem::path& file);
   bool close();  // whether it worked; what was not flushed is given up
+  std::uint64_t count() const { return written_ + waiting_.size(); }
 
  private:
   hdf5::Dataset tick_, text_;
@@ -28,9 +29,17 @@ class MarkTable {
   std::vector<Mark> waiting_;
 };
 
-// Fills the session's marks; its rows are read already. Of a leftover those at rows that are not
-// there stay away. Errors: FileError.
-void read_marks(hid_t root, Session& session, const std::filesystem::path& file,
-                hdf5::Claims& claims);
+// Those of a file with so many rows. Of a leftover those at rows that are not there stay away.
+// Errors: FileError.
+std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const std::filesystem::path& file,
+                             hdf5::Claims& claims);
+
+// What write_marks() asks for.
+struct MarkOrder {
+  std::vector<Mark> marks, known;
+};
+// In this process, as only limpid-session does it: into the file of `descriptor`, a copy of `file`.
+// Errors: FileError; the copy is then worth nothing.
+void write_marks_here(const std::filesystem::path& file, int descriptor, const MarkOrder& order);
 
 }  // namespace limpid

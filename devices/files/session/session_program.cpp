@@ -2,12 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <vector>
 
 #include "core/base/child.h"
 #include "core/base/descriptor.h"
@@ -15,7 +17,6 @@
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_reader.h"
 #include "devices/files/session/session_source.h"
-#include "devices/files/session/session_story.h"
 
 namespace limpid::wire {
 
@@ -70,11 +71,29 @@ void take_run(Reader& from, Session& run) {
   }
 }
 
+void put_marks(Writer& to, std::span<const Mark> marks) {
+  to.number<std::uint64_t>(marks.size());
+  for (const Mark& mark : marks) {
+    to.number(mark.tick);
+    to.text(mark.text);
+  }
+}
+
+std::vector<Mark> take_marks(Reader& from) {
+  std::vector<Mark> marks;
+  for (std::size_t left = from.taken(2 * sizeof(std::uint64_t)); left > 0; --left) {
+    const auto tick = from.number<std::uint64_t>();
+    marks.push_back({tick, from.text()});
+  }
+  return marks;
+}
+
 // Each text of SessionInfo, in the same order at both ends.
 template <class Info, class Work>
 void each_text(Info& info, Work work) {
-  for (auto* const text : {&info.created, &info.app_version, &info.build, &info.source,
-                           &info.config, &info.safety, &info.device_urdf, &info.scene}) {
+  for (auto* const text :
+       {&info.created, &info.app_version, &info.build, &info.source, &info.config, &info.safety,
+        &info.device_urdf, &info.scene, &info.story}) {
     work(*text);
   }
 }
@@ -97,11 +116,7 @@ void put_session(Writer& to, const Session& session) {
   to.number<std::uint64_t>(info.bodies.size());
   for (const std::string& name : info.bodies) to.text(name);
   put_run(to, session);
-  to.number<std::uint64_t>(session.marks.size());
-  for (const Mark& mark : session.marks) {
-    to.number(mark.tick);
-    to.text(mark.text);
-  }
+  put_marks(to, session.marks);
   to.number<std::uint8_t>(session.twin != nullptr);
   if (session.twin == nullptr) return;
   to.text(session.twin->info.config);
@@ -134,11 +149,9 @@ Session take_session(Reader& from) {
   if (bodies > kMostBodies) throw Broken("more bodies than there can be");
   for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
   take_run(from, session);
-  const std::size_t marks = from.taken(2 * sizeof(std::uint64_t));
-  for (std::size_t i = 0; i < marks; ++i) {
-    const auto tick = from.number<std::uint64_t>();
-    if (tick >= session.size()) throw Broken("a mark behind the end");
-    session.marks.push_back({tick, from.text()});
+  session.marks = take_marks(from);
+  for (const Mark& mark : session.marks) {
+    if (mark.tick >= session.size()) throw Broken("a mark behind the end");
   }
   if (from.number<std::uint8_t>() == 0) return session;
   Session twin;
@@ -149,6 +162,18 @@ Session take_session(Reader& from) {
   if (twin.size() != session.size()) throw Broken("two runs that are not as long as each other");
   session.twin = std::make_shared<const Session>(std::move(twin));
   return session;
+}
+
+void put_order(Writer& to, const MarkOrder& order) {
+  put_marks(to, order.marks);
+  put_marks(to, order.known);
+}
+
+MarkOrder take_order(Reader& from) {
+  MarkOrder order;
+  order.marks = take_marks(from);
+  order.known = take_marks(from);
+  return order;
 }
 
 void put_table(Writer& to, const Table& table) {
@@ -195,9 +220,9 @@ std::string why_ended(int status) {
   return why_failed(status, kSessionProgram);
 }
 
-// What the program says of `file`, as `take` understands it.
+// What the program says of `file`, as `take` understands it, which has the descriptors of `given`.
 template <class Take>
-auto ask(const char* what, const fs::path& file, Take take) {
+auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> given = {}) {
   std::array<int, 2> ends{-1, -1};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
     refuse(file, "cannot be read, there are too many open files");
@@ -206,7 +231,7 @@ auto ask(const char* what, const fs::path& file, Take take) {
   Descriptor other_end(ends[1]);
   ::fcntl(*answers, F_SETPIPE_SZ, kPipeBytes);
   const std::string at = beside_this_program(kSessionProgram).string();
-  const std::array given{Given{*other_end, STDOUT_FILENO}};
+  given.push_back({*other_end, STDOUT_FILENO});
   Child child({at, what, file.string()}, given);
   if (!child.started()) {
     refuse(file,
@@ -237,12 +262,22 @@ Session read_session(const fs::path& file) {
   });
 }
 
-std::string attached_story(const fs::path& session) {
-  return ask("story", session, [](wire::Reader& from) { return from.text(); });
-}
-
 wire::Table read_table(const fs::path& file) {
   return ask("table", file, [](wire::Reader& from) { return wire::take_table(from); });
+}
+
+void write_marks_into(const fs::path& file, int descriptor, const MarkOrder& order) {
+  // In memory and not through a pipe, which the program may close before all is written.
+  const Descriptor orders(::memfd_create("marks", MFD_CLOEXEC));
+  try {
+    wire::Writer to(*orders);
+    wire::put_order(to, order);
+  } catch (const wire::Broken&) {
+    refuse(file, "there is no memory for its marks");
+  }
+  ::lseek(*orders, 0, SEEK_SET);
+  ask("marks", file, [](wire::Reader& from) { return from.number<std::uint8_t>(); },
+      {{*orders, STDIN_FILENO}, {descriptor, kCopyToChange}});
 }
 
 }  // namespace limpid

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "devices/files/session/session.h"
+#include "devices/files/session/session_marks.h"
 
 namespace limpid::wire {
 
@@ -84,6 +85,8 @@ class Reader {
 // Errors: Broken.
 void put_session(Writer& to, const Session& session);
 Session take_session(Reader& from);
+void put_order(Writer& to, const MarkOrder& order);
+MarkOrder take_order(Reader& from);
 
 // The attributes and columns of a file of numbers that is no session.
 struct Table {
@@ -99,9 +102,14 @@ namespace limpid {
 
 // The program limpid-session, seen from the one that calls it.
 inline constexpr const char* kSessionProgram = "limpid-session";
+inline constexpr int kCopyToChange = 3;  // its descriptor there
 
 // The texts, whole numbers and columns of a sweep's table. Errors: FileError for what is no table,
 // damaged, or crashes what reads it.
 wire::Table read_table(const std::filesystem::path& file);
+
+// Does what write_marks() does to the copy of a session that `descriptor` is open for. Errors:
+// FileError naming `file`.
+void write_marks_into(const std::filesystem::path& file, int descriptor, const MarkOrder& order);
 
 }  // namespace limpid

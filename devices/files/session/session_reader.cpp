@@ -181,6 +181,7 @@ SessionInfo read_info(hid_t root, const fs::path& file, hdf5::Claims& claims) {
     info.safety = hdf5::read_text(root, "safety_limits", file);
   }
   if (H5Aexists(root, "build") > 0) info.build = hdf5::read_text(root, "build", file);
+  if (H5Aexists(root, kStory) > 0) info.story = hdf5::read_text(root, kStory, file);
   if (version > 1) info.slides = read_slides(root, info.dof, file);
   info.models = read_models(root, file, claims);
   info.bodies = read_bodies(root, file);
@@ -407,7 +408,7 @@ Session read_session_here(const fs::path& file) {
   session.layout = session.info.layout();
   try {
     read_run(opened.get(), session, file, claims);
-    read_marks(opened.get(), session, file, claims);
+    session.marks = read_marks(opened.get(), session.size(), file, claims);
     if (const hdf5::Group twin = twin_group(opened.get(), file)) {
       read_twin(twin.get(), session, file, claims);
     }

@@ -16,10 +16,9 @@ void read_changes(hid_t group, Session& session, const std::filesystem::path& fi
                   hdf5::Claims& claims);
 
 // Reads HDF5 files in this process, as only limpid-session does: what a broken or hostile file does
-// to HDF5's library ends that program. The others have read_session(), attached_story() and
+// to HDF5's library ends that program. The others have read_session(), write_marks() and
 // read_table(), which call it.
 Session read_session_here(const std::filesystem::path& file);
-std::string attached_story_here(const std::filesystem::path& session);
 // All texts and whole numbers at the root, and the columns /done and /measure/... Errors: FileError
 // for files that have none.
 wire::Table read_table_here(const std::filesystem::path& file);

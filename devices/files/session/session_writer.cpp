@@ -2,12 +2,15 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <thread>
 
 #include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
@@ -48,30 +51,105 @@ void check_session_info(const SessionInfo& info, const fs::path& file) {
   }
 }
 
-WriteLock::WriteLock(const fs::path& file, Make make)
-    : descriptor_(
-          ::open(file.c_str(), O_RDWR | O_CLOEXEC | (make == Make::yes ? O_CREAT : 0), 0644)) {
-  if (descriptor_ < 0) fail(file, "cannot open", errno);
-  // A lock of the open file, not of the process, so that it works between threads too; HDF5's own
-  // locks (flock) are of another kind and do not meet it.
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(20);  // between two tries
+
+// Network file systems may have none.
+bool has_no_locks(int code) { return code == ENOLCK || code == EOPNOTSUPP || code == ENOSYS; }
+
+int open_no_link(const fs::path& file, int flags) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0644);
+  if (descriptor >= 0) return descriptor;
+  if (errno == ELOOP) {
+    throw FileError(fmt::format("{}: is a link, which is not followed; remove it", file.string()));
+  }
+  fail(file, "cannot open", errno);
+}
+
+}  // namespace
+
+WriteLock::WriteLock(const fs::path& file, Make make, std::chrono::milliseconds patience)
+    : descriptor_(open_no_link(file, make == Make::yes ? O_CREAT : 0)) {
+  // A lock of the open file, not of the process, so that it works between threads too.
   struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
-  if (::fcntl(descriptor_, F_OFD_SETLK, &whole) != 0) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (::fcntl(descriptor_, F_OFD_SETLK, &whole) != 0) {
     const int code = errno;
-    ::close(descriptor_);
-    if (code == EAGAIN || code == EACCES) {
-      throw FileError(fmt::format("{}: is still being recorded", file.string()));
+    if (has_no_locks(code)) return;
+    const bool taken = code == EAGAIN || code == EACCES;
+    if (taken && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(kPause);
+      continue;
     }
-    fail(file, "cannot lock", code);
+    ::close(descriptor_);
+    if (!taken) fail(file, "cannot lock", code);
+    throw FileError(
+        fmt::format("{}: is still being recorded, or changed by another program", file.string()));
   }
+  held_ = true;
 }
 
 WriteLock::~WriteLock() { ::close(descriptor_); }
 
 // Where a session may be written, and how it gets its name when it is complete.
 
-namespace fs = std::filesystem;
+namespace {
+
+// Below this the disk is left to the recording itself [bytes].
+constexpr std::uint64_t kRoomForOthers = 64 << 20;
+
+// The recording once more, packed, in a file without a name: what OUT.h5 becomes. Whatever goes
+// wrong with it, OUT.h5.part has all.
+class PackedCopy {
+ public:
+  PackedCopy(const fs::path& out, const SessionInfo& info) {
+    attempt([&] {
+      draft_.emplace(out);
+      // One with a name would stay when the program is killed.
+      if (draft_->has_name()) throw FileError("no files without a name");
+      file_.emplace(out, draft_->descriptor(), info, Storage::packed);
+    });
+  }
+
+  template <class Work>
+  void with(Work work) {
+    if (file_) attempt([&] { check_room(), work(*file_); });
+  }
+  // Whether it has taken the name.
+  bool keep() {
+    with([&](SessionFile& file) {
+      file.close();
+      draft_->keep();
+      kept_ = true;
+    });
+    return kept_;
+  }
+
+ private:
+  template <class Work>
+  void attempt(Work work) {
+    try {
+      work();
+    } catch (const FileError&) {
+      file_.reset();
+      draft_.reset();
+    }
+  }
+  void check_room() const {
+    struct statvfs disk {};
+    if (::fstatvfs(draft_->descriptor(), &disk) != 0) return;
+    if (disk.f_bavail * disk.f_frsize < kRoomForOthers) throw FileError("the disk is nearly full");
+  }
+
+  std::optional<Draft> draft_;
+  std::optional<SessionFile> file_;
+  bool kept_ = false;
+};
+
+}  // namespace
 
 struct SessionWriter::File {
   fs::path out;
@@ -79,6 +157,13 @@ struct SessionWriter::File {
   bool force;
   std::optional<WriteLock> lock;
   std::optional<SessionFile> session;
+  std::optional<PackedCopy> packed;
+
+  template <class... What>
+  void append(const What&... what) {
+    session->append(what...);
+    packed->with([&](SessionFile& copy) { copy.append(what...); });
+  }
 };
 
 SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
@@ -88,8 +173,9 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
   file_->part = part_of(file_->out);
   file_->force = force;
   check_place(file_->out, force);
-  if (fs::exists(file_->part)) WriteLock(file_->part, WriteLock::Make::no);  // nobody records there
-  if (!force && fs::exists(file_->part)) {
+  const bool left = fs::exists(fs::symlink_status(file_->part));
+  if (left) WriteLock(file_->part, WriteLock::Make::no);  // nobody records there
+  if (!force && left) {
     throw FileError(fmt::format(
         "{0}: left by a recording that was not closed; `limpid recover {0}` saves it, --force "
         "overwrites it",
@@ -97,7 +183,8 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
   }
   file_->lock.emplace(file_->part, WriteLock::Make::yes);
   try {
-    file_->session.emplace(file_->part, info);
+    file_->session.emplace(file_->part, file_->lock->descriptor(), info, Storage::safe);
+    file_->packed.emplace(file_->out, info);
   } catch (const FileError&) {
     std::error_code ignored;
     fs::remove(file_->part, ignored);  // it holds nothing yet
@@ -108,55 +195,63 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
 SessionWriter::~SessionWriter() = default;
 
 void SessionWriter::append(std::span<const double> rows, std::size_t lane) {
-  file_->session->append(rows, lane);
+  file_->append(rows, lane);
 }
 void SessionWriter::append(const SettingChange& change, std::size_t lane) {
-  file_->session->append(change, lane);
+  file_->append(change, lane);
 }
-void SessionWriter::append(const Mark& mark) { file_->session->append(mark); }
+void SessionWriter::append(const Mark& mark) { file_->append(mark); }
 void SessionWriter::append_world(std::span<const double> world, std::size_t lane) {
   file_->session->append_world(world, lane);
+  file_->packed->with([&](SessionFile& copy) { copy.append_world(world, lane); });
 }
 std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(); }
 const fs::path& SessionWriter::part() const { return file_->part; }
+bool SessionWriter::is_locked() const { return file_->lock && file_->lock->held(); }
 
 void SessionWriter::close() {
   if (!file_->lock) return;
   file_->session->close();
-  publish(file_->part, file_->out, file_->force);
+  std::error_code none;
+  const bool free = file_->force || !fs::exists(file_->out, none);
+  if (free && file_->packed->keep()) {
+    fs::remove(file_->part, none);
+  } else {
+    publish(file_->part, file_->out, file_->force);
+  }
   file_->lock.reset();
 }
 
-Recovered recover_session(const fs::path& part, bool force) {
-  const fs::path out = recovered_name(part);
+Recovered recover_session(const fs::path& part, bool force, const fs::path& to) {
+  const fs::path own = recovered_name(part);
+  const fs::path out = to.empty() ? own : to;
   if (const std::string why = why_not_found(part, "no such file"); !why.empty()) {
     throw FileError(fmt::format("{}: {}", part.string(), why));
   }
   check_place(out, force);
   const WriteLock lock(part, WriteLock::Make::no);
   const Session session = read_session(part);
-
-  fs::path copy = out;
-  copy += ".recovering";
-  try {
-    SessionInfo info = session.info;
-    info.arm = recorded_arm(info);
-    SessionFile file(copy, info);
-    const auto copy_run = [&file](const Session& run, std::size_t lane) {
-      file.append_world(run.world, lane);
-      for (const SettingChange& change : run.changes) file.append(change, lane);
-      file.append(run.rows, lane);
-    };
-    copy_run(session, kMainLane);
-    if (session.twin) copy_run(*session.twin, kTwinLane);
-    for (const Mark& mark : session.marks) file.append(mark);
-    file.close();
-    publish(copy, out, force);
-  } catch (const FileError&) {
-    std::error_code ignored;
-    fs::remove(copy, ignored);
-    throw;
+  if (session.size() == 0) {
+    throw FileError(fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
   }
+  SessionInfo info = session.info;
+  info.arm = recorded_arm(info);
+  Draft draft(out);
+  SessionFile file(out, draft.descriptor(), info, Storage::packed);
+  const auto copy_run = [&file](const Session& run, std::size_t lane) {
+    file.append_world(run.world, lane);
+    for (const SettingChange& change : run.changes) file.append(change, lane);
+    file.append(run.rows, lane);
+  };
+  copy_run(session, kMainLane);
+  if (session.twin) copy_run(*session.twin, kTwinLane);
+  for (const Mark& mark : session.marks) file.append(mark);
+  file.close();
+  if (!force && fs::exists(out)) {
+    throw FileError(fmt::format("{}: appeared meanwhile and was left alone; --force overwrites it",
+                                out.string()));
+  }
+  draft.keep();
   fs::remove(part);
   return {out, session.size()};
 }

@@ -159,6 +159,21 @@ TEST(BodyReport, KnowsWhichInertiaThereIs) {
   EXPECT_FALSE(possible_inertia(Vec3(1e-6, 1e-6, 2.1e-6)));
 }
 
+// A cube of 100 g and 20 mm has m a^2 / 6, 6.7e-6 kg m^2 or 6.7 g mm^2 times a million.
+TEST(BodyReport, WarnsOfMomentsInOtherUnits) {
+  const auto warned = [](double moment) {
+    Object cube = body("cube", Box{{0.02, 0.02, 0.02}}, Vec3(0, 0, 0.1), 0.1);
+    cube.body->inertia = Vec3::Constant(moment);
+    const BodyReport report = report_on_bodies(on_a_floor({cube}), arm());
+    return std::ranges::count_if(report.warnings, [](const std::string& warning) {
+      return warning.find("in kg m^2?") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(warned(6.7e-6), 0);
+  EXPECT_EQ(warned(2e-5), 0) << "all of it in the corners";
+  EXPECT_EQ(warned(6700), 1);
+}
+
 TEST(BodyReport, WarnsOfWhatIsSoThinThatThingsFallThrough) {
   const auto warned = [](const Shape& shape) {
     Object object = body("plate", shape, Vec3(0, 0, 0.1));

@@ -30,6 +30,12 @@ TEST(ForceTally, SaysThatTheForceWasOnAllTheTime) {
   EXPECT_THAT(text, Not(HasSubstr("without")));
 }
 
+TEST(ForceTally, OfNoRowsSaysThatNothingWasRecorded) {
+  const std::string text = force_tally(with({}));
+  EXPECT_THAT(text, HasSubstr("nothing was recorded"));
+  EXPECT_THAT(text, Not(HasSubstr("all the time")));
+}
+
 TEST(ForceTally, HasTheSecondsWithoutForceAndEachReason) {
   const std::string text = force_tally(with({{ForceState::on, 500},
                                              {ForceState::off, 250},

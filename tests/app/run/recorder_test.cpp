@@ -59,6 +59,18 @@ TEST(Recorder, KeepsMarksAtRowsThatThereAre) {
                 {0, "before the first row"}, {450, "in the middle"}, {899, "behind the end"}}));
 }
 
+// One more would make the recording unreadable: the mark is refused, and the recording goes on.
+TEST(Recorder, TakesAsManyMarksAsTheReaderDoes) {
+  const test::TempDir dir;
+  Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
+  const std::vector<double> rows = sample_rows(RowLayout(3), 0, 1);
+  ASSERT_TRUE(recorder.push_waiting(rows));
+  for (std::size_t i = 0; i < kMostMarks; ++i) recorder.mark({0, "x"});
+  EXPECT_THROW(recorder.mark({0, "one more"}), FileError);
+  recorder.finish();
+  EXPECT_EQ(read_session(dir / "a.h5").marks.size(), kMostMarks);
+}
+
 // A file of no rows has no moment to be marked: it would be refused when it is read.
 TEST(Recorder, KeepsNoMarksWithoutRows) {
   const test::TempDir dir;

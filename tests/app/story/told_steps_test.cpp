@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "app/story/run_story.h"
-#include "devices/files/session/session_story.h"
 #include "devices/files/text_file.h"
 #include "tests/support/temp_dir.h"
 
@@ -85,7 +84,7 @@ TEST(ToldSteps, GoWithASessionThroughItsFile) {
   const StoryRun run = run_story(story, never, [](double) {});
   const auto file = temp / "s.h5";
   write_session(run.session, {story.title, story.steps}, file, false);
-  const ToldSteps again = told_in(file);
+  const ToldSteps again = told_in(read_session(file), file);
   EXPECT_EQ(again.title, "Short");
   ASSERT_EQ(again.steps.size(), 2u);
   EXPECT_EQ(again.steps[1].caption, "Two.");
@@ -93,7 +92,8 @@ TEST(ToldSteps, GoWithASessionThroughItsFile) {
 }
 
 TEST(ToldSteps, ASessionWithoutAStoryHasNone) {
-  EXPECT_TRUE(told_in(LIMPID_ASSETS_DIR "/sessions/table.h5").steps.empty());
+  const std::string file = LIMPID_ASSETS_DIR "/sessions/table.h5";
+  EXPECT_TRUE(told_in(read_session(file), file).steps.empty());
 }
 
 }  // namespace

@@ -6,13 +6,16 @@
 #include <gtest/gtest.h>
 #include <linux/landlock.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <fstream>
@@ -129,6 +132,64 @@ TEST_F(Sandbox, StartsNothingAndSpeaksToNobody) {
                           0) == MAP_FAILED
                          ? -1
                          : 0;
+            }),
+            EACCES);
+}
+
+// Calls of many uses: each use that changes or reaches something outside, and those that stay.
+TEST_F(Sandbox, HasOfCallsOfManyUsesOnlyThoseThatReadingNeeds) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  ASSERT_EQ(dup2(ends[1], 3), 3);  // the one that stays open
+  f_owner_ex owner{F_OWNER_PID, getpid()};
+  struct flock lock {};
+  lock.l_type = F_RDLCK;
+  for (const auto& attempt : std::initializer_list<std::function<long()>>{
+           [] { return fcntl(3, F_SETOWN, getppid()); },
+           [&] { return fcntl(3, F_SETOWN_EX, &owner); },
+           [] { return fcntl(3, F_SETSIG, SIGKILL); }, [] { return fcntl(3, F_SETFL, O_ASYNC); },
+           [] { return fcntl(3, F_NOTIFY, DN_MODIFY); },
+           [] { return fcntl(3, F_SETLEASE, F_WRLCK); },
+           [] { return fcntl(3, F_SETPIPE_SZ, 1 << 20); }, [&] { return fcntl(3, F_SETLK, &lock); },
+           [&] { return fcntl(3, F_OFD_SETLK, &lock); }, [] { return syscall(SYS_flock, 3, 1); }}) {
+    EXPECT_EQ(leaves_with(attempt), EPERM);
+  }
+  for (const auto& attempt : std::initializer_list<std::function<long()>>{
+           [] { return fcntl(3, F_GETFD); }, [] { return fcntl(3, F_SETFD, FD_CLOEXEC); },
+           [] { return fcntl(3, F_GETFL); }, [] { return fcntl(3, F_DUPFD_CLOEXEC, 5); }}) {
+    EXPECT_EQ(leaves_with(attempt), kDone);
+  }
+  close(3), close(ends[0]), close(ends[1]);
+}
+
+TEST_F(Sandbox, ChangesNoOtherProcessAndNotItself) {
+  static rlimit more{RLIM_INFINITY, RLIM_INFINITY};
+  for (const auto& attempt : std::initializer_list<std::function<long()>>{
+           [] { return syscall(SYS_prlimit64, 0, RLIMIT_CPU, &more, nullptr); },
+           [] { return prctl(PR_SET_DUMPABLE, 1); },
+           [] { return syscall(SYS_ioctl, 0, 0x5412 /* TIOCSTI */, "x"); },
+           [] { return syscall(SYS_clone, SIGCHLD, nullptr, nullptr, nullptr, nullptr); },
+           [] { return syscall(SYS_clone3, nullptr, 0); },
+           [] { return syscall(SYS_tkill, getppid(), SIGTERM); },
+           [] { return syscall(SYS_rt_sigqueueinfo, getppid(), SIGTERM, nullptr); },
+           [] { return syscall(SYS_pidfd_open, getppid(), 0); },
+           [] { return syscall(SYS_process_vm_writev, getppid(), nullptr, 0, nullptr, 0, 0); },
+           [] { return syscall(SYS_socketpair, AF_UNIX, SOCK_STREAM, 0, nullptr); },
+           [] { return syscall(SYS_memfd_create, "x", 0); },
+           [] { return syscall(SYS_personality, 0x0400000 /* READ_IMPLIES_EXEC */); },
+           [] { return syscall(SYS_madvise, 0, 4096, MADV_REMOVE); },
+           [] { return syscall(SYS_madvise, 0, 4096, MADV_HWPOISON); }}) {
+    EXPECT_EQ(leaves_with(attempt), EPERM);
+  }
+  EXPECT_EQ(leaves_with([] {
+              rlimit now{};
+              return syscall(SYS_prlimit64, 0, RLIMIT_CPU, nullptr, &now);
+            }),
+            kDone);
+  EXPECT_EQ(leaves_with([] {
+              void* page =
+                  mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+              return mprotect(page, 4096, PROT_READ | PROT_EXEC);
             }),
             EACCES);
 }

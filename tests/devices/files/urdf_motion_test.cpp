@@ -130,6 +130,21 @@ TEST(UrdfMotion, AsksForATipWhereOnlyAGripperMoves) {
   EXPECT_EQ(parse(gripper, "left").dof(), 1);
 }
 
+// The square of such a length is no number any more.
+TEST(UrdfMotion, TakesAnAxisOfAnyLengthThatIsOne) {
+  const auto axis_of = [](const std::string& xyz) {
+    return parse(link("a") + joint("a", "b", "revolute", kLimit + "<axis xyz='" + xyz + "'/>") +
+                 link("b") + joint("b", "end", "fixed", at("0.3 0 0")) + link("end", ""))
+        .joints.at(0)
+        .axis;
+  };
+  for (const char* xyz : {"0 0 1e308", "0 0 1.4e154", "0 0 3", "0 0 1e-8"}) {
+    EXPECT_LT((axis_of(xyz) - Vec3::UnitZ()).norm(), 1e-12) << xyz;
+  }
+  EXPECT_LT((axis_of("0 3e200 4e200") - Vec3(0, 0.6, 0.8)).norm(), 1e-12);
+  EXPECT_THROW(axis_of("0 0 0"), FileError);
+}
+
 TEST(UrdfMotion, SaysThatATipOnItsOnlyAxisCannotBeMoved) {
   const std::string shaft = link("a") + joint("a", "b") + link("b") +
                             joint("b", "end", "fixed", at("0.3 0 0")) + link("end", "");

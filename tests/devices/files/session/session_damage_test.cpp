@@ -1,4 +1,5 @@
 // Session files that are cut, scrambled, or made by programs that got them wrong.
+#include <fcntl.h>
 #include <hdf5.h>
 
 #include <algorithm>
@@ -7,9 +8,11 @@
 #include <functional>
 #include <random>
 
+#include "core/base/descriptor.h"
 #include "core/coupling/laws.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/files/session/session.h"
+#include "devices/files/session/session_file.h"
 #include "devices/files/session/session_source.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
@@ -57,7 +60,12 @@ TEST(DamagedSession, NeverCrashesTheReader) {
 
 TEST(DamagedSession, SaysWhichRowsAreScrambled) {
   const test::TempDir dir;
-  test::write_sample(dir / "a.h5", 5000);
+  {
+    const Descriptor made(open((dir / "a.h5").c_str(), O_RDWR | O_CREAT, 0600));
+    SessionFile file(dir / "a.h5", *made, test::sample_info(), Storage::safe);
+    file.append(test::sample_rows(RowLayout(3), 0, 5000));
+    file.close();
+  }
   std::string bytes = test::file_bytes(dir / "a.h5");
   double wanted = 4.321;  // /time of row 4321
   const std::size_t at = bytes.find(std::string(reinterpret_cast<char*>(&wanted), sizeof wanted));

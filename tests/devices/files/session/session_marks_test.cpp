@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <array>
+#include <thread>
 
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
@@ -72,12 +73,12 @@ TEST(Marks, AreReplacedInAWholeNewFile) {
   const std::string before = test::file_bytes(dir / "a.h5");
   const std::vector<double> rows = read_session(dir / "a.h5").rows;
   const std::vector<Mark> first{{5, "one"}, {500, "two"}}, second{{599, "three"}};
-  write_marks(dir / "a.h5", first);
+  write_marks(dir / "a.h5", first, {});
   EXPECT_EQ(marks_of(dir / "a.h5"), first);
-  write_marks(dir / "a.h5", second);
+  write_marks(dir / "a.h5", second, first);
   EXPECT_EQ(marks_of(dir / "a.h5"), second);
   EXPECT_EQ(read_session(dir / "a.h5").rows, rows);
-  write_marks(dir / "a.h5", {});
+  write_marks(dir / "a.h5", {}, second);
   EXPECT_THAT(marks_of(dir / "a.h5"), IsEmpty());
   EXPECT_EQ(test::file_bytes(dir / "before.h5"), before) << "the finished file was written to";
   EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 2);
@@ -94,7 +95,7 @@ TEST(Marks, AreGivenToASessionThatHasNoListOfThem) {
   }
   EXPECT_THAT(marks_of(dir / "a.h5"), IsEmpty());
   const std::vector<Mark> some{{3, "there"}};
-  write_marks(dir / "a.h5", some);
+  write_marks(dir / "a.h5", some, {});
   EXPECT_EQ(marks_of(dir / "a.h5"), some);
 }
 
@@ -103,7 +104,7 @@ TEST(Marks, ThatCannotBeWrittenLeaveTheSessionAsItIs) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 600);
   const std::vector<Mark> first{{5, "one"}};
-  write_marks(dir / "a.h5", first);
+  write_marks(dir / "a.h5", first, {});
   const std::string before = test::file_bytes(dir / "a.h5");
   const std::vector<Mark> many(5000, Mark{1, std::string(kMarkLength, 'x')});
   for (const std::size_t room : {before.size() / 2, before.size() + 20'000}) {
@@ -111,7 +112,7 @@ TEST(Marks, ThatCannotBeWrittenLeaveTheSessionAsItIs) {
     getrlimit(RLIMIT_FSIZE, &usual);
     const rlimit limit{room, usual.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
-    const std::string said = refusal([&] { write_marks(dir / "a.h5", many); });
+    const std::string said = refusal([&] { write_marks(dir / "a.h5", many, first); });
     setrlimit(RLIMIT_FSIZE, &usual);
     EXPECT_THAT(said, HasSubstr("a.h5")) << room;
     EXPECT_EQ(test::file_bytes(dir / "a.h5"), before) << room;
@@ -123,11 +124,76 @@ TEST(Marks, OfTooLongATextAreRefused) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 10);
   const std::vector<Mark> longer{{1, std::string(kMarkLength + 1, 'x')}};
-  EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", longer); }),
+  EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", longer, {}); }),
               testing::AllOf(HasSubstr("201 bytes"), HasSubstr("200")));
   const std::vector<Mark> longest{{1, std::string(kMarkLength, 'x')}};
-  write_marks(dir / "a.h5", longest);
+  write_marks(dir / "a.h5", longest, {});
   EXPECT_EQ(marks_of(dir / "a.h5"), longest);
+}
+
+// Two windows show one recording: what each of them notes stays.
+TEST(Marks, OfAnotherProgramStay) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 100);
+  const std::vector<Mark> mine{{5, "mine"}}, others{{50, "another's"}}, changed{{6, "mine"}};
+  write_marks(dir / "a.h5", mine, {});
+  write_marks(dir / "a.h5", others, {});
+  EXPECT_THAT(marks_of(dir / "a.h5"), ElementsAre(mine[0], others[0]));
+  write_marks(dir / "a.h5", changed, mine);
+  EXPECT_THAT(marks_of(dir / "a.h5"), ElementsAre(changed[0], others[0]));
+}
+
+TEST(Marks, OfManyProgramsAtATimeAreAllKept) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 600);
+  std::vector<Mark> all;
+  {
+    std::vector<std::jthread> programs;
+    for (std::uint64_t i = 0; i < 6; ++i) {
+      all.push_back({i, "of its own"});
+      programs.emplace_back(
+          [&dir, one = all.back()] { write_marks(dir / "a.h5", std::span(&one, 1), {}); });
+    }
+  }
+  EXPECT_EQ(marks_of(dir / "a.h5"), all);
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 1);
+}
+
+// Another recording has taken the name, a shorter one.
+TEST(Marks, OfRowsThatAreNotThereAnyMoreAreRefused) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 10);
+  const std::string before = test::file_bytes(dir / "a.h5");
+  const std::vector<Mark> behind{{10, "was there"}};
+  EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", behind, {}); }),
+              testing::AllOf(HasSubstr("10 rows"), HasSubstr("no row 10")));
+  EXPECT_EQ(test::file_bytes(dir / "a.h5"), before);
+}
+
+TEST(Marks, GoThroughALinkAndLeaveItOne) {
+  const test::TempDir dir;
+  fs::create_directory(dir / "elsewhere");
+  test::write_sample(dir / "elsewhere/a.h5", 10);
+  fs::permissions(dir / "elsewhere/a.h5", fs::perms(0640));
+  fs::create_symlink("elsewhere/a.h5", dir / "link.h5");
+  const std::vector<Mark> one{{9, "last"}};
+  write_marks(dir / "link.h5", one, {});
+  EXPECT_TRUE(fs::is_symlink(dir / "link.h5"));
+  EXPECT_EQ(marks_of(dir / "elsewhere/a.h5"), one);
+  EXPECT_EQ(fs::status(dir / "elsewhere/a.h5").permissions(), fs::perms(0640));
+}
+
+// As many as the reader takes; one more would make the recording unreadable.
+TEST(Marks, AreNoMoreThanTheReaderTakes) {
+  const test::TempDir dir;
+  SessionWriter writer(dir / "a.h5", sample_info(3), false);
+  for (std::size_t i = 0; i < kMostMarks; ++i) writer.append(Mark{0, "x"});
+  EXPECT_THAT(refusal([&] { writer.append(Mark{0, "one more"}); }), HasSubstr("100000 marks"));
+  writer.append(sample_rows(RowLayout(3), 0, 10));
+  writer.close();
+  EXPECT_EQ(marks_of(dir / "a.h5").size(), kMostMarks);
+  const std::vector<Mark> more{{1, "one more"}};
+  EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", more, {}); }), HasSubstr("100001 marks"));
 }
 
 // Another program's file: marks behind the end, lists of another length or kind.
@@ -135,7 +201,7 @@ TEST(Marks, OfAStrangersFileAreNotBelieved) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 10);
   const std::vector<Mark> one{{9, "last"}};
-  write_marks(dir / "a.h5", one);
+  write_marks(dir / "a.h5", one, {});
   const auto with = [&](const auto& change) {
     fs::copy_file(dir / "a.h5", dir / "b.h5", fs::copy_options::overwrite_existing);
     const hdf5::Quiet quiet;

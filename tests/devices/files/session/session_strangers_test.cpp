@@ -1,6 +1,7 @@
 // Session files that name other files, or ask for more than they hold: a stranger's session must
 // not carry away what lies beside it.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <hdf5.h>
 #include <sys/stat.h>
 
@@ -10,7 +11,6 @@
 
 #include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
-#include "devices/files/session/session_story.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 
@@ -168,7 +168,7 @@ TEST_F(StrangersSession, LoadsNoFilterThatItNames) {
 TEST_F(StrangersSession, IsAFileAndNoPipe) {
   ASSERT_EQ(mkfifo((dir_ / "pipe.h5").c_str(), 0600), 0);
   EXPECT_THAT(refusal([&] { read_session(dir_ / "pipe.h5"); }), HasSubstr("not a file"));
-  EXPECT_THAT(refusal([&] { attached_story(dir_ / "pipe.h5"); }), HasSubstr("not a file"));
+  EXPECT_THAT(refusal([&] { write_marks(dir_ / "pipe.h5", {}, {}); }), HasSubstr("not a file"));
 }
 
 // Each of them alone is what gzip could have packed into the file; all of them are not.

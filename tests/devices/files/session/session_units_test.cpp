@@ -12,7 +12,6 @@
 #include "core/dynamics/arm_description.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_source.h"
-#include "devices/files/session/session_story.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/random_arm.h"
@@ -253,19 +252,14 @@ TEST(Session, HasSumsOfEverythingButTheTiming) {
   EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }), HasSubstr("/coupling/eta"));
 }
 
-TEST(Session, TakesAStoryInAsAWholeNewFile) {
+TEST(Session, KeepsTheStoryThatItTells) {
   const test::TempDir dir;
-  test::write_sample(dir / "a.h5", 10);
-  fs::create_hard_link(dir / "a.h5", dir / "before.h5");
-  const std::string before = test::file_bytes(dir / "a.h5");
-  attach_story(dir / "a.h5", "once upon a time");
-  EXPECT_EQ(test::file_bytes(dir / "before.h5"), before) << "the finished file was written to";
-  EXPECT_EQ(attached_story(dir / "a.h5"), "once upon a time");
-  EXPECT_EQ(read_session(dir / "a.h5").size(), 10u);
-  // A second one is refused, and the first stays.
-  EXPECT_THAT(refusal([&] { attach_story(dir / "a.h5", "another"); }), HasSubstr("story"));
-  EXPECT_EQ(attached_story(dir / "a.h5"), "once upon a time");
-  EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 2);
+  SessionInfo info = test::sample_info();
+  info.story = "once upon a time";
+  SessionWriter writer(dir / "a.h5", info, false);
+  writer.append(test::sample_rows(RowLayout(3), 0, 10));
+  writer.close();
+  EXPECT_EQ(read_session(dir / "a.h5").info.story, "once upon a time");
 }
 
 }  // namespace
