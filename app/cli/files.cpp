@@ -6,13 +6,19 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/summary_json.h"
+#include "app/run/provenance.h"
 #include "app/run/replay.h"
+#include "app/run/run_watch.h"
 #include "app/run/summary.h"
 #include "app/story/run_story.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
@@ -22,7 +28,7 @@ namespace {
 
 struct InfoOptions {
   std::string session, csv;
-  bool force = false;
+  bool force = false, json = false;
 };
 
 // Recordings of the first edition have but the torque of their contacts.
@@ -45,14 +51,85 @@ void print_settings(const Session& session, const std::string& file) {
   }
 }
 
+// As its rows have them, so those of recordings that were made before there were any, too. None of
+// another version's settings.
+std::vector<std::string> warnings_in(const Session& session, const std::string& file) {
+  try {
+    return warnings_of(session, file);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+// Whose table a CSV is, for a file beside it as W3C's "CSV on the Web" has it.
+std::string metadata_of(const InfoOptions& options, const SessionInfo& i) {
+  const nlohmann::ordered_json json{{"@context", "http://www.w3.org/ns/csvw"},
+                                    {"url", std::filesystem::path(options.csv).filename().string()},
+                                    {"dc:source", options.session},
+                                    {"dc:description", provenance_of(i)}};
+  return json.dump(2) + "\n";
+}
+
+void write_table(const InfoOptions& options, const Session& session) {
+  write_csv(session, options.csv, options.force);
+  if (!std::filesystem::is_regular_file(options.csv)) return;  // a pipe
+  const std::string beside = options.csv + "-metadata.json";
+  const std::string wrong = try_write_atomically(beside, metadata_of(options, session.info));
+  if (!wrong.empty()) throw FileError(wrong);
+  fmt::print(options.json ? stderr : stdout, "written as {}; where it is from: {}\n", options.csv,
+             beside);
+}
+
+void print_json(const InfoOptions& options, const Session& session, const Summary& summary,
+                const Summary* twin) {
+  const SessionInfo& i = session.info;
+  nlohmann::ordered_json json{{"provenance", provenance_of(i)},
+                              {"file", options.session},
+                              {"created", i.created},
+                              {"app_version", i.app_version},
+                              {"build", i.build},
+                              {"source", i.source},
+                              {"joints", i.dof},
+                              {"tick_s", i.tick},
+                              {"seed", i.seed},
+                              {"length_s", static_cast<double>(session.size()) * i.tick},
+                              {"objects", i.bodies}};
+  std::vector<const Summary*> lanes{&summary};
+  if (twin != nullptr) lanes.push_back(twin);
+  json.update(runs_json(lanes, warnings_in(session, options.session)));
+  json["changes"] = nlohmann::ordered_json::array();
+  for (const SettingChange& change : session.changes) {
+    json["changes"].push_back({{"row", change.row}, {"setting", change.setting}});
+  }
+  json["marks"] = nlohmann::ordered_json::array();
+  for (const Mark& mark : session.marks) {
+    json["marks"].push_back({{"row", mark.tick}, {"text", mark.text}});
+  }
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 int info(const InfoOptions& options) {
   keep_apart("--csv", options.csv, std::span(&options.session, 1));
+  std::error_code none;
+  const bool pipe = std::filesystem::exists(options.csv, none) &&
+                    !std::filesystem::is_regular_file(options.csv, none);
+  if (!options.csv.empty() && !pipe) check_place(options.csv, options.force);
   const Session session = read_session(options.session);
   const SessionInfo& i = session.info;
   const auto arm = recorded_arm(i);
   const std::vector<bool> slides = arm ? slides_of(*arm) : i.slides;
   Summary summary(session.layout, slides);
   for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
+  std::optional<Summary> twin;
+  if (session.twin) {
+    twin.emplace(session.layout, slides);
+    for (std::size_t k = 0; k < session.twin->size(); ++k) twin->add(session.twin->row(k));
+  }
+  if (options.json) {
+    print_json(options, session, summary, twin ? &*twin : nullptr);
+    if (!options.csv.empty()) write_table(options, session);
+    return 0;
+  }
   fmt::print("{}\n", options.session);
   fmt::print("created                  {} by limpid {}\n", i.created, i.app_version);
   if (!i.build.empty()) fmt::print("build                    {}\n", i.build);
@@ -68,12 +145,13 @@ int info(const InfoOptions& options) {
     fmt::print("objects that move        {}\n", fmt::join(i.bodies, ", "));
   }
   fmt::print("length                   {:.3f} s\n", static_cast<double>(session.size()) * i.tick);
-  if (session.twin) {
-    Summary twin(session.layout, slides);
-    for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
-    fmt::print("two runs on one hand\n{}", Summary::beside(summary, "first", twin, "twin"));
+  if (twin) {
+    fmt::print("two runs on one hand\n{}", Summary::beside(summary, "first", *twin, "twin"));
   } else {
     fmt::print("{}", summary.text());
+  }
+  for (const std::string& warning : warnings_in(session, options.session)) {
+    fmt::print("warning                  {}\n", warning);
   }
   fmt::print("{}", force_tally(session));
   fmt::print("contacts                 {}\n", contacts(session));
@@ -87,10 +165,7 @@ int info(const InfoOptions& options) {
   for (const Mark& mark : session.marks) {
     fmt::print("mark {:8.3f} s          {}\n", static_cast<double>(mark.tick) * i.tick, mark.text);
   }
-  if (!options.csv.empty()) {
-    write_csv(session, options.csv, options.force);
-    fmt::print("written as {}\n", options.csv);
-  }
+  if (!options.csv.empty()) write_table(options, session);
   return 0;
 }
 
@@ -110,7 +185,11 @@ int recover(const RecoverOptions& options) {
 Command declare_info(CLI::App& app) {
   auto* command = app.add_subcommand("info", "what a recording holds");
   auto options = std::make_shared<InfoOptions>();
-  command->add_option("SESSION.h5", options->session, "the recording")->type_name("")->required();
+  command->add_option("SESSION.h5", options->session, "the recording")
+      ->transform(or_shipped({"sessions"}), "", "")
+      ->type_name("")
+      ->required();
+  command->add_flag("--json", options->json, "one JSON object on standard output");
   command->add_option("--csv", options->csv, "write it as a table")->type_name("OUT.csv");
   command->add_flag("--force", options->force, "replace OUT.csv if it exists");
   return [options] { return info(*options); };

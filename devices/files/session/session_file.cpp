@@ -245,7 +245,18 @@ void SessionFile::append_world(std::span<const double> world, std::size_t lane) 
   guarded([&] { lanes_.at(lane).append_world(world); });
 }
 
-void SessionFile::close() {
+// While others may read along no attribute can be made: it comes once the file is closed.
+void SessionFile::write_warnings(const std::string& warnings) {
+  const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  hdf5::File again(H5Fopen(path_.c_str(), H5F_ACC_RDWR, access.get()));
+  // Where somebody has opened it meanwhile the recording goes without: its rows say the same.
+  if (!again) return;
+  hdf5::write_text(again.get(), "warnings", warnings, path_);
+  check(again.close(), path_, "cannot write");
+}
+
+void SessionFile::close(const std::string& warnings) {
   if (!file_) return;
   guarded([&] {
     for (SessionLane& lane : lanes_) lane.flush();
@@ -255,6 +266,7 @@ void SessionFile::close() {
     for (SessionLane& lane : lanes_) lane.close();
     check(marks_.close(), path_, "cannot write");
     check(file_.close(), path_, "cannot write");
+    if (!warnings.empty()) write_warnings(warnings);
   });
 }
 

@@ -120,9 +120,9 @@ void SessionWriter::append_world(std::span<const double> world, std::size_t lane
 std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(); }
 const fs::path& SessionWriter::part() const { return file_->part; }
 
-void SessionWriter::close() {
+void SessionWriter::close(const std::string& warnings) {
   if (!file_->lock) return;
-  file_->session->close();
+  file_->session->close(warnings);
   publish(file_->part, file_->out, file_->force);
   file_->lock.reset();
 }
