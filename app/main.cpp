@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <span>
@@ -14,6 +16,7 @@
 #include "app/cli/complete.h"
 #include "app/cli/options.h"
 #include "app/make_video.h"
+#include "devices/files/toml_reader.h"
 
 using namespace limpid;
 
@@ -54,12 +57,25 @@ int if_written(int status) {
   return status == 0 ? 1 : status;
 }
 
+// `limpid help`, and `limpid help COMMAND`, where no file has that name.
+bool asks_for_help(const std::vector<std::string>& words) {
+  return !words.empty() && words.size() <= 2 && words[0] == "help" &&
+         !std::filesystem::exists(words[0]);
+}
+
 UsageError unexpected(const CLI::App& app) {
   const auto words = app.remaining(true);
   const auto chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "limpid" : "limpid " + chosen.front()->get_name();
-  return UsageError(fmt::format("\"{}\": not expected; `{} --help` lists what is",
-                                fmt::join(words, " "), command));
+  std::vector<std::string> known;
+  for (const CLI::Option* option : (chosen.empty() ? &app : chosen.front())->get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  const std::string first = words.empty() ? "" : words.front().substr(0, words.front().find('='));
+  const auto meant = first.starts_with("-") ? nearest(first, known) : std::nullopt;
+  return UsageError(fmt::format("\"{}\": not expected; {}`{} --help` lists what is",
+                                fmt::join(words, " "),
+                                meant ? fmt::format("did you mean {}? ", *meant) : "", command));
 }
 
 // Those that open no window, by their names.
@@ -91,7 +107,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Limpid: touch a virtual world and see how transparent the coupling is."};
   app.name("limpid");
   const std::string version = std::string("limpid ") + program_version();
-  app.set_version_flag("--version", version);
+  app.set_version_flag("-V,--version", version);
   app.require_subcommand(0, 1);
   const auto commands = declare_commands(app, argv);
   const WindowCommands window = declare_window(
@@ -100,18 +116,31 @@ int main(int argc, char** argv) {
       });
   app.footer(
       "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
-      "Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.");
+      "Exit status: 0 done; 1 the run failed, became unstable, or was stopped (Ctrl-C); 2 wrong "
+      "usage "
+      "or bad input.\nA run that is whole and gave energy ends with 0, and with a warning that its "
+      "recording keeps.");
   refuse_empty_values(app);
   for (CLI::App* command : app.get_subcommands({})) {
-    command->set_version_flag("--version", version);
+    command->set_version_flag("-V,--version", version);
     refuse_empty_values(*command);
   }
   try {
-    const std::vector<std::string> words(argv + 1, argv + argc);
+    std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words[0] == "complete") {
       return print_completions(app, std::span(words).subspan(1));
     }
-    app.parse(argc, argv);
+    // Completions and manual pages have lines of their own.
+    if (words.empty() || words[0] != "share") {
+      wrap_help(app);
+      for (CLI::App* command : app.get_subcommands({})) wrap_help(*command);
+    }
+    if (asks_for_help(words)) {
+      words.erase(words.begin());
+      words.emplace_back("--help");
+    }
+    std::ranges::reverse(words);  // as CLI11 wants them
+    app.parse(words);
     if (app.get_subcommands().empty()) return window.desktop();
     const CLI::App& command = *app.get_subcommands().front();
     if (command.get_name() == "play") return window.play();

@@ -8,6 +8,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/run/analysis.h"
+#include "app/run/provenance.h"
 #include "app/run/tip_limits.h"
 
 namespace limpid {
@@ -27,10 +28,15 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   fmt::print("observer bandwidth w_f     {} rad/s\n", list(a.w_f));
   fmt::print("locked system w_c          {} rad/s\n", list(a.w_c));
   fmt::print("damping b = b_d + b_v      {:.4g} N m s/rad\n", a.b);
-  fmt::print("eta_min, all frequencies   {:.4f}   eta {:.4g} is {}\n", a.eta_min, p.eta,
-             a.passive ? "passive" : "NOT passive");
+  const Passivity known = passivity(a, p);
+  fmt::print("{:<27}{}: {}\n", fmt::format("{}, eta {:.4g}", name(p.kind), p.eta),
+             !known.passive   ? "not known to be passive"
+             : *known.passive ? "passive"
+                              : "NOT passive",
+             known.by);
+  fmt::print("eta_min, all frequencies   {:.4f}   (25), of the proposed law alone\n", a.eta_min);
   if (a.eta_min_band) fmt::print("eta_min, the band alone    {:.4f}\n", *a.eta_min_band);
-  fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the loop is unstable)\n",
+  fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the proposed law is unstable)\n",
              a.eta_min_grip);
   if (a.condition3.known) {
     fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",
@@ -97,6 +103,41 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
   return json;
 }
 
+// Of every number above by its key; what is not here has none.
+nlohmann::ordered_json units() {
+  return {{"w_f", "rad/s"},
+          {"w_c", "rad/s"},
+          {"b", "N m s/rad"},
+          {"delay", "s"},
+          {"link", "s"},
+          {"condition3.device_margin", "N m s/rad"},
+          {"condition3.proxy_margin", "N m s/rad"},
+          {"tip.mass", "kg"},
+          {"tip.damping", "N s/m"},
+          {"tip.every_hand", "N/m"},
+          {"tip.scene", "N/m"},
+          {"tip.least_damping", "N s/m"},
+          {"tip.frequency", "Hz"},
+          {"tip.delay_most", "ticks"},
+          {"tip.LAW.wall", "N/m"},
+          {"tip.LAW.felt_mass", "kg"},
+          {"tip.LAW.felt_damping", "N s/m"}};
+}
+
+// Shorter levers than this are round-off [m].
+constexpr double kNoLever = 1e-9;
+
+bool moves_tip(const ArmDescription& arm) {
+  return arm_at(arm, rest_pose(arm)).J.norm() > kNoLever;
+}
+
+std::string still_tip(const ArmDescription& arm) {
+  return fmt::format(
+      "no joint moves '{}', the tip, from the rest pose: there is no wall to name and nothing is "
+      "felt there; --tip takes another link",
+      arm.tip_link);
+}
+
 int analyze_command(const AnalyzeOptions& options) {
   ArmDescription arm;
   SceneDocument document;
@@ -106,24 +147,39 @@ int analyze_command(const AnalyzeOptions& options) {
       options.band ? std::optional(2 * std::numbers::pi * *options.band) : std::nullopt;
   const Analysis a =
       options.mass ? analyze(*options.mass, arm, p, w_b) : analyze(arm, rest_pose(arm), p, w_b);
-  const TipLimits tip = tip_limits(arm, rest_pose(arm), p, document.scene);
+  const std::optional<TipLimits> tip =
+      moves_tip(arm) ? std::optional(tip_limits(arm, rest_pose(arm), p, document.scene))
+                     : std::nullopt;
   if (!options.json) {
     print(a, arm, p);
-    if (!options.mass) print(tip, p);
+    if (options.mass) return 0;
+    if (tip) print(*tip, p);
+    if (!tip) fmt::print("\n{}\n", still_tip(arm));
     return 0;
   }
-  nlohmann::ordered_json json{{"w_f", a.w_f}, {"w_c", a.w_c}, {"b", a.b}, {"eta_min", a.eta_min}};
+  if (!tip && !options.mass) fmt::print(stderr, "limpid: warning: {}\n", still_tip(arm));
+  nlohmann::ordered_json json{{"provenance", provenance(settings_digest(p), std::nullopt)},
+                              {"w_f", a.w_f},
+                              {"w_c", a.w_c},
+                              {"b", a.b},
+                              {"eta_min", a.eta_min}};
   if (a.eta_min_band) json["eta_min_band"] = *a.eta_min_band;
   json["eta_min_grip"] = a.eta_min_grip;
   json["condition3"] = {{"device_margin", a.condition3.device_margin},
                         {"proxy_margin", a.condition3.proxy_margin},
                         {"known", a.condition3.known},
                         {"holds", a.condition3.holds}};
-  json["passive"] = a.passive;
+  const Passivity known = passivity(a, p);
+  json["coupling"] = name(p.kind);
+  json["eta"] = p.eta;
+  json["passive"] = nullptr;
+  if (known.passive) json["passive"] = *known.passive;
+  json["passive_by"] = known.by;
   json["delay"] = a.delay;
   json["link"] = a.link;
   json["measured"] = a.measured;
-  if (!options.mass) json["tip"] = as_json(tip, p);
+  if (!options.mass) json["tip"] = tip ? as_json(*tip, p) : nlohmann::ordered_json(nullptr);
+  json["units"] = units();
   fmt::print("{}\n", json.dump(2));
   return 0;
 }

@@ -34,7 +34,7 @@ int run_bench(const BenchOptions& options) {
   const bench::Report report = measured.get();
   fmt::print("{}", options.json ? json_of(report) : text_of(report));
   if (interrupted) fmt::print(stderr, "limpid: interrupted; what was measured is above\n");
-  return interrupted ? 130 : 0;
+  return interrupted ? 1 : 0;
 }
 
 }  // namespace

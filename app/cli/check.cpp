@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
@@ -14,6 +15,8 @@
 #include "app/run/body_report.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/model_report.h"
+#include "app/run/provenance.h"
+#include "app/run/scene_flaws.h"
 #include "core/base/model_kinds.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
@@ -29,6 +32,7 @@ namespace fs = std::filesystem;
 struct CheckOptions {
   std::string file;
   InputOptions input;
+  bool json = false;
 };
 
 // Lines for people.
@@ -162,12 +166,29 @@ void list_mesh(const std::string& name, const Mesh& mesh, const Model& model, Ch
                                      name, model.indices.size() / 3, size.x(), size.y(), size.z()));
 }
 
+// The law that is named; else the one that the window begins with, which renders the most.
+Parameters law_to_check(const InputOptions& input, const ArmDescription& arm) {
+  Parameters p = make_parameters(input, arm);
+  Parameters usual;
+  usual.kind = CouplingKind::predictive;
+  p.kind = make_parameters(input, usual).kind;
+  return p;
+}
+
 CheckReport on_scene(const std::string& file, const InputOptions& input) {
   const ArmDescription arm = arm_of(input);
   const LoadedScene loaded = load_scene(file, arm);
   const std::vector<Object>& objects = loaded.document.scene.objects;
   CheckReport report{{}, loaded.warnings};
   report.facts.push_back(fmt::format("scene        {}", loaded.document.title));
+  if (objects.empty()) {
+    report.facts.emplace_back("to touch     nothing");
+    if (loaded.document.about.empty()) {
+      report.warnings.emplace_back(
+          "nothing is there to touch; where that is meant, `about` says so in the file");
+    }
+    return report;
+  }
   report.facts.push_back(
       fmt::format("to touch     planes {}, spheres {}, boxes {}, cylinders {}, capsules {}, "
                   "models {}, stops of joints {}",
@@ -185,6 +206,8 @@ CheckReport on_scene(const std::string& file, const InputOptions& input) {
   BodyReport bodies = report_on_bodies(loaded.document.scene, arm);
   std::ranges::move(bodies.facts, std::back_inserter(report.facts));
   std::ranges::move(bodies.warnings, std::back_inserter(report.warnings));
+  std::ranges::move(scene_flaws(loaded.document.scene, arm, law_to_check(input, arm)),
+                    std::back_inserter(report.warnings));
   return report;
 }
 
@@ -225,6 +248,14 @@ CheckReport opened(const CheckOptions& options) {
 
 int check(const CheckOptions& options) {
   const CheckReport report = opened(options);
+  if (options.json) {
+    const nlohmann::ordered_json json{{"provenance", provenance("", std::nullopt)},
+                                      {"file", options.file},
+                                      {"facts", report.facts},
+                                      {"warnings", report.warnings}};
+    fmt::print("{}\n", json.dump(2));
+    return report.warnings.empty() ? 0 : 1;
+  }
   for (const std::string& fact : report.facts) fmt::print("{}\n", fact);
   for (const std::string& warning : report.warnings) fmt::print("warning      {}\n", warning);
   const std::size_t n = report.warnings.size();
@@ -240,10 +271,12 @@ Command declare_check(CLI::App& app) {
   auto* command = app.add_subcommand("check", "what an arm, a scene or a model is, and its flaws");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("FILE", options->file, "an arm, a scene or a model")
+      ->transform(or_shipped({"scenes", "devices"}), "", "")
       ->type_name("ARM.urdf|SCENE.toml|MODEL")
       ->required();
   options->input.add_world(*command);
   options->input.add_parameters(*command);
+  command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
       "Of an arm: its chain, masses, reach and the gains that suit it. --tip LINK says where the "
       "chain\nends; --device is the arm that a scene is for. Exit status: 0 fine, 1 works but for "

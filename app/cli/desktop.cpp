@@ -142,12 +142,14 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   app.add_option("FILE", options->files,
                  "to open in the window: a recording, a sweep's folder or table, a scene, a model, "
                  "a hand, an arm")
+      ->transform(or_shipped({"scenes", "devices", "sessions", "stories"}), "", "")
       ->type_name("");
   add(app, *options);
   auto* command =
       app.add_subcommand("play", "the desktop app, playing a recorded session; or its video");
   auto played = std::make_shared<WindowOptions>();
   command->add_option("SESSION.h5", played->session, "the recording; or a sweep's table")
+      ->transform(or_shipped({"sessions"}), "", "")
       ->type_name("")
       ->required();
   played->video.add(*command);

@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
 #include "app/device/device_hub.h"
+#include "app/run/provenance.h"
 
 namespace limpid {
 namespace {
@@ -48,12 +50,27 @@ int say_arm(const ArmOptions& options) {
   return 0;
 }
 
-int devices() {
+void print_json(const DeviceHub& hub) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const FoundDevice& found : hub.found()) {
+    list.push_back({{"id", found.place.id},
+                    {"name", found.place.name},
+                    {"kind", found.kind->name},
+                    {"path", found.place.path},
+                    {"in_use", found.place.id == hub.in_use()},
+                    {"in_use_by", found.in_use_by},
+                    {"arm", arm_words(hub.notes(found.place.id), *found.kind)},
+                    {"missing", found.missing}});
+  }
+  const nlohmann::ordered_json json{{"provenance", provenance("", std::nullopt)},
+                                    {"devices", list}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_text(const DeviceHub& hub) {
   fmt::print(
       "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), driven by "
       "the mouse or a recorded hand\n");
-  DeviceHub hub(device_store_file(), {});
-  hub.take(DeviceHub::look(hub.in_use()));
   for (const FoundDevice& found : hub.found()) {
     fmt::print("{}\n  {}, {} at {}{}\n  {}\n", found.place.name, found.kind->name, found.place.id,
                found.place.path, found.place.id == hub.in_use() ? ", in use" : "",
@@ -63,6 +80,12 @@ int devices() {
     if (!found.in_use_by.empty()) fmt::print("  in use by {}\n", found.in_use_by);
   }
   if (hub.found().empty()) fmt::print("no haptic device is plugged in\n");
+}
+
+int devices(bool json) {
+  DeviceHub hub(device_store_file(), {});
+  hub.take(DeviceHub::look(hub.in_use()));
+  json ? print_json(hub) : print_text(hub);
   if (!hub.complaint().empty()) throw UsageError(hub.complaint());
   return 0;
 }
@@ -95,7 +118,9 @@ Command declare_devices(CLI::App& app) {
       ->add_option("DEVICE", options->device,
                    "with --arm: its id, as listed here; default: the one in use")
       ->needs(arm);
-  return [options] { return options->arm.empty() ? devices() : say_arm(*options); };
+  auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "one JSON object on standard output")->excludes(arm);
+  return [options, json] { return options->arm.empty() ? devices(*json) : say_arm(*options); };
 }
 
 }  // namespace limpid

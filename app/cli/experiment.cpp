@@ -12,6 +12,7 @@
 #include "app/study/live.h"
 #include "core/realtime/realtime.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
@@ -35,12 +36,16 @@ std::vector<const E*> chosen(std::span<const E> known, const std::string& name,
                              const char* refusal) {
   std::vector<const E*> wanted;
   std::string names = "all";
+  std::vector<std::string> known_names;
   for (const E& e : known) {
     if (name == "all" || name == e.name) wanted.push_back(&e);
     names += fmt::format(", {}", e.name);
+    known_names.emplace_back(e.name);
   }
   if (!wanted.empty()) return wanted;
-  throw UsageError(fmt::format("\"{}\"{}; allowed: {}", name, refusal, names));
+  const auto meant = nearest(name, known_names);
+  throw UsageError(fmt::format("\"{}\"{}; {}allowed: {}", name, refusal,
+                               meant ? fmt::format("did you mean {}? ", *meant) : "", names));
 }
 
 void print(const std::string& name, const Outcome& outcome) {

@@ -7,13 +7,19 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/summary_json.h"
+#include "app/run/provenance.h"
 #include "app/run/replay.h"
+#include "app/run/run_watch.h"
 #include "app/run/summary.h"
 #include "app/story/run_story.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
@@ -23,7 +29,7 @@ namespace {
 
 struct InfoOptions {
   std::string session, csv;
-  bool force = false;
+  bool force = false, json = false;
 };
 
 // Recordings of the first edition have but the torque of their contacts.
@@ -46,6 +52,77 @@ std::string settings_text(const Session& session, const std::string& file) {
   } catch (const std::exception&) {
     return {};
   }
+}
+
+// As its rows have them, so those of recordings that were made before there were any, too. None of
+// another version's settings.
+std::vector<std::string> warnings_in(const Session& session, const std::string& file) {
+  try {
+    return warnings_of(session, file);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+// Whose table a CSV is, for a file beside it as W3C's "CSV on the Web" has it.
+std::string metadata_of(const InfoOptions& options, const SessionInfo& i) {
+  const nlohmann::ordered_json json{{"@context", "http://www.w3.org/ns/csvw"},
+                                    {"url", std::filesystem::path(options.csv).filename().string()},
+                                    {"dc:source", options.session},
+                                    {"dc:description", provenance_of(i)}};
+  return json.dump(2) + "\n";
+}
+
+void write_table(const InfoOptions& options, const Session& session) {
+  write_csv(session, options.csv, options.force);
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(options.csv, none)) return;  // standard output, or a pipe
+  const std::string beside = options.csv + "-metadata.json";
+  const std::string wrong = try_write_atomically(beside, metadata_of(options, session.info));
+  if (!wrong.empty()) throw FileError(wrong);
+  fmt::print(options.json ? stderr : stdout, "written as {}; where it is from: {}\n", options.csv,
+             beside);
+}
+
+// A summary of each run.
+std::vector<Summary> summaries(const Session& session) {
+  const auto arm = recorded_arm(session.info);
+  const std::vector<bool> slides = arm ? slides_of(*arm) : session.info.slides;
+  std::vector<Summary> all;
+  for (const Session* run : {&session, static_cast<const Session*>(session.twin.get())}) {
+    if (run == nullptr) continue;
+    Summary& summary = all.emplace_back(session.layout, slides);
+    for (std::size_t k = 0; k < run->size(); ++k) summary.add(run->row(k));
+  }
+  return all;
+}
+
+void print_json(const InfoOptions& options, const Session& session) {
+  const SessionInfo& i = session.info;
+  nlohmann::ordered_json json{{"provenance", provenance_of(i)},
+                              {"file", options.session},
+                              {"created", i.created},
+                              {"app_version", i.app_version},
+                              {"build", i.build},
+                              {"source", i.source},
+                              {"joints", i.dof},
+                              {"tick_s", i.tick},
+                              {"seed", i.seed},
+                              {"length_s", static_cast<double>(session.size()) * i.tick},
+                              {"objects", i.bodies}};
+  const std::vector<Summary> runs = summaries(session);
+  std::vector<const Summary*> lanes;
+  for (const Summary& run : runs) lanes.push_back(&run);
+  json.update(runs_json(lanes, warnings_in(session, options.session)));
+  json["changes"] = nlohmann::ordered_json::array();
+  for (const SettingChange& change : session.changes) {
+    json["changes"].push_back({{"row", change.row}, {"setting", change.setting}});
+  }
+  json["marks"] = nlohmann::ordered_json::array();
+  for (const Mark& mark : session.marks) {
+    json["marks"].push_back({{"row", mark.tick}, {"text", mark.text}});
+  }
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::string about(const SessionInfo& i) {
@@ -71,14 +148,17 @@ std::string what_moves(const SessionInfo& i) {
 }
 
 std::string numbers(const Session& session) {
-  const auto arm = recorded_arm(session.info);
-  const std::vector<bool> slides = arm ? slides_of(*arm) : session.info.slides;
-  Summary summary(session.layout, slides);
-  for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
-  if (!session.twin) return summary.text();
-  Summary twin(session.layout, slides);
-  for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
-  return "two runs on one hand\n" + Summary::beside(summary, "first", twin, "twin");
+  const std::vector<Summary> runs = summaries(session);
+  if (runs.size() == 1) return runs[0].text();
+  return "two runs on one hand\n" + Summary::beside(runs[0], "first", runs[1], "twin");
+}
+
+std::string warnings(const Session& session, const std::string& file) {
+  std::string text;
+  for (const std::string& warning : warnings_in(session, file)) {
+    text += fmt::format("warning                  {}\n", warning);
+  }
+  return text;
 }
 
 std::string happened(const Session& session) {
@@ -98,12 +178,21 @@ std::string happened(const Session& session) {
 int info(const InfoOptions& options) {
   const bool to_stdout = options.csv == kStandardOutput;
   if (!to_stdout) keep_apart("--csv", options.csv, std::span(&options.session, 1));
+  std::error_code none;
+  const bool pipe = to_stdout || (std::filesystem::exists(options.csv, none) &&
+                                  !std::filesystem::is_regular_file(options.csv, none));
+  if (!options.csv.empty() && !pipe) check_place(options.csv, options.force);
   const Session session = read_session(options.session);
+  if (options.json) {
+    print_json(options, session);
+    if (!options.csv.empty()) write_table(options, session);
+    return 0;
+  }
   std::string text = options.session + "\n" + about(session.info) +
                      settings_text(session, options.session) + what_moves(session.info) +
                      fmt::format("length                   {:.3f} s\n",
                                  static_cast<double>(session.size()) * session.info.tick) +
-                     numbers(session) + force_tally(session) +
+                     numbers(session) + warnings(session, options.session) + force_tally(session) +
                      fmt::format("contacts                 {}\n", contacts(session));
   if (const ToldSteps told = told_in(session, options.session); !told.steps.empty()) {
     text += fmt::format("story                    {}, {} steps\n", told.title, told.steps.size());
@@ -112,8 +201,7 @@ int info(const InfoOptions& options) {
   fmt::print(to_stdout ? stderr : stdout, "{}{}", text, happened(session));
   if (options.csv.empty()) return 0;
   std::fflush(stdout);
-  write_csv(session, options.csv, options.force);
-  if (!to_stdout) fmt::print("written as {}\n", options.csv);
+  write_table(options, session);
   return 0;
 }
 
@@ -133,7 +221,11 @@ int recover(const RecoverOptions& options) {
 Command declare_info(CLI::App& app) {
   auto* command = app.add_subcommand("info", "what a recording holds");
   auto options = std::make_shared<InfoOptions>();
-  command->add_option("SESSION.h5", options->session, "the recording")->type_name("")->required();
+  command->add_option("SESSION.h5", options->session, "the recording")
+      ->transform(or_shipped({"sessions"}), "", "")
+      ->type_name("")
+      ->required();
+  command->add_flag("--json", options->json, "one JSON object on standard output");
   command->add_option("--csv", options->csv, "write it as a table; - is standard output")
       ->type_name("OUT.csv");
   command->add_flag("--force", options->force, "replace OUT.csv if it exists");

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/base/folders.h"
 #include "app/device/device_hub.h"
@@ -144,10 +145,14 @@ void InputOptions::add_parameters(CLI::App& command) {
   command.add_option("--alpha", alpha, "observer gain (observer.alpha)")->type_name("N_M_S/RAD");
 }
 
-std::function<std::string(std::string)> or_shipped(const char* folder) {
-  return [folder](const std::string& named) {
-    if (named.empty() || named.find('/') != std::string::npos) return named;
-    return beside_or_own({}, folder, named).string();
+std::function<std::string(std::string)> or_shipped(Kinds kinds) {
+  return [kinds = std::move(kinds)](const std::string& named) {
+    if (named.empty() || std::filesystem::exists(named)) return named;
+    if (const auto own = shipped_file(named, kinds)) return own->string();
+    // An id of a device is no file.
+    const std::string hint = named.find('.') != std::string::npos ? shipped_hint(named, kinds) : "";
+    if (!hint.empty()) throw UsageError(named + ": no such file" + hint);
+    return named;
   };
 }
 
@@ -156,14 +161,14 @@ void InputOptions::add_world(CLI::App& command) {
       .add_option("--device", device,
                   "the arm; default: the built-in Omni-like one. inverse3[:ID][@HOST[:PORT]]: the "
                   "Inverse3 of a Haply Inverse Service in the window, elsewhere an arm like it")
-      ->transform(or_shipped("devices"), "", "")
+      ->transform(or_shipped({"devices"}), "", "")
       ->type_name("FILE.urdf");
   command
       .add_option("--tip", tip,
                   "the link of the arm that the hand holds; default: the end of the longest chain")
       ->type_name("LINK");
   command.add_option("--scene", scene, "what can be touched; default: a table")
-      ->transform(or_shipped("scenes"), "", "")
+      ->transform(or_shipped({"scenes"}), "", "")
       ->type_name("FILE.toml");
 }
 
@@ -171,7 +176,7 @@ void InputOptions::add_hand(CLI::App& command) {
   command
       .add_option("--hand", hand,
                   "the hand's path, or a recorded session; default: touching the table")
-      ->transform(or_shipped("hands"), "", "")
+      ->transform(or_shipped({"hands", "sessions"}), "", "")
       ->type_name("FILE.csv|FILE.h5");
   auto* length =
       command.add_option("--duration", duration, "default: the length of the hand's path")
@@ -283,6 +288,33 @@ void keep_apart(const char* option, const std::filesystem::path& out, const Inpu
   keep_apart(option, out, read);
 }
 
+namespace {
+
+constexpr std::size_t kHelpWidth = 79;
+
+// The text in lines of at most `width` letters, each with so many spaces before it.
+std::string in_lines(std::string_view text, std::size_t indent, std::size_t width) {
+  std::string all, line;
+  const auto end_line = [&] {
+    if (!line.empty()) all += std::string(indent, ' ') + line + '\n';
+    line.clear();
+  };
+  const auto letters = [](std::string_view word) {  // of UTF-8
+    return static_cast<std::size_t>(
+        std::ranges::count_if(word, [](char c) { return (c & 0xc0) != 0x80; }));
+  };
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (letters(line) + 1 + letters(word) + indent > width) end_line();
+    line += (line.empty() ? "" : " ") + std::string(word);
+  }
+  end_line();
+  return all;
+}
+
+}  // namespace
+
 std::string parameter_help() {
   std::string text = "Keys for --set and --config:\n";
   for (const ParameterInfo& info : parameter_table()) {
@@ -291,8 +323,18 @@ std::string parameter_help() {
         std::string_view(info.key).starts_with("device.") ? "the arm's" : "automatic";
     text += fmt::format("  {:<22} default {:<11} {}\n", info.key, value.empty() ? open : value,
                         allowed_values(info));
+    text += in_lines(info.meaning, 6, kHelpWidth);
   }
   return text;
+}
+
+void wrap_help(CLI::App& command) {
+  constexpr std::size_t kColumn = 30;  // where CLI11 begins what it says of an option
+  for (CLI::Option* option : command.get_options()) {
+    std::string text = in_lines(option->get_description(), 0, kHelpWidth - kColumn);
+    if (!text.empty()) text.pop_back();
+    option->description(text);
+  }
 }
 
 std::vector<HelpWord> parameter_words() {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/shipped_files.h"
 #include "app/run/simulate.h"
 
 namespace CLI {
@@ -74,11 +75,14 @@ void keep_apart(const char* option, const std::filesystem::path& out,
 void keep_apart(const char* option, const std::filesystem::path& out, const InputOptions& input);
 
 // A transform of options: a file that is not there, and came along with the program under this name
-// in a folder of assets, is that one.
-std::function<std::string(std::string)> or_shipped(const char* folder);
+// in a folder of assets, is that one. A file that is nowhere, and nearly has the name of one of
+// these, is refused with that name. Errors: UsageError.
+std::function<std::string(std::string)> or_shipped(Kinds kinds);
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();
+// What is said of each option in lines that a terminal has room for.
+void wrap_help(CLI::App& command);
 // A word of the command line and what it is.
 struct HelpWord {
   std::string word, about;

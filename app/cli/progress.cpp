@@ -75,6 +75,22 @@ bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhi
   return true;
 }
 
+// A line as wide as the terminal would wrap, and leave something behind.
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col - 1u : 79u;
+}
+
+std::string cut_to(const std::string& line, std::size_t columns) {
+  std::size_t at = 0;
+  for (std::size_t letters = 0; at < line.size(); ++at) {
+    const bool begins = (static_cast<unsigned char>(line[at]) & 0xc0u) != 0x80u;
+    if (begins && letters++ == columns) break;
+  }
+  return line.substr(0, at);
+}
+
 namespace {
 
 using Seconds = std::chrono::duration<double>;
@@ -86,25 +102,20 @@ std::string duration(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-// A line as wide as the terminal would wrap, and leave something behind.
-std::size_t room() {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  return known ? size.ws_col - 1u : 79u;
-}
-
 // Over the lines above the progress line, whose number it is given; returns how many there are.
 std::size_t draw_over(std::size_t before, const std::vector<std::string>& lines) {
   if (before > 0) fmt::print(stderr, "\r\x1b[{}A", before);
-  for (const std::string& line : lines) fmt::print(stderr, "\x1b[K{}\n", line);
+  for (const std::string& line : lines) {
+    fmt::print(stderr, "\x1b[K{}\n", cut_to(line, terminal_width()));
+  }
   fmt::print(stderr, "\x1b[J");
   return lines.size();
 }
 
 // In place of what stood there, whose length it is given; returns its own.
 std::size_t write_over(std::size_t before, std::string line) {
-  line.resize(std::min(line.size(), room()));
-  fmt::print(stderr, "\r{:{}}\r{}", "", std::min(before, room()), line);
+  line.resize(std::min(line.size(), terminal_width()));
+  fmt::print(stderr, "\r{:{}}\r{}", "", std::min(before, terminal_width()), line);
   std::fflush(stderr);
   return line.size();
 }

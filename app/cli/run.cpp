@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -15,17 +16,21 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/cli/still_picture.h"
+#include "app/cli/summary_json.h"
 #include "app/run/fitted_gains.h"
+#include "app/run/provenance.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
+#include "app/run/run_watch.h"
 #include "app/run/simulate.h"
 #include "app/run/summary.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
+namespace {
 
 // `limpid run --live`.
-inline constexpr double kLiveSeconds = 10;  // without --duration
+constexpr double kLiveSeconds = 10;  // without --duration
 
 struct LiveRunOptions {
   LiveOptions live;
@@ -34,16 +39,23 @@ struct LiveRunOptions {
   bool force = false;
 };
 
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "limpid: warning: {}\n", warning);
+}
+
 int run_live(const LiveRunOptions& options) {
   LiveBench bench(options.live, options.input);
   const RunPlan& plan = bench.plan();
   Summary summary(plan.layout());
+  RunWatch watch(plan.arm, plan.layout(), plan.parameters);
   const double seconds = options.input.duration.value_or(kLiveSeconds);
   const LiveTask task{
       fmt::format("Take hold of {}: {:.3g} s, as you like.", plan.arm.name, seconds), seconds,
       options.record, options.force};
-  const bool whole = bench.carry_out(task, plan.parameters,
-                                     [&](std::span<const double> row) { summary.add(row); });
+  const bool whole = bench.carry_out(task, plan.parameters, [&](std::span<const double> row) {
+    summary.add(row);
+    watch.add(row);
+  });
   if (summary.totals().rows == 0) {
     fmt::print(stderr, "limpid: stopped\n");
     return 1;
@@ -51,11 +63,11 @@ int run_live(const LiveRunOptions& options) {
   if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable(), {});
   fmt::print("{}", summary.text());
   if (!options.record.empty()) fmt::print("recorded in {}\n", options.record);
-  if (!whole) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", summary.time());
-  return 0;
+  print_warnings(watch.cautions());
+  if (whole) return 0;
+  fmt::print(stderr, "limpid: stopped at {:.3f} s\n", summary.time());
+  return 1;
 }
-
-namespace {
 
 using Seconds = std::chrono::duration<double>;
 
@@ -64,7 +76,7 @@ struct RunOptions {
   std::string record;
   std::string picture;
   bool force = false;
-  bool realtime = false;
+  bool realtime = false, json = false;
   std::optional<std::vector<std::string>> twin;  // key=value
   LiveOptions live;
 };
@@ -124,10 +136,19 @@ class RunLog {
       : stride_(static_cast<std::size_t>(plan.layout().stride())),
         runs_(plan.lanes(), Summary(plan.layout(), slides_of(plan.arm))),
         recorder_(recorder),
-        waits_(waits) {}
+        waits_(waits) {
+    for (std::size_t i = 0; i < plan.lanes(); ++i) {
+      watches_.emplace_back(plan.arm, plan.layout(), plan.lane(i).parameters);
+    }
+  }
 
   // False to end the run.
   bool take(std::span<const double> rows, LaneChanges changed) {
+    for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
+      if (changed[lane] != nullptr) watches_[lane].change(rows_, *changed[lane]);
+      watches_[lane].add(rows.subspan(lane * stride_, stride_));
+    }
+    ++rows_;
     const bool memorable = runs_[0].add(rows.first(stride_));
     if (runs_.size() > 1) {
       const auto twin = rows.subspan(stride_);
@@ -143,6 +164,23 @@ class RunLog {
     return !recorder_->failed();
   }
 
+  nlohmann::ordered_json json() const {
+    std::vector<const Summary*> lanes;
+    std::vector<std::string> warnings;
+    for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
+      lanes.push_back(&runs_[lane]);
+      add_warnings(watches_[lane].warnings(), lane, warnings);
+    }
+    return runs_json(lanes, warnings);
+  }
+  // Beside that a run became unstable.
+  std::vector<std::string> cautions() const {
+    std::vector<std::string> all;
+    for (std::size_t lane = 0; lane < watches_.size(); ++lane) {
+      add_warnings(watches_[lane].cautions(), lane, all);
+    }
+    return all;
+  }
   double time() const { return runs_[0].time(); }
   std::span<const double> memorable() const { return runs_[0].memorable(); }
   std::span<const double> twin() const { return twin_; }  // at that time
@@ -155,6 +193,8 @@ class RunLog {
  private:
   std::size_t stride_;
   std::vector<Summary> runs_;
+  std::deque<RunWatch> watches_;
+  std::uint64_t rows_ = 0;
   std::vector<double> twin_;
   Recorder* recorder_;
   bool waits_;
@@ -173,15 +213,17 @@ RunEnd carry_out(const RunOptions& options, const RunPlan& plan, RunLog& log) {
                   });
 }
 
-int report(const RunOptions& options, const RunEnd& end, const Recorder* recorder, double time) {
+int report(const RunOptions& options, const RunEnd& end, const Recorder* recorder,
+           const RunLog& log) {
   if (recorder != nullptr) {
-    fmt::print("recorded {} ticks in {}\n", recorder->rows(), options.record);
+    if (!options.json) fmt::print("recorded {} ticks in {}\n", recorder->rows(), options.record);
     if (recorder->dropped() > 0) {
       fmt::print(stderr, "limpid: {} ticks found no room and are missing from {}\n",
                  recorder->dropped(), options.record);
       return 1;
     }
   }
+  print_warnings(log.cautions());
   if (end.diverged) {
     fmt::print(
         stderr,
@@ -190,8 +232,9 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
         end.diverged_at, end.why);
     return 1;
   }
-  if (end.stopped) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", time);
-  return 0;
+  if (!end.stopped) return 0;
+  fmt::print(stderr, "limpid: stopped at {:.3f} s\n", log.time());
+  return 1;
 }
 
 // What was guessed about an arm, or fitted to it.
@@ -220,8 +263,18 @@ int live(const RunOptions& options) {
                                     std::pair(options.twin.has_value(), "--twin")}) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
   }
+  if (options.json) throw UsageError("--json: not beside --live");
   check_outputs(options);
   return run_live({options.live, options.input, options.record, options.picture, options.force});
+}
+
+void print_json(const RunOptions& options, const RunPlan& plan, const RunLog& log) {
+  nlohmann::ordered_json json{
+      {"provenance", provenance(settings_digest(plan.parameters), plan.seed)}};
+  json.update(log.json());
+  json["recorded"] = nullptr;
+  if (!options.record.empty()) json["recorded"] = options.record;
+  fmt::print("{}\n", json.dump(2));
 }
 
 int run(const RunOptions& options) {
@@ -253,10 +306,14 @@ int run(const RunOptions& options) {
   if (!options.picture.empty()) {
     save_picture(options.picture, plan, log.memorable(), log.twin());
   }
+  if (options.json) {
+    print_json(options, plan, log);
+    return report(options, end, recorder ? &*recorder : nullptr, log);
+  }
   fmt::print("{}", log.text(plan));
   const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
   fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
-  return report(options, end, recorder ? &*recorder : nullptr, log.time());
+  return report(options, end, recorder ? &*recorder : nullptr, log);
 }
 
 }  // namespace
@@ -271,6 +328,8 @@ Command declare_run(CLI::App& app) {
                    "draw the moment of the strongest contact into this file")
       ->type_name("OUT.png");
   command->add_flag("--force", options->force, "replace OUT.h5 and OUT.png if they exist");
+  command->add_flag("--json", options->json,
+                    "what came of it as one JSON object, instead of lines");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
   command
       ->add_option_function<std::vector<std::string>>(

@@ -40,16 +40,12 @@ struct ServeOptions {
 // The file that a client names: a path, or something that came along with the program.
 std::string file_of(const std::string& named, const char* key, const char* kind) {
   if (named.empty() || fs::path(named).is_absolute()) return named;
-  const fs::path own = data_dir() / "assets" / kind / named;
-  if (named.find('/') == std::string::npos && fs::exists(own)) return own;
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(data_dir() / "assets" / kind)) {
-    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
-  }
-  std::ranges::sort(names);
+  if (const auto own = shipped_file(named, {kind})) return *own;
+  const std::string hint = shipped_hint(named, {kind});
+  const std::string known = fmt::format("{}", fmt::join(shipped_names(kind), ", "));
   throw UsageError(
-      fmt::format("open: {}: \"{}\" is not there; allowed: a path from / on, or one of {}", key,
-                  named.substr(0, 100), fmt::join(names, ", ")));
+      fmt::format("open: {}: \"{}\" is not there{}", key, named.substr(0, 100),
+                  !hint.empty() ? hint : "; allowed: a path from / on, or one of " + known));
 }
 
 // What is open follows what clients have opened, one after the other.
@@ -173,7 +169,7 @@ Command declare_serve(CLI::App& app) {
       ->add_option("--hand", options->input.hand,
                    "the virtual arm's hand: its path, or a recorded session; default: nobody holds "
                    "the arm")
-      ->transform(or_shipped("hands"), "", "")
+      ->transform(or_shipped({"hands", "sessions"}), "", "")
       ->type_name("FILE.csv|FILE.h5");
   command
       ->add_option_function<std::string>(

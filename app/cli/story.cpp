@@ -10,6 +10,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
+#include "app/run/run_watch.h"
 #include "app/story/run_story.h"
 #include "devices/files/atomic_file.h"
 
@@ -75,16 +76,15 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
     }
     fmt::print("recorded {} ticks of both runs in {}\n", run.session.size(), options.record);
   }
-  if (run.end.diverged) {
-    fmt::print(stderr, "limpid: unstable from t = {:.3f} s on: {}\n", run.end.diverged_at,
-               run.end.why);
-    return 1;
+  for (const std::string& warning : warnings_of(run.session, script)) {
+    fmt::print(stderr, "limpid: warning: {}\n", warning);
   }
+  if (run.end.diverged) return 1;
   if (run.end.stopped) {
     fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s\n",
                static_cast<double>(run.session.size()) * run.session.info.tick, story.seconds());
   }
-  return 0;
+  return run.end.stopped ? 1 : 0;
 }
 
 }  // namespace
@@ -94,6 +94,7 @@ Command declare_story(CLI::App& app, MakeVideo make_video) {
       "story", "a script that plays itself: what happens in each step, a session, a video");
   auto options = std::make_shared<StoryOptions>();
   command->add_option("FILE.toml", options->script, "the script; default: the one that comes along")
+      ->transform(or_shipped({"stories"}), "", "")
       ->type_name("");
   auto* record =
       command->add_option("--record", options->record, "write both runs to this session file")

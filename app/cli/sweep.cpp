@@ -11,6 +11,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
+#include "app/run/provenance.h"
 #include "app/study/record_point.h"
 #include "app/study/slurm.h"
 #include "app/study/sweep_figure.h"
@@ -112,7 +113,7 @@ class Sweeping {
         share_(share),
         plan_(plan),
         folder_(folder),
-        map_(plan, measured_columns(plan)),
+        map_(plan, measured_columns(plan), terminal_width()),
         book_(plan, folder, options.csv, [this](std::uint64_t block, const auto& rows) {
           const SweepRows& all = book_.table().rows;
           map_.take(all, all.block(block).first, rows);
@@ -228,7 +229,10 @@ class Sweeping {
   // Nodes of a cluster may have no gnuplot; the table is what counts.
   void draw(const SweepTable& table) {
     try {
-      draw_figure(sweep_figure(plan_, table), folder_.path(), "figure");
+      Figure figure = sweep_figure(plan_, table);
+      // Without the day: the figure is the same however often the table is gathered.
+      figure.made_by = provenance(hex(plan_.key).substr(0, 8), plan_.seed, "");
+      draw_figure(figure, folder_.path(), "figure");
     } catch (const std::runtime_error& e) {
       fmt::print(stderr, "limpid: no figure: {}\n", e.what());
     }
@@ -272,6 +276,7 @@ Command declare_sweep(CLI::App& app) {
   auto* command = app.add_subcommand("sweep", "many runs over a plan's axes, as one table");
   auto options = std::make_shared<SweepOptions>();
   command->add_option("PLAN.toml", options->plan, "what is varied and what is measured")
+      ->transform(or_shipped({"sweeps"}), "", "")
       ->required()
       ->type_name("");
   command->add_option("--out", options->out, "the folder for what it finds")

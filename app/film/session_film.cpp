@@ -10,6 +10,7 @@
 #include "app/desktop/base/picture_signs.h"
 #include "app/plot/plot_frame.h"
 #include "app/plot/plot_row.h"
+#include "app/run/provenance.h"
 #include "app/run/replay.h"
 #include "app/run/twin_settings.h"
 #include "app/style/picture_legend.h"
@@ -351,7 +352,9 @@ FilmCut cut(const FilmOrder& order, const Session& session, const std::string& w
 FilmEnd film(const Session& session, const std::string& where, const FilmOrder& order,
              const std::atomic<bool>& stop, const std::function<void(double)>& at) {
   const FilmCut plan = cut(order, session, where);
-  VideoFile video(order.out, {order.look.width, order.look.height, plan.fps}, order.force);
+  VideoFile video(order.out,
+                  {order.look.width, order.look.height, plan.fps, provenance_of(session.info)},
+                  order.force);
   FilmFrame frame(order.look);
   Shown shown(session, where, order, plan, frame);
   const double drawing = video_kind(order.out) == VideoKind::gif ? kDrawingOfGif : 1;

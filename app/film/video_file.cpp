@@ -119,6 +119,9 @@ StreamFile::StreamFile(const std::filesystem::path& file, const VideoFormat& for
   stream->time_base = codec_->time_base;
   stream->avg_frame_rate = codec_->framerate;
   checked(avcodec_parameters_from_context(stream->codecpar, codec_.get()));
+  if (!format.comment.empty()) {
+    checked(av_dict_set(&file_->metadata, "comment", format.comment.c_str(), 0));
+  }
   checked(avio_open(&file_->pb, address.c_str(), AVIO_FLAG_WRITE));
   checked(avformat_write_header(file_.get(), options.get()));
 }

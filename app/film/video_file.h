@@ -17,6 +17,7 @@ namespace limpid {
 struct VideoFormat {
   int width = 1280, height = 720;  // [px], even, kLeastVideo to kLargestVideo
   int fps = 30;                    // pictures a second, 1 to most_fps()
+  std::string comment = {};        // in the metadata of files that have any
 };
 inline constexpr int kLeastVideo = 64, kLargestVideo = 4096;
 

@@ -14,6 +14,7 @@
 #include "app/plot/axis.h"
 #include "app/plot/plot_canvas.h"
 #include "app/plot/trace.h"
+#include "app/run/provenance.h"
 #include "app/style/ticks.h"
 
 namespace limpid {
@@ -469,7 +470,8 @@ std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPic
   PlotDrawing drawing(spec, history, picture);
   SvgCanvas canvas(picture, drawing.colours(), drawing.area());
   drawing.draw(canvas);
-  return canvas.end();
+  // The settings may have changed within the plot's time.
+  return with_metadata(canvas.end(), provenance("", std::nullopt));
 }
 
 Rgb draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,

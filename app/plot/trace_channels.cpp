@@ -23,27 +23,15 @@ void EnergyAccount::follow(const History& history, SampleIndex end) {
         start_over();
         next_ = at;
       } else if (mark->key.find('.') != std::string::npos) {  // a parameter's
-        settled_ = mark->time + kSettling;
-        forgiven_ += std::max(0.0, own());
+        shares_.change(mark->time);
       }
     }
     looked_until_ = time;
     const auto value = [&](Channel c) { return history.value(static_cast<int>(c), next_); };
     const double energy = static_cast<double>(value(Channel::energy_total)) -
                           static_cast<double>(value(Channel::energy_compensation));
-    take(time, energy, value(Channel::limited) > 0.5f);
+    shares_.take(time, energy, value(Channel::limited) > 0.5f);
   }
-}
-
-void EnergyAccount::take(double time, double energy, bool limited) {
-  const bool settling = time <= settled_;
-  const bool excused = settling || limited;
-  if (excused && !excused_) peak_ = total_;
-  excused_ = excused;
-  total_ = energy;
-  if (!excused || energy <= peak_) return;
-  (settling ? changes_ : limits_) += energy - peak_;
-  peak_ = energy;
 }
 
 namespace {
@@ -160,14 +148,6 @@ ChannelInfo column_channel(const ColumnInfo& column, int part, const std::string
 }
 
 }  // namespace
-
-std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p) {
-  std::vector<double> limits;
-  for (const Joint& joint : arm.joints) {
-    limits.push_back(std::isnan(p.torque_limit) ? joint.effort : p.torque_limit);
-  }
-  return limits;
-}
 
 TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& slides,
                              const std::vector<std::string>& bodies)
@@ -296,13 +276,7 @@ std::optional<int> TraceChannels::find(const std::string& key) const {
 }
 
 bool TraceChannels::limited(std::span<const double> row, int joint) const {
-  const auto j = static_cast<std::size_t>(joint);
-  if (j >= limits_.size()) return false;
-  const double given = std::abs(layout_.in(row, Column::motor_torque)[j]);
-  const double asked = std::abs(layout_.in(row, Column::commanded_torque)[j] +
-                                layout_.in(row, Column::compensation_torque)[j]);
-  // A law that knows the limit asks for no more than that.
-  return given >= limits_[j] * (1 - 1e-9) && asked >= given * (1 - 1e-9);
+  return at_limit(layout_, row, limits_, joint);
 }
 
 void TraceChannels::values(std::span<const double> row, std::span<double> into) const {
@@ -328,9 +302,7 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::human, torque(layout_.human_torque(row)));
   put(Channel::human_estimate, torque(at(Column::hand_torque_estimate)));
   put(Channel::contact, torque(at(Column::contact_torque)));
-  bool any_limited = false;
-  for (int j = 0; j < layout_.dof(); ++j) any_limited = any_limited || limited(row, j);
-  put(Channel::limited, any_limited ? 1 : 0);
+  put(Channel::limited, any_at_limit(layout_, row, limits_) ? 1 : 0);
   const auto rest = joints.subspan(x1.size());
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     rest[i] = shown(columns_[i].scaled, row[columns_[i].at]);

@@ -8,6 +8,7 @@
 
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
+#include "app/run/energy_shares.h"
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
 #include "core/tick/row.h"
@@ -45,10 +46,6 @@ struct ChannelInfo {
   bool seldom = false;  // hidden at first where two runs share a plot
 };
 
-// Largest torque of each motor: the parameters', or the arm's own where they leave it to the arm
-// [N m].
-std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
-
 class TraceChannels {
  public:
   // `slides`: which joints do; their channels are in metres and newtons. Empty: none. `bodies`:
@@ -75,6 +72,8 @@ class TraceChannels {
   void append(History& history, std::span<const double> row,
               std::span<const double> again = {}) const;
   const RowLayout& layout() const { return layout_; }
+  // What works the tips out; null without an arm.
+  const DerivedColumns* tips() const { return tips_ ? &*tips_ : nullptr; }
 
  private:
   void add_bodies(const std::vector<std::string>& names);
@@ -96,45 +95,26 @@ class TraceChannels {
   std::optional<DerivedColumns> tips_;
 };
 
-// Whose energy it is: what the coupling gave, apart from what changing a setting put in.
-
-// Of E_c, the energy that the controller gave since the start, the part that is nobody's fault:
-//
-// - Who switches the coupling, or moves one of its sliders, while it is stretched puts energy in,
-// as
-//   one who bends a spring does. What E_c gains within kSettling after a change is the change's.
-// - A motor at its limit gives another torque than the coupling asks for. What E_c gains meanwhile
-//   is the limit's.
-// - What the motors give for the device's own weight, springs and friction the device takes.
-//
-// What is left is the coupling's own: while it is passive it stays below zero. What it gave before
-// the last change is forgiven: the setting that gave it is gone.
+// The energy that the coupling gave, followed through a history.
 class EnergyAccount {
  public:
-  static constexpr double kSettling = 0.3;  // [s]
-
   // Accounts for the samples up to `end` that were not looked at yet; from the beginning where
   // `end` lies before them. The history has the channels of TraceChannels.
   void follow(const History& history, SampleIndex end);
 
-  // E_c, without what was for the device's own forces [J].
-  double total() const { return total_; }
-  double by_changes() const { return changes_; }             // [J]
-  double by_limits() const { return limits_; }               // [J]
-  double own() const { return without_limits() - limits_; }  // [J]
-  // Where the coupling is known not to be passive, its motors' limit is no excuse [J].
-  double without_limits() const { return total_ - changes_ - forgiven_; }
+  // As EnergyShares has them [J].
+  double total() const { return shares_.total(); }
+  double by_changes() const { return shares_.by_changes(); }
+  double by_limits() const { return shares_.by_limits(); }
+  double own() const { return shares_.own(); }
+  double without_limits() const { return shares_.without_limits(); }
 
  private:
   void start_over() { *this = EnergyAccount(); }
-  void take(double time, double energy, bool limited);
 
   SampleIndex next_ = 0;
   double looked_until_ = -1;  // at the marks [s]
-  double total_ = 0, changes_ = 0, limits_ = 0, forgiven_ = 0;
-  double settled_ = -1;  // when the last change has settled [s]
-  double peak_ = 0;      // of E_c since the excuse began [J]
-  bool excused_ = false;
+  EnergyShares shares_;
 };
 
 }  // namespace limpid

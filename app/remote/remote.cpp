@@ -198,10 +198,12 @@ std::vector<Remote::Wanted> Remote::find(const std::vector<std::string>& names,
   std::vector<Wanted> found;
   for (const std::string& name : names) {
     const bool of_twin = name.starts_with(kTwinPrefix);
-    const auto channel = channels.find(of_twin ? name.substr(kTwinPrefix.size()) : name);
+    const auto channel =
+        LiveChannel::find(channels, of_twin ? name.substr(kTwinPrefix.size()) : name);
     if (!channel) {
       throw RemoteError(fmt::format(
-          "{}: channels: {} is no channel of this arm and scene; `row` without channels lists all",
+          "{}: channels: {} is no channel of this arm and scene; allowed: those of sessions, as "
+          "hand/torque, and those that `row` without channels lists",
           verb, shown(name)));
     }
     found.push_back({*channel, of_twin});
@@ -224,8 +226,8 @@ json Remote::newest(const Keys& keys) const {
       if (wanted[i].of_twin && twin_row.empty()) {
         throw RemoteError(fmt::format("row: channels: {}: there is no twin", shown((*names)[i])));
       }
-      all[(*names)[i]] = number(
-          (wanted[i].of_twin ? of_twin : values)[static_cast<std::size_t>(wanted[i].channel)]);
+      all[(*names)[i]] = wanted[i].of_twin ? wanted[i].channel.value(channels, twin_row, of_twin)
+                                           : wanted[i].channel.value(channels, row, values);
     }
   } else {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -249,7 +251,7 @@ json Remote::follow(const Keys& keys, Client client) {
   follower.every = static_cast<std::uint64_t>(std::max(1LL, std::llround(1 / (rate * tick))));
   json units = json::array();
   for (const Wanted& w : follower.wanted) {
-    units.push_back(host_.channels().infos()[static_cast<std::size_t>(w.channel)].unit);
+    units.push_back(w.channel.unit(host_.channels()));
   }
   json answer{{"channels", *names}, {"units", units}, {"every", follower.every}, {"tick", tick}};
   followers_[client] = std::move(follower);
@@ -258,21 +260,25 @@ json Remote::follow(const Keys& keys, Client client) {
 
 void Remote::row(std::span<const double> row, std::span<const double> twin, std::uint64_t tick) {
   bool worked_out = false;
+  const TraceChannels& channels = host_.channels();
+  const bool two = !twin.empty() && !std::isnan(twin[0]);
   for (auto& [client, f] : followers_) {
     if (tick % f.every != 0) continue;
     if (!std::exchange(worked_out, true)) {
-      const TraceChannels& channels = host_.channels();
       values_.resize(static_cast<std::size_t>(channels.count()));
       twin_values_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
       channels.values(row, values_);
-      if (!twin.empty() && !std::isnan(twin[0])) channels.values(twin, twin_values_);
+      if (two) channels.values(twin, twin_values_);
     }
     if (f.last && tick > *f.last) f.dropped += (tick - *f.last) / f.every - 1;
     f.last = tick;
     json each = json::array({tick});
     for (const Wanted& w : f.wanted) {
-      each.push_back(
-          number((w.of_twin ? twin_values_ : values_)[static_cast<std::size_t>(w.channel)]));
+      if (!w.of_twin) {
+        each.push_back(w.channel.value(channels, row, values_));
+      } else {
+        each.push_back(two ? w.channel.value(channels, twin, twin_values_) : json());
+      }
     }
     f.rows.push_back(std::move(each));
     if (f.rows.size() >= kRowsInALine) flush(client, f);

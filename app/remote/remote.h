@@ -17,6 +17,7 @@
 #include "app/live/live_loop.h"
 #include "app/plot/trace_channels.h"
 #include "app/remote/line_server.h"
+#include "app/remote/live_channels.h"
 #include "app/remote/protocol.h"
 #include "core/tick/parameters.h"
 
@@ -91,7 +92,7 @@ class Remote {
   using Client = LineServer::Client;
 
   struct Wanted {
-    int channel = 0;
+    LiveChannel channel;
     bool of_twin = false;
   };
   struct Follower {

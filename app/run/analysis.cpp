@@ -114,7 +114,7 @@ Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, cons
   a.measured = arm.delay.has_value() && std::isnan(p.damping);
   a.condition3 = condition3(arm, p);
   a.link = p.oldest() * p.tick;
-  a.passive = p.eta >= a.eta_min;
+  a.above_eta_min = p.eta >= a.eta_min;
   return a;
 }
 
@@ -140,6 +140,48 @@ Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Para
   Analysis a = of_modes(locked_modes(held.M_L, held.b, p.alpha), arm, p, w_b);
   a.eta_min_grip = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
   return a;
+}
+
+namespace {
+
+constexpr double kTriedTick = 1.001e-3;  // [s]
+
+// Of spring and damper alone.
+Passivity by_condition3(const Condition3& c) {
+  if (!c.known) return {std::nullopt, "no bound is known, as packets are lost (link.loss)"};
+  return {c.holds, c.holds ? "condition (3) holds" : "condition (3) is broken"};
+}
+
+Passivity of_feedforward(const Analysis& a, const Parameters& p) {
+  if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
+  if (p.eta < a.eta_min_grip) {
+    return {false, fmt::format("eta is below Routh's limit {:.4f} of this grip", a.eta_min_grip)};
+  }
+  const Passivity spring = by_condition3(a.condition3);
+  if (spring.passive == false) return spring;
+  if (p.linked()) return {std::nullopt, "no bound is known of what is fed forward through a link"};
+  if (a.delay > 0) {
+    return {std::nullopt,
+            fmt::format("no bound is known of what is fed forward {:.3g} ms late", 1e3 * a.delay)};
+  }
+  return {true, "eta is at or above eta_min, (25), and condition (3) holds"};
+}
+
+}  // namespace
+
+Passivity passivity(const Analysis& a, const Parameters& p) {
+  switch (p.kind) {
+    case CouplingKind::standard: return by_condition3(a.condition3);
+    case CouplingKind::proposed: return of_feedforward(a, p);
+    case CouplingKind::predictive:
+      if (p.tick > kTriedTick) {
+        return {std::nullopt, "no bound is known: its ledger was tried at ticks of up to 1 ms"};
+      }
+      return {true, fmt::format("its ledger: at most {:.3g} mJ are given", 1e3 * p.energy)};
+    case CouplingKind::tank:
+      return {true, fmt::format("its tanks: at most {:.3g} mJ are given", 1e3 * p.tank_energy)};
+  }
+  return {};
 }
 
 std::vector<std::complex<double>> handle_poles(const ArmDescription& arm, const Eigen::VectorXd& x,

@@ -33,8 +33,17 @@ struct Analysis {
   double link = 0;                     // of the link each way, that it reckons with [s]
   bool measured = false;               // inertia, damping and delay were, of the device itself
   Condition3 condition3;
-  bool passive = false;  // eta >= eta_min
+  bool above_eta_min = false;  // eta >= eta_min: (25), which is about the proposed law alone
 };
+
+// Whether the law that is chosen is passive: gives no more energy than it took, or than its account
+// allows.
+struct Passivity {
+  std::optional<bool> passive;  // none: no bound is known
+  std::string by;               // what says so, in words: "condition (3)"
+};
+// Of the parameters that `a` is the analysis of.
+Passivity passivity(const Analysis& a, const Parameters& p);
 
 // b_d of every joint: the setting, or what the arm's file says [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);

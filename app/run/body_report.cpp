@@ -44,7 +44,7 @@ struct Placed {
 // Shape and parts in the world; of a mesh the box around it.
 std::vector<Placed> pieces(const Object& object) {
   std::vector<Placed> all{{object.shape, object.pose}};
-  if (const auto* mesh = std::get_if<Mesh>(&object.shape); mesh != nullptr && object.body) {
+  if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
     const auto [box, at] = box_around(*mesh);
     all[0] = {box, object.pose * at};
   }
@@ -106,24 +106,9 @@ std::string line_of(const Object& object) {
   return text;
 }
 
-// How far the tip stays away from it at the least [m].
-double out_of_reach(const Object& object, const Scene& scene, const Vec3& root, double reach) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Placed& piece : pieces(object)) {
-    std::visit(
-        [&]<class S>(const S& shape) {
-          if constexpr (!std::is_same_v<S, Mesh> && !std::is_same_v<S, JointStop>) {
-            least = std::min(least, distance_to(shape, piece.pose, root).distance);
-          }
-        },
-        piece.shape);
-  }
-  return least - reach - scene.tip_radius;
-}
-
-void warn(const Object& object, const Scene& scene, const Vec3& root, double reach,
-          BodyReport& report) {
-  const double away = out_of_reach(object, scene, root, reach);
+void warn(const Object& object, const Scene& scene, const ArmDescription& arm, BodyReport& report) {
+  const double reach = farthest_tip(arm).distance;
+  const double away = beyond_reach(object, scene, arm);
   if (away > 0) {
     report.warnings.push_back(
         fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
@@ -156,6 +141,41 @@ void warn(const Object& object, const Scene& scene, const Vec3& root, double rea
 
 bool possible_inertia(const Vec3& inertia) {
   return 2 * inertia.maxCoeff() <= (1 + 1e-9) * inertia.sum();
+}
+
+double beyond_reach(const Object& object, const Scene& scene, const ArmDescription& arm) {
+  const Vec3 root = root_of(arm);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Placed& piece : pieces(object)) {
+    std::visit(
+        [&]<class S>(const S& shape) {
+          if constexpr (!std::is_same_v<S, Mesh> && !std::is_same_v<S, JointStop>) {
+            least = std::min(least, distance_to(shape, piece.pose, root).distance);
+          }
+        },
+        piece.shape);
+  }
+  return least - farthest_tip(arm).distance - scene.tip_radius;
+}
+
+double spring_energy(const Scene& scene) {
+  // In the world, where it holds at the start.
+  const auto at = [&](const BodySpring& spring, std::size_t end) -> Vec3 {
+    const auto body = std::ranges::find(scene.objects, spring.between[end], &Object::name);
+    if (spring.between[end].empty() || body == scene.objects.end()) return spring.points[end];
+    return body->pose * spring.points[end];
+  };
+  double energy = 0;
+  for (const BodySpring& spring : scene.springs) {
+    const double drawn = (at(spring, 0) - at(spring, 1)).norm() - spring.length;
+    energy += spring.stiffness * drawn * drawn / 2;
+  }
+  for (const Object& object : scene.objects) {
+    if (!object.body || !object.body->joint) continue;
+    const JointForce& force = object.body->joint->force;
+    energy += force.spring * force.rest * force.rest / 2;
+  }
+  return energy;
 }
 
 double most_weight_energy(const Scene& scene, const ArmDescription& arm) {
@@ -200,21 +220,27 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm) {
   const int bodies = count_bodies(scene);
   if (bodies == 0) return report;
   const double energy = most_weight_energy(scene, arm);
-  report.facts.push_back(
-      fmt::format("moves        {} of them, {} springs; their weight may give {:.3g} J", bodies,
-                  scene.springs.size(), energy));
-  const Vec3 root = root_of(arm);
-  const double reach = farthest_tip(arm).distance;
+  const double springs = spring_energy(scene);
+  report.facts.push_back(fmt::format(
+      "moves        {} of them, {} springs; their weight may give {:.3g} J, their springs {:.3g} J",
+      bodies, scene.springs.size(), energy, springs));
   for (const Object& object : scene.objects) {
     if (!object.body) continue;
     report.facts.push_back(line_of(object));
-    warn(object, scene, root, reach, report);
+    warn(object, scene, arm, report);
   }
   if (energy > kHurts) {
     report.warnings.push_back(fmt::format(
         "falling, its bodies may give {:.3g} J, more than {} J: a falling kilogram hurts; make "
         "them lighter, or let them start lower",
         energy, kHurts));
+  }
+  if (springs > kHurts) {
+    report.warnings.push_back(
+        fmt::format("springs that are drawn at the start may give {:.3g} J, more than {} J: make "
+                    "them softer, or "
+                    "let their bodies start nearer to rest",
+                    springs, kHurts));
   }
   for (const auto& [i, j] : overlapping(scene)) {
     report.warnings.push_back(fmt::format("'{}' and '{}' are in each other at the start",

@@ -22,6 +22,13 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm);
 // without one as far as the tip gets [J].
 double most_weight_energy(const Scene& scene, const ArmDescription& arm);
 
+// What springs hold at the start: those between bodies, and those of their joints [J].
+double spring_energy(const Scene& scene);
+
+// How far the tip stays away from the object at the least [m]; not above 0: it gets there. Of a
+// mesh the box around it counts.
+double beyond_reach(const Object& object, const Scene& scene, const ArmDescription& arm);
+
 // Places of objects that are in each other at the start, more than half a millimetre; one of each
 // two moves. What hangs on each other is none. Of moving meshes the convex hull counts.
 std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene);

@@ -34,6 +34,16 @@ std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t la
   return worlds;
 }
 
+// Of a recording that does not say whose rows they are there is nothing to watch.
+std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Parameters> initial,
+                                std::size_t lanes) {
+  std::deque<RunWatch> watches;
+  for (std::size_t lane = 0; info.arm && lane < lanes; ++lane) {
+    watches.emplace_back(*info.arm, info.layout(), initial[lane]);
+  }
+  return watches;
+}
+
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
@@ -44,6 +54,7 @@ Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
             static_cast<std::size_t>((twin ? 2 : 1) * info.layout().stride())),
       lanes_(twin ? 2 : 1),
       known_{initial, twin ? *twin : initial},
+      watches_(watches_of(info, known_, lanes_)),
       worlds_(rooms(info, lanes_)),
       block_(kBlockRows * ring_.stride()),
       thread_([this] { live(); }) {}
@@ -111,7 +122,11 @@ void Recorder::finish() {
   stop_.store(true);
   if (thread_.joinable()) thread_.join();
   if (failed()) throw FileError(error());
-  writer_.close();
+  std::vector<std::string> warnings;
+  for (std::size_t lane = 0; lane < watches_.size(); ++lane) {
+    add_warnings(watches_[lane].warnings(), lane, warnings);
+  }
+  writer_.close(warnings_text(warnings));
 }
 
 void Recorder::live() {
@@ -139,8 +154,11 @@ void Recorder::write_rows() {
   if (rows > 0 && !std::exchange(begun_, true)) {
     for (std::size_t lane = 0; lane < lanes_; ++lane) writer_.append_world(worlds_[lane], lane);
   }
-  if (lanes_ == 1) return writer_.append(both);
   const std::size_t stride = ring_.stride() / lanes_;
+  for (std::size_t at = 0; at < both.size() && !watches_.empty(); at += stride) {
+    watches_[at / stride % lanes_].add(both.subspan(at, stride));
+  }
+  if (lanes_ == 1) return writer_.append(both);
   for (std::size_t lane = 0; lane < lanes_; ++lane) {
     of_lane_.clear();
     for (std::size_t at = lane * stride; at < both.size(); at += ring_.stride()) {
@@ -162,6 +180,7 @@ void Recorder::write_changes() {
                      change->lane);
     }
     known = change->parameters;
+    if (!watches_.empty()) watches_[change->lane].change(change->row, known);
   }
 }
 

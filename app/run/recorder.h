@@ -3,10 +3,12 @@
 
 #include <array>
 #include <atomic>
+#include <deque>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include "app/run/run_watch.h"
 #include "core/realtime/trace_ring.h"
 #include "core/tick/parameters.h"
 #include "devices/files/session/session.h"
@@ -53,7 +55,8 @@ class Recorder {
   std::string error() const;                              // once failed
   bool is_locked() const { return writer_.is_locked(); }  // against other programs
   const std::filesystem::path& out() const { return out_; }
-  // Writes what is left, closes and renames. Errors: FileError, also for what failed before.
+  // Writes what is left, with what there is to warn of, closes and renames. Errors: FileError, also
+  // for what failed before.
   void finish();
 
  private:
@@ -74,6 +77,7 @@ class Recorder {
   SpscQueue<Change> changes_{256};
   std::size_t lanes_;                          // runs
   std::array<Parameters, 2> known_;            // the writing thread's, of each run
+  std::deque<RunWatch> watches_;               // the writing thread's, of each run
   std::array<std::vector<double>, 2> worlds_;  // of each run, with room for the largest
   bool begun_ = false;                         // the writing thread's: these are written
   std::vector<double> block_, of_lane_;        // the writing thread's

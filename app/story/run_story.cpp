@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/run/replay.h"
+#include "app/run/run_watch.h"
 #include "app/story/story.h"
 #include "devices/files/toml_reader.h"
 
@@ -158,7 +159,7 @@ void write_session(const Session& session, const ToldSteps& told, const std::fil
       if (change.row < runs[lane]->size()) writer.append(change, lane);
     }
   }
-  writer.close();
+  writer.close(warnings_text(warnings_of(session, out.string())));
 }
 
 }  // namespace limpid

@@ -14,6 +14,7 @@
 
 #include "app/base/in_parallel.h"
 #include "app/base/markup.h"
+#include "app/run/provenance.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/run_key.h"
@@ -21,6 +22,7 @@
 #include "app/study/live.h"
 #include "app/study/sweep_table.h"
 #include "devices/files/atomic_file.h"
+#include "devices/files/config_file.h"
 
 namespace limpid {
 
@@ -49,6 +51,7 @@ std::string or_none(std::set<double> set, const std::string& unit, const std::st
 }  // namespace
 
 void Conditions::add(const ArmDescription& arm, const Parameters& p) {
+  configs_.insert(config_text(p));
   arms_.insert(arm.name);
   joints_.insert(arm.dof());
   if (std::isnan(p.torque_limit)) {
@@ -87,6 +90,10 @@ std::string Conditions::text() const {
       or_none(masses_, "kg in the hand", "no mass in the hand"),
       or_none(encoders_, "rad a step of the encoders", "exact encoders"),
       or_none(delays_, "ms of delay", "no delay"), values(ticks_, "ms"));
+}
+
+std::string Conditions::settings() const {
+  return configs_.empty() ? "" : settings_digest(configs_);
 }
 
 std::string Conditions::of_the_device() const {
@@ -280,6 +287,7 @@ void write_verdict(const std::string& name, const Outcome& outcome,
                                        {"passed", outcome.passed()},
                                        {"title", outcome.figure.title},
                                        {"caption", outcome.figure.caption},
+                                       {"provenance", outcome.figure.made_by},
                                        {"checks", checks}};
   std::ofstream out(file);
   out << verdict.dump(2) << '\n';
@@ -309,6 +317,7 @@ Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& opti
     outcome.checks.push_back(at_most("trials that diverged, of those that may not",
                                      static_cast<double>(lab.diverged()), 0));
   }
+  outcome.figure.made_by = provenance(lab.conditions().settings(), lab.seed());
   write_outcome(experiment.name, outcome, options.dir);
   return outcome;
 }
@@ -362,13 +371,15 @@ std::string section(const Page& page) {
 <p class="soft">{0}: {3}</p>
 <figure><img src="{0}.svg" alt="{1}">
 <figcaption>{4} <a href="{0}.csv">data</a>, <a href="{0}.png">picture</a></figcaption></figure>
+<p class="soft">{6}</p>
 <table><thead><tr><th>Check</th><th class="number">Value</th><th class="number">Bound</th>
 <th class="verdict">Verdict</th></tr></thead><tbody>
 {5}</tbody></table>
 </section>
 )",
       page.name, escaped(typeset(v.value("title", page.name))), verdict(v.value("passed", false)),
-      escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), rows);
+      escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), rows,
+      escaped(v.value("provenance", "")));
 }
 
 }  // namespace

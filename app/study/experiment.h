@@ -32,11 +32,14 @@ class Conditions {
   std::string text() const;
   // The same without the hand, which is a person's, and what belongs to a simulated device.
   std::string of_the_device() const;
+  // Of the settings of all of them, as settings_digest() has it; empty without any run.
+  std::string settings() const;
 
  private:
   std::string arms() const;
   std::string motors() const;
 
+  std::set<std::string> configs_;
   std::set<std::string> arms_;
   std::set<int> joints_;
   std::set<double> own_limits_;  // of the arms whose motors are not limited otherwise [N m]

@@ -16,12 +16,14 @@
 #include <ctime>
 #include <fstream>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "app/base/markup.h"
 #include "app/base/version.h"
+#include "app/run/provenance.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
 
@@ -99,6 +101,16 @@ void write_figure_data(const Figure& figure, const fs::path& csv) {
   }
 }
 
+namespace {
+
+void add_metadata(const fs::path& svg, const std::string& line) {
+  std::ostringstream drawn;
+  drawn << std::ifstream(svg, std::ios::binary).rdbuf();
+  std::ofstream(svg, std::ios::binary) << with_metadata(drawn.str(), line);
+}
+
+}  // namespace
+
 void draw_figure(const Figure& figure, const fs::path& dir, const std::string& name) {
   // Others may be drawing the same.
   const auto part = [&](const char* extension) {
@@ -112,6 +124,7 @@ void draw_figure(const Figure& figure, const fs::path& dir, const std::string& n
   const int status = gnuplot(script);
   std::error_code failure, none;
   fs::remove(script, none);
+  if (status == 0) add_metadata(part(".svg"), figure.made_by);
   for (const FigureFile& file : files) {
     const fs::path out = dir / (name + file.out.extension().string());
     if (status == 0) fs::rename(file.out, out, failure);

@@ -50,6 +50,7 @@ struct Figure {
   int columns = 1;
   int panel_height = 420;  // [px], of 640 px width
   std::vector<FigurePanel> panels;
+  std::string made_by = {};  // a line, as provenance() has it; SVG has it as metadata
 };
 
 // Okabe and Ito's colours for the things of the paper, as everywhere in the program.

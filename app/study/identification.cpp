@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run/analysis.h"
+#include "app/run/provenance.h"
 #include "devices/identify/torque_scale.h"
 #include "devices/identify/unlike_device.h"
 
@@ -137,6 +138,7 @@ std::string findings_text(const Identification& identification, const std::strin
   ordered_json json{
       {"device", identification.device},
       {"arm", found.arm.name},
+      {"provenance", provenance("", std::nullopt)},
       {"when", fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::localtime(std::time(nullptr)))},
       {"seconds", run.record.T * static_cast<double>(run.record.rows())},
       {"delay", as_json(found.delay)},

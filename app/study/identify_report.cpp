@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/base/markup.h"
+#include "app/run/provenance.h"
 #include "app/run/urdf_writer.h"
 #include "app/study/figure.h"
 #include "devices/files/atomic_file.h"
@@ -86,8 +87,8 @@ void write_report(const Identification& identification, const std::optional<Find
 
 std::string identified_urdf(const Identification& identification) {
   return urdf_text(identification.found.arm,
-                   fmt::format("identified by limpid on {}, from {}", identification.device,
-                               identification.order.guess.name));
+                   fmt::format("identified by {} on {}, from {}", provenance("", std::nullopt),
+                               identification.device, identification.order.guess.name));
 }
 
 DeviceHub::Profile profile_of(const Identification& identification) {
@@ -118,7 +119,8 @@ std::string write_identification(const Identification& identification,
                                  const std::string& more) {
   write(dir / "identified.urdf", identified_urdf(identification));
   write(dir / "identified.json", findings_text(identification, more));
-  const Figure figure = identify_figure(identification);
+  Figure figure = identify_figure(identification);
+  figure.made_by = provenance("", std::nullopt);
   write_figure_data(figure, dir / "identified.csv");
   std::string wrong;
   try {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "app/run/analysis.h"
+#include "app/run/provenance.h"
 #include "app/study/coordination.h"
 #include "app/study/signals.h"
 #include "app/study/tap_bench.h"
@@ -62,6 +63,7 @@ Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
   Conditions conditions;
   conditions.add(lab.arm, lab.parameters);
   outcome.figure.caption += " " + conditions.of_the_device();
+  outcome.figure.made_by = provenance(conditions.settings(), std::nullopt);
   write_outcome(live_name(experiment), outcome, dir);
   return outcome;
 }

@@ -7,6 +7,7 @@
 #include "app/base/folders.h"
 #include "app/run/reach_check.h"
 #include "app/run/run_key.h"
+#include "app/run/shipped_files.h"
 #include "app/study/body_axis.h"
 #include "app/study/read_axes.h"
 #include "app/study/sweep_plan.h"
@@ -151,7 +152,9 @@ class Reader {
       if (measure == nullptr) {
         std::vector<std::string> names;
         for (const MeasureInfo& each : measure_table()) names.emplace_back(each.name);
-        file_.refuse("measure", fmt::format("{}: no such measure; a list among {}", name,
+        const auto meant = nearest(name, names);
+        file_.refuse("measure", fmt::format("{}: no such measure; {}a list among {}", name,
+                                            meant ? fmt::format("did you mean {}? ", *meant) : "",
                                             fmt::join(names, ", ")));
       }
       plan_.measures.push_back(measure);
@@ -214,8 +217,9 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
     if (name.empty()) return otherwise;
     fs::path found = beside_or_own(plan.file.parent_path(), kind, name);
     if (fs::exists(found)) return found;
-    throw FileError(fmt::format("{}: \"{}\" is not there, neither beside the plan nor in {}",
-                                plan.file.string(), name, (data_dir() / "assets" / kind).string()));
+    throw FileError(fmt::format("{}: \"{}\" is not there, neither beside the plan nor in {}{}",
+                                plan.file.string(), name, (data_dir() / "assets" / kind).string(),
+                                shipped_hint(name, {kind})));
   };
   RunPlan run;
   run.arm = read_urdf(file(world.device, "devices", default_device()), {}, plan.xacro);

@@ -277,20 +277,23 @@ SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice) {
 
 namespace {
 
-constexpr std::size_t kMostAcross = 60, kMostUp = 20;
+constexpr std::size_t kMostUp = 20;
+constexpr std::size_t kRowLabel = 11, kCellWidth = 2;  // in columns of a terminal
 constexpr const char* kShades[] = {"░░", "▒▒", "▓▓", "██"};
 
 }  // namespace
 
-MapText::MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns)
+MapText::MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns, std::size_t width)
     : plan_(plan), columns_(columns.size()) {
   const auto shown = std::ranges::find(columns, plan.figure.measure, &SweepColumn::name);
   if (shown != columns.end()) column_ = static_cast<std::size_t>(shown - columns.begin());
   name_ = columns[column_].name;
+  const std::size_t across =
+      (std::clamp(width, kRowLabel + kCellWidth, kWidest) - kRowLabel) / kCellWidth;
   for (std::size_t a = plan.axes.size(); a-- > 0 && sides_.size() < 2;) {
     const SweepAxis& axis = plan.axes[a];
     if (axis.spread != Spread::grid || axis.values.size() < 2) continue;
-    sides_.insert(sides_.begin(), side(a, sides_.empty() ? kMostUp : kMostAcross));
+    sides_.insert(sides_.begin(), side(a, sides_.empty() ? kMostUp : across));
   }
   if (sides_.size() == 2) {
     sum_.assign(sides_[0].cells * sides_[1].cells, 0);

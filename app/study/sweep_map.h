@@ -88,7 +88,11 @@ SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice);
 // where nothing is yet. Safe from several threads.
 class MapText {
  public:
-  MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns);
+  static constexpr std::size_t kWidest = 131;
+
+  // `width`: of its lines at most, in columns of a terminal.
+  MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns,
+          std::size_t width = kWidest);
 
   // Of consecutive rows from `first` on.
   void take(const SweepRows& rows, std::uint64_t first, const std::vector<double>& values);

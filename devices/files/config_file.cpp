@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
@@ -64,6 +65,12 @@ ParameterValue parse_value(const std::string& text) {
     }
   } catch (const toml::parse_error&) {
   }
+  // People write ".5", "5." and "+.5", which TOML does not know.
+  double number = 0;
+  const char* const begin = text.data() + (text.starts_with("+.") ? 1 : 0);
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(begin, end, number);
+  if (read.ec == std::errc{} && read.ptr == end) return number;
   return text;
 }
 

@@ -131,6 +131,47 @@ class Analyze(SystemTest):
                 found = self.scalar(mass=1.75e-4, alpha=0.035, b_d=0.012, b_v=0.012, eta=eta)
                 self.assertEqual(found["passive"], eta >= 0.035 / 0.059)
 
+    def test_passive_is_about_the_law_that_is_chosen(self) -> None:
+        cases = [
+            (["--coupling", "predictive", "--eta", "0.2"], True),
+            (["--coupling", "standard", "--eta", "0.01"], True),
+            (["--coupling", "proposed", "--eta", "0.5"], False),
+            (["--set", "loop.tick=0.1"], False),  # b_d >= 2 b_vc + k_vc T is broken
+            (["--coupling", "tank", "--eta", "0.1", "--set", "link.delay=20"], True),
+            (["--coupling", "standard", "--set", "link.loss=0.1"], None),
+            (["--set", "link.delay=1", "--set", "coupling.k_vc=1"], None),
+        ]
+        for options, passive in cases:
+            with self.subTest(options=options):
+                found = self.analyze(*options)
+                self.assertIs(found["passive"], passive)
+                self.assertTrue(found["passive_by"])
+                text = limpid("analyze", *options).out
+                self.assertEqual("NOT passive" in text, passive is False, text)
+
+    def test_json_says_units_and_where_it_is_from(self) -> None:
+        found = self.analyze()
+        self.assertRegex(found["provenance"], r"^limpid \S+, settings [0-9a-f]{8}, \d{4}-\d\d-\d\d$")
+        self.assertEqual(found["units"]["w_f"], "rad/s")
+        for path in found["units"]:
+            value: Any = found
+            for key in path.replace("LAW", "proposed").split("."):
+                value = value[key]
+
+    def test_a_tip_that_no_joint_moves_is_said(self) -> None:
+        arm = self.out(".urdf")
+        arm.write_text("""<robot name="shaft"><link name="base"/><link name="tip"><inertial>
+            <mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/>
+            </inertial></link><joint name="turn" type="revolute"><parent link="base"/><child link="tip"/>
+            <axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="9"/>
+            <dynamics damping="0.01"/></joint></robot>""")
+        said = limpid("analyze", "--device", arm)
+        self.assertEqual(said.status, 0, said.err)
+        self.assertIn("no joint moves 'tip'", said.out)
+        for wrong in ("nan", "inf"):
+            self.assertNotIn(wrong, said.out)
+        self.assertIsNone(self.analyze("--device", arm)["tip"])
+
     def test_every_mode_of_an_arm_has_the_same_eta_min(self) -> None:
         files = arms.write_arm(self.directory, 6)
         found = self.analyze("--device", files.urdf)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import fcntl
+import json
 import os
 import pty
 import struct
@@ -17,7 +18,7 @@ import h5py
 import numpy as np
 
 from limpid_check.session import ATTRIBUTES, DATASETS, read_session
-from support import ASSETS, LIMPID, Started, SystemTest, WithAnArm, Words, limpid
+from support import ASSETS, LIMPID, Result, Started, SystemTest, WithAnArm, Words, limpid
 
 COMMANDS = ("play", "run", "story", "experiment", "sweep", "analyze", "devices", "info", "recover")
 
@@ -50,6 +51,49 @@ class Help(SystemTest):
             "duration", "realtime", "seed", "record", "force",
         ):  # fmt: skip
             self.assertIn(f"--{option}", text)
+
+    def test_help_says_what_each_parameter_is_in_lines_that_a_terminal_has_room_for(self) -> None:
+        for command in ("run", "analyze", "serve", "check", "sweep"):
+            for line in limpid(command, "--help").out.splitlines():
+                if command in ("run", "analyze", "serve") or line.startswith("  -"):
+                    self.assertLessEqual(len(line), 110, line)
+        text = " ".join(limpid("run", "--help").out.split())
+        self.assertIn("Spring between device and proxy, (1)-(2).", text)
+        self.assertIn("Share of the packets between device and proxy that never arrive", text)
+
+    def test_help_and_the_version_are_found_by_their_other_names(self) -> None:
+        self.assertEqual(limpid("help").out, limpid("--help").out)
+        self.assertEqual(limpid("help", "run").out, limpid("run", "--help").out)
+        self.assertEqual(limpid("-V").out, limpid("--version").out)
+
+    def test_an_option_an_experiment_or_a_file_that_is_nearly_one_is_guessed(self) -> None:
+        plan = self.out(".toml")
+        plan.write_text('measure = ["enrgy"]\naxis = [{key = "coupling.eta", values = [1]}]\n')
+        for words, meant in (
+            (("run", "--sene", "table.toml"), "--scene"),
+            (("run", "--scene", "tabel.toml"), "table.toml"),
+            (("check", "stak.toml"), "stack.toml"),
+            (("story", "frst.toml"), "first.toml"),
+            (("sweep", "tiny.tml", "--out", self.out("")), "tiny.toml"),
+            (("info", "tabel.h5"), "table.h5"),
+            (("experiment", "inerta", "--out", self.out("")), "inertia"),
+            (("sweep", plan, "--out", self.out("")), "energy"),
+        ):
+            with self.subTest(words=words):
+                refused = limpid(*words)
+                self.assertEqual(refused.status, 2, refused.err)
+                self.assertIn(f"did you mean {meant}?", refused.err)
+
+    def test_what_came_along_is_found_by_its_name(self) -> None:
+        for words in (
+            ("check", "stack.toml"), ("check", "omni.urdf"), ("info", "table.h5"),
+            ("story", "first.toml", "--check"),
+            ("run", "--hand", "table.h5", "--duration", "0.01"),
+            ("sweep", "tiny.toml", "--out", self.out(""), "--threads", "1"),
+        ):  # fmt: skip
+            with self.subTest(words=words):
+                done = limpid(*words, cwd=self.directory)
+                self.assertEqual(done.status, 0, done.out + done.err)
 
     def test_devices_says_what_there_is_without_any(self) -> None:
         result = limpid("devices")
@@ -236,6 +280,75 @@ class Run(WithAnArm):
         self.assertEqual(self.on_a_terminal(80, "run", *self.arm, "--duration", "0.2"), b"")
 
 
+class Warnings(SystemTest):
+    """What gives energy or flies off is said, and kept."""
+
+    WILD = ("--coupling", "proposed", "--eta", "0.05", "--set", "hand.stiffness=3000",
+            "--set", "hand.damping=0")  # fmt: skip
+
+    def test_a_run_that_gave_energy_says_so_and_its_recording_keeps_it(self) -> None:
+        out = self.out(".h5")
+        done = limpid("run", *self.WILD, "--record", out)
+        self.assertEqual(done.status, 0, "it is whole")
+        self.assertRegex(done.err, r"limpid: warning: E_c rose to .* J.*: this run is not passive")
+        with h5py.File(out) as file:
+            kept = file.attrs["warnings"]
+            energy = np.max(file["energy/controller_total"][()])
+        self.assertIn("this run is not passive", kept)
+        self.assertIn(f"E_c rose to {energy:.3g} J", kept)
+        for line in str(kept).splitlines():
+            self.assertIn(line, limpid("info", out).out)
+        self.assertEqual(json.loads(limpid("info", out, "--json").out)["warnings"],
+                         str(kept).splitlines())  # fmt: skip
+
+    def test_a_run_as_it_should_be_says_nothing(self) -> None:
+        for law in ("standard", "proposed", "predictive", "tank"):
+            out = self.out(".h5")
+            done = limpid("run", "--coupling", law, "--record", out)
+            self.assertEqual((done.status, done.err), (0, ""), law)
+            with h5py.File(out) as file:
+                self.assertNotIn("warnings", file.attrs)
+
+    def test_sessions_that_came_along_have_nothing_to_warn_of(self) -> None:
+        for session in sorted((ASSETS / "sessions").glob("*.h5")):
+            with self.subTest(session=session.name):
+                self.assertEqual(json.loads(limpid("info", session, "--json").out)["warnings"], [])
+
+    def test_json_has_what_the_lines_have(self) -> None:
+        done = limpid("run", "--twin", "--duration", "0.5", "--json")
+        found = json.loads(done.out)
+        self.assertEqual([run["ticks"] for run in found["runs"]], [500, 500])
+        self.assertEqual(found["warnings"], [])
+        self.assertRegex(found["provenance"], r"settings [0-9a-f]{8}, seed 0, ")
+        self.assertEqual(json.loads(limpid("devices", "--json").out)["devices"], [])
+        checked = json.loads(limpid("check", "stack.toml", "--json").out)
+        self.assertEqual(checked["warnings"], [])
+
+
+class Checked(SystemTest):
+    """`limpid check` names the flaws of a scene."""
+
+    def check(self, text: str) -> Result:
+        scene = self.out(".toml")
+        scene.write_text(text)
+        return limpid("check", scene)
+
+    def test_flaws_of_a_scene_are_said(self) -> None:
+        plane = '[[plane]]\nname = "wall"\npoint = [0.2, 0.0, {z}]\nnormal = [0.0, 0.0, 1.0]\n'
+        for text, said in (
+            (plane.format(z=-5) + "stiffness = 600", "beyond the tip's reach"),
+            (plane.format(z=-0.04) + "friction_static = 0.1\nfriction_kinetic = 0.2", "above friction_static"),
+            (plane.format(z=-0.04) + "stiffness = 20000", "is stiffer than"),
+            (plane.format(z=0.5) + "stiffness = 600", "mm inside"),
+            ('title = "x"\n', "nothing is there to touch"),
+        ):
+            with self.subTest(said=said):
+                found = self.check(text)
+                self.assertEqual(found.status, 1, found.out + found.err)
+                self.assertIn(said, found.out)
+        self.assertEqual(self.check(plane.format(z=-0.04) + "stiffness = 600").status, 0)
+
+
 class Info(WithAnArm):
     def test_it_says_what_a_recording_holds(self) -> None:
         out = self.record(*self.arm, "--duration", "0.25", "--eta", "0.8")
@@ -252,6 +365,10 @@ class Info(WithAnArm):
             header, *lines = list(csv.reader(text))
         numbers = np.array([[float(word) for word in line] for line in lines])
         self.assertEqual(len(set(header)), len(header), "two columns of the same name")
+        beside = json.loads(Path(f"{table}-metadata.json").read_text())
+        self.assertEqual(beside["url"], table.name)
+        with h5py.File(out) as file:
+            self.assertIn(f"limpid {file.attrs['app_version']}, settings ", beside["dc:description"])
         self.assertEqual(numbers.shape, (50, len(header)))
         columns = {column.tobytes() for column in numbers.T}
         with h5py.File(out, "r") as file:
@@ -264,6 +381,10 @@ class Info(WithAnArm):
         table.write_text("mine")
         self.assertEqual(limpid("info", out, "--csv", table).status, 2)
         self.assertEqual(table.read_text(), "mine")
+
+    def test_a_folder_that_cannot_be_written_is_bad_input(self) -> None:
+        out = self.record(*self.arm, "--duration", "0.05")
+        self.assertEqual(limpid("info", out, "--csv", self.out("") / "none" / "a.csv").status, 2)
 
     def test_a_table_that_cannot_be_written_is_said(self) -> None:
         out = self.record(*self.arm, "--duration", "0.05")

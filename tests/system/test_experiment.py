@@ -50,6 +50,12 @@ class Inertia(SystemTest):
         for check in verdict["checks"]:
             self.assertLessEqual({"what", "value", "bound", "passed"}, set(check))
 
+    def test_figure_verdict_and_page_say_where_they_are_from(self) -> None:
+        line = json.loads((self.out_dir / "inertia.json").read_text())["provenance"]
+        self.assertRegex(line, r"^limpid \S+, settings [0-9a-f]{8}, seed 0, \d{4}-\d\d-\d\d$")
+        self.assertIn(f"<metadata>{line}</metadata>", (self.out_dir / "inertia.svg").read_text())
+        self.assertIn(line, (self.out_dir / "report.html").read_text())
+
     def test_the_table_holds_what_is_plotted(self) -> None:
         with (self.out_dir / "inertia.csv").open() as file:
             rows = list(csv.DictReader(file))

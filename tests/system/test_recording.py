@@ -64,7 +64,7 @@ class Recording(WithAnArm):
                 words = ["run", *self.arm, "--realtime", "--duration", "60", "--record", out]
                 with Started(*words) as started:
                     seen = wait_for_rows(started, self.part(out), 300)
-                    self.assertEqual(started.stop(how), 0)
+                    self.assertEqual(started.stop(how), 1)
                 self.assertFalse(self.part(out).exists())
                 session = read_session(out)
                 self.assertGreaterEqual(len(session), seen)
@@ -77,7 +77,7 @@ class Recording(WithAnArm):
                 words = ["run", *self.arm, "--duration", "80000", "--record", out]
                 with Started(*words) as started:
                     seen = wait_for_rows(started, self.part(out), 300)
-                    self.assertEqual(started.stop(how), 0)
+                    self.assertEqual(started.stop(how), 1)
                     said = started.process.communicate()
                 self.assertFalse(self.part(out).exists())
                 with h5py.File(out, "r") as file:

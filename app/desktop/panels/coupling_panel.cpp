@@ -15,11 +15,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kGiven = 1e-3;  // energy that counts [J]
-
 // What is broken, by how much, and what would mend it; empty while the promise holds.
 std::string eta_broken(const Parameters& p, const Analysis& a) {
-  if (!info(p.kind).observes || a.passive) return {};
+  if (!info(p.kind).observes || a.above_eta_min) return {};
   return fmt::format(
       "eta {:.3g} is below eta_min {:.3f} of (25): the locked system is not passive.\nRaise eta by "
       "{:.3f}, lower alpha, or raise b_v.",
@@ -208,9 +206,9 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   const bool standard = !info(p.kind).observes;
   read_out("Least passive inertia \xCE\xB7_min",
            fmt::format("{:.3f}{}", a.eta_min,
-                       standard    ? ""
-                       : a.passive ? "  ok"
-                                   : "  broken"),
+                       standard          ? ""
+                       : a.above_eta_min ? "  ok"
+                                         : "  broken"),
            eta, "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
   const std::string unstable =
       !standard && p.eta < a.eta_min_grip
@@ -295,12 +293,12 @@ const char* way_out(const Parameters& p) {
 
 // Of E_c, what the coupling itself gave is judged; the rest is said apart.
 void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysis& a) {
-  const bool at_fault = info(p.kind).observes && (!a.passive || p.eta < a.eta_min_grip);
+  const bool at_fault = passivity(a, p).passive == false;
   // A law with a ledger promises another thing: what the ledger says.
   const bool judged = !info(p.kind).keeps_ledger;
   const double own = at_fault ? energy.without_limits() : energy.own();
   const std::string broken =
-      judged && own > kGiven
+      judged && own > kGivenEnergy
           ? fmt::format(
                 "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
                 energy_text(own), way_out(p))
@@ -309,7 +307,7 @@ void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysi
            "What the coupling gave, with the device's own damping: stays below zero while it is "
            "passive. What switching and motors at their limit put in is counted apart.");
   const auto apart = [](const char* label, double joules, const char* help) {
-    if (joules > kGiven) read_out(label, energy_text(joules), {}, help);
+    if (joules > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
   };
   apart("Put in by switching", energy.by_changes(),
         "Changing a law or a setting while the coupling is stretched puts energy in, as bending a "

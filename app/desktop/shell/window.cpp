@@ -216,9 +216,10 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   if (!start_glfw()) {
     const char* why = nullptr;
     glfwGetError(&why);
-    throw std::runtime_error(std::string("no display to open a window on (") +
-                             (why != nullptr ? why : "glfwInit failed") +
-                             "); `limpid run` works without one");
+    throw std::runtime_error(
+        std::string("no display to open a window on (") +
+        (why != nullptr ? why : "glfwInit failed") +
+        "); `limpid run` works without one, and so does `limpid play SESSION.h5 --video OUT.mp4`");
   }
   const WorkArea area = work_area();
   impl_->screen_scale = area.scale;

@@ -10,6 +10,7 @@
 #include "app/base/folders.h"
 #include "app/desktop/shell/commands.h"
 #include "app/remote/remote_settings.h"
+#include "app/run/shipped_files.h"
 
 namespace limpid {
 namespace {
@@ -19,12 +20,11 @@ using nlohmann::json;
 
 fs::path file_of(const Keys& keys, const char* key, const char* kind) {
   const std::string named = keys.text(key);
-  const fs::path own = data_dir() / "assets" / kind / named;
-  fs::path file = named.find('/') == std::string::npos && fs::exists(own) ? own : fs::path(named);
+  fs::path file = shipped_file(named, {kind}).value_or(named);
   if (!file.is_absolute() || !fs::exists(file)) {
-    throw keys.error(key, fmt::format("{} is not there; allowed: a path from / on, or one that "
+    throw keys.error(key, fmt::format("{} is not there{}; allowed: a path from / on, or one that "
                                       "came along with the program",
-                                      shown(named)));
+                                      shown(named), shipped_hint(named, {kind})));
   }
   return file;
 }

@@ -133,7 +133,9 @@ class SessionWriter {
   // What the loop keeps of bodies at the first row, at most kMostWorld numbers; at most once, and
   // before that row. Of a session without bodies nothing is kept.
   void append_world(std::span<const double> world, std::size_t lane = kMainLane);
-  void close();                        // flush, close, rename
+  // Flush, close, rename. `warnings`: sentences about the run, one a line, for the attribute of
+  // that name; empty: there is none.
+  void close(const std::string& warnings = {});
   std::uint64_t rows_written() const;  // handed over so far
   const std::filesystem::path& part() const;
   bool is_locked() const;  // against other programs; false where the file system has no locks

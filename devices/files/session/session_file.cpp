@@ -146,12 +146,12 @@ hdf5::Properties placed_within_pages() {
 
 SessionFile::SessionFile(std::filesystem::path path, int descriptor, const SessionInfo& about,
                          Storage storage)
-    : path_(std::move(path)), storage_(storage), layout_(about.layout()) {
+    : path_(std::move(path)), descriptor_(descriptor), storage_(storage), layout_(about.layout()) {
   SessionInfo info = about;
   if (info.arm) info.slides = slides_of(*info.arm);
   lanes_.emplace_back(path_, info, storage);
   if (info.twin) lanes_.emplace_back(path_, info, storage);
-  guarded([&] { create(descriptor, info); });
+  guarded([&] { create(info); });
 }
 
 SessionFile::~SessionFile() { abandon(); }
@@ -169,9 +169,9 @@ void SessionFile::guarded(Work work) {
   }
 }
 
-void SessionFile::create(int descriptor, const SessionInfo& info) {
+void SessionFile::create(const SessionInfo& info) {
   const hdf5::Properties creation = placed_within_pages();
-  const hdf5::Properties access = hdf5::access_by(descriptor, path_);
+  const hdf5::Properties access = hdf5::access_by(descriptor_, path_);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   // Without a cache for them (the file's: starting to write makes HDF5 forget a dataset's own) and
   // without filling, rows are written where they belong and nowhere else.
@@ -241,16 +241,30 @@ void SessionFile::append_world(std::span<const double> world, std::size_t lane) 
   guarded([&] { lanes_.at(lane).append_world(world); });
 }
 
-void SessionFile::close() {
+// While others may read along no attribute can be made: it comes once the file is closed.
+void SessionFile::write_warnings(const std::string& warnings) {
+  const hdf5::Properties access = hdf5::access_by(descriptor_, path_);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  hdf5::File again(H5Fopen(path_.c_str(), H5F_ACC_RDWR, access.get()));
+  // Where somebody has opened it meanwhile the recording goes without: its rows say the same.
+  if (!again) return;
+  hdf5::write_text(again.get(), "warnings", warnings, path_);
+  check(again.close(), path_, "cannot write");
+}
+
+void SessionFile::close(const std::string& warnings) {
   if (!file_) return;
   guarded([&] {
     for (SessionLane& lane : lanes_) lane.flush();
     marks_.flush(path_);
+    const bool packed = storage_ == Storage::packed;
+    if (packed && !warnings.empty()) hdf5::write_text(file_.get(), "warnings", warnings, path_);
     // Closing hides errors of the last writes; flushing tells them.
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, path_, "cannot write");
     for (SessionLane& lane : lanes_) lane.close();
     check(marks_.close(), path_, "cannot write");
     check(file_.close(), path_, "cannot write");
+    if (!packed && !warnings.empty()) write_warnings(warnings);
   });
 }
 

@@ -53,16 +53,19 @@ class SessionFile {
   void append(const SettingChange& change, std::size_t lane = kMainLane);
   void append(const Mark& mark);
   void append_world(std::span<const double> world, std::size_t lane);
-  void close();  // writes what is pending and closes for good
+  // Writes what is pending and closes for good. `warnings`: as SessionWriter has them.
+  void close(const std::string& warnings = {});
   std::uint64_t rows() const { return lanes_.front().rows(); }
 
  private:
-  void create(int descriptor, const SessionInfo& info);
+  void create(const SessionInfo& info);
   void abandon();
+  void write_warnings(const std::string& warnings);
   template <class Work>
   void guarded(Work work);
 
   std::filesystem::path path_;
+  int descriptor_;
   Storage storage_;
   RowLayout layout_;
   std::vector<SessionLane> lanes_;

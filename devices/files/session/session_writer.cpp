@@ -119,9 +119,9 @@ class PackedCopy {
     if (file_) attempt([&] { check_room(), work(*file_); });
   }
   // Whether it has taken the name.
-  bool keep() {
+  bool keep(const std::string& warnings) {
     with([&](SessionFile& file) {
-      file.close();
+      file.close(warnings);
       draft_->keep();
       kept_ = true;
     });
@@ -209,12 +209,12 @@ std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(
 const fs::path& SessionWriter::part() const { return file_->part; }
 bool SessionWriter::is_locked() const { return file_->lock && file_->lock->held(); }
 
-void SessionWriter::close() {
+void SessionWriter::close(const std::string& warnings) {
   if (!file_->lock) return;
-  file_->session->close();
+  file_->session->close(warnings);
   std::error_code none;
   const bool free = file_->force || !fs::exists(file_->out, none);
-  if (free && file_->packed->keep()) {
+  if (free && file_->packed->keep(warnings)) {
     fs::remove(file_->part, none);
   } else {
     publish(file_->part, file_->out, file_->force);

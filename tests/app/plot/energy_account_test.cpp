@@ -66,7 +66,7 @@ TEST(EnergyAccount, JudgesTheCouplingAgainOnceASwitchHasSettled) {
   Books books;
   books.go_to(0, 10);
   books.change("coupling.eta");
-  books.go_to(0, static_cast<int>(1000 * EnergyAccount::kSettling) + 10);
+  books.go_to(0, static_cast<int>(1000 * EnergyShares::kSettling) + 10);
   books.go_to(0.05, 500);
   EXPECT_NEAR(books.account.own(), 0.05, kRound);
 }

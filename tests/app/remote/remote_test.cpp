@@ -212,6 +212,37 @@ TEST_F(RemoteTest, SendsRowsAtTheirRateAndCountsThoseThatAreMissing) {
   EXPECT_EQ(ask(R"({"id":5,"do":"get","keys":[]})")["id"], 5);
 }
 
+// One name for a channel, live and recorded.
+TEST_F(RemoteTest, KnowsTheNamesThatSessionsHave) {
+  const ArmDescription arm = test::omni();
+  channels = TraceChannels(arm, layout, {});
+  std::ranges::copy(std::array{1.0, 2.0, 3.0}, layout.in(row, Column::hand_torque).begin());
+  layout.in(row, Column::time)[0] = 0.5;
+  std::ranges::fill(layout.in(row, Column::contact_force), 0.0);
+  layout.in(row, Column::contact_force)[2] = 7;
+  start();
+  const json ok = ask(R"({"do":"row","channels":["time","hand/torque","hand/torque.2"]})")["ok"];
+  EXPECT_EQ(ok["values"],
+            json({{"time", 0.5}, {"hand/torque", {1.0, 2.0, 3.0}}, {"hand/torque.2", 2.0}}));
+  const json follows =
+      ask(R"({"do":"follow","channels":["hand/torque","contact/total_force","twin/hand/torque"]})")
+          ["ok"];
+  EXPECT_EQ(follows["units"], json({"N m", "N", "N m"}));
+  remote->row(row, {}, 0);
+  EXPECT_EQ(hear()["rows"], json({{0, {1.0, 2.0, 3.0}, {0.0, 0.0, 7.0}, nullptr}}));
+  for (const ColumnInfo& column : kColumnInfo) {
+    if (layout.width(column.column) == 0) continue;  // of bodies, of which there are none
+    const std::string name = column.path + 1;
+    EXPECT_TRUE(ask(R"({"do":"row","channels":[")" + name + R"("]})").contains("ok")) << name;
+  }
+  for (const DerivedInfo& derived : kDerivedInfo) {
+    const std::string name = derived.path + 1;
+    const json value = ask(R"({"do":"row","channels":[")" + name + R"("]})")["ok"]["values"][name];
+    EXPECT_EQ(value.size(), 3u) << name;
+  }
+  EXPECT_TRUE(ask(R"({"do":"row","channels":["hand/torq"]})").contains("error"));
+}
+
 TEST_F(RemoteTest, DropsRowsOfOneThatDoesNotReadAndSaysHowMany) {
   start();
   ask(R"({"do":"follow","channels":["coupling/eta"],"rate":1000})");

@@ -24,7 +24,7 @@ TEST(Analysis, OfAScalarInertiaIsTheTheoryInClosedForm) {
   EXPECT_NEAR(a.w_f[0], 0.035 / 3e-4, 1e-9);
   EXPECT_NEAR(a.w_c[0], 0.024 / 3e-4, 1e-9);
   EXPECT_NEAR(a.eta_min, 35.0 / 59, 1e-12);
-  EXPECT_TRUE(a.passive);  // eta = 1
+  EXPECT_TRUE(a.above_eta_min);  // eta = 1
   EXPECT_TRUE(a.condition3.holds);
   const double w_f = 0.035 / 3e-4, w_c = 80, w_b = 2 * kPi * 20;
   EXPECT_NEAR(*a.eta_min_band, (w_f - w_c * w_f * w_f / (w_b * w_b)) / (w_c + w_f), 1e-12);
@@ -42,7 +42,7 @@ TEST(Analysis, OfAnArmIsAlphaOverAlphaPlusBInEveryPose) {
   for (int round = 0; round < 10; ++round) {
     const Analysis a = analyze(arm, random.vector(3, 1), p, {});
     EXPECT_NEAR(a.eta_min, 35.0 / 59, 1e-9);
-    EXPECT_FALSE(a.passive);
+    EXPECT_FALSE(a.above_eta_min);
     ASSERT_EQ(a.modes.size(), 3u);
     EXPECT_LE(a.modes[0].m, a.modes[2].m);
   }
@@ -98,14 +98,78 @@ TEST(Analysis, CountsTheProxysInertia) {
   EXPECT_GT(std::abs(a.eta_min_grip - analyze(arm, x, light, {}).eta_min_grip), 1e-3);
 }
 
-TEST(Analysis, IsPassiveAtTheLimitItselfAndNotBelow) {
+TEST(Analysis, IsAboveEtaMinAtTheLimitItselfAndNotBelow) {
   Parameters p;  // b_d + b_v = 0.024
   p.alpha = 0.024;
   p.eta = 0.5;
   EXPECT_EQ(analyze(3e-4, test::omni(), p, {}).eta_min, 0.5);
-  EXPECT_TRUE(analyze(3e-4, test::omni(), p, {}).passive);
+  EXPECT_TRUE(analyze(3e-4, test::omni(), p, {}).above_eta_min);
   p.eta = std::nextafter(0.5, 0);
-  EXPECT_FALSE(analyze(3e-4, test::omni(), p, {}).passive);
+  EXPECT_FALSE(analyze(3e-4, test::omni(), p, {}).above_eta_min);
+}
+
+std::optional<bool> passive(const Parameters& p) {
+  const ArmDescription arm = test::omni();
+  return passivity(analyze(arm, rest_pose(arm), p, {}), p).passive;
+}
+
+// (25) is about the proposed law alone.
+TEST(Passivity, IsAboutTheLawThatIsChosen) {
+  Parameters p;
+  p.eta = 0.01;
+  p.kind = CouplingKind::proposed;
+  EXPECT_EQ(passive(p), false);
+  for (const auto kind : {CouplingKind::standard, CouplingKind::predictive, CouplingKind::tank}) {
+    p.kind = kind;
+    EXPECT_EQ(passive(p), true) << name(kind);
+  }
+}
+
+// b_d = 0.012 is less than 2 b_vc + k_vc T = 1.002 N m s/rad.
+TEST(Passivity, IsNoneOfSpringAndDamperWhereConditionThreeIsBroken) {
+  Parameters p;
+  p.tick = 0.1;
+  for (const auto kind : {CouplingKind::standard, CouplingKind::proposed}) {
+    p.kind = kind;
+    EXPECT_EQ(passive(p), false) << name(kind);
+  }
+  p.kind = CouplingKind::tank;
+  EXPECT_EQ(passive(p), true);
+}
+
+// As on arms whose joints are damped unequally: Routh's limit of the grip may lie above eta_min.
+TEST(Passivity, OfAGripIsNoneBelowRouthsLimit) {
+  Analysis a;
+  a.eta_min = 0.4;
+  a.eta_min_grip = 0.463;
+  a.above_eta_min = true;
+  a.condition3.holds = true;
+  Parameters p;
+  p.eta = 0.45;
+  EXPECT_EQ(passivity(a, p).passive, false);
+  p.eta = 0.47;
+  EXPECT_EQ(passivity(a, p).passive, true);
+}
+
+TEST(Passivity, IsNotKnownWhereNoBoundIs) {
+  Parameters p;
+  p.link_delay = 1;
+  p.k_vc = 1;  // (3) holds with that delay
+  EXPECT_EQ(passive(p), std::nullopt) << "what is fed forward through a link";
+  p.kind = CouplingKind::standard;
+  EXPECT_EQ(passive(p), true);
+  p.link_loss = 0.1;
+  EXPECT_EQ(passive(p), std::nullopt) << "packets of any age";
+  p.kind = CouplingKind::tank;
+  EXPECT_EQ(passive(p), true) << "whatever the link does";
+  Parameters late;
+  late.device_delay = late.delay = 1;
+  late.k_vc = 1;
+  EXPECT_EQ(passive(late), std::nullopt) << "(25) knows no delay";
+  Parameters slow;
+  slow.kind = CouplingKind::predictive;
+  slow.tick = 0.004;
+  EXPECT_EQ(passive(slow), std::nullopt) << "tried at ticks of up to 1 ms";
 }
 
 TEST(Analysis, TakesTheWorstOfUnequallyDampedJoints) {

@@ -152,6 +152,28 @@ TEST(BodyReport, SeesPartsInAFloor) {
   EXPECT_THAT(overlapping(on_a_floor({pin})), ElementsAre(Pair(0, 2)));
 }
 
+// 400 N/m drawn by 0.25 m: 400 * 0.25^2 / 2 = 12.5 J.
+TEST(BodyReport, CountsWhatSpringsHoldAtTheStart) {
+  Scene scene = on_a_floor({body("a", Sphere{0.02}, Vec3(0.3, 0, -0.08)),
+                            body("b", Sphere{0.02}, Vec3(0.3, 0.2, -0.08))});
+  scene.springs.push_back(
+      {.between = {"a", ""}, .points = {Vec3::Zero(), Vec3(0.05, 0, -0.08)}, .stiffness = 400});
+  EXPECT_NEAR(spring_energy(scene), 12.5, 1e-12);
+  scene.springs.push_back({.between = {"a", "b"},
+                           .points = {Vec3::Zero(), Vec3(0.01, 0, 0)},
+                           .length = 0.1,
+                           .stiffness = 50});
+  const double drawn = std::hypot(0.2, 0.01) - 0.1;
+  EXPECT_NEAR(spring_energy(scene), 12.5 + 25 * drawn * drawn, 1e-12);
+  BodyJoint joint;
+  joint.force.spring = 100;
+  joint.force.rest = 0.02;  // 100 * 0.02^2 / 2 = 20 mJ
+  scene.objects.back().body->joint = joint;
+  EXPECT_NEAR(spring_energy(scene), 12.52 + 25 * drawn * drawn, 1e-12);
+  const BodyReport report = report_on_bodies(scene, arm());
+  EXPECT_THAT(report.warnings, testing::Contains(HasSubstr("springs that are drawn")));
+}
+
 TEST(BodyReport, KnowsWhichInertiaThereIs) {
   EXPECT_TRUE(possible_inertia(Vec3(1, 1, 1)));
   EXPECT_TRUE(possible_inertia(Vec3(1, 2, 3))) << "a flat one";

@@ -96,6 +96,26 @@ TEST_F(SweepFigures, InLettersFillInAsPointsCome) {
   EXPECT_THAT(lines[4], HasSubstr("stiffness 100 to 1000"));
 }
 
+TEST_F(SweepFigures, InLettersAreNoWiderThanTheTerminal) {
+  const SweepPlan plan = test::sweep_plan(dir_, R"(scene = "free.toml"
+measure = ["energy"]
+axis = [ { key = "hand.stiffness", from = 100, to = 1000, count = 150 },
+         { key = "coupling.eta", values = [0.4, 0.6, 1] } ]
+)");
+  const auto letters = [](const std::string& line) {
+    return std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; });
+  };
+  for (const std::size_t width : {79u, 40u, 131u}) {
+    MapText map(plan, measured_columns(plan), width);
+    const auto lines = map.lines();
+    ASSERT_EQ(lines.size(), 5u);
+    for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
+      EXPECT_LE(letters(lines[i]), static_cast<long>(width));
+      EXPECT_GE(letters(lines[i]), static_cast<long>(width) - 2);
+    }
+  }
+}
+
 TEST(SlurmArrays, AreNamedAsSbatchHasThem) {
   EXPECT_EQ(array_text({1, 2, 3, 7, 9, 10}), "1-3,7,9-10");
   EXPECT_EQ(array_text({4}), "4");

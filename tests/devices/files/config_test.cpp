@@ -110,6 +110,19 @@ TEST(Setting, TakesTomlValuesAndBareWords) {
   EXPECT_FALSE(p.anti_windup);
 }
 
+// TOML knows neither; people write them, and every other option takes them.
+TEST(Setting, TakesNumbersThatLackAZero) {
+  for (const auto& [text, value] : {std::pair(".5", 0.5), {"5.", 5.0}, {"+.25", 0.25}}) {
+    Parameters p;
+    apply_setting(p, std::string("coupling.eta=") + text);
+    EXPECT_EQ(p.eta, value) << text;
+  }
+  Parameters p;
+  for (const char* none : {".", "5.x", "+-.5", ".5 6"}) {
+    EXPECT_THROW(apply_setting(p, std::string("coupling.eta=") + none), ParameterError) << none;
+  }
+}
+
 TEST(Setting, RefusesWhatIsNone) {
   const char* const cases[] = {"",
                                "coupling.eta",

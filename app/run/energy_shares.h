@@ -1,0 +1,62 @@
+// Whose energy E_c is: what the coupling gave, apart from what changing a setting put in.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/dynamics/arm_description.h"
+#include "core/tick/parameters.h"
+#include "core/tick/row.h"
+
+namespace limpid {
+
+// Energy that counts: what E_c is above less than this is noise [J].
+inline constexpr double kGivenEnergy = 1e-3;
+
+// Of E_c, the energy that the controller gave since the start, the part that is nobody's fault:
+//
+// - Who switches the coupling, or moves one of its sliders, while it is stretched puts energy in,
+// as
+//   one who bends a spring does. What E_c gains within kSettling after a change is the change's.
+// - A motor at its limit gives another torque than the coupling asks for. What E_c gains meanwhile
+//   is the limit's.
+// - What the motors give for the device's own weight, springs and friction the device takes.
+//
+// What is left is the coupling's own: while it is passive it stays below zero. What it gave before
+// the last change is forgiven: the setting that gave it is gone.
+class EnergyShares {
+ public:
+  static constexpr double kSettling = 0.3;  // [s]
+
+  // A setting changes at `time` [s], which is not before that of the last row.
+  void change(double time);
+  // The next row: E_c without what was for the device's own forces [J], and whether a motor was at
+  // its limit.
+  void take(double time, double energy, bool limited);
+
+  // E_c, without what was for the device's own forces [J].
+  double total() const { return total_; }
+  double by_changes() const { return changes_; }             // [J]
+  double by_limits() const { return limits_; }               // [J]
+  double own() const { return without_limits() - limits_; }  // [J]
+  // Where the coupling is known not to be passive, its motors' limit is no excuse [J].
+  double without_limits() const { return total_ - changes_ - forgiven_; }
+
+ private:
+  double total_ = 0, changes_ = 0, limits_ = 0, forgiven_ = 0;
+  double settled_ = -1;  // when the last change has settled [s]
+  double peak_ = 0;      // of E_c since the excuse began [J]
+  bool excused_ = false;
+};
+
+// Largest torque of each motor: the parameters', or the arm's own where they leave it to the arm
+// [N m].
+std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
+// Whether the motor of a joint gives all it can in this row. Without limits none does.
+bool at_limit(const RowLayout& layout, std::span<const double> row, std::span<const double> limits,
+              int joint);
+// The same of any motor.
+bool any_at_limit(const RowLayout& layout, std::span<const double> row,
+                  std::span<const double> limits);
+
+}  // namespace limpid

@@ -1,0 +1,133 @@
+#include "app/run/run_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "app/run/analysis.h"
+#include "app/run/replay.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+namespace {
+
+constexpr std::size_t kTipVelocity = 1;  // of the device, in kDerivedInfo
+const std::string kSecondRun = "the second run: ";
+
+// What the law lets E_c rise to [J].
+double promised(const Parameters& p) {
+  if (!info(p.kind).keeps_ledger) return 0;
+  return p.kind == CouplingKind::tank ? p.tank_energy : p.energy;
+}
+
+std::string joules_text(double joules) {
+  return std::abs(joules) < 0.1 ? fmt::format("{:.3g} mJ", 1e3 * joules)
+                                : fmt::format("{:.3g} J", joules);
+}
+
+}  // namespace
+
+RunWatch::RunWatch(const ArmDescription& arm, const RowLayout& layout, const Parameters& p)
+    : arm_(arm), layout_(layout), tips_(arm), diverged_(layout) {
+  hold(p);
+}
+
+void RunWatch::change(std::uint64_t row, const Parameters& p) { changes_.push_back({row, p}); }
+
+void RunWatch::hold(const Parameters& p) {
+  limits_ = motor_limits(arm_, p);
+  promised_ = std::max(promised_, promised(p));
+  at_fault_ = passivity(analyze(arm_, rest_pose(arm_), p, std::nullopt), p).passive == false;
+  settings_ = std::string(info(p.kind).key);
+  if (info(p.kind).takes_eta) settings_ += fmt::format(", eta {:.3g}", p.eta);
+}
+
+void RunWatch::Excess::take(double time, double value, double allowed,
+                            const std::string& settings) {
+  most = std::max(most, value);
+  if (since >= 0 || !(value > allowed)) return;
+  since = time;
+  with = settings;
+}
+
+void RunWatch::add(std::span<const double> row) {
+  const double time = layout_.in(row, Column::time)[0];
+  for (; !changes_.empty() && changes_.front().row <= rows_; changes_.pop_front()) {
+    shares_.change(time);
+    hold(changes_.front().parameters);
+  }
+  ++rows_;
+  diverged_.add(row);
+  if (diverged_.wild()) return;  // said by itself
+  const double energy =
+      layout_.in(row, Column::energy_total)[0] - layout_.in(row, Column::energy_compensation)[0];
+  if (!begun_at_) begun_at_ = energy;
+  shares_.take(time, energy - *begun_at_, any_at_limit(layout_, row, limits_));
+  energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
+               settings_);
+  const auto tips = tips_.of(DerivedColumns::from(layout_, row));
+  speed_.take(time, tips[kTipVelocity].norm(), kFastestTip, settings_);
+}
+
+std::vector<std::string> RunWatch::warnings() const {
+  std::vector<std::string> all = cautions();
+  if (diverged_.lost()) {
+    all.insert(all.begin(), fmt::format("unstable from t = {:.3f} s on: {}", diverged_.since(),
+                                        diverged_.why()));
+  }
+  return all;
+}
+
+std::vector<std::string> RunWatch::cautions() const {
+  std::vector<std::string> all;
+  if (energy_.since >= 0) {
+    const std::string allowed =
+        promised_ > 0
+            ? fmt::format(" more than the {} that its account allows", joules_text(promised_))
+            : "";
+    all.push_back(
+        fmt::format("E_c rose to {}{}, from t = {:.3f} s on: this run is not passive ({})",
+                    joules_text(energy_.most), allowed, energy_.since, energy_.with));
+  }
+  if (speed_.since >= 0) {
+    all.push_back(
+        fmt::format("the tip reached {:.3g} m/s, above {:.0f} m/s from t = {:.3f} s on: "
+                    "no hand moves so fast ({})",
+                    speed_.most, kFastestTip, speed_.since, speed_.with));
+  }
+  return all;
+}
+
+void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
+                  std::vector<std::string>& into) {
+  for (const std::string& warning : of_lane) {
+    into.push_back((lane == kMainLane ? "" : kSecondRun) + warning);
+  }
+}
+
+std::string warnings_text(const std::vector<std::string>& warnings) {
+  return fmt::format("{}", fmt::join(warnings, "\n"));
+}
+
+std::vector<std::string> warnings_of(const Session& session, const std::string& file) {
+  std::vector<std::string> all;
+  const auto arm = recorded_arm(session.info);
+  if (!arm) return all;
+  const Session* const lanes[] = {&session, session.twin.get()};
+  for (std::size_t i = 0; i < std::size(lanes) && lanes[i] != nullptr; ++i) {
+    const Session& lane = *lanes[i];
+    Parameters p = session_parameters(lane, file);
+    RunWatch watch(*arm, lane.layout, p);
+    for (const SettingChange& change : lane.changes) {
+      apply_change(p, change);
+      watch.change(change.row, p);
+    }
+    for (std::size_t k = 0; k < lane.size(); ++k) watch.add(lane.row(k));
+    add_warnings(watch.warnings(), i, all);
+  }
+  return all;
+}
+
+}  // namespace limpid

@@ -1,0 +1,78 @@
+// What of a run must not pass without a word: energy that the coupling gave, speeds of no hand,
+// rows that no arm could follow.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/run/energy_shares.h"
+#include "app/run/summary.h"
+#include "core/dynamics/arm_description.h"
+#include "core/tick/parameters.h"
+#include "devices/files/session/derived_columns.h"
+#include "devices/files/session/session.h"
+
+namespace limpid {
+
+// Watches the rows of one lane in turn.
+class RunWatch {
+ public:
+  // No hand leads a tip faster than this [m/s]: a thrown ball leaves most hands at 10 to 25.
+  static constexpr double kFastestTip = 10;
+
+  // `p`: at the first row.
+  RunWatch(const ArmDescription& arm, const RowLayout& layout, const Parameters& p);
+
+  // From row `row` on these hold. In the order of rows, before that row is added.
+  void change(std::uint64_t row, const Parameters& p);
+  void add(std::span<const double> row);
+
+  // What to say, a sentence each; none of a run that is as it should be.
+  std::vector<std::string> warnings() const;
+  // The same without that it became unstable, for whoever says that by RunEnd.
+  std::vector<std::string> cautions() const;
+
+ private:
+  struct Change {
+    std::uint64_t row;
+    Parameters parameters;
+  };
+  // The first time that something was beyond what is allowed, and the most of it.
+  struct Excess {
+    double since = -1, most = 0;  // [s]; -1: it never was
+    std::string with;             // the settings then, in words
+    void take(double time, double value, double allowed, const std::string& settings);
+  };
+
+  void hold(const Parameters& p);  // from the next row on
+
+  ArmDescription arm_;
+  RowLayout layout_;
+  DerivedColumns tips_;
+  DivergenceWatch diverged_;
+  EnergyShares shares_;
+  std::optional<double> begun_at_;  // E_c at the first row [J]
+  std::deque<Change> changes_;
+  std::uint64_t rows_ = 0;
+  std::vector<double> limits_;  // of the motors
+  double promised_ = 0;         // E_c is at most this [J]
+  bool at_fault_ = false;       // the law is known not to be passive
+  std::string settings_;        // in words
+  Excess energy_, speed_;
+};
+
+// Puts those of a lane behind others: a further lane's have "the second run: " before them.
+void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
+                  std::vector<std::string>& into);
+
+// Those of a recording, of all its lanes. Errors: FileError and ParameterError where its settings
+// cannot be read. A recording whose arm cannot be read has none.
+std::vector<std::string> warnings_of(const Session& session, const std::string& file);
+// One a line, as recordings keep them.
+std::string warnings_text(const std::vector<std::string>& warnings);
+
+}  // namespace limpid

@@ -1,0 +1,85 @@
+#include "app/run/scene_flaws.h"
+
+#include <fmt/format.h>
+
+#include "app/run/analysis.h"
+#include "app/run/body_report.h"
+#include "app/run/tip_limits.h"
+#include "core/dynamics/arm.h"
+#include "core/dynamics/farthest_tip.h"
+#include "core/touch/contacts.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kInside = 0.0005;  // less than this deep is touching [m]
+
+Vec3 tip_at_rest(const ArmDescription& description) {
+  const Arm<kAnyDof> arm(description);
+  Arm<kAnyDof>::Frames frames;
+  arm.frames(rest_pose(description), frames);
+  return arm.tip(frames);
+}
+
+// How deep the tip is in it [m]. Of a mesh, which may be open, nothing is said.
+double depth_of(const Vec3& tip, const Object& object, const Scene& scene) {
+  return std::visit(
+      [&]<class S>(const S& shape) {
+        if constexpr (std::is_same_v<S, Mesh> || std::is_same_v<S, JointStop>) {
+          return 0.0;
+        } else {
+          return scene.tip_radius - distance_to(shape, object.pose, tip).distance;
+        }
+      },
+      object.shape);
+}
+
+void warn_of_friction(const Object& object, std::vector<std::string>& warnings) {
+  const Material& m = object.material;
+  if (m.friction_kinetic <= m.friction_static) return;
+  warnings.push_back(
+      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: what slips would "
+                  "be held more "
+                  "than what sticks",
+                  object.name, m.friction_kinetic, m.friction_static));
+}
+
+void warn_of_place(const Object& object, const Scene& scene, const ArmDescription& arm,
+                   const Vec3& tip, std::vector<std::string>& warnings) {
+  const double reach = farthest_tip(arm).distance;
+  const double away = beyond_reach(object, scene, arm);
+  if (away > 0) {
+    warnings.push_back(
+        fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
+  }
+  const double depth = depth_of(tip, object, scene);
+  if (depth > kInside) {
+    warnings.push_back(fmt::format("'{}': the tip of the arm at its rest pose is {:.3g} mm inside",
+                                   object.name, 1e3 * depth));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& arm,
+                                     const Parameters& p) {
+  std::vector<std::string> warnings;
+  const Vec3 tip = tip_at_rest(arm);
+  const TipLimits limits = tip_limits(arm, rest_pose(arm), p, scene);
+  const double stiffest = limits.walls[static_cast<std::size_t>(p.kind)].stiffness;
+  for (const Object& object : scene.objects) {
+    if (!has_surface(object)) continue;
+    warn_of_friction(object, warnings);
+    if (stiffest > 0 && object.material.stiffness > stiffest) {
+      warnings.push_back(
+          fmt::format("'{}': {:.4g} N/m is stiffer than {:.4g} N/m, the stiffest wall of the {} "
+                      "law on this arm "
+                      "(`limpid analyze`)",
+                      object.name, object.material.stiffness, stiffest, name(p.kind)));
+    }
+    if (!object.body) warn_of_place(object, scene, arm, tip, warnings);
+  }
+  return warnings;
+}
+
+}  // namespace limpid

@@ -1,0 +1,20 @@
+// What is wrong with a scene before anybody touches it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/dynamics/arm_description.h"
+#include "core/tick/parameters.h"
+#include "core/touch/scene.h"
+
+namespace limpid {
+
+// Of what stands still, in sentences: things beyond the tip's reach, walls
+// stiffer than the law of `p` renders on this arm, kinetic friction above the static one, and the
+// tip inside something at the rest pose. Meshes have their triangles. Of things that move
+// report_on_bodies() says it.
+std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& arm,
+                                     const Parameters& p);
+
+}  // namespace limpid

@@ -1,0 +1,178 @@
+// What a run must not do without a word.
+#include "app/run/run_watch.h"
+
+#include <gmock/gmock.h>
+
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "devices/files/session/hdf5_reading.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Rows of the built-in arm at rest, whose energies the test writes.
+class Watched {
+ public:
+  explicit Watched(const Parameters& p = {}) : watch(test::omni(), layout, p) {}
+
+  // So many ticks, over which E_c goes evenly to `energy` [J], a motor giving `torque` [N m].
+  void go_to(double energy, int count, double torque = 0) {
+    const double from = energy_;
+    for (int i = 1; i <= count; ++i) {
+      energy_ = from + (energy - from) * i / count;
+      std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+      layout.in(row, Column::time)[0] = 0.001 * static_cast<double>(rows);
+      layout.in(row, Column::energy_total)[0] = energy_;
+      layout.in(row, Column::motor_torque)[0] = torque;
+      layout.in(row, Column::commanded_torque)[0] = torque;
+      layout.in(row, Column::device_velocity)[0] = speed;
+      watch.add(row);
+      ++rows;
+    }
+  }
+
+  RowLayout layout{3};
+  RunWatch watch;
+  std::uint64_t rows = 0;
+  double speed = 0;  // of the first joint [rad/s]
+
+ private:
+  double energy_ = 0;
+};
+
+TEST(RunWatch, SaysHowMuchEnergyTheCouplingGaveAndSinceWhen) {
+  Watched run;
+  run.go_to(-0.2, 100);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+  run.go_to(15, 1520);
+  const auto warnings = run.watch.warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("15 J"));
+  EXPECT_THAT(warnings[0], HasSubstr("not passive (proposed, eta 1)"));
+  // It goes up by 10 mJ a tick, from -0.19 J at row 100 on: above 1 mJ in row 120.
+  EXPECT_THAT(warnings[0], HasSubstr("t = 0.120 s"));
+}
+
+TEST(RunWatch, TakesAMillijouleForNoise) {
+  Watched run;
+  run.go_to(0.9e-3, 100);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+}
+
+TEST(RunWatch, CountsFromTheFirstRowOfARecording) {
+  Watched run;
+  run.go_to(0.5, 1);
+  run.go_to(0.5, 100);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+}
+
+TEST(RunWatch, LetsALedgerGiveWhatItHas) {
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  Watched run(p);
+  run.go_to(5e-3, 100);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+  run.go_to(7e-3, 100);
+  ASSERT_EQ(run.watch.warnings().size(), 1u);
+  EXPECT_THAT(run.watch.warnings()[0], HasSubstr("7 mJ more than the 5 mJ"));
+  p.kind = CouplingKind::tank;
+  p.tank_energy = 0.05;
+  Watched tanks(p);
+  tanks.go_to(0.05, 100);
+  EXPECT_THAT(tanks.watch.warnings(), IsEmpty());
+}
+
+TEST(RunWatch, ExcusesASwitchForThreeTenthsOfASecond) {
+  Watched run;
+  run.go_to(-0.01, 100);
+  run.watch.change(100, Parameters{});
+  run.go_to(0.3, 200);
+  run.go_to(0.3, 1000);
+  EXPECT_THAT(run.watch.warnings(), IsEmpty());
+  run.go_to(0.4, 100);
+  EXPECT_EQ(run.watch.warnings().size(), 1u);
+}
+
+TEST(RunWatch, ExcusesAMotorAtItsLimitUnlessTheLawIsKnownNotToBePassive) {
+  const double limit = test::omni().joints[0].effort;
+  Watched passive;
+  passive.go_to(0.1, 100, limit);
+  EXPECT_THAT(passive.watch.warnings(), IsEmpty());
+  Parameters p;
+  p.eta = 0.05;
+  Watched not_passive(p);
+  not_passive.go_to(0.1, 100, limit);
+  EXPECT_EQ(not_passive.watch.warnings().size(), 1u);
+}
+
+TEST(RunWatch, SaysThatTheTipIsFasterThanAnyHand) {
+  const auto run_at = [](double tip_speed) {
+    // The first joint turns about the vertical: the tip's lever is its distance from that axis.
+    const ArmDescription arm = test::omni();
+    const Arm<kAnyDof> chain(arm);
+    Arm<kAnyDof>::Frames f;
+    chain.frames(Eigen::Vector3d::Zero(), f);
+    Watched run;
+    run.speed = tip_speed / chain.tip(f).head<2>().norm();
+    run.go_to(0, 10);
+    return run.watch.warnings();
+  };
+  EXPECT_THAT(run_at(9.9), IsEmpty());
+  EXPECT_THAT(run_at(17), ElementsAre(HasSubstr("the tip reached 17 m/s")));
+}
+
+std::vector<std::string> warnings_of_run(const RunPlan& plan) {
+  RunWatch watch(plan.arm, plan.layout(), plan.parameters);
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+    watch.add(row);
+    return true;
+  });
+  return watch.warnings();
+}
+
+TEST(RunWatch, SaysNothingOfTheShippedHandUnderAnyLaw) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 4);
+  for (std::size_t law = 0; law < kLaws; ++law) {
+    plan.parameters.kind = static_cast<CouplingKind>(law);
+    EXPECT_THAT(warnings_of_run(plan), IsEmpty()) << kLawKeys[law];
+  }
+}
+
+// Far below eta_min, in a stiff grip that does not damp, the loop gives energy without end.
+TEST(RunWatch, SaysThatALoopFarBelowEtaMinIsNotPassive) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 4);
+  plan.parameters.eta = 0.05;
+  plan.parameters.hand_stiffness = 3000;
+  plan.parameters.hand_damping = 0;
+  const auto warnings = warnings_of_run(plan);
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_THAT(warnings[0], HasSubstr("this run is not passive"));
+}
+
+TEST(RunWatch, LeavesItsWordsInTheRecording) {
+  const test::TempDir dir;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 2);
+  plan.parameters.eta = 0.05;
+  plan.parameters.hand_stiffness = 3000;
+  plan.parameters.hand_damping = 0;
+  const auto file = dir / "a.h5";
+  {
+    Recorder recorder(file, session_info(plan), plan.parameters, false, Recorder::kWaitingRoom);
+    simulate(plan, {},
+             [&](std::span<const double> row, LaneChanges) { return recorder.push_waiting(row); });
+    recorder.finish();
+  }
+  const auto words = warnings_of(read_session(file), file.string());
+  EXPECT_EQ(words, warnings_of_run(plan));
+  EXPECT_EQ(hdf5::read_text(hdf5::open_to_read(file).get(), "warnings", file),
+            warnings_text(words));
+}
+
+}  // namespace
+}  // namespace limpid
