@@ -10,6 +10,7 @@
 
 #include "app/run/simulate.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "devices/reading_watch.h"
 
 namespace limpid {
 namespace {
@@ -43,7 +44,8 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
   real_ = RealDevice::of(arm, 0);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
   RigStart start{rest_pose(arm), zero, rest_pose(arm), zero, zero, Vec3::Zero(), false};
-  if (DeviceReading first; device && device->read(first) && first.count > 0) {
+  if (DeviceReading first;
+      device && device->read(first) && first.count > 0 && within_reach(first, device->traits())) {
     start.x1 = start.x2 = Eigen::Map<const Eigen::VectorXd>(first.x.data(), arm.dof());
   }
   plug(std::move(device));

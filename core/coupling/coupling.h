@@ -31,7 +31,7 @@ class Coupling {
     if (at.reserve) reserve_ = *at.reserve;
     // A law that accounts for energy hands on to the next one what it has left.
     LawStart<N> all = at;
-    if (std::isfinite(reserve_)) all.reserve = reserve_;
+    all.reserve = reserve_;
     std::apply([&](auto&... law) { (law.start(all), ...); }, laws_);
   }
   // First in a tick: where the law takes the device to be.
@@ -45,6 +45,7 @@ class Coupling {
   template <class P>
   Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
     Vec<N> torque;
+    if (in.armed_anew) reserve_ = std::numeric_limits<double>::infinity();
     with(laws_, kind, [&](auto& law) {
       torque = law.step(p, in, proxy);
       if (const double reserve = law.report().reserve; std::isfinite(reserve)) reserve_ = reserve;

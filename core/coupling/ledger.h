@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/coupling/laws.h"
 #include "core/math/sizes.h"
@@ -33,7 +34,8 @@ class Ledger {
     contact_ = damping_ = torque_ = 1;
     still_.fill(0);
     on_its_way_ = 0;
-    y_ = x_ = y;
+    y_ = x_ = rests_at_ = y;
+    rested_ = 0;
   }
 
   // Of the delays between command and motor, the least and the most [ticks].
@@ -69,19 +71,44 @@ class Ledger {
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
-  // What is stored meanwhile [J]. At first that is nobody's debt, nor is it while no torque leaves
-  // for the motors (idle): the hand alone brought it there.
+  // What is stored meanwhile [J]. At first that is nobody's debt, nor is what is added to it while
+  // no torque leaves for the motors (idle): the hand alone brought it there.
   void settle(double E0, double stored, bool idle = false) {
     E0_ = E0;
+    const double added = stored - std::exchange(stored_, stored);
     if (fresh_) {
       H_ = std::min(E0, left_);
       E_.fill(H_ + stored);
       fresh_ = false;
       return;
     }
-    if (idle) E_.fill(E0 + stored);
-    for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), kCap * E0 + stored);
+    for (int d = least_; d <= most_; ++d) {
+      if (idle) at(d) += added;
+      at(d) = std::min(at(d), kCap * E0 + stored);
+    }
     H_ = E() - stored;
+  }
+  // After settle(): somebody has decided that the hand may be given E0 from here on.
+  void refill() {
+    H_ = E0_;
+    E_.fill(E0_ + stored_);
+  }
+
+  // After settle(), of a device whose damping is not sure: what that took of the hand's energy
+  // stands in no book, and a hand that holds still could never pay what it seems to owe for it. So
+  // none that has held still for half a second owes anything. q: the encoders' step [rad].
+  void forgive_at_rest(double q, double T) {
+    const double within = std::max(kStill, 1.5 * q);
+    rested_ += T;
+    if (!((y_ - rests_at_).cwiseAbs().maxCoeff() <= within)) {
+      rests_at_ = y_;
+      rested_ = 0;
+    }
+    const double owed = kForgiven * E0_ - H_;
+    if (rested_ < kRest || !(owed > 0)) return;
+    rested_ = 0;
+    H_ += owed;
+    for (int d = least_; d <= most_; ++d) at(d) += owed;
   }
 
   // `slip`: how far the last prediction was off [rad], f2 the last contact torque, `surprise` by
@@ -111,6 +138,9 @@ class Ledger {
   // Of E0: the most that H may be, as a heavy arm on a wall asks for, or the force would be cut
   // where the prediction is off by a little; where g_b is 1 and where 0, and all torque 0.
   static constexpr double kCap = 4, kWhole = 0.8, kNone = 0.35, kGone = 0.25;
+  // What a hand at rest has at least, of E0: enough for all force but not for g_b.
+  static constexpr double kForgiven = 0.4;
+  static constexpr double kRest = 0.5, kStill = 5e-4;  // how long, and how still that is [s, rad]
 
   // At once down, slowly up.
   static void follow(double target, double rate, double& g) {
@@ -123,11 +153,12 @@ class Ledger {
   bool fresh_ = true;
   int least_ = 0, most_ = 0;
   std::array<double, kMostDelay + 1> E_{};  // by the delay [J]
-  double E0_ = 0, on_its_way_ = 0;
+  double E0_ = 0, stored_ = 0, on_its_way_ = 0;
   double H_ = std::numeric_limits<double>::infinity(), left_ = H_;
   double contact_ = 1, damping_ = 1, torque_ = 1;
   std::array<int, kMaxDof> still_{};
-  Vec<N> y_, dy_, x_, dx_;
+  double rested_ = 0;  // it has, at rests_at_ [s]
+  Vec<N> y_, dy_, x_, dx_, rests_at_;
 };
 
 }  // namespace limpid

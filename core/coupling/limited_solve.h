@@ -46,6 +46,7 @@ struct LimitedSolve {
   // gets what it would without looking ahead, within the limits.
   void stand_still(ContactSolve<N>& contacts, double T, Motion<N>& m);
 
+  const Vec<N>& wanted() const { return wanted_; }  // of which p is within the limit [N m]
   bool at_limit() const { return (p.cwiseAbs().array() >= limit.array()).any(); }
 
  private:

@@ -1,5 +1,6 @@
 #include "core/coupling/predictive.h"
 
+#include "core/dynamics/torque_limits.h"
 #include "core/touch/proxy.h"
 
 namespace limpid {
@@ -156,7 +157,9 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   network_.start(at.x1.size());
   ledger_.start(at.x1, at.reserve);
   y_ = at.x1;
-  slip_ = tau1_ = cut_ = zero;
+  slip_ = tau1_ = cut_ = wanted_ = apart_ = zero;
+  limit_ = Vec<N>::Constant(zero.size(), std::numeric_limits<double>::infinity());
+  spring_ = 0;
   memory_ = -1;
   limited_ = goes_on_ = false;
   solved_ = TickSolve::usual;
@@ -189,26 +192,32 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
   ledger_.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
     const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
-    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, given_to(proxy), in.encoder_step,
-                elapsed_);
+    const double given = in.authority > 0 ? given_to(proxy) : 0;
+    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, given, in.encoder_step, elapsed_);
     network_.advance(ledger_.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger_.dx()));
   }
   ledger_.settle(p.energy,
-                 held(c.k_vc, y_ - proxy.x(), in.limit) + network_.storage() +
-                     proxy.kinetic_energy() + proxy.contact_potential(),
+                 held(c.k_vc, y_ - proxy.x()) + network_.storage() + proxy.kinetic_energy() +
+                     proxy.contact_potential(),
                  in.authority == 0);
+  if (in.armed_anew) ledger_.refill();
+  const bool sure = (in.b_d_sure.array() >= in.b_d.array()).all();
+  if (!sure && in.authority > 0) ledger_.forgive_at_rest(in.encoder_step, in.tick);
   ledger_.govern(proxy.f(), slip_, surprise, elapsed_ > 0 ? elapsed_ : in.tick);
 }
 
 // What spring and motors hold. While motors are at their limit they give back what a constant
 // torque does, from where they came to it on.
 template <int N>
-double PredictiveLaw::Of<N>::held(double k_vc, const Vec<N>& apart, const Vec<N>& limit) {
-  const double spring = spring_energy<N>(k_vc, apart, limit);
-  const double pulled = limit_energy<N>(apart, limit);
-  if (limited_) return std::max(spring, pulled + before_limit_);
-  before_limit_ = spring - pulled;
+double PredictiveLaw::Of<N>::held(double k_vc, const Vec<N>& apart) {
+  const double spring = spring_energy<N>(k_vc, apart, limit_);
+  if (limited_) {
+    const double since = spring_ - limit_energy<N>(apart_, limit_);
+    return std::max(spring, limit_energy<N>(apart, limit_) + since);
+  }
+  apart_ = apart;
+  spring_ = spring;
   return spring;
 }
 
@@ -228,6 +237,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   const Levers<N> on_tip =
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
+  if (!limited_) limit_ = in.limit;
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
   // What the prediction foretells of where the torque meets the device is no later than the rest.
@@ -252,6 +262,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     answer.jump = velocity_jump(memory_, in.encoder_step, T);
     answer.most_damping = kMostDamping;
   }
+  const TorqueLimits<N> motors(in.limit, J, in.tip_force);
   const bool resumed = goes_on_;
   bool limited = resumed, settled = true;
   Vec<N> f2;
@@ -261,21 +272,24 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
       settled = contacts_.settled();
     }
     f2 = contacts_.f2(in.b_d.size());
-    const Vec<N> wanted = solve.wanted(motion, f2);
-    limited = (wanted.array().abs() > in.limit.array()).any();
-    const Vec<N> given = clip<N>(wanted, in.limit) + solve.alone(motion);
-    tau1_ = clip<N>(given, in.limit);
+    wanted_ = solve.wanted(motion, f2);
+    limited = (wanted_.array().abs() > in.limit.array()).any() || motors.tip_cuts(wanted_);
+    const Vec<N> given = clip<N>(wanted_, in.limit) + solve.alone(motion);
+    tau1_ = motors.within(given);
     cut_ = given - tau1_;
   }
+  limit_ = limited ? motors.along(wanted_) : in.limit;
   goes_on_ = false;
   solved_ = TickSolve::usual;
   if (limited || !settled) {
     solved_ = limited ? TickSolve::limited : TickSolve::together;
     const double stiffer = std::max(0.0, c.k_vc * T / 2 - c.b_vc);
     LimitedSolve<N> both = limited ? solve.limited(stiffer, c.b_v) : solve.limited(0, 0);
+    both.limit = limit_;
     solve_together(both, answer, solve.right(), T, resumed, motion);
     f2 = both.f2;
-    tau1_ = both.tau1;
+    wanted_ = both.wanted();
+    tau1_ = motors.within(both.tau1);
     cut_ = both.given - both.tau1;
     const Vec<N> apart = predictor_.x() - proxy.x() + T * (motion.w - motion.u);
     goes_on_ = limited && (both.at_limit() ||

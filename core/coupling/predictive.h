@@ -34,7 +34,7 @@ class PredictiveLaw::Of {
   DeviceEstimate<N> locate(const Settings& p, const LawReading<N>& in);
   Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
               Proxy<N>& proxy);
-  double held(double k_vc, const Vec<N>& apart, const Vec<N>& limit);
+  double held(double k_vc, const Vec<N>& apart);
   void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
                       double T, bool resumed, Motion<N>& motion);
   bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
@@ -49,6 +49,8 @@ class PredictiveLaw::Of {
   Vec<N> slip_;           // how far its prediction was off [rad]
   Vec<N> tau1_;           // as wanted, this tick [N m]
   Vec<N> cut_;            // what the motors' limit takes off tE + tL of that tick [N m]
+  Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
+  Vec<N> limit_;          // of each joint in that tick, by what the tip's leaves of it [N m]
   double elapsed_ = 0;    // since the reading before; 0 at the first [s]
   bool both_ = true;      // predictors
   double memory_ = 0;     // p of the predictors at this reading [-]
@@ -57,9 +59,11 @@ class PredictiveLaw::Of {
   bool limited_ = false;  // the last tick had motors at their limit,
   bool goes_on_ = false;  // and so has this one, whatever comes
   TickSolve solved_ = TickSolve::usual;
-  Motion<N> last_;           // of a tick solved together
-  double before_limit_ = 0;  // see held() [J]
-  int unsettled_ = 0;        // ticks without a solution, see LimitedSolve::stand_still()
+  Motion<N> last_;  // of a tick solved together
+  // Of the last tick without motors at their limit, see held():
+  Vec<N> apart_;       // [rad]
+  double spring_ = 0;  // [J]
+  int unsettled_ = 0;  // ticks without a solution, see LimitedSolve::stand_still()
 };
 
 extern template class PredictiveLaw::Of<3>;

@@ -116,7 +116,7 @@ void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in)
     proxy_ = std::min(proxy_ - work2_, p.tank_most);
   }
   work2_ = 0;
-  if (in.authority == 0) {  // somebody has to decide it before force is on again
+  if (in.armed_anew) {
     device_.add(std::max(0.0, p.tank_energy / 2 - device_.energy()));
     proxy_ = std::max(proxy_, p.tank_energy / 2);
   }
@@ -124,10 +124,13 @@ void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in)
 }
 
 // The proxy's side. Its drive is held back by a damper, not made smaller: so a proxy that rests on
-// a wall is pressed as hard as ever, which takes no energy.
+// a wall is pressed as hard as ever, which takes no energy. While no torque leaves for the motors
+// the hand alone moves it, at nobody's cost.
 template <int N>
-void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, double T,
+void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                           const FromDevice<N>& device, Proxy<N>& proxy) {
+  const double T = in.T;
+  const bool idle = in.authority == 0;
   proxy_ += device.sent - got2_;
   got2_ = device.sent;
   const double surplus = p.tank_share * std::max(0.0, proxy_ - p.tank_energy / 2);
@@ -136,14 +139,14 @@ void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, double T,
   Vec<N> drive = c.b_vc * device.v1 - c.k_vc * (proxy.x() - device.x1);
   const double own = c.b_v + c.b_vc + c.k_vc * T / 2;
   double damping = own;
-  if (proxy_ > 0) {
+  if (proxy_ > 0 && !idle) {
     damping = std::max(own, damping_for(drive.squaredNorm(), T, proxy_));
-  } else {
+  } else if (!idle) {
     drive.setZero();
   }
   proxy.advance(T, {drive, damping});
-  work2_ = T * proxy.tau().dot(proxy.vbar());
-  freely_ = proxy_ > 0 ? own / damping : 0;
+  work2_ = idle ? 0 : T * proxy.tau().dot(proxy.vbar());
+  freely_ = idle || proxy_ > 0 ? own / damping : 0;
 }
 
 // The device's side.
@@ -170,7 +173,7 @@ Vec<N> TankLaw::Of<N>::step(const Settings& p, const SpringDamper& c, int delay,
   device_.add(-surplus);
   sent1_ += surplus;
   device.sent = sent1_;
-  move(p, c, in.T, in.link != nullptr ? in.link->to_proxy(device) : device, proxy);
+  move(p, c, in, in.link != nullptr ? in.link->to_proxy(device) : device, proxy);
   here.f2 = proxy.f();
   here.sent = sent2_;
   return pull(p, c, in, in.link != nullptr ? in.link->to_device(here) : here);

@@ -67,8 +67,8 @@ class TankLaw::Of {
   Vec<N> step(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
               Proxy<N>& proxy);
   void settle(const Settings& p, int delay, const LawInput<N>& in);
-  void move(const Settings& p, const SpringDamper& c, double T, const FromDevice<N>& device,
-            Proxy<N>& proxy);
+  void move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+            const FromDevice<N>& device, Proxy<N>& proxy);
   Vec<N> pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
               const FromProxy<N>& proxy);
   double on_its_way() const { return (sent1_ - got2_) + (sent2_ - got1_); }

@@ -5,7 +5,9 @@
 namespace limpid {
 
 void ForceGate::step(ForceRequest wish, const Objections& against, double T) noexcept {
+  const Arming before = state_;
   if (wish == ForceRequest::arm) take(ArmingEvent::arm);
+  armed_anew_ = state_ != before;
   if (wish == ForceRequest::cut) take(ArmingEvent::cut);
   if (against.gap) take(ArmingEvent::gap);
   if (against.gap || !(state_ == Arming::fading || state_ == Arming::on)) gain_ = 0;

@@ -24,6 +24,7 @@ enum class ForceState : std::uint8_t {
   unwatched,  // the window does not answer; fades
   stalled,    // the loop or the device stood still; fades in anew
   frozen,     // the readings stand still while the motors push; fades
+  wrong,      // a reading said what cannot be
 };
 const char* explain(ForceState state);  // for people, a short clause
 
@@ -97,6 +98,7 @@ class ForceGate {
   void start(bool on) {
     state_ = on ? Arming::on : Arming::off;
     gain_ = on ? 1 : 0;
+    armed_anew_ = false;
     why_ = tripped_ = on ? ForceState::on : ForceState::off;
   }
   // One tick of T [s].
@@ -104,6 +106,7 @@ class ForceGate {
 
   Arming state() const { return state_; }
   bool armed() const { return state_ != Arming::off; }  // by somebody, and not cut since
+  bool armed_anew() const { return armed_anew_; }       // by the last step's wish
   double gain() const { return gain_; }                 // part of the torque that may leave, 0 to 1
   bool steady() const { return state_ != Arming::fading; }
   ForceState why() const { return why_; }  // there is no force, or less of it
@@ -114,6 +117,7 @@ class ForceGate {
 
   Arming state_ = Arming::off;
   double gain_ = 0;
+  bool armed_anew_ = false;
   ForceState why_ = ForceState::off;
   ForceState tripped_ = ForceState::off;
 };

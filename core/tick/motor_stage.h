@@ -1,41 +1,9 @@
 // The last stage before the motors: torques leave finite, within limits, and without jumps.
 #pragma once
 
-#include "core/dynamics/arm.h"
+#include "core/dynamics/torque_limits.h"
 
 namespace limpid {
-
-// How much torque may leave for the motors: so much a joint, and so much force at the tip.
-
-// The smallest force at the tip that makes this torque, as far as a force there can [N].
-template <int N>
-double tip_force(const Vec<N>& tau, const Jacobian<N>& J);
-
-// Both limits leave convex sets of torques about zero: a torque between two that are allowed is
-// allowed, and so is a part of one.
-template <int N>
-struct TorqueLimits {
-  // Without a limit for the tip.
-  TorqueLimits(const Vec<N>& most) : joints(most) {}  // NOLINT(google-explicit-constructor)
-  TorqueLimits(const Vec<N>& most, const Jacobian<N>& tip, double force)
-      : joints(most), J(&tip), most_force(force) {}
-
-  // Each joint to its limit, then all of them by one factor to that of the tip: the factor takes no
-  // joint beyond its limit again.
-  Vec<N> within(const Vec<N>& tau) const {
-    const Vec<N> held = tau.cwiseMin(joints).cwiseMax(-joints);
-    const double force = J != nullptr ? tip_force<N>(held, *J) : 0;
-    return force > most_force ? Vec<N>(held * (most_force / force)) : held;
-  }
-
-  const Vec<N>& joints;            // > 0 [N m]
-  const Jacobian<N>* J = nullptr;  // of the tip
-  double most_force = 0;           // [N]
-};
-
-extern template double tip_force<3>(const Vec<3>&, const Jacobian<3>&);
-extern template double tip_force<7>(const Vec<7>&, const Jacobian<7>&);
-extern template double tip_force<kAnyDof>(const Vec<kAnyDof>&, const Jacobian<kAnyDof>&);
 
 // At rest it only clamps; where motors are guarded it bounds the rate as well. While a coupling is
 // being switched the torque moves at a bounded rate until it meets the new command, for 0.2 s at

@@ -131,7 +131,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::force_state, "/device/force_state", ColumnWidth::one, "-",
      "0 force on; else why not: 1 not armed, 2 no hand, 3 stale, 4 fault, 5 lost, 6 too fast, "
      "7 out of range, 8 energy, 9 diverged, 10 the window does not answer, 11 the loop stood "
-     "still, 12 the readings stand still",
+     "still, 12 the readings stand still, 13 a reading says what cannot be",
      true},
     {Column::kind, "/coupling/kind", ColumnWidth::one, "-", kLawNumbers.data(), true},
     {Column::eta, "/coupling/eta", ColumnWidth::one, "-", "impedance scaling"},

@@ -23,6 +23,7 @@ void fade(Objections& against, ForceState reason, double value, double limit, do
 ForceState fault_of(const DeviceHealth& health) {
   if (health.lost) return ForceState::lost;
   if (health.fault) return ForceState::fault;
+  if (health.wrong) return ForceState::wrong;
   if (!(health.age <= SafetyLimits::kStaleReading)) return ForceState::stale;
   return ForceState::on;
 }
@@ -45,6 +46,7 @@ const char* explain(ForceState state) {
     case ForceState::stalled: return "the loop stood still for more than 5 ms";
     case ForceState::frozen:
       return "the readings stand still while the motors push: move the device";
+    case ForceState::wrong: return "the device said that it is where it cannot be";
   }
   return "";
 }

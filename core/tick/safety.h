@@ -12,6 +12,7 @@ struct DeviceHealth {
   bool guarded = false;  // the limits hold; else nothing below is judged
   bool hand = true;
   bool fault = false;
+  bool wrong = false;  // its newest reading says what cannot be, and was not taken
   bool lost = false;
   double age = 0;      // of the reading [s]
   bool gap = false;    // the device was without torque, or the loop stood still, before this tick

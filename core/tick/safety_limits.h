@@ -9,8 +9,13 @@ struct SafetyLimits {
   static constexpr double kStaleReading = 0.005;  // [s]
   static constexpr double kFade = 1.5;            // force is gone at so many times a limit
   static constexpr double kOverrun = 0.1;  // beyond a joint's range, where force is gone [rad]
-  static constexpr double kSlew = 0.02;    // from no torque to the limit [s]
-  static constexpr double kGap = 0.005;    // between two ticks; more is a stall [s]
+  // Beyond these a reading is wrong. No hand moves a joint so fast: at the end of a lever of 0.1 m,
+  // and of a slide, it is 10 m/s, a boxer's fist. No stop gives way so far beyond the range that
+  // the device says it has.
+  static constexpr double kFastest = 100;            // [rad/s]
+  static constexpr double kOutside = 10 * kOverrun;  // [rad]
+  static constexpr double kSlew = 0.02;              // from no torque to the limit [s]
+  static constexpr double kGap = 0.005;              // between two ticks; more is a stall [s]
   static constexpr double kSilence = 0.2;  // of the window; at twice of it force is gone [s]
   // Of readings while the motors push; at twice of it force is gone [s].
   static constexpr double kStill = 0.3;

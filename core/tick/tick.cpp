@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/math/subnormals.h"
 #include "core/tick/as_taken.h"
@@ -41,6 +42,7 @@ void Tick<N>::start(const Parameters& p, const Start<N>& start) {
   restarted_ = false;
   safety_.start();
   gate_.start(start.armed);
+  barred_ = unbarred_ = false;
 }
 
 template <int N>
@@ -82,18 +84,20 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   }
   const Parameters& p = of_device ? *of_device : given;
   const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
-  if (in.health.gap) begin_after_gap(in);
-  const int periods = k_ > 0 && !in.health.gap ? in.periods : 1;
+  const bool anew = in.health.gap || unbarred_;
+  if (anew) begin_anew(in);
+  const int periods = k_ > 0 && !anew ? in.periods : 1;
   const double T = periods * p.tick;
   if (k_ > 0) period_ += static_cast<std::uint64_t>(in.periods);
   if (k_ > 0) close_books(in, T);
   proxy_.set_ratio(p.inertia_ratio);
+  if (std::exchange(unbarred_, false)) bring_proxy(in.measured, p);
   b_d_ = resolve<N>(p.damping, arm_damping_);
   limit_ = resolve<N>(p.torque_limit, arm_limit_);
   if (in.health.guarded) limit_ = limit_.cwiseMin(arm_limit_);
 
   // The device, (5), as the controller believes it to be.
-  const bool goes_on = k_ > 0 && !in.health.gap;
+  const bool goes_on = k_ > 0 && !anew;
   if (goes_on) velocity_.update(in.measured, T, p.velocity, p.encoder_step);
   if (!goes_on) velocity_.reset(in.measured);
   if (p.kind != kind_) switch_law(p.kind, in.measured);
@@ -119,16 +123,26 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   write_bodies(row);
   proxy_.contacts().want_magnet(in.magnet);
   if (BodyWorld* world = proxy_.contacts().world()) world->pull(in.pull);
+  if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   const Vec<N> left = own_forces(p, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
-  const LawInput<N> now{in.measured,    v1,
-                        device_,        f1_hat_,
-                        vbar2_,         T,
-                        frames_,        b_d_,
-                        b_d_sure,       left,
-                        gate_.gain(),   p.tick,
-                        p.encoder_step, most_delay(p, arm_delay_, in.health.guarded),
-                        link_.of(p)};
+  const LawInput<N> now{in.measured,
+                        v1,
+                        device_,
+                        f1_hat_,
+                        vbar2_,
+                        T,
+                        frames_,
+                        b_d_,
+                        b_d_sure,
+                        left,
+                        gate_.gain(),
+                        p.tick,
+                        p.encoder_step,
+                        most_delay(p, arm_delay_, in.health.guarded),
+                        link_.of(p),
+                        gate_.armed_anew(),
+                        tip_force_left(in.health.guarded)};
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
@@ -153,10 +167,18 @@ Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, dou
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }
 
+// What of the limit at the tip the device's own forces leave to the law [N].
+template <int N>
+double Tick<N>::tip_force_left(bool guarded) const {
+  if (!guarded) return std::numeric_limits<double>::infinity();
+  const double most = safety_.tip_force();
+  return std::max(kLeastForLaw * most, most - tip_force<N>(loads_, J_));
+}
+
 // Nobody knows what the device did meanwhile, but that it was without torque: it starts as one
 // found at rest does.
 template <int N>
-void Tick<N>::begin_after_gap(const Reading<N>& in) {
+void Tick<N>::begin_anew(const Reading<N>& in) {
   velocity_.reset(in.measured);
   f1_hat_.setZero();
   observer_.reset(f1_hat_, f1_hat_);
@@ -166,6 +188,18 @@ void Tick<N>::begin_after_gap(const Reading<N>& in) {
   motors_.start();
   start_law({in.measured, f1_hat_, f1_hat_});
   x1_before_ = in.x;
+}
+
+// What a device does that may not be pushed at all can take the proxy anywhere: that must pull on
+// nothing when force may leave again.
+template <int N>
+void Tick<N>::bring_proxy(const Vec<N>& x, const Parameters& p) {
+  proxy_.catch_up();
+  proxy_.look(p.tick);
+  first_potential_ -= proxy_.contact_potential();
+  vbar2_.setZero();
+  proxy_.place(x, vbar2_, p.inertia_ratio);
+  first_potential_ += proxy_.contact_potential();
 }
 
 template <int N>
@@ -188,12 +222,13 @@ void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
 template <int N>
 void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,
                       double T) {
-  if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   const Objections against = safety_.judge(
       in.health, diverged_, {in.measured, velocity_.estimate(), J_, tau1_, put_out, T});
   // As much time as really passed, and no more than a tick's.
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
+  const bool barred = against.fault != ForceState::on || !(against.ceiling > 0);
+  unbarred_ = std::exchange(barred_, barred) && !barred && in.health.guarded;
   const bool limited = in.health.guarded && !diverged_;
   // A law, an observer and contacts that begin anew ask for another torque than a tick ago; rows of
   // a virtual arm follow from where they begin, and what the motors gave before is not there.
@@ -201,7 +236,8 @@ void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wi
   const Vec<N> all = command_ + loads_;
   const TorqueLimits<N> most =
       limited ? TorqueLimits<N>(limit_, J_, safety_.tip_force()) : TorqueLimits<N>(limit_);
-  tau1_ = motors_.pass(all, most, gate_.gain(), dt, limited ? SafetyLimits::kSlew : 0);
+  const double gain = unbarred_ ? 0 : gate_.gain();
+  tau1_ = motors_.pass(all, most, gain, dt, limited ? SafetyLimits::kSlew : 0);
 }
 
 template <int N>

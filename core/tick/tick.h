@@ -116,7 +116,9 @@ class Tick {
   const RowLayout& layout() const { return layout_; }
 
  private:
-  void begin_after_gap(const Reading<N>& in);
+  double tip_force_left(bool guarded) const;
+  void begin_anew(const Reading<N>& in);
+  void bring_proxy(const Vec<N>& x, const Parameters& p);
   Vec<N> own_forces(const Parameters& p, const DeviceEstimate<N>& at, double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
   void start_law(const LawStart<N>& at);
@@ -154,6 +156,8 @@ class Tick {
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;
   bool fresh_law_ = false;    // it took over at this tick
+  bool barred_ = false;       // no force may leave, whoever arms it
+  bool unbarred_ = false;     // it may again, from the coming tick on
   bool restarted_ = false;    // a recording begins with this tick
   std::uint64_t k_ = 0;       // ticks run
   std::uint64_t period_ = 0;  // of the present tick; the same unless ticks were given up

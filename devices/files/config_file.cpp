@@ -40,18 +40,19 @@ void set_from(Parameters& p, const std::string& key, const toml::node& node) {
       fmt::format("{}: {} is not allowed; allowed: one value", key, found_text(node)));
 }
 
-void apply_table(Parameters& p, const toml::table& table, const std::string& prefix,
-                 const std::string& where) {
+template <class Untaken>
+void take_table(Parameters& p, const toml::table& table, const std::string& prefix,
+                const std::string& where, const Untaken& untaken) {
   for (const auto& [name, node] : table) {
     const std::string key = prefix + std::string(name.str());
     if (node.is_table() && find_parameter(key) == nullptr) {
-      apply_table(p, *node.as_table(), key + ".", where);
+      take_table(p, *node.as_table(), key + ".", where, untaken);
       continue;
     }
     try {
       set_from(p, key, node);
     } catch (const ParameterError& error) {
-      throw FileError(fmt::format("{}:{}: {}", where, name.source().begin.line, error.what()));
+      untaken(key, fmt::format("{}:{}: {}", where, name.source().begin.line, error.what()));
     }
   }
 }
@@ -82,8 +83,25 @@ void apply_config(Parameters& p, const std::filesystem::path& file) {
 
 void apply_config_text(Parameters& p, std::string_view text, const std::string& where) {
   Parameters changed = p;
-  apply_table(changed, parse_toml(text, where), "", where);
+  take_table(changed, parse_toml(text, where), "", where,
+             [](const std::string&, const std::string& why) { throw FileError(why); });
   p = changed;
+}
+
+std::vector<UntakenKey> take_config_table(Parameters& p, const std::string& text,
+                                          const std::string& table, const std::string& where) {
+  const toml::table all = parse_toml(text, where);
+  const toml::node* node = all.get(table);
+  if (node == nullptr) return {};
+  if (!node->is_table()) {
+    return {{"", fmt::format("{}:{}: {}: {} is not allowed; allowed: a table", where,
+                             node->source().begin.line, table, found_text(*node))}};
+  }
+  std::vector<UntakenKey> untaken;
+  take_table(p, *node->as_table(), "", where, [&](const std::string& key, const std::string& why) {
+    untaken.push_back({key, why});
+  });
+  return untaken;
 }
 
 void apply_setting(Parameters& p, std::string_view setting) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/tick/parameters.h"
 
@@ -19,6 +20,15 @@ namespace limpid {
 // not allowed; `p` is then unchanged.
 void apply_config(Parameters& p, const std::filesystem::path& file);
 void apply_config_text(Parameters& p, std::string_view text, const std::string& where);
+
+// The same of one table of a text, key by key: what cannot be taken is left as it is, and said in
+// the words of apply_config. Its key is empty where the table is something else. Errors: FileError
+// for text that is not TOML.
+struct UntakenKey {
+  std::string key, why;
+};
+std::vector<UntakenKey> take_config_table(Parameters& p, const std::string& text,
+                                          const std::string& table, const std::string& where);
 
 // One "key=value" of `--set`; bare words stand for text. Errors: ParameterError.
 void apply_setting(Parameters& p, std::string_view setting);

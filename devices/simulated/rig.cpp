@@ -7,6 +7,7 @@
 #include "core/dynamics/inverse_kinematics.h"
 #include "core/tick/tick.h"
 #include "devices/device.h"
+#include "devices/reading_watch.h"
 #include "devices/simulated/virtual_arm.h"
 
 namespace limpid {
@@ -45,7 +46,9 @@ struct Rig::Of {
   Device* device;
   bool here = false;  // it answered
   DeviceReading reading;
-  Vec<N> x_before, v;  // as measured at the last step [rad, rad/s]
+  ReadingWatch watch;
+  bool believed = true;  // the newest reading, or there was none yet
+  Vec<N> x_before, v;    // as measured at the last step [rad, rad/s]
   // Of the device's, that are known of; one that has just been plugged in may have had any.
   std::optional<std::uint32_t> lapses = 0;
   RigInput input;
@@ -73,6 +76,8 @@ void Rig::plug(Device* device) noexcept {
       [&](auto& of) {
         of->device = device != nullptr ? device : of->own.get();
         of->lapses.reset();
+        of->watch.start();
+        of->believed = true;
       },
       of_);
 }
@@ -94,19 +99,21 @@ void Rig::limit(const SafetyLimits& limits) {
   std::visit([&](auto& of) { of->tick.limit(limits); }, of_);
 }
 
-// What the loop sees. Of a device that says nothing, or nonsense: where it was when it last did.
+// What the loop sees. Of a device that says nothing, or what cannot be: where it was when it last
+// did. What one without a hand on it says is not made better: the tick finds that it diverged.
 template <int N>
 Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   device->expect(p, now.hand);
   here = device->read(reading);
   const bool guarded = device->traits().guarded;
+  watch.wait(now.dt > 0 ? now.dt : now.periods * p.tick);
+  const bool heard = here && reading.count > 0, before = believed;
+  if (heard) believed = !guarded || watch.believes(reading, device->traits());
   Vec<N> x = x_before;
-  if (here && reading.count > 0) x = of_joints(reading.x);
-  // What a device without a hand on it says is not made better: the tick finds that it diverged.
-  const bool nonsense = guarded && !x.allFinite();
-  if (nonsense) x = x_before;
+  if (heard && believed) x = of_joints(reading.x);
   DeviceHealth health = health_of(reading, here, guarded, now.dt, now.silence, lapses);
-  health.fault = health.fault || nonsense;
+  health.wrong = !believed;
+  health.gap = health.gap || (believed && !before);  // where it went meanwhile nobody knows
   v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
   const auto truth = device->truth();

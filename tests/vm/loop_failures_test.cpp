@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <numbers>
 #include <tuple>
 
 #include "devices/hid/hid_transport.h"
@@ -215,6 +216,27 @@ struct FailingRawLoop : FailingLoop<RawDeviceModel> {};
 
 TEST_F(FailingRawLoop, EndsForceWhenReadingsRepeatThemselves) {
   expect_end("the same reading again and again", Fault::stuck, ForceState::stale);
+}
+
+// Its counter is off by a turn for one report, which arrives whole.
+TEST_F(FailingRawLoop, EndsForceAtOneWrongReading) {
+  desk.open();
+  ASSERT_TRUE(desk.push());
+  const Time moment = desk.device->with([&](Time now) {
+    desk.model->hand().miscount(2 * std::numbers::pi);
+    return now;
+  });
+  wait(2ms);
+  desk.device->with([&](Time) { desk.model->hand().miscount(0); });
+  wait(100ms);
+  expect_zero("a reading that is off by a turn", desk.zero_after(moment), 4ms);
+  EXPECT_EQ(desk.force_state(), ForceState::wrong);
+  wait(700ms);
+  EXPECT_EQ(desk.torque(), 0) << "it pushes again without having been armed";
+  EXPECT_EQ(desk.force_state(), ForceState::wrong);
+  desk.arm_force(false);
+  wait(20ms);
+  EXPECT_TRUE(desk.push());
 }
 
 TEST_F(FailingRawLoop, EndsForceWhenTheDeviceReportsAFault) {

@@ -3,6 +3,8 @@
 // guardian stops the device of a killed process, and recordings across an unplugging.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/support/built_in.h"
 #include "tests/vm/simulated_desk.h"
 
@@ -174,6 +176,49 @@ TEST_F(SimulatedRawLoop, EndsForceWhenReadingsRepeatThemselves) { expect_end(Fau
 
 TEST_F(SimulatedRawLoop, EndsForceWhenTheDeviceReportsAFault) {
   expect_end([](RawDeviceModel& model, bool on) { model.set_unwell(on); }, ForceState::fault, 3ms);
+}
+
+// Its counter is off for one report, which arrives whole.
+TEST_F(SimulatedRawLoop, EndsForceAtOneWrongReading) {
+  for (const double off : {2 * std::numbers::pi, -0.9, 1e6}) {
+    ASSERT_TRUE(desk.push());
+    const auto zero = time_to_zero([&] {
+      desk.model->hand().miscount(off);
+      desk.run(1);
+      desk.model->hand().miscount(0);
+    });
+    ASSERT_TRUE(zero);
+    EXPECT_LE(*zero, 3ms);
+    EXPECT_EQ(desk.rig.force_state(), ForceState::wrong);
+    const Time after = desk.now;
+    desk.run(2000);
+    EXPECT_EQ(desk.model->forces().largest(after), 0) << "it pushes without having been armed";
+    desk.armed = false;
+    desk.run(5);
+    EXPECT_EQ(desk.rig.force_state(), ForceState::off);
+  }
+  EXPECT_TRUE(desk.push());
+}
+
+// The limit at its tip is lowered while it is pressed harder than that: never more, and the force
+// is there again when it is pressed less, whichever law.
+TYPED_TEST(SimulatedLoop, HoldsTheLimitAtItsTipAndPushesOnWithinIt) {
+  auto& here = this->desk;
+  constexpr double kLimit = 1;  // [N]
+  here.parameters.kind = CouplingKind::predictive;
+  here.rig.limit({.tip_force = kLimit});
+  ASSERT_TRUE(here.push());
+  const Time pressed = here.now;
+  here.run(2000);
+  const double most = here.model->forces().largest(pressed);
+  EXPECT_LE(most, 1.01 * kLimit * kStickLength + 1.0 / torque_levels<TypeParam>());
+  EXPECT_GT(most, 0.9 * kLimit * kStickLength);
+  // The hand leans 0.1 rad into the gate's side, with 0.06 N m.
+  here.model->hand().axis(0).path = [](double) { return 0.19; };
+  here.run(2000);
+  EXPECT_GT(here.rig.force().gain(), 0.99);
+  EXPECT_GT(here.row.at(here.row.size() - 1, Column::governor), 0.99);
+  EXPECT_GT(here.row.at(here.row.size() - 1, Column::energy_ledger), 0);
 }
 
 // Nothing reaches it for a while, until its watchdog cuts; then everything does again.

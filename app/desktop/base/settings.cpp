@@ -128,6 +128,47 @@ void remember_recent(Settings& settings, const std::string& file) {
 
 namespace {
 
+// Of which less is stricter: what a person has lowered stays lowered, also where the file cannot be
+// understood.
+constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"};
+
+void complain(std::string& complaint, const std::string& why) {
+  complaint += fmt::format("{}{}", complaint.empty() ? "settings not read: " : "; ", why);
+}
+
+void lower(Parameters& p, const std::string& limit, std::string& complaint) {
+  const ParameterInfo& info = *find_parameter(limit);
+  set_parameter_number(p, info, 0);
+  complain(complaint,
+           fmt::format("{} is {} {} until it is set", limit, parameter_number(p, info), info.unit));
+}
+
+void lower_all(Parameters& p, std::string& complaint) {
+  for (const char* limit : kLimits) lower(p, limit, complaint);
+}
+
+// A limit whose own line is wrong, or that is meant by a key that does not exist, is as low as it
+// can be: nobody knows how low it was.
+void lower_untaken(Parameters& p, const std::vector<UntakenKey>& untaken, std::string& complaint) {
+  const std::vector<std::string> limits(kLimits.begin(), kLimits.end());
+  for (const UntakenKey& one : untaken) {
+    const bool unknown = find_parameter(one.key) == nullptr;
+    const auto meant = unknown ? nearest(one.key, limits) : std::nullopt;
+    for (const std::string& limit : limits) {
+      const bool within = one.key.empty() || limit.starts_with(one.key + ".");
+      if (limit == one.key || limit == meant || within) lower(p, limit, complaint);
+    }
+  }
+}
+
+// Key by key: one that is wrong costs no other.
+void read_parameters(const std::string& text, const char* table, const std::string& where,
+                     Parameters& p, std::string& complaint) {
+  const std::vector<UntakenKey> untaken = take_config_table(p, text, table, where);
+  for (const UntakenKey& one : untaken) complain(complaint, one.why);
+  lower_untaken(p, untaken, complaint);
+}
+
 Settings settings_of(const std::string& text, const fs::path& file, std::string& complaint) {
   Settings s;
   try {
@@ -144,27 +185,18 @@ Settings settings_of(const std::string& text, const fs::path& file, std::string&
       }
     }
     if (table["window"]["theme"].value_or(std::string("dark")) == "light") s.theme = Theme::light;
-    const auto read = [&](const auto& part) {
-      try {
-        part();
-      } catch (const std::exception& e) {
-        complaint = fmt::format("settings not read: {}", e.what());
-      }
-    };
-    const auto parameters = [&](const char* key, Parameters& p) {
-      const toml::table* found = table[key].as_table();
-      if (found == nullptr) return;
-      std::ostringstream part;
-      part << toml::toml_formatter(*found);
-      apply_config_text(p, part.str(), file.string());
-    };
-    read([&] { parameters("parameters", s.parameters); });
+    read_parameters(text, "parameters", file.string(), s.parameters, complaint);
     s.parameters.tick = Parameters{}.tick;
     s.parameters.substeps = Parameters{}.substeps;
-    read([&] { parameters("twin", s.twin.parameters); });
-    read([&] { s.plot_choices = plots_of(table, file.string()); });
+    read_parameters(text, "twin", file.string(), s.twin.parameters, complaint);
+    try {
+      s.plot_choices = plots_of(table, file.string());
+    } catch (const std::exception& e) {
+      complain(complaint, e.what());
+    }
   } catch (const std::exception& e) {
-    complaint = fmt::format("settings not read: {}", e.what());
+    complain(complaint, e.what());
+    lower_all(s.parameters, complaint);
   }
   return s;
 }
@@ -260,8 +292,10 @@ Settings load_settings(std::string& complaint) {
   try {
     return settings_of(read_text(file, kLongestSettings), file, complaint);
   } catch (const std::exception& e) {
-    complaint = fmt::format("settings not read: {}", e.what());
-    return {};
+    complain(complaint, e.what());
+    Settings s;
+    lower_all(s.parameters, complaint);
+    return s;
   }
 }
 

@@ -659,6 +659,24 @@ TEST(LiveLoop, ForgetsWhatWasAskedBeforeItWasOpened) {
   EXPECT_EQ(loop.snapshot().arming, Arming::off);
 }
 
+// What a device says first is where device and proxy begin, if it can be there.
+TEST(LiveLoop, DoesNotBeginWhereItsDeviceCannotBe) {
+  LiveLoop loop({});
+  for (const double first : {1e6, std::nan("")}) {
+    auto device = std::make_unique<test::FakeDevice>(3);
+    device->reading.x[1] = first;
+    loop.open(test::omni(), Scene{}, Parameters{}, std::move(device));
+    let_live(loop, 20);
+    loop.update();
+    EXPECT_EQ(loop.snapshot().force_state, ForceState::wrong);
+    const RowLayout layout(3);
+    const std::span<const double> row(loop.snapshot().row);
+    for (const Column at : {Column::device_position, Column::proxy_position}) {
+      for (const double x : layout.in(row, at)) EXPECT_LT(std::abs(x), 4);
+    }
+  }
+}
+
 TEST(LiveLoop, TakesItsForceAwayWhenNobodySetsItsControls) {
   LiveLoop loop({});
   auto device = std::make_unique<test::FakeDevice>(3);

@@ -199,8 +199,63 @@ TEST_P(LedgerOfJoints, CutsAllTorqueByWhatWasGivenAndByWhatIsOnItsWay) {
   }
   EXPECT_TRUE(part);
   EXPECT_EQ(ledger_.torque(), 0);
-  ledger_.settle(kE0, 0.02, true);  // no torque leaves: force that is armed then begins anew
+}
+
+// What the hand does to a device without force is nobody's debt, and fills nothing up.
+TEST_P(LedgerOfJoints, StaysAsItIsWhileNoTorqueLeavesAndIsFilledByWhoeverArms) {
+  const Any none = Any::Zero(n());
+  ledger_.settle(kE0, 0.001);
+  ledger_.settle(kE0, 0.004);
+  ASSERT_NEAR(ledger_.reserve(), 0.002, 1e-15);
+  for (const double stored : {0.03, 0.5, 0.0, 0.02}) {
+    y_ += random_.vector(n(), 1e-3);
+    add(y_, y_, none, none, 0);
+    ledger_.settle(kE0, stored, true);
+    ASSERT_NEAR(ledger_.reserve(), 0.002, 1e-15) << stored;
+  }
+  const Any tau = Any::Constant(n(), 1 / static_cast<double>(n()));
+  y_ += Any::Constant(n(), 0.001);  // a torque that was still on its way gives 1 mJ
+  add(y_, y_, tau, none, 0);
+  ledger_.settle(kE0, 0.02, true);
+  EXPECT_NEAR(ledger_.reserve(), 0.001, 1e-15);
+  ledger_.settle(kE0, 0.021);  // and with force every debt counts
+  EXPECT_NEAR(ledger_.reserve(), 0, 1e-15);
+  ledger_.refill();
   EXPECT_DOUBLE_EQ(ledger_.reserve(), kE0);
+  ledger_.settle(kE0, 0.021);
+  EXPECT_NEAR(ledger_.reserve(), kE0, 1e-15);
+}
+
+// Half a second within half a milliradian: then it has 0.4 of E0 at least, and owes nothing.
+TEST_P(LedgerOfJoints, ForgivesWhatAHandThatHoldsStillSeemsToOwe) {
+  const Any none = Any::Zero(n());
+  const auto tick = [&](const Any& y) {
+    add(y, y, none, none, 0);
+    ledger_.settle(kE0, 0.03);
+    ledger_.forgive_at_rest(0, T);
+    return ledger_.reserve();
+  };
+  ledger_.settle(kE0, 0);
+  const Any off = Any::Constant(n(), 4e-4);
+  for (int k = 0; k < 498; ++k) {
+    ASSERT_NEAR(tick(k % 2 == 0 ? y_ : Any(y_ + off)), -0.025, 1e-15) << k;
+  }
+  for (int k = 0; k < 4; ++k) tick(y_);
+  EXPECT_NEAR(ledger_.reserve(), 0.002, 1e-15);
+  for (int k = 0; k < 2000; ++k) ASSERT_NEAR(tick(y_), 0.002, 1e-15) << "and no more than that";
+}
+
+TEST_P(LedgerOfJoints, ForgivesNothingWhileTheDeviceMoves) {
+  const Any none = Any::Zero(n());
+  ledger_.settle(kE0, 0);
+  for (int k = 0; k < 3000; ++k) {
+    Any y = y_;
+    y[n() - 1] += 0.01 * std::sin(0.05 * k);
+    add(y, y, none, none, 0);
+    ledger_.settle(kE0, 0.03);
+    ledger_.forgive_at_rest(0, T);
+    ASSERT_NEAR(ledger_.reserve(), -0.025, 1e-15) << k;
+  }
 }
 
 // A torque that acts d ticks late does the work of the tick in which it acts: the account of that

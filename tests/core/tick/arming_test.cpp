@@ -113,6 +113,25 @@ TEST_F(OpenGate, SaysWhatWasWrongFirstUnlessTheDeviceIsGone) {
   EXPECT_EQ(gate.why(), ForceState::lost);
 }
 
+TEST_F(OpenGate, SaysOnceThatItWasArmedAnew) {
+  gate.step(ForceRequest::arm, {}, T);
+  EXPECT_FALSE(gate.armed_anew()) << "it was already";
+  gate.step(ForceRequest::as_it_is, {.hand = false}, T);
+  gate.step(ForceRequest::as_it_is, {.gap = true}, T);
+  gate.step(ForceRequest::as_it_is, {.ceiling = 0}, T);
+  gate.step(ForceRequest::as_it_is, {}, T);
+  EXPECT_FALSE(gate.armed_anew()) << "it comes back by itself";
+  for (const bool trips : {false, true}) {
+    gate.step(trips ? ForceRequest::as_it_is : ForceRequest::cut,
+              {.fault = trips ? ForceState::lost : ForceState::on}, T);
+    EXPECT_FALSE(gate.armed_anew());
+    gate.step(ForceRequest::arm, {.hand = false}, T);
+    EXPECT_TRUE(gate.armed_anew());
+    gate.step(ForceRequest::as_it_is, {}, T);
+    EXPECT_FALSE(gate.armed_anew());
+  }
+}
+
 TEST_F(OpenGate, WaitsForTheHandAndFadesInAgain) {
   gate.step(ForceRequest::as_it_is, {.hand = false}, T);
   EXPECT_EQ(gate.state(), waiting);

@@ -353,7 +353,7 @@ TEST_F(SafeArmThatPushes, StandsStillAlsoAfterAnotherStart) {
 }
 
 TEST(ForceState, IsExplainedInWords) {
-  for (int i = 0; i <= static_cast<int>(ForceState::frozen); ++i) {
+  for (int i = 0; i <= static_cast<int>(ForceState::wrong); ++i) {
     EXPECT_STRNE(explain(static_cast<ForceState>(i)), "") << i;
   }
 }

@@ -160,13 +160,13 @@ TEST_F(RealRig, TakesNoAngleThatIsNotANumber) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     const double good = device.reading.x[1];
     device.reading.x[1] = bad;
-    EXPECT_EQ(step(), ForceState::fault);
+    EXPECT_EQ(step(), ForceState::wrong);
     EXPECT_FALSE(pushes());
     device.reading.x[1] = good;
     for (const double value : rows.vec(rows.size() - 1, Column::measured_position)) {
       EXPECT_TRUE(std::isfinite(value));
     }
-    expect_stays_off(ForceState::fault);
+    expect_stays_off(ForceState::wrong);
   }
 }
 
@@ -516,6 +516,8 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
   start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Constant(1, 0);
   rig.start(p, start);
   test::FakeDevice device(1);
+  device.own_traits().lower = {-4};
+  device.own_traits().upper = {4};
   rig.plug(&device);
   std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
   const auto go = [&](double to, double rate) {

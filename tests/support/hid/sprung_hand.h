@@ -34,15 +34,16 @@ class SprungHand {
 
   int size() const { return static_cast<int>(axes_.size()); }
   double position(int axis) const { return states_[static_cast<std::size_t>(axis)].x; }  // [rad]
-  // As the encoder has it: where it was when its wire broke [rad].
+  // As the encoder has it: where it was when its wire broke, so much off [rad].
   double encoder(int axis) const {
-    return broken_.empty() ? position(axis) : broken_[static_cast<std::size_t>(axis)].x;
+    return off_ + (broken_.empty() ? position(axis) : broken_[static_cast<std::size_t>(axis)].x);
   }
   double velocity(int axis) const { return states_[static_cast<std::size_t>(axis)].v; }  // [rad/s]
   AxisPhysics& axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
   const AxisPhysics& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
   void hold(bool held) { held_ = held; }  // or let go
   void break_encoders(bool broken) { broken_ = broken ? states_ : std::vector<State>{}; }
+  void miscount(double off) { off_ = off; }  // what the encoders say is off by this [rad]
   bool held() const { return held_; }
 
  private:
@@ -55,6 +56,7 @@ class SprungHand {
   std::vector<State> states_, broken_;
   Time start_{}, now_{};
   bool held_ = true;
+  double off_ = 0;
 };
 
 }  // namespace limpid::test

@@ -198,6 +198,46 @@ TEST_F(SettingsFile, WithAParameterOutOfRangeNamesIt) {
   EXPECT_EQ(s.parameters.eta, 1);
 }
 
+// A person has lowered what the motors give; a newer program has added a key.
+TEST_F(SettingsFile, WithAKeyThatIsUnknownKeepsALoweredLimitAndEverythingElse) {
+  write(
+      "[parameters]\ncoupling.later = 1\nledger.energy = 0.001\nobserver.alpha = 0.02\n"
+      "[parameters.device]\ntorque_limit = 0.1\n");
+  const Settings s = load();
+  EXPECT_THAT(complaint_, testing::HasSubstr("settings.toml:2: coupling.later: no such key"));
+  EXPECT_EQ(s.parameters.torque_limit, 0.1);
+  EXPECT_EQ(s.parameters.energy, 0.001);
+  EXPECT_EQ(s.parameters.alpha, 0.02);
+  Settings changed = s;
+  changed.width = 1001;
+  EXPECT_EQ(save_settings(changed, s), "");
+  EXPECT_EQ(load().parameters.torque_limit, 0.1) << "and is written again";
+}
+
+// Nobody knows how low it was: the least is 1e-6 N m.
+TEST_F(SettingsFile, WithALimitThatCannotBeUnderstoodHasTheStrictestOne) {
+  for (const char* wrong :
+       {"[parameters]\ndevice.torque_limit = \"0.1\"\n", "[parameters]\ndevice.torque_limit = -1\n",
+        "[parameters]\ndevice.torque_limit = 1e9\n", "[parameters]\ndevice.torqe_limit = 0.1\n",
+        "[parameters]\ndevice = 3\n", "parameters = 3\n",
+        "[parameters.device]\ntorque_limit = 0.1\n[window\n", "[parameters.device]\ntorque_lim"}) {
+    write(wrong);
+    complaint_.clear();
+    EXPECT_EQ(load().parameters.torque_limit, 1e-6) << wrong;
+    EXPECT_THAT(complaint_, testing::HasSubstr("settings.toml:")) << wrong;
+  }
+  write("[parameters]\ntank.energy = true\ndevice.torque_limit = 0.2\n");
+  const Settings s = load();
+  EXPECT_EQ(s.parameters.torque_limit, 0.2) << "each limit by itself";
+  EXPECT_LT(s.parameters.tank_energy, 1e-3);
+}
+
+TEST_F(SettingsFile, ThatIsTooLongToBeReadHasTheStrictestLimits) {
+  write("[parameters.device]\ntorque_limit = 0.1\n" + std::string(1 << 20, '#'));
+  EXPECT_EQ(load().parameters.torque_limit, 1e-6);
+  EXPECT_NE(complaint_, "");
+}
+
 // Both were started with the same file; each knows only what was done in it.
 TEST_F(SettingsFile, OfTwoWindowsHasWhatWasChangedInEither) {
   Settings began;

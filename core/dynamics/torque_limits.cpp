@@ -1,4 +1,4 @@
-#include "core/tick/motor_stage.h"
+#include "core/dynamics/torque_limits.h"
 
 #include <Eigen/Cholesky>
 

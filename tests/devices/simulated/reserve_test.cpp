@@ -1,0 +1,146 @@
+// What laws that account for energy have left for the hand of a real device: only somebody who arms
+// the force fills it up again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "devices/simulated/rig.h"
+#include "tests/support/built_in.h"
+#include "tests/support/fake_device.h"
+#include "tests/support/random_arm.h"
+#include "tests/support/rows.h"
+#include "tests/support/wisher.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kE0 = 0.005;  // [J]
+
+// A device in a wall that is shaken faster than any law foresees, until not much is left.
+class Reserve : public testing::TestWithParam<CouplingKind> {
+ public:
+  Reserve() : rig(arm, wall(), &device), rows(rig.layout()) {
+    p.kind = GetParam();
+    rig.start(p, rest_at(arm, Vec3(0.2, 0, -0.04)));
+    armed = true;
+    step(600);
+    shakes = true;
+    for (int k = 0; k < 20'000 && !(left() < 0.6 * kE0); ++k) step();
+    shakes = false;
+  }
+  static Scene wall() {
+    Scene scene;
+    scene.add({"", pose_at(Vec3(0.2, 0, -0.04)), Plane{Vec3::UnitZ()}, {2000}});
+    return scene;
+  }
+  void step(int ticks = 1) {
+    for (int i = 0; i < ticks; ++i) {
+      ++device.reading.count;
+      const Vec3 shake = random.point(shakes ? 1e-3 : 1e-7);
+      const Eigen::Vector3d x = x0 + Vec3(0, 0.02, 0.02) + shake;
+      for (std::size_t j = 0; j < 3; ++j) {
+        device.reading.x[j] = x[static_cast<Eigen::Index>(j)] + jump;
+      }
+      input.hand = {rig.tip(), 1};
+      input.force = wisher.at(armed);
+      rig.step(p, input, rows.add());
+    }
+  }
+  double left() const {
+    return rows.size() == 0 ? kE0 : rows.at(rows.size() - 1, Column::energy_ledger);
+  }
+  double torque() const { return rows.vec(rows.size() - 1, Column::motor_torque).norm(); }
+
+  const ArmDescription arm = test::omni();
+  const Eigen::Vector3d x0 = rest_at(arm, Vec3(0.2, 0, -0.04)).x1;
+  test::FakeDevice device{3};
+  Parameters p;
+  Rig rig;
+  test::Rows rows;
+  test::Wisher wisher;
+  RigInput input;
+  bool armed = false;
+  test::Random random{73};
+  bool shakes = false;
+  double jump = 0;  // of all joints [rad]
+};
+INSTANTIATE_TEST_SUITE_P(Laws, Reserve,
+                         testing::Values(CouplingKind::predictive, CouplingKind::tank),
+                         [](const auto& of) { return std::string(name(of.param)); });
+
+TEST_P(Reserve, StaysAsItIsWithoutForceAndIsFullOnceForceIsArmedAnew) {
+  using Change = std::function<void(Reserve&, bool)>;
+  const std::vector<std::pair<const char*, Change>> reasons{
+      {"a stall, the reading before it",
+       [](Reserve& r, bool on) {
+         r.input.dt = on ? 0.008 : 0;
+         r.input.periods = on ? 8 : 1;
+         r.device.reading.age = on ? 0.006 : 0;
+       }},
+      {"an open hand switch", [](Reserve& r, bool on) { r.device.reading.hand = !on; }},
+      {"unplugged", [](Reserve& r, bool on) { r.rig.plug(on ? nullptr : &r.device); }},
+      {"a fault", [](Reserve& r, bool on) { r.device.reading.fault = on; }},
+      {"too fast", [](Reserve& r, bool on) { r.jump += on ? 0.1 : -0.1; }},
+      {"too far", [](Reserve& r, bool on) { r.rig.limit({.range = on ? 0.1 : 1}); }},
+      {"a wrong reading", [](Reserve& r, bool on) { r.jump = on ? 7 : 0; }},
+  };
+  ASSERT_LT(left(), 0.6 * kE0);
+  for (const auto& [what, change] : reasons) {
+    SCOPED_TRACE(what);
+    change(*this, true);
+    step();
+    ASSERT_EQ(torque(), 0);
+    const double before = left();
+    EXPECT_LT(before, 0.7 * kE0);
+    step(3);
+    change(*this, false);
+    step();
+    EXPECT_NEAR(left(), before, 2e-5) << "as it goes on";
+  }
+  // Whatever has tripped, off it goes and on again.
+  armed = false;
+  step(100);
+  EXPECT_LT(left(), 0.7 * kE0) << "not yet";
+  armed = true;
+  step(2);
+  EXPECT_NEAR(left(), kE0, 2e-5);
+}
+
+// Which law is in force when it is armed does not matter.
+TEST_P(Reserve, IsFullForALawThatTakesOverAfterForceWasArmedAnew) {
+  ASSERT_LT(left(), 0.6 * kE0);
+  const CouplingKind kind = p.kind;
+  p.kind = CouplingKind::standard;
+  step(10);
+  armed = false;
+  step(10);
+  armed = true;
+  step(10);
+  p.kind = kind;
+  step(2);
+  EXPECT_GT(left(), 0.8 * kE0);
+}
+
+TEST_P(Reserve, OfALawThatTakesOverIsWhatWasLeft) {
+  const double before = left();
+  ASSERT_LT(before, 0.6 * kE0);
+  const CouplingKind kind = p.kind;
+  p.kind = CouplingKind::standard;
+  step(10);
+  p.kind = kind;
+  step(2);
+  EXPECT_LT(left(), before + 2e-5);
+}
+
+TEST_P(Reserve, IsNotFilledByWhoArmsWhatIsArmed) {
+  const double before = left();
+  ASSERT_LT(before, 0.6 * kE0);
+  input.force = ForceRequest::arm;
+  rig.step(p, input, rows.add());
+  rig.step(p, input, rows.add());
+  EXPECT_NEAR(left(), before, 2e-4);
+}
+
+}  // namespace
+}  // namespace limpid

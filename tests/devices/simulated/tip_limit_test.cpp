@@ -1,0 +1,222 @@
+// The limit of force at the tip of a real device, under laws that reckon with what the motors give.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/simulated/random_corner.h"
+#include "tests/support/built_in.h"
+#include "tests/support/guarded_arm.h"
+#include "tests/support/rows.h"
+
+namespace limpid {
+namespace {
+
+struct Outcome {
+  double energy = 0;           // highest E_c, from torques and positions [J]
+  double given = 0;            // most that the hand was given since the start [J]
+  double reserve = 1, at = 0;  // least, and at the end [J]
+  double contact = 0;          // share of the contact force at the end [-]
+  double force = 0;            // largest at the tip [N]
+  int unsettled = 0, limited = 0;
+  Vec3 tip = Vec3::Zero();  // of the device at the end [m]
+};
+
+class Pressed {
+ public:
+  Pressed(const ArmDescription& arm, const Scene& scene, const Parameters& parameters,
+          double tip_force)
+      : device(arm), rig(arm, scene, &device), rows(rig.layout()), model(arm), p(parameters) {
+    rig.limit({.tip_force = tip_force});
+  }
+  void start(const RigStart& at) {
+    rig.start(p, at);
+    x_ = device.own.arm.x();
+    step(at.target, ForceRequest::arm);
+    for (int k = 0; k < 600; ++k) step(at.target);
+  }
+  void step(const Vec3& target, ForceRequest force = ForceRequest::as_it_is) {
+    rig.step(p, {.hand = {target, 1}, .force = force}, rows.add());
+    const std::size_t k = rows.size() - 1;
+    const Vec<3> tau1 = rows.vec(k, Column::motor_torque);
+    const Vec<3> x = device.own.arm.x(), dx = x - x_;
+    x_ = x;
+    const double given = tau1.dot(dx) - kDamping * dx.squaredNorm() / p.tick;
+    port_ += given;
+    energy_ += given;
+    // The proxy's part is known a tick later.
+    if (k > 0) {
+      const Vec<3> dx2 =
+          rows.vec(k, Column::proxy_position) - rows.vec(k - 1, Column::proxy_position);
+      energy_ += rows.vec(k - 1, Column::proxy_torque).dot(dx2);
+    }
+    all.energy = std::max(all.energy, energy_);
+    all.given = std::max(all.given, port_);
+    if (k > 1) all.reserve = std::min(all.reserve, rows.at(k, Column::energy_ledger));
+    all.at = rows.at(k, Column::energy_ledger);
+    all.contact = rows.at(k, Column::governor);
+    all.unsettled = static_cast<int>(rows.at(k, Column::unsettled));
+    all.limited += rows.at(k, Column::solved) == 1;
+    all.force = std::max(all.force, force_of(tau1, x));
+    all.tip = model.tip_at(x);
+  }
+  double force_of(const Vec<3>& tau, const Vec<3>& x) const {
+    Arm<3>::Frames frames;
+    model.frames(x, frames);
+    Jacobian<3> J;
+    model.point_jacobian(frames, 2, model.tip(frames), J);
+    return tip_force<3>(tau, J);
+  }
+  double force() const { return force_of(rows.vec(rows.size() - 1, Column::motor_torque), x_); }
+  Outcome all;
+  test::GuardedArm device;
+  Rig rig;
+  test::Rows rows;
+
+ private:
+  static constexpr double kDamping = 0.012;  // of each joint, as its file has it [N m s/rad]
+  Arm<3> model;
+  Parameters p;
+  Vec<3> x_;
+  double energy_ = 0, port_ = 0;
+};
+
+const Vec3 kTable(0.2, 0, -0.04);
+
+// A hand that presses with 4 N, and then with 1 N, into a wall.
+struct Press {
+  double tip = 1.5, K = 3000;  // [N, N/m]
+  double eta = 1, torque_limit = kFromArm;
+  double grip = 300, damping = 2;  // [N/m, N s/m]
+  bool rubs = false;
+  CouplingKind kind = CouplingKind::predictive;
+
+  struct Both {
+    Outcome all;
+    double deep, end;  // how far the tip is in the wall while it is pressed with 4 N and 1 N [m]
+    double force;      // at the tip at the end [N]
+  };
+  Both run() const {
+    const ArmDescription arm = test::omni();
+    Scene scene;
+    const double friction = rubs ? 0.3 : 0;
+    scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, {K, 0, friction, friction}});
+    Parameters p;
+    p.kind = kind;
+    p.eta = eta;
+    p.hand_stiffness = grip;
+    p.hand_damping = damping;
+    p.torque_limit = torque_limit;
+    Pressed run(arm, scene, p, tip);
+    run.start(rest_at(arm, kTable + Vec3(0, 0, 0.005)));
+    double now = 0;
+    const auto go = [&](double newton, double seconds) {
+      for (int k = 0; k < seconds * 1e3; ++k) {
+        now += std::clamp(newton - now, -0.02, 0.02);
+        const Vec3 along = rubs ? Vec3(0.01 * std::sin(2e-3 * k), 0.02 * std::sin(5e-3 * k), 0)
+                                : Vec3(0, 2e-5 * std::sin(0.1 * k), 0);
+        run.step(kTable + along - Vec3(0, 0, now / grip + now / K));
+      }
+      return kTable.z() - run.all.tip.z();
+    };
+    const double deep = go(4, 2), end = go(1, 3);
+    return {run.all, deep, end, run.force()};
+  }
+  // Where a hand that presses with so much rests, if the motors give no more than `most` [m, N].
+  double depth(double newton, double most) const {
+    const double whole = newton / grip + newton / K;
+    return newton <= most ? newton / K : whole - most / grip;
+  }
+  friend std::ostream& operator<<(std::ostream& out, const Press& p) {
+    return out << "tip " << p.tip << " N, K " << p.K << " N/m, eta " << p.eta << ", joints "
+               << p.torque_limit << " N m, grip " << p.grip << " N/m, " << p.damping << " N s/m, "
+               << (p.rubs ? "rubs, " : "") << name(p.kind);
+  }
+};
+
+// E_c, what the hand is given and the reserve are as core/README.md has them without such a limit.
+TEST(TipLimit, IsKnownToThePredictiveLawWhichLosesNoReserveToIt) {
+  for (const bool rubs : {false, true}) {
+    for (const double tip : {0.2, 0.5, 0.7, 1.5, 3.0}) {
+      for (const double K : {1000.0, 3000.0}) {
+        const Press press{.tip = tip, .K = K, .rubs = rubs};
+        SCOPED_TRACE(testing::Message() << press);
+        const Press::Both found = press.run();
+        EXPECT_LE(found.all.energy, 0.05e-3);
+        EXPECT_LE(found.all.given, 0.05e-3);
+        EXPECT_GT(found.all.reserve, 3e-3);
+        EXPECT_LE(found.all.force, 1.001 * tip);
+        EXPECT_GT(found.all.limited, 1000) << "it was pressed harder than that";
+        EXPECT_EQ(found.all.unsettled, 0);
+        EXPECT_GT(found.all.contact, 0.99) << "the wall is as stiff as it is set to";
+        const double off = rubs ? 0.4e-3 : 0.02e-3;
+        EXPECT_NEAR(found.deep, press.depth(4, tip), off);
+        EXPECT_NEAR(found.end, press.depth(1, tip), off);
+        if (!rubs) EXPECT_NEAR(found.force, std::min(tip, 1.0), 0.01);
+      }
+    }
+  }
+}
+
+// Grips that damp nothing leave the account with a debt that no motion pays, since the damping of a
+// real device is in no book.
+TEST(TipLimit, LeavesNoDebtThatAHandAtRestCannotPay) {
+  for (const double tip : {1.5, 10.0}) {
+    for (const double limit : {kFromArm, 0.28}) {
+      for (const double eta : {1.0, 0.3}) {
+        for (const double grip : {300.0, 1000.0, 3000.0}) {
+          for (const double damping : {0.0, 2.0}) {
+            const Press press{
+                .tip = tip, .eta = eta, .torque_limit = limit, .grip = grip, .damping = damping};
+            SCOPED_TRACE(testing::Message() << press);
+            const Press::Both found = press.run();
+            EXPECT_NEAR(found.end, 1 / press.K, 0.1e-3) << "force has come back";
+            EXPECT_GT(found.all.at, 1e-3);
+            EXPECT_LE(found.all.given, 5e-3);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(TipLimit, LeavesTheTanksAsTheyAre) {
+  for (const double tip : {0.2, 0.7, 1.5, 3.0}) {
+    const Press press{.tip = tip, .kind = CouplingKind::tank};
+    SCOPED_TRACE(testing::Message() << press);
+    const Press::Both found = press.run();
+    EXPECT_LE(found.all.energy, 0.05e-3);
+    EXPECT_LE(found.all.given, 0.05e-3);
+    EXPECT_GT(found.all.reserve, 3e-3);
+    EXPECT_LE(found.all.force, 1.001 * tip);
+    EXPECT_NEAR(found.force, std::min(tip, 1.0), 0.01);
+  }
+}
+
+// Corners of planes that nobody chose: with the limit they are no worse than without.
+TEST(TipLimit, MakesNoEnergyBetweenWalls) {
+  const auto worst = [](bool limited) {
+    Outcome all;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+      LimitedCorner c = limited_corner(seed, {}, test::omni());
+      c.p.torque_limit = kFromArm;
+      const double tip = limited ? 0.2 * std::pow(15, (seed % 10) / 9.0) : 10;
+      Pressed run(c.arm, c.scene, c.p, tip);
+      run.start(c.start);
+      for (int k = 0; k < LimitedCorner::kLasts * 1e3; ++k) run.step(c.hand(1e-3 * k));
+      EXPECT_LE(run.all.force, 1.005 * tip) << seed;
+      EXPECT_LE(run.all.given, 5e-3) << seed;
+      all.energy = std::max(all.energy, run.all.energy);
+      all.reserve = std::min(all.reserve, run.all.reserve);
+      all.unsettled += run.all.unsettled;
+    }
+    return all;
+  };
+  const Outcome with = worst(true), without = worst(false);
+  EXPECT_LE(with.energy, without.energy);
+  EXPECT_GE(with.reserve, without.reserve);
+  EXPECT_EQ(with.unsettled, 0);
+}
+
+}  // namespace
+}  // namespace limpid
