@@ -48,11 +48,33 @@ constexpr std::array kKeys{
 
 }  // namespace
 
+void lead_menus_by_keys(bool lead) {
+  constexpr int kKeyboard = ImGuiConfigFlags_NavEnableKeyboard;
+  int& flags = ImGui::GetIO().ConfigFlags;
+  if (((flags & kKeyboard) != 0) == lead) return;
+  flags = lead ? flags | kKeyboard : flags & ~kKeyboard;
+  ImGuiContext& ui = *ImGui::GetCurrentContext();
+  if (!lead) ui.NavDisableHighlight = true;
+  ui.NavDisableMouseHover = false;
+}
+
+void open_menu_by_keys(const char* menu) {
+  ImGui::OpenPopup(menu);
+  ImGui::GetCurrentContext()->NavDisableHighlight = false;
+}
+
 #if IMGUI_VERSION_NUM >= 18900
 
 namespace {
 
+// Also the digits that Limpid asks for.
 ImGuiKey imgui_key(int key) {
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) {
+    return static_cast<ImGuiKey>(ImGuiKey_0 + key - GLFW_KEY_0);
+  }
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) {
+    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + key - GLFW_KEY_KP_0);
+  }
   for (const Key& each : kKeys) {
     if (each.glfw == key) return each.imgui;
   }

@@ -14,6 +14,12 @@ void show_modifiers(bool control, bool shift, bool alt);
 void show_mouse(const ImVec2& at);
 void show_mouse_button(int button, bool down);
 
+// Whether arrows and the space bar go through what ImGui has open, as through a menu.
+void lead_menus_by_keys(bool lead);
+// Opens a menu of the bar that is being drawn, right before ImGui::BeginMenu() of it; its first
+// item is chosen then.
+void open_menu_by_keys(const char* menu);
+
 // ImGui::IsKeyPressed().
 bool key_pressed(int key, bool repeat = true);
 

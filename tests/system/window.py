@@ -14,6 +14,30 @@ from support import LIMPID
 
 NEEDED = ("Xvfb", "xdotool")
 WIDTH, HEIGHT = 1280, 720
+MODIFIERS = {"ctrl", "shift", "alt", "super"}
+WHEEL = {"4", "5"}  # as buttons
+
+
+def counted(words: tuple[str, ...]) -> dict[str, int]:
+    """What a window is to take of these words of xdotool: presses of keys, presses and releases of
+    buttons."""
+    counts = {"keys": 0, "buttons": 0}
+    verb, options, left = "", {}, list(words)
+    while left:
+        word = left.pop(0)
+        if word.startswith("--"):
+            options[word] = left.pop(0)
+        elif word in ("key", "keydown", "keyup", "click", "mousedown", "mouseup", "mousemove", "type"):
+            verb, options = word, {}
+        elif verb in ("key", "keydown"):
+            counts["keys"] += word.split("+")[-1] not in MODIFIERS
+        elif verb == "type":
+            counts["keys"] += len(word)
+        elif verb == "click" and word not in WHEEL:
+            counts["buttons"] += 2 * int(options.get("--repeat", 1))
+        elif verb in ("mousedown", "mouseup"):
+            counts["buttons"] += 1
+    return counts
 
 
 @unittest.skipUnless(all(shutil.which(tool) for tool in NEEDED), f"needs {' and '.join(NEEDED)}")
@@ -64,6 +88,7 @@ class WindowTest(unittest.TestCase):
         self.app = subprocess.Popen([LIMPID, "--print-state", *self.words], env=self.environment,
                                     stdout=self.states)
         self.addCleanup(self.stop, self.app)
+        self.sent = {"keys": 0, "buttons": 0}
         self.wait("the first ticks and frames", lambda s: s["ticks"] > 200 and s["frames"] > 5, 60)
         self.window = self.xdotool("search", "--onlyvisible", "--name", "^Limpid").split()[0]
         self.xdotool("windowfocus", self.window)
@@ -76,14 +101,25 @@ class WindowTest(unittest.TestCase):
             process.kill()
 
     def xdotool(self, *words: str, check: bool = True) -> str:
+        """Does it, and counts what the window has to take of it."""
+        for what, count in counted(words).items():
+            self.sent[what] += count
         return subprocess.run(["xdotool", *words], env=self.environment, check=check,
                               capture_output=True, text=True).stdout
+
+    def taken(self) -> dict:
+        """The first state in which frames have taken all keys and clicks that were sent: one that
+        was sent early may come to frames that show something else than was meant."""
+        return self.wait("the window to take what was sent", lambda s: all(
+            s["taken"][what] >= count for what, count in self.sent.items()) and not s["input_waits"], 60)
 
     def key(self, name: str, closes: bool = False) -> None:
         """A key press; one that closes the window leaves none for its release."""
         self.xdotool("key", "--window", self.window, "--delay", "120", name, check=not closes)
         if closes:
             self.xdotool("keyup", name)  # or it repeats into the next window
+        else:
+            self.taken()
 
     def close_by_cross(self) -> None:
         """As a window manager says that somebody wants the window closed."""
@@ -103,6 +139,7 @@ class WindowTest(unittest.TestCase):
 
     def type(self, text: str) -> None:
         self.xdotool("type", "--window", self.window, "--delay", "60", text)
+        self.taken()
 
     def notices(self) -> str:
         return "\n".join(self.state()["notices"])
@@ -115,6 +152,7 @@ class WindowTest(unittest.TestCase):
         self.move(x, y)
         self.settled()
         self.xdotool("click", "--repeat", str(times), "--delay", "20", str(button))
+        self.taken()
 
     def move(self, x: float, y: float) -> None:
         self.xdotool("mousemove", "--window", self.window, str(int(x)), str(int(y)))
@@ -146,6 +184,7 @@ class WindowTest(unittest.TestCase):
     def settled(self) -> dict:
         """The state once all that was done up to now has done what it does: a frame may be under
         way, the next one takes it, and what it opened needs some more."""
+        self.taken()
         time.sleep(0.2)  # a state is never older, unless a frame takes longer
         frames = self.state()["frames"]
         return self.wait("some frames", lambda s: s["frames"] >= frames + 5

@@ -50,9 +50,18 @@ double PersonQuestion::seconds_since(Clock::time_point time) const {
 // By a key; what was pressed before the question was seen is no answer to it.
 std::optional<std::size_t> PersonQuestion::chosen() const {
   if (!shown_ || ImGui::IsWindowAppearing()) return std::nullopt;
-  for (const ImWchar c : ImGui::GetIO().InputQueueCharacters) {
+  const ImGuiIO& io = ImGui::GetIO();
+  for (const ImWchar c : io.InputQueueCharacters) {
     const auto digit = static_cast<std::size_t>(c - '1');
     if (c >= '1' && digit < choices_.size()) return digit;
+  }
+  // A French keyboard writes a digit with Shift only, a keypad with its lock only.
+  const bool bare = !io.KeyCtrl && !io.KeyShift && !io.KeyAlt;
+  for (std::size_t i = 0; bare && i < choices_.size(); ++i) {
+    const int digit = static_cast<int>(i);
+    if (key_pressed(GLFW_KEY_1 + digit, false) || key_pressed(GLFW_KEY_KP_1 + digit, false)) {
+      return i;
+    }
   }
   if (choices_.size() != 1) return std::nullopt;
   // Beside the picture, a click into that takes ImGui's focus, not the keys.

@@ -30,6 +30,22 @@ void draw_unsaved_question(bool& open, bool has_file, const Act& act) {
   if (answer != nullptr) act(answer);  // which may throw
 }
 
+void draw_quit_question(bool& open, const Act& act) {
+  if (!begin_modal("End the recording?", open, {0, 0})) return;
+  ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
+  ImGui::TextUnformatted("A recording is under way. It is kept as far as it has come.");
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  bool end = accepted();
+  end = ImGui::Button("End it and quit (Enter)") || end;
+  ImGui::SameLine();
+  close_button("Go on (Esc)", open);
+  ImGui::EndPopup();
+  if (!end) return;
+  open = false;
+  act("window.end_recording_and_quit");
+}
+
 // Enter does not answer it: what it asks is to be read.
 bool draw_xacro_question(bool& open, const std::filesystem::path& file) {
   if (!begin_modal("Expand xacro?", open, {0, 0})) return false;

@@ -13,6 +13,9 @@ namespace limpid {
 // `open`. `has_file`: saving needs no name.
 void draw_unsaved_question(bool& open, bool has_file, const Act& act);
 
+// Whether a recording that runs may end with the window, while `open`; the answer is a command.
+void draw_quit_question(bool& open, const Act& act);
+
 // Whether a file may be expanded by the program xacro, while `open`. True once it may, which clears
 // `open`.
 bool draw_xacro_question(bool& open, const std::filesystem::path& file);

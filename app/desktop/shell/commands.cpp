@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <ctime>
 
 #include "app/base/folders.h"
@@ -105,6 +106,15 @@ void play_or_pause(Desktop& d) {
   } else {
     d.dialog.open("open session");
   }
+}
+
+void end_recording_and_quit(Desktop& d) {
+  d.live.stop_recording();
+  d.recording_may_end = d.asked.close = true;
+}
+
+std::string no_live_recording(const Desktop& d) {
+  return d.live.recording() ? "" : "Nothing is being recorded.";
 }
 
 void play_story(Desktop& d) {
@@ -316,6 +326,8 @@ constexpr std::array kCommands{
         "presets of settings", [](Desktop& d) { d.dialog.open("presets"); }, {.apart = true}),
     row("window.quit", "Quit", "File", "Ctrl+Q", "quit", [](Desktop& d) { d.asked.close = true; },
         {.apart = true}),
+    row("window.end_recording_and_quit", "End the recording and quit", nullptr, nullptr, nullptr,
+        end_recording_and_quit, {.why_not = no_live_recording, .blind = true}),
     row("view.left_panel", "Coupling panel", "View", "F2", "coupling panel, device panel, plots",
         show_or_hide<&Settings::show_left>, {.checked = is_shown<&Settings::show_left>}),
     row("view.right_panel", "Device panel", "View", "F3", "", show_or_hide<&Settings::show_right>,
@@ -371,6 +383,8 @@ constexpr std::array kCommands{
     row("view.quality.low", "low", "View/Picture quality", nullptr, nullptr,
         [](Desktop& d) { d.settings.picture_quality = "low"; },
         {.checked = [](const Desktop& d) { return d.settings.picture_quality == "low"; }}),
+    row("window.menu", "Menus", nullptr, "F10", "the menus: arrows, Enter, Esc",
+        [](Desktop& d) { d.asked.menu = true; }),
     row("window.full_screen", "Full screen", "View", "F11", "full screen",
         [](Desktop& d) { d.asked.toggle_full_screen = true; },
         {.checked = [](const Desktop& d) { return d.full_screen; }, .blind = true}),
@@ -557,6 +571,12 @@ std::vector<std::string_view> keys_of(const Command& command) {
   return keys;
 }
 
+// "Ctrl+[" with what stands on the key instead of "[".
+std::string text_on(const KeyLabels& labels, std::string_view text) {
+  const std::size_t key = text.size() - 1;
+  return std::string(text.substr(0, key)) + labels.text(text.substr(key));
+}
+
 bool reaches(const Command& command, KeyOwner owner) {
   switch (command.how.reach) {
     case Reach::view:
@@ -569,6 +589,17 @@ bool reaches(const Command& command, KeyOwner owner) {
     case Reach::all: return true;
   }
   return false;
+}
+
+// A sign or a digit is meant wherever a keyboard has it, with whatever modifiers: "?" is Shift and
+// another key nearly everywhere.
+bool is_written_by(const Command& command, unsigned character) {
+  if (character <= ' ' || character > '~' || std::isalpha(static_cast<int>(character)) != 0) {
+    return false;
+  }
+  const std::string written(1, static_cast<char>(character));
+  const auto keys = keys_of(command);
+  return std::ranges::find(keys, written) != keys.end();
 }
 
 // Nobody who wants the force off looks for the right modifiers first.
@@ -612,9 +643,17 @@ void run_or_say(std::string_view id, Desktop& desktop) {
 const Command* command_of(KeyOwner owner, const KeyPress& press) {
   const int held = press.modifiers & (kShift | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
   const Command* found = nullptr;
-  for (const Command& command : kCommands) {
-    if (!reaches(command, owner) || !has_key(command, press.key, held)) continue;
-    if (found == nullptr || found->how.reach == Reach::view) found = &command;
+  const auto look = [&](auto&& meant) {
+    for (const Command& command : kCommands) {
+      if (!reaches(command, owner) || !meant(command)) continue;
+      if (found == nullptr || found->how.reach == Reach::view) found = &command;
+    }
+  };
+  if ((held & ~kShift) == 0) {
+    look([&](const Command& command) { return is_written_by(command, press.character); });
+  }
+  if (found == nullptr) {
+    look([&](const Command& command) { return has_key(command, press.key, held); });
   }
   return found == nullptr || (press.repeated && !found->how.repeats) ? nullptr : found;
 }
@@ -627,12 +666,12 @@ void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop) {
   }
 }
 
-std::string key_text(const Command& command) {
+std::string key_text(const Command& command, const KeyLabels& labels) {
   const auto keys = keys_of(command);
-  return std::string(keys.empty() ? "" : keys.front());
+  return keys.empty() ? "" : text_on(labels, keys.front());
 }
 
-std::vector<Shortcut> shortcuts() {
+std::vector<Shortcut> shortcuts(const KeyLabels& labels) {
   std::array<std::vector<Shortcut>, kGroups.size()> groups;
   const auto hint = [&](const Hint& each) {
     const std::size_t at = group_of("mouse");
@@ -642,13 +681,17 @@ std::vector<Shortcut> shortcuts() {
   Shortcut* last = nullptr;  // of the table: who says nothing of its own is beside that
   for (const Command& command : kCommands) {
     if (command.keys == nullptr || command.how.reach == Reach::question) continue;
+    std::string keys;
+    for (const std::string_view key : keys_of(command)) {
+      keys += (keys.empty() ? "" : ", ") + text_on(labels, key);
+    }
     if (command.help == nullptr || *command.help != '\0') {
       const std::size_t at = group_of(command.id);
-      groups[at].push_back({kGroups[at].heading, command.keys,
-                            command.help != nullptr ? command.help : command.text});
+      groups[at].push_back(
+          {kGroups[at].heading, keys, command.help != nullptr ? command.help : command.text});
       last = &groups[at].back();
     } else {
-      last->keys += std::string(", ") + command.keys;
+      last->keys += ", " + keys;
     }
   }
   std::ranges::for_each(kAfter, hint);

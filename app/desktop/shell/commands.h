@@ -69,14 +69,14 @@ const Command* command_of(KeyOwner owner, const KeyPress& press);
 // Runs those of the keys pressed in this frame.
 void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop);
 
-// "Ctrl+Shift+S", of its first key; empty without one.
-std::string key_text(const Command& command);
+// "Ctrl+Shift+S", of its first key, as it stands on this keyboard; empty without one.
+std::string key_text(const Command& command, const KeyLabels& labels);
 
 // What keys and mouse do, for the help: group after group.
 struct Shortcut {
   std::string_view group;
   std::string keys, what;
 };
-std::vector<Shortcut> shortcuts();
+std::vector<Shortcut> shortcuts(const KeyLabels& labels);
 
 }  // namespace limpid

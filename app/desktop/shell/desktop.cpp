@@ -153,6 +153,8 @@ Banner point_of_sweep(const PlayedSession& session) {
 
 }  // namespace
 
+const KeyLabels Desktop::kUsKeyboard;
+
 Desktop::Desktop(Settings first, const AskForPriority& ask)
     : settings(std::move(first)),
       document(settings, notices, [this] { return world.why_fixed(); }),

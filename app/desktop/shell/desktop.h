@@ -22,6 +22,7 @@
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/exporter.h"
 #include "app/desktop/shell/focus.h"
+#include "app/desktop/shell/key_labels.h"
 #include "app/desktop/shell/lead.h"
 #include "app/desktop/shell/marking.h"
 #include "app/desktop/shell/pads.h"
@@ -91,6 +92,7 @@ class PlotLayout {
 // What commands ask of the system's window, for who has it.
 struct WindowRequests {
   bool close = false, toggle_full_screen = false;
+  bool menu = false;              // open, for the keys
   std::filesystem::path picture;  // to be saved there; empty: none
 };
 
@@ -124,11 +126,14 @@ class Desktop {
   // the settings and the plots, and all commands that show or change them.
   PersonQuestion question;
   bool blind = false;
+  bool recording_may_end = false;  // with the window: somebody was asked
   // Of experiments that go on beside the window, also while their dialog is closed: "3 of 12: ...".
   std::string experiments_under_way;
-  // Of the system's window: how it is, and the work of its last frame, without waiting [s].
+  // Of the system's window: how it is, the work of its last frame, without waiting [s], and what
+  // its keyboard has where.
   bool full_screen = false;
   double frame_time = 0;
+  const KeyLabels* key_labels = &kUsKeyboard;
 
   // Once a frame, before anything is drawn.
   void update(double dt);
@@ -153,6 +158,8 @@ class Desktop {
   std::vector<Banner> banners() const;
 
  private:
+  static const KeyLabels kUsKeyboard;
+
   bool close_one();
   void follow_playback(double dt);
   void follow_break();

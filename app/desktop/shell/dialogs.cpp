@@ -49,14 +49,14 @@ void begin_reading(const char* title, float width, float height, bool& open) {
 
 }  // namespace
 
-void draw_help(bool& open) {
+void draw_help(bool& open, const KeyLabels& labels) {
   if (!open) return;
   begin_reading("Keys and mouse", 46, 0.9f, open);
   ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
   if (ImGui::BeginTable("keys", 2)) {
     ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
     std::string_view group;
-    for (const Shortcut& shortcut : shortcuts()) {
+    for (const Shortcut& shortcut : shortcuts(labels)) {
       if (std::exchange(group, shortcut.group) != shortcut.group) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
@@ -101,8 +101,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-DrawDialog help(Desktop&) {
-  return [](bool& open, ScreenRect) { draw_help(open); };
+DrawDialog help(Desktop& d) {
+  return [&d](bool& open, ScreenRect) { draw_help(open, *d.key_labels); };
 }
 
 DrawDialog about(Desktop&) {
@@ -310,6 +310,12 @@ DrawDialog preset_list(Desktop& d) {
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
 }
 
+DrawDialog quit(Desktop& d) {
+  return [&d](bool& open, ScreenRect) {
+    draw_quit_question(open, [&d](std::string_view id) { run_or_say(id, d); });
+  };
+}
+
 DrawDialog question(Desktop& d) {
   return [&d](bool& open, ScreenRect view) { d.question.draw(open, view); };
 }
@@ -345,6 +351,7 @@ constexpr std::array kDialogs{
     DialogKind{"layouts", kModal, layout_list},
     DialogKind{"presets", kModal, preset_list},
     DialogKind{"identify", kModal, identify},
+    DialogKind{"quit", kModal, quit},
     DialogKind{"ask", kModal, question},
 };
 

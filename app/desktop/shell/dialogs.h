@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "app/desktop/base/notices.h"
+#include "app/desktop/shell/key_labels.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/plot/plot_frame.h"
 
 namespace limpid {
 
 // While `open`; closing it clears that.
-void draw_help(bool& open);
+void draw_help(bool& open, const KeyLabels& labels);
 void draw_about(bool& open);
 
 // What opens over the window: one table of dialogs.

@@ -19,7 +19,14 @@ bool is_control(int key) { return key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KE
 
 }  // namespace
 
-void KeyInput::key(int key, int action, int modifiers) {
+// A key is let go as what it was pressed as, whatever keyboard was chosen meanwhile.
+void KeyInput::key(int place, int action, int modifiers) {
+  int key = labels_.at(place);
+  if (place > 0 && place < HeldKeys::kKeys) {
+    int& as = pressed_as_[static_cast<std::size_t>(place)];
+    if (action == GLFW_PRESS || as == 0) as = key;
+    key = as;
+  }
   const auto kind = action == GLFW_PRESS    ? Kind::press
                     : action == GLFW_REPEAT ? Kind::repeat
                                             : Kind::release;
@@ -32,6 +39,8 @@ void KeyInput::character(unsigned character) {
 
 void KeyInput::deal(const Focus& focus) {
   held_.set_focus(focus);
+  in_menu_ = focus.popup && !focus.text;
+  lead_menus_by_keys(in_menu_);
   Taken taken = Taken::nothing;
   int last = GLFW_KEY_UNKNOWN;  // that a character comes from
   int modifiers = 0;
@@ -51,14 +60,26 @@ void KeyInput::deal(const Focus& focus) {
   show(modifiers);
 }
 
+// What ImGui knows a key as; 0: nothing. In a menu ImGui takes an item by the space bar and closes
+// it by Esc. There Enter takes it, as the space bar cuts the force and Esc is a command.
+int KeyInput::seen_as(int key) const {
+  if (!in_menu_) return key;
+  if (key == GLFW_KEY_SPACE || key == GLFW_KEY_ESCAPE) return 0;
+  return key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER ? GLFW_KEY_SPACE : key;
+}
+
 // To ImGui: what is down, but for what somebody else had the focus for.
 void KeyInput::show(int modifiers) {
+  std::bitset<HeldKeys::kKeys> now;
   for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
     if (held_.stale(key)) set_down(key, false);
-    const auto at = static_cast<std::size_t>(key);
-    if (down_[at] != shown_[at]) show_key(key, down_[at]);
+    if (down(key) && seen_as(key) != 0) now.set(static_cast<std::size_t>(seen_as(key)));
   }
-  shown_ = down_;
+  for (int key = 1; key <= GLFW_KEY_LAST; ++key) {
+    const auto at = static_cast<std::size_t>(key);
+    if (now[at] != shown_[at]) show_key(key, now[at]);
+  }
+  shown_ = now;
   const auto held_down = [&](int modifier, int left, int right) {
     return (modifiers & modifier) != 0 || down(left) || down(right);
   };
@@ -73,7 +94,8 @@ void KeyInput::set_down(int key, bool down) {
 
 // ImGui has yet to see that it was let go.
 bool KeyInput::just_released(int key) const {
-  return key >= 0 && key <= GLFW_KEY_LAST && !down(key) && shown_[static_cast<std::size_t>(key)];
+  return key >= 0 && key <= GLFW_KEY_LAST && !down(key) &&
+         shown_[static_cast<std::size_t>(seen_as(key))];
 }
 
 // The next key leaves a character, which comes right behind it.
@@ -100,15 +122,24 @@ bool KeyInput::urgent(const Focus& focus) const {
   });
 }
 
+// `event` has left the queue. With AltGr a key is what it writes, and no other.
+KeyPress KeyInput::press_of(const Event& event) const {
+  const bool writes = !events_.empty() && events_.front().kind == Kind::character;
+  const bool alt_gr = down(GLFW_KEY_RIGHT_ALT) && (event.modifiers & GLFW_MOD_ALT) == 0;
+  return {alt_gr && is_printable(event.key) ? GLFW_KEY_UNKNOWN : event.key, event.modifiers,
+          event.kind == Kind::repeat, writes ? events_.front().character : 0};
+}
+
 void KeyInput::take(const Event& event, int last) {
   switch (event.kind) {
     case Kind::press:
       held_.press(event.key);
-      pressed_.push_back({event.key, event.modifiers});
+      pressed_.push_back(press_of(event));
+      if (!is_modifier(event.key)) ++taken_;
       set_down(event.key, true);
       break;
     case Kind::repeat:
-      if (!held_.stale(event.key)) pressed_.push_back({event.key, event.modifiers, true});
+      if (!held_.stale(event.key)) pressed_.push_back(press_of(event));
       break;
     case Kind::release:
       held_.release(event.key);
@@ -131,7 +162,7 @@ constexpr float kAnyTime = 1e9f, kNoTime = 1e-6f, kWaits = 0.35f;  // [s]
 
 void MouseInput::ask(SteadyClock::time_point now) { asked_before_ = std::exchange(asked_, now); }
 
-void MouseInput::button(int button, bool down) {
+void MouseInput::button(int button, bool down, int modifiers) {
   if (button < 0 || button >= ImGuiMouseButton_COUNT) return;
   bool again = false;
   if (down && button == ImGuiMouseButton_Left) {
@@ -139,7 +170,7 @@ void MouseInput::button(int button, bool down) {
     again = pressed_ != SteadyClock::time_point{} && asked_before_ - pressed_ < kDoubleClick;
     pressed_ = asked_;
   }
-  events_.push_back({button, down, again, at_});
+  events_.push_back({button, modifiers, down, again, at_});
 }
 
 void MouseInput::deal(const ImVec2& now) {
@@ -150,7 +181,11 @@ void MouseInput::deal(const ImVec2& now) {
     events_.pop_front();
     down_[static_cast<std::size_t>(event.button)] = event.down;
     at = event.at;
+    ++taken_;
     if (event.down) {
+      // Keys may be ahead of the mouse.
+      const auto held = [&](int modifier) { return (event.modifiers & modifier) != 0; };
+      show_modifiers(held(GLFW_MOD_CONTROL), held(GLFW_MOD_SHIFT), held(GLFW_MOD_ALT));
       second = event.again ? kAnyTime : kNoTime;
     } else if (waiting()) {
       second = kAnyTime;

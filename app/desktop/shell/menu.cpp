@@ -7,12 +7,14 @@
 #include <cctype>
 #include <initializer_list>
 #include <string>
+#include <utility>
 
 #include "app/base/folders.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/panels/object_signs.h"
 #include "app/desktop/panels/status_line.h"
 #include "app/desktop/shell/commands.h"
+#include "app/style/imgui_input.h"
 
 namespace limpid {
 
@@ -120,7 +122,7 @@ void draw_item(const Command& command, Desktop& d) {
   const std::string why = why_not(command, d);
   const Command::Label label =
       command.how.now != nullptr ? command.how.now(d) : Command::Label{command.text, nullptr};
-  const std::string keys = label.keys != nullptr ? label.keys : key_text(command);
+  const std::string keys = label.keys != nullptr ? label.keys : key_text(command, *d.key_labels);
   const bool checked = command.how.checked != nullptr && command.how.checked(d);
   if (ImGui::MenuItem(label.text, keys.c_str(), checked, why.empty())) run_or_say(command.id, d);
   if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
@@ -153,8 +155,9 @@ void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
   }
 }
 
-void draw_menus(Desktop& d, FileMenus& files) {
+void draw_menus(Desktop& d, FileMenus& files, bool by_keys) {
   for (const char* menu : kMenus) {
+    if (std::exchange(by_keys, false)) open_menu_by_keys(menu);
     if (!ImGui::BeginMenu(menu)) continue;
     draw_menu(menu, d, files);
     ImGui::EndMenu();
@@ -244,11 +247,16 @@ void draw_object_menu(Desktop& d) {
 void draw_menu_bar(Desktop& desktop, FileMenus& files) {
   if (!ImGui::BeginMainMenuBar()) return;
   const LiveLoop& loop = desktop.live.loop();
+  const bool by_keys = std::exchange(desktop.asked.menu, false);
+  constexpr const char* kAll = "Menu";
   if (menus_width() + least_status_width(loop) < ImGui::GetWindowWidth()) {
-    draw_menus(desktop, files);
-  } else if (ImGui::BeginMenu("Menu")) {
-    draw_menus(desktop, files);
-    ImGui::EndMenu();
+    draw_menus(desktop, files, by_keys);
+  } else {
+    if (by_keys) open_menu_by_keys(kAll);
+    if (ImGui::BeginMenu(kAll)) {
+      draw_menus(desktop, files, false);
+      ImGui::EndMenu();
+    }
   }
   const Parameters& p = desktop.settings.parameters;
   StatusLaw law{p.kind, p.eta};

@@ -100,7 +100,8 @@ nlohmann::json banners_of(const Desktop& d) {
   for (const Banner& banner : d.banners()) {
     nlohmann::json buttons = nlohmann::json::object();
     for (const Banner::Button& button : banner.buttons) {
-      if (const auto at = noted_place(banner.id, button.label)) buttons[button.label] = place(*at);
+      if (const auto at = noted_place(banner.id, button.label.c_str()))
+        buttons[button.label] = place(*at);
     }
     all.push_back({{"text", banner.text}, {"bad", banner.bad}, {"buttons", buttons}});
   }
@@ -224,7 +225,8 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"recorded\": {}, \"places\": {}, \"blind\": {}, \"led\": {}, \"question\": {}, "
       "\"your_turn\": {}, \"tried\": {}, \"range\": {}, \"notes\": {}, \"shown\": [{:.4f}, "
       "{:.4f}], "
-      "\"hand\": {{\"stiffness\": {}, \"damping\": {}}}}}\n",
+      "\"hand\": {{\"stiffness\": {}, \"damping\": {}}}, "
+      "\"taken\": {{\"keys\": {}, \"buttons\": {}}}, \"popup\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
       channel(Channel::contact), channel(Channel::energy_total), d.shown.stage().energy.own(),
       channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], live.force_armed(),
@@ -245,7 +247,7 @@ void print_state(Desktop& d, const WindowState& window) {
       d.lead.on(), question_of(d).dump(), d.settings.your_turn,
       nlohmann::json(d.settings.tried).dump(), range_of(d.shown.stage()).dump(),
       notes_of(d.shown.stage()).dump(), d.shown.stage().group.start(), d.shown.stage().group.stop(),
-      p.hand_stiffness, p.hand_damping);
+      p.hand_stiffness, p.hand_damping, window.taken.keys, window.taken.buttons, focus.popup);
   std::fflush(stdout);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/desktop/shell/desktop.h"
+#include "app/desktop/shell/window.h"
 
 namespace limpid {
 
@@ -10,6 +11,7 @@ struct WindowState {
   int width, height;
   long frames;       // drawn up to now
   bool input_waits;  // what was done is not all in them
+  InputTaken taken;
 };
 
 // One line of JSON on stdout.

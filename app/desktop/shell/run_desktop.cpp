@@ -60,7 +60,9 @@ class Application {
         desktop_(with(settings, options),
                  [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
         window_(prepare_window()),
-        frame_(desktop_, window_, [this](std::string_view id) { run_or_say(id, desktop_); }) {}
+        frame_(desktop_, window_, [this](std::string_view id) { run_or_say(id, desktop_); }) {
+    desktop_.key_labels = &window_.key_labels();
+  }
   ~Application() {  // pictures go before the window they are drawn in
     remote_.reset();
     frame_.drop_pictures();
@@ -142,15 +144,20 @@ void Application::run(const std::string& complaint) {
   }
 }
 
-// Unsaved changes are asked about, unless somebody interrupts from outside.
+// A recording that runs and unsaved changes are asked about, unless somebody interrupts from
+// outside.
 bool Application::asked_to_close() {
-  Document& document = desktop_.document;
   if (interrupted) {
     keep_scene();
     return true;
   }
-  document.leave([this] { leaving_ = true; });
   window_.keep_open();
+  const bool may_end = std::exchange(desktop_.recording_may_end, false);
+  if (desktop_.live.recording() && !may_end) {
+    desktop_.dialog.open("quit");
+  } else {
+    desktop_.document.leave([this] { leaving_ = true; });
+  }
   return false;
 }
 
@@ -221,7 +228,7 @@ void Application::turn() {
     printed_ = now;
     int width = 0, height = 0;
     window_.size(width, height);
-    print_state(desktop_, {width, height, frames_, window_.input_waits()});
+    print_state(desktop_, {width, height, frames_, window_.input_waits(), window_.input_taken()});
   }
 }
 

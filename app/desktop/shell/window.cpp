@@ -91,6 +91,13 @@ void move_into(const WorkArea& area, GLFWwindow* window) {
 namespace {
 
 constexpr auto kFrame = std::chrono::microseconds(16667);
+
+KeyLabels labels_now() {
+  return KeyLabels([](int place) -> const char* {
+    return glfwGetKeyScancode(place) > 0 ? glfwGetKeyName(place, 0) : nullptr;
+  });
+}
+
 }  // namespace
 
 struct Window::Impl {
@@ -130,13 +137,15 @@ struct Window::Impl {
       Window::touched(w);
       Impl::of(w).mouse.enter(over == GLFW_TRUE);
     });
-    glfwSetMouseButtonCallback(glfw, [](GLFWwindow* w, int button, int action, int) {
+    glfwSetMouseButtonCallback(glfw, [](GLFWwindow* w, int button, int action, int modifiers) {
       Window::touched(w);
-      Impl::of(w).mouse.button(button, action == GLFW_PRESS);
+      Impl::of(w).mouse.button(button, action == GLFW_PRESS, modifiers);
     });
-    glfwSetKeyCallback(glfw, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+    glfwSetKeyCallback(glfw, [](GLFWwindow* w, int place, int, int action, int modifiers) {
       Window::touched(w);
-      Impl::of(w).keys.key(key, action, modifiers);
+      KeyInput& input = Impl::of(w).keys;
+      if (action == GLFW_PRESS) input.set_labels(labels_now());  // may be another keyboard's by now
+      input.key(place, action, modifiers);
     });
     glfwSetCharCallback(glfw, [](GLFWwindow* w, unsigned character) {
       Window::touched(w);
@@ -239,6 +248,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->imgui.emplace();
   ImGui_ImplGlfw_InitForOpenGL(impl_->glfw, true);
   begin_imgui_input();
+  impl_->keys.set_labels(labels_now());
   impl_->listen();
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
@@ -273,6 +283,8 @@ bool Window::wait() {
 bool Window::due() const { return input_waits() || impl_->liveliness.due(SteadyClock::now()); }
 
 bool Window::input_waits() const { return impl_->keys.waiting() || impl_->mouse.waiting(); }
+
+InputTaken Window::input_taken() const { return {impl_->keys.taken(), impl_->mouse.taken()}; }
 
 void Window::begin_frame(const Focus& focus) {
   impl_->keys.deal(focus);
@@ -322,6 +334,7 @@ void Window::toggle_full_screen() {
 }
 
 const std::vector<KeyPress>& Window::keys() const { return impl_->keys.pressed(); }
+const KeyLabels& Window::key_labels() const { return impl_->keys.labels(); }
 const std::vector<std::filesystem::path>& Window::dropped() const { return impl_->dropped; }
 void Window::size(int& width, int& height) const {
   glfwGetWindowSize(impl_->glfw, &width, &height);

@@ -48,6 +48,12 @@ struct SavedPicture {
   std::string error;  // empty: it is there
 };
 
+// How much of what was done to the window frames took so far: presses of keys without modifiers,
+// presses and releases of the mouse's buttons.
+struct InputTaken {
+  long keys = 0, buttons = 0;
+};
+
 class Window {
  public:
   struct Options {
@@ -70,6 +76,7 @@ class Window {
   bool due() const;
   // Of what was done there is more than the frames up to now took.
   bool input_waits() const;
+  InputTaken input_taken() const;
   // Deals the input to who has the `focus` and begins ImGui's frame.
   void begin_frame(const Focus& focus);
   // Draws ImGui over the picture and shows the frame.
@@ -82,6 +89,8 @@ class Window {
   bool focused() const;
   // Keys pressed in this frame, without those held since somebody else had the focus.
   const std::vector<KeyPress>& keys() const;
+  // Of the keyboard that is chosen now.
+  const KeyLabels& key_labels() const;
   // Files dropped on the window in this frame.
   const std::vector<std::filesystem::path>& dropped() const;
   void size(int& width, int& height) const;              // in ImGui's coordinates

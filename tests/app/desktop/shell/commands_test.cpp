@@ -91,6 +91,7 @@ const Case kCases[] = {
     {"F5", GLFW_KEY_F5, 0, "experiments.show", "experiments.show"},
     {"F6", GLFW_KEY_F6, 0, "sweep.show", "sweep.show"},
     {"F7", GLFW_KEY_F7, 0, "device.identify", "device.identify"},
+    {"F10", GLFW_KEY_F10, 0, "window.menu", "window.menu"},
     {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
     {"F12", GLFW_KEY_F12, 0, "window.save_picture", "window.save_picture"},
     {"Ctrl+E", GLFW_KEY_E, kControl, "export.begin", "export.begin"},
@@ -138,7 +139,7 @@ std::vector<std::string> split(std::string text) {
 TEST(Keys, HelpListsExactlyTheKeysThatAct) {
   // What the mouse does, and Esc and Space, which have tests of their own.
   std::set<std::string> listed;
-  for (const Shortcut& shortcut : shortcuts()) {
+  for (const Shortcut& shortcut : shortcuts(KeyLabels())) {
     // "[, ]" and the like; what the mouse does is written in words.
     for (const std::string& key : split(shortcut.keys)) listed.insert(key);
   }
@@ -156,7 +157,7 @@ TEST(Keys, HelpListsExactlyTheKeysThatAct) {
 TEST(Keys, HelpGroupsThem) {
   std::vector<std::string_view> groups;
   std::map<std::string, std::string_view> group_of;
-  for (const Shortcut& shortcut : shortcuts()) {
+  for (const Shortcut& shortcut : shortcuts(KeyLabels())) {
     EXPECT_FALSE(shortcut.group.empty()) << shortcut.keys;
     if (groups.empty() || groups.back() != shortcut.group) groups.push_back(shortcut.group);
     for (const std::string& key : split(shortcut.keys)) group_of[key] = shortcut.group;
@@ -236,6 +237,26 @@ TEST(Keys, EscapeAlwaysAndSpaceOutsideOfTextCutTheForce) {
   }
 }
 
+// "?" is Shift and the key right of 0 on a German keyboard, and Shift and "," on a French one.
+TEST(Keys, SignsAndDigitsActWhereverTheyAreWritten) {
+  const auto id = [](int key, int modifiers, char writes, KeyOwner owner = KeyOwner::view) {
+    const Command* command =
+        command_of(owner, {key, modifiers, false, static_cast<unsigned>(writes)});
+    return std::string(command != nullptr ? command->id : "");
+  };
+  EXPECT_EQ(id(GLFW_KEY_MINUS, kShift, '?'), "help.keys");
+  EXPECT_EQ(id(GLFW_KEY_COMMA, kShift, '?'), "help.keys");
+  EXPECT_EQ(id(GLFW_KEY_SEMICOLON, kShift, '.'), "scene.look");
+  EXPECT_EQ(id(GLFW_KEY_UNKNOWN, 0, '['), "coupling.smaller_eta") << "with AltGr";
+  EXPECT_EQ(id(GLFW_KEY_1, kShift, '1'), "view.front") << "as on a French keyboard";
+  EXPECT_EQ(id(GLFW_KEY_KP_3, 0, '3'), "view.top");
+  EXPECT_EQ(id(GLFW_KEY_1, kShift, '!'), "");
+  EXPECT_EQ(id(GLFW_KEY_1, 0, '&'), "view.front");
+  EXPECT_EQ(id(GLFW_KEY_B, kShift, 'B'), "view.overlay");
+  EXPECT_EQ(id(GLFW_KEY_1, GLFW_MOD_SUPER, '1'), "") << "the desktop's";
+  EXPECT_EQ(id(GLFW_KEY_MINUS, kShift, '?', KeyOwner::text), "");
+}
+
 TEST(Commands, EachHasAnIdOfItsOwnATextAndSomethingToDo) {
   std::set<std::string_view> ids;
   std::set<std::string> listed;
@@ -300,13 +321,28 @@ TEST(Commands, EachIsReachedAndPanelsNameNoOthers) {
 }
 
 TEST(Commands, KeysAreWrittenAsTheHelpHasThem) {
-  const auto text = [](const char* id) { return key_text(*find_command(id)); };
+  const auto text = [](const char* id) { return key_text(*find_command(id), KeyLabels()); };
   EXPECT_EQ(text("scene.save_as"), "Ctrl+Shift+S");
   EXPECT_EQ(text("hand.softer"), "Alt+[");
   EXPECT_EQ(text("window.full_screen"), "F11");
   EXPECT_EQ(text("help.keys"), "?");
   EXPECT_EQ(text("scene.remove"), "Delete");
   EXPECT_EQ(text("view.trail"), "");
+}
+
+TEST(Commands, KeysAreWrittenAsTheKeyboardHasThem) {
+  const KeyLabels german([](int place) -> const char* {
+    if (place == GLFW_KEY_LEFT_BRACKET) return "\xC3\xBC";
+    return place == GLFW_KEY_RIGHT_BRACKET ? "+" : nullptr;
+  });
+  EXPECT_EQ(key_text(*find_command("hand.softer"), german), "Alt+\xC3\xBC");
+  EXPECT_EQ(key_text(*find_command("scene.save"), german), "Ctrl+S");
+  std::set<std::string> listed;
+  for (const Shortcut& shortcut : shortcuts(german)) {
+    for (const std::string& key : split(shortcut.keys)) listed.insert(key);
+  }
+  EXPECT_TRUE(listed.contains("Ctrl++"));
+  EXPECT_FALSE(listed.contains("Ctrl+]"));
 }
 
 }  // namespace

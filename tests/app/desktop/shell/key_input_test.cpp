@@ -109,6 +109,77 @@ TEST_F(KeyInputTest, WhatCutsTheForceWaitsForNothing) {
   }
 }
 
+const char* french(int place) {
+  switch (place) {
+    case GLFW_KEY_Q: return "a";
+    case GLFW_KEY_A: return "q";
+    default: return nullptr;
+  }
+}
+
+TEST_F(KeyInputTest, AKeyIsWhatStandsOnIt) {
+  keys_.set_labels(KeyLabels(french));
+  tap(GLFW_KEY_Q, GLFW_MOD_CONTROL);
+  EXPECT_THAT(look(), ElementsAre(GLFW_KEY_A));
+}
+
+TEST_F(KeyInputTest, AKeyIsLetGoAsWhatItWasPressedAs) {
+  keys_.set_labels(KeyLabels(french));
+  keys_.key(GLFW_KEY_Q, GLFW_PRESS, 0);
+  look();
+  keys_.set_labels(KeyLabels());  // another keyboard was chosen
+  keys_.key(GLFW_KEY_Q, GLFW_RELEASE, 0);
+  look();
+  keys_.set_labels(KeyLabels(french));
+  keys_.key(GLFW_KEY_Q, GLFW_PRESS, 0);
+  bool down = false;
+  keys_.deal({});
+  frame([&] { down = key_pressed(GLFW_KEY_A, false); });
+  EXPECT_TRUE(down) << "it was up before";
+}
+
+TEST_F(KeyInputTest, AKeyKnowsWhatItWrote) {
+  tap(GLFW_KEY_SLASH, GLFW_MOD_SHIFT, "?");
+  tap(GLFW_KEY_F1);
+  look();
+  EXPECT_EQ(keys_.pressed().at(0).character, '?');
+  look();
+  EXPECT_EQ(keys_.pressed().at(0).character, 0u);
+}
+
+// AltGr+E is a euro sign, and no E. The space bar stays what it is.
+TEST_F(KeyInputTest, WithAltGrAKeyIsNotItsLetter) {
+  keys_.key(GLFW_KEY_RIGHT_ALT, GLFW_PRESS, 0);
+  look();
+  tap(GLFW_KEY_E);
+  EXPECT_THAT(look(), ElementsAre(GLFW_KEY_UNKNOWN));
+  tap(GLFW_KEY_SPACE);
+  EXPECT_THAT(look(), ElementsAre(GLFW_KEY_SPACE));
+  tap(GLFW_KEY_E, GLFW_MOD_ALT);
+  EXPECT_THAT(look(), ElementsAre(GLFW_KEY_E)) << "where it is an Alt as the other one";
+}
+
+// In a menu ImGui takes an item by its key for the space bar, which cuts the force.
+TEST_F(KeyInputTest, InAMenuEnterTakesAnItemAndTheSpaceBarDoesNot) {
+  const Focus menu{.popup = true};
+  const auto taken = [&](int key) {
+    tap(key);
+    keys_.forget_pressed();
+    keys_.deal(menu);
+    bool space = false;
+    frame([&] { space = key_pressed(GLFW_KEY_SPACE, false); });
+    keys_.deal(menu);
+    frame([] {});
+    return space;
+  };
+  EXPECT_TRUE(taken(GLFW_KEY_ENTER));
+  EXPECT_TRUE(taken(GLFW_KEY_ENTER)) << "and once more";
+  EXPECT_TRUE(taken(GLFW_KEY_KP_ENTER));
+  EXPECT_FALSE(taken(GLFW_KEY_SPACE));
+  tap(GLFW_KEY_SPACE);
+  EXPECT_THAT(look(menu), ElementsAre(GLFW_KEY_SPACE)) << "for the command";
+}
+
 TEST_F(KeyInputTest, AReleaseThatNeverCameStopsNothing) {
   keys_.key(GLFW_KEY_BACKSPACE, GLFW_PRESS, 0);
   look(kText);

@@ -89,5 +89,22 @@ TEST_F(MouseInputTest, ASecondPressThatIsComingIsWaitedFor) {
   EXPECT_LT(ImGui::GetIO().MouseDoubleClickTime, 0.5f);
 }
 
+// On a computer that draws seldom Ctrl is up again before its click is looked at.
+TEST_F(MouseInputTest, AClickKeepsTheModifiersThatWereHeld) {
+  ask(0);
+  move(100, 50);
+  mouse_.button(0, true, GLFW_MOD_CONTROL);
+  mouse_.button(0, false, 0);
+  bool with_control = false;
+  show_modifiers(false, false, false);
+  mouse_.deal(now_);
+  frame([&] { with_control = ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseClicked[0]; });
+  EXPECT_TRUE(with_control);
+  show_modifiers(false, false, false);
+  look();
+  EXPECT_FALSE(ImGui::GetIO().KeyCtrl);
+  EXPECT_EQ(mouse_.taken(), 2);
+}
+
 }  // namespace
 }  // namespace limpid
