@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "app/desktop/base/first_steps.h"
+#include "app/desktop/base/kept_settings.h"
 #include "tests/devices/files/test_files.h"
 
 namespace limpid {
@@ -311,6 +312,53 @@ TEST_F(SettingsFile, StandsBesideAFolderForSessions) {
   const fs::path folder = sessions_dir();
   EXPECT_EQ(folder, dir_ / "data/limpid/sessions");
   EXPECT_TRUE(fs::is_directory(folder));
+}
+
+// While the window runs: whatever ends the program, they are there.
+
+TEST_F(SettingsFile, HasWhatWasChangedOnceThatStands) {
+  KeptSettings kept(load());
+  Settings now = kept.kept();
+  now.parameters.eta = 0.5;
+  EXPECT_EQ(kept.follow(now), "");
+  EXPECT_FALSE(fs::exists(file())) << "it may still move";
+  now.parameters.eta = 0.4;
+  EXPECT_EQ(kept.follow(now), "");
+  EXPECT_FALSE(fs::exists(file()));
+  EXPECT_EQ(kept.follow(now), "");
+  EXPECT_EQ(load().parameters.eta, 0.4);
+}
+
+TEST_F(SettingsFile, HasWhatWasChangedBack) {
+  KeptSettings kept(load());
+  Settings now = kept.kept();
+  now.scene = "/a.toml";
+  kept.follow(now);
+  kept.follow(now);
+  EXPECT_EQ(load().scene, "/a.toml");
+  now.scene.clear();
+  kept.follow(now);
+  kept.follow(now);
+  EXPECT_EQ(load().scene, "");
+}
+
+TEST_F(SettingsFile, IsLeftAloneWhileNothingChanges) {
+  KeptSettings kept(load());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(kept.follow(kept.kept()), "");
+  EXPECT_FALSE(fs::exists(file()));
+}
+
+TEST_F(SettingsFile, ThatCannotBeWrittenIsSaidOnceAndTriedAgain) {
+  KeptSettings kept(load());
+  test::write_file(file().parent_path(), "a file in the folder's place");
+  Settings now = kept.kept();
+  now.width = 900;
+  kept.follow(now);
+  EXPECT_NE(kept.follow(now), "");
+  EXPECT_EQ(kept.follow(now), "");
+  fs::remove(file().parent_path());
+  EXPECT_EQ(kept.follow(now), "");
+  EXPECT_EQ(load().width, 900);
 }
 
 }  // namespace
