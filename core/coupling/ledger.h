@@ -96,7 +96,8 @@ class Ledger {
 
   // After settle(), of a device whose damping is not sure: what that took of the hand's energy
   // stands in no book, and a hand that holds still could never pay what it seems to owe for it. So
-  // none that has held still for half a second owes anything. q: the encoders' step [rad].
+  // that is forgiven, up to E0 for each half second that it holds still. q: the encoders' step
+  // [rad].
   void forgive_at_rest(double q, double T) {
     const double within = std::max(kStill, 1.5 * q);
     rested_ += T;
@@ -104,7 +105,7 @@ class Ledger {
       rests_at_ = y_;
       rested_ = 0;
     }
-    const double owed = kForgiven * E0_ - H_;
+    const double owed = std::min(kForgiven * E0_ - H_, E0_);
     if (rested_ < kRest || !(owed > 0)) return;
     rested_ = 0;
     H_ += owed;

@@ -39,6 +39,14 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
   return limit.dot(x.cwiseAbs());
 }
 
+// Of the predictors at the next reading; a force at the tip moves the device by on_tip [-].
+template <int N>
+double chosen_memory(const WallMemory& wall, double least, const Jacobian<N>& J,
+                     const Levers<N>& on_tip) {
+  if (!(wall.q > 0)) return least;
+  return wall.chosen(least, tip_moved(J * on_tip, J * J.transpose()));
+}
+
 // Over the last tick, to bodies [J].
 template <int N>
 double given_to(const Proxy<N>& proxy) {
@@ -189,6 +197,7 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
 template <int N>
 void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                                    const Proxy<N>& proxy, double surprise) {
+  if (!limited_) limit_ = in.limit;
   ledger_.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
     const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
@@ -237,7 +246,6 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   const Levers<N> on_tip =
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
-  if (!limited_) limit_ = in.limit;
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
   // What the prediction foretells of where the torque meets the device is no later than the rest.
@@ -296,11 +304,8 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
                            (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
   }
   limited_ = limited;
-  memory_ = gains.p;
-  if (in.encoder_step > 0 && std::isnan(p.memory)) {
-    memory_ = WallMemory{proxy.contacts().stiffest(), T, in.encoder_step, gains.damping}.chosen(
-        gains.p, tip_moved(J * on_tip, J * J.transpose()));
-  }
+  const WallMemory wall{proxy.contacts().stiffest(), T, in.encoder_step, gains.damping};
+  memory_ = std::isnan(p.memory) ? chosen_memory<N>(wall, gains.p, J, on_tip) : gains.p;
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);
   return share * tau1_;

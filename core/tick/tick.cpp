@@ -126,23 +126,16 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
   const Vec<N> left = own_forces(p, at, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
-  const LawInput<N> now{in.measured,
-                        v1,
-                        device_,
-                        f1_hat_,
-                        vbar2_,
-                        T,
-                        frames_,
-                        b_d_,
-                        b_d_sure,
-                        left,
-                        gate_.gain(),
-                        p.tick,
-                        p.encoder_step,
-                        most_delay(p, arm_delay_, in.health.guarded),
-                        link_.of(p),
-                        gate_.armed_anew(),
-                        tip_force_left(in.health.guarded)};
+  LawInput<N> now{in.measured,    v1,
+                  device_,        f1_hat_,
+                  vbar2_,         T,
+                  frames_,        b_d_,
+                  b_d_sure,       left,
+                  gate_.gain(),   p.tick,
+                  p.encoder_step, most_delay(p, arm_delay_, in.health.guarded),
+                  link_.of(p)};
+  now.armed_anew = gate_.armed_anew();
+  now.tip_force = tip_force_left(in.health.guarded);
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;
