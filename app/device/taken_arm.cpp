@@ -12,7 +12,7 @@ namespace limpid {
 namespace {
 
 constexpr const char* kSayWhich =
-    "the device panel, or `limpid devices ID --arm FILE.urdf`, is where you say which arm it is";
+    "say which arm it is, in the device panel or by `limpid devices ID --arm FILE.urdf`";
 
 bool has_own(const DeviceKind* kind) { return kind != nullptr && *kind->arm != '\0'; }
 
@@ -135,7 +135,7 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
   TakenArm last;
   const ArmDescription arm = built_in(traits);
   try {
-    last = taken(arm, traits, "a built-in one, until you say which it is", besides);
+    last = taken(arm, traits, fmt::format("a built-in one, until you {}", kSayWhich), besides);
   } catch (const FileError& error) {
     throw UnknownArmError(fmt::format("{}; {}", error.what(), kSayWhich));
   }
@@ -145,7 +145,7 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
     joint.effort = std::min(joint.effort, kShortestLever * notes.limits.tip_force);
     most = std::max(most, joint.effort);
   }
-  last.why += fmt::format(" Its motors give at most {:.3g} N m until then; {}.", most, kSayWhich);
+  last.why += fmt::format(" Its motors give at most {:.3g} N m until then.", most);
   return last;
 }
 
@@ -159,7 +159,7 @@ std::string arm_words(const DeviceNotes& notes, const DeviceKind& kind) {
   if (has_own(&kind)) return fmt::format("arm: its own, {}", kind.arm);
   if (notes.taken_for == kBuiltInArm) return "arm: a built-in one, as was said";
   if (!notes.taken_for.empty()) return fmt::format("arm: {}, as was said", notes.taken_for);
-  return "arm: a built-in one, with little force, until you say which it is: "
+  return "arm: a built-in one, with little force, until you say which arm it is: "
          "limpid devices ID --arm FILE.urdf";
 }
 

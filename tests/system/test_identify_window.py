@@ -180,6 +180,11 @@ class ArmOfADevice(PaddleWindow):
     def test_is_asked_about_once(self) -> None:
         self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
         self.wait("the question", lambda s: s["device"]["arm"])
+        place = self.settled()["device"]["arm"]
+        self.move(place[0], place[1] - 100)
+        for _ in range(3):  # the wheel: from the lower edge of the panel into view
+            self.xdotool("click", "5")
+        self.wait("the question in view", lambda s: s["device"]["arm"][1] < place[1])
         self.click(*self.settled()["device"]["arm"])
         self.wait("no question", lambda s: s["device"]["arm"] is None)
         self.wait("the device back in the loop", lambda s: s["identify"]["plugged"])

@@ -126,7 +126,7 @@ class Live(unittest.TestCase):
 
     def test_is_told_once_which_arm_a_device_is_and_says_it_at_each_connection(self) -> None:
         self.plug()
-        self.assertIn("until you say which it is", limpid("devices").out)
+        self.assertIn("until you say which arm it is", limpid("devices").out)
         wrong = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/joystick.urdf")
         self.assertEqual(wrong.status, 2)
         self.assertIn("of 2 joints, and has 3 joints", wrong.err)
@@ -139,7 +139,7 @@ class Live(unittest.TestCase):
         book = (self.folder / "config/limpid/devices.toml").read_text()
         self.assertIn("checked = true", book)
         self.assertNotIn("omni", book)
-        self.assertIn("until you say which it is", limpid("run", "--live", "--yes", "--duration", "0.1").err)
+        self.assertIn("until you say which arm it is", limpid("run", "--live", "--yes", "--duration", "0.1").err)
 
     def test_leaves_a_device_alone_that_another_program_has(self) -> None:
         self.plug()

@@ -149,9 +149,10 @@ bool arm_question(DeviceController& devices, const LiveSession& live) {
     tooltip("Asks again which arm the device is.");
     return false;
   }
-  ImGui::TextWrapped(
-      "Which arm is it? Its ranges and levers bound the force. Until you say so it is a built-in "
-      "one, with little force, or none where there is none of as many joints.");
+  ImGui::TextWrapped("Which arm is it? Until you say so it is a built-in one, with little force.");
+  tooltip(
+      "Its ranges and levers bound the force. Of more than three joints there is no built-in one: "
+      "then there is no force.");
   if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
   tooltip("assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
   ImGui::SameLine();
