@@ -373,6 +373,14 @@ class TestReports(InAFolder):
             self.assertIn(text, page)
         self.assertTrue((self.folder / "wall-group.svg").exists())
 
+    def test_a_threshold_that_was_not_found_is_no_part_of_the_mean(self) -> None:
+        for participant, value in enumerate(((2.0, 1.0, 4.0), (0.01, 0.0, 0.7), (8.0, 4.0, 16.0))):
+            report._write_results(self.folder / f"wall-{participant:03d}-results.csv",
+                                  {"soft": study.Fit(*value, 20)})
+        mean, _, _ = report.group_report("Walls", self.folder, "threshold [N/m]", "wall")["soft"]
+        self.assertAlmostEqual(mean, 4)  # of 2 and 8
+        self.assertIn("not found, below 0.7", (self.folder / "wall.html").read_text())
+
     def test_the_page_of_a_simulated_participant_says_its_truth_and_the_question(self) -> None:
         self.carry_out(1, 3.5)
         page = (self.folder / "wall-001.html").read_text()

@@ -80,7 +80,8 @@ def main() -> None:
                             f"Two-interval forced choice beside a wall of {STANDARD:g} N/m; 1-up-3-down "
                             f"staircases; participant {arguments.participant}.", "stiffness", run=run)
     for law, found in fits.items():
-        print(f"{law:>10}: {found} N/m, {100 * found.threshold / STANDARD:.0f} %", flush=True)
+        share = f", {100 * found.threshold / STANDARD:.0f} %" if found.bounded else ""
+        print(f"{law:>10}: {found} N/m{share}", flush=True)
     run.tell("That was all. Thank you.")
 
 

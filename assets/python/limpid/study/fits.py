@@ -27,14 +27,21 @@ class Fit(NamedTuple):
     high: float
     trials: int
 
+    @property
+    def bounded(self) -> bool:
+        """Whether the answers bound it on both sides; else the value itself says nothing."""
+        return self.low > 0 and math.isfinite(self.high)
+
     def __str__(self) -> str:
-        if self.low <= 0 and not math.isfinite(self.high):
-            return f"not found ({self.trials} trials)"
-        if self.low <= 0:
-            return f"not found, below {self.high:.3g} ({self.trials} trials)"
-        if not math.isfinite(self.high):
-            return f"not found, above {self.low:.3g} ({self.trials} trials)"
+        if not self.bounded:
+            return f"not found{self.bound()} ({self.trials} trials)"
         return f"{self.threshold:.3g} ({self.low:.3g} to {self.high:.3g}, {self.trials} trials)"
+
+    def bound(self) -> str:
+        """Of one that is not bounded on both sides: ", below 4.2", or what else is known."""
+        if self.low <= 0:
+            return f", below {self.high:.3g}" if math.isfinite(self.high) else ""
+        return f", above {self.low:.3g}"
 
 
 def chance_of(level: float, threshold: float, lapse: float = 0.02) -> float:

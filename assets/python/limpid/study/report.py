@@ -200,7 +200,7 @@ class Report:
         """What was found under each condition: a table here and, of a participant, a CSV of its own,
         from which the page over all of them is made: NAME.html."""
         self.table(["condition", quantity, "from", "to", "trials"], [
-            [condition, f"{f.threshold:.4g}", f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
+            [condition, _cell(f), f"{f.low:.4g}", f"{f.high:.4g}", f.trials]
             for condition, f in found.items()])  # fmt: skip
         if self._run is None:
             return
@@ -230,8 +230,11 @@ class Report:
         if isinstance(questions, Mapping) and questions:
             self.text("Asked: " + " ".join(f"{question}" for question in dict.fromkeys(questions.values())))
         settings = sheet.get("settings")
-        if isinstance(settings, Mapping) and settings:
-            self._parts.append("<details><summary>Settings of all trials, but for what a trial says</summary><pre>"
+        over = " over the usual ones of this version" * isinstance(truth, Mapping)
+        if isinstance(settings, Mapping) and not settings:
+            self.text("Settings: the usual ones of this version, but for what a trial says.")
+        elif isinstance(settings, Mapping):
+            self._parts.append(f"<details><summary>Settings of all trials{over}, but for what a trial says</summary><pre>"
                                + html.escape("\n".join(f"{key} = {json.dumps(value)}"
                                                        for key, value in settings.items()))
                                + "</pre></details>")  # fmt: skip
@@ -256,8 +259,8 @@ def _read_results(file: Path) -> Dict[str, Fit]:
 def group_report(title: str, folder: "os.PathLike[str] | str", quantity: str, name: str
                  ) -> Dict[str, Tuple[float, float, float]]:  # fmt: skip
     """The page over all participants that have a report in the folder, NAME.html, with a figure and
-    a summary: of each condition the geometric mean of what was found of them, with Student's interval
-    from two participants on. Returns that; where there is no interval, its ends are not numbers."""
+    a summary: of each condition the geometric mean of those of which it was found, with Student's
+    interval from two participants on. Returns that; where there is no interval, its ends are not numbers."""
     folder = Path(folder)
     each: Dict[str, Dict[str, Fit]] = {}
     for file in sorted(folder.glob(f"{name}-*-results.csv")):
@@ -265,8 +268,10 @@ def group_report(title: str, folder: "os.PathLike[str] | str", quantity: str, na
         if number.isdigit():
             each[number] = _read_results(file)
     conditions = list(dict.fromkeys(condition for found in each.values() for condition in found))
-    means = {condition: _mean_of([found[condition] for found in each.values() if condition in found])
-             for condition in conditions}  # fmt: skip
+    counted = {condition: [found[condition] for found in each.values()
+                           if condition in found and found[condition].bounded]
+               for condition in conditions}  # fmt: skip
+    means = {condition: _mean_of(found) for condition, found in counted.items()}
     report = Report(title, folder)
     lines = [sheet.get("provenance", "") for sheet in (_sheet_of(folder / f"{name}-{number}.json")
                                                        for number in each)]  # fmt: skip
@@ -276,18 +281,22 @@ def group_report(title: str, folder: "os.PathLike[str] | str", quantity: str, na
         report.text("Simulated participants are among them; the pages of each say which and how.")
     report.figure(f"{name}-group", _group_figure(title, quantity, each, means),
                   "Each participant's value with its interval, and beside it the geometric mean of all "
-                  "with its interval of 95 %.")  # fmt: skip
+                  "with its interval of 95 %. What was not found is left out; intervals end at the figure's edge.")  # fmt: skip
     report.table(["condition", "participants", quantity, "from", "to"], [
-        [condition, sum(condition in found for found in each.values()),
+        [condition, len(counted[condition]),
          *("-" if math.isnan(x) else f"{x:.4g}" for x in means[condition])]
         for condition in conditions])  # fmt: skip
     report.table(["participant", *conditions], [
-        [number, *(f"{found[condition].threshold:.4g}" if condition in found else "" for condition in conditions)]
+        [number, *(_cell(found[condition]) if condition in found else "" for condition in conditions)]
         for number, found in each.items()])  # fmt: skip
     for line in dict.fromkeys(lines):
         report.text(str(line))
     report.write(name)
     return means
+
+
+def _cell(f: Fit) -> str:
+    return f"{f.threshold:.4g}" if f.bounded else f"not found{f.bound()}"
 
 
 def _mean_of(found: Sequence[Fit]) -> Tuple[float, float, float]:
@@ -311,13 +320,13 @@ def _sheet_of(file: Path) -> Dict[str, object]:
 
 def _group_figure(title: str, quantity: str, each: Mapping[str, Mapping[str, Fit]],
                   means: Mapping[str, Tuple[float, float, float]]) -> str:  # fmt: skip
-    ends = [x for found in each.values() for f in found.values() for x in (f.threshold, f.high)]
-    ends += [x for mean in means.values() for x in mean]
-    top = 1.1 * max([x for x in ends if math.isfinite(x)], default=1.0)
+    values = [f.threshold for found in each.values() for f in found.values() if f.bounded]
+    top = 1.5 * max([*values, *(mean for mean, _, _ in means.values() if math.isfinite(mean))], default=1.0)
     axes = Axes(title, "", quantity, (-0.6, len(means) - 0.4), (0, top), list(means))
     for i, (condition, (mean, low, high)) in enumerate(means.items()):
         colour = colours_of(means)[i]
-        there = [(number, found[condition]) for number, found in each.items() if condition in found]
+        there = [(number, found[condition]) for number, found in each.items()
+                 if condition in found and found[condition].bounded]  # fmt: skip
         for k, (number, f) in enumerate(there):
             x = i - 0.35 + 0.5 * (k + 0.5) / len(there)
             axes.bar(x, f.threshold, f.low, f.high, colour, 2)
