@@ -223,8 +223,7 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
       return 1;
     }
   }
-  print_warnings(log.cautions());
-  if (end.diverged) {
+  if (end.diverged) {  // beside which the rest needs no word
     fmt::print(
         stderr,
         "limpid: unstable from t = {:.3f} s on: {}; try a larger eta, a smaller alpha or k_vc "
@@ -232,6 +231,7 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
         end.diverged_at, end.why);
     return 1;
   }
+  print_warnings(log.cautions());
   if (!end.stopped) return 0;
   fmt::print(stderr, "limpid: stopped at {:.3f} s\n", log.time());
   return 1;

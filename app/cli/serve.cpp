@@ -42,10 +42,9 @@ std::string file_of(const std::string& named, const char* key, const char* kind)
   if (named.empty() || fs::path(named).is_absolute()) return named;
   if (const auto own = shipped_file(named, {kind})) return *own;
   const std::string hint = shipped_hint(named, {kind});
-  const std::string known = fmt::format("{}", fmt::join(shipped_names(kind), ", "));
-  throw UsageError(
-      fmt::format("open: {}: \"{}\" is not there{}", key, named.substr(0, 100),
-                  !hint.empty() ? hint : "; allowed: a path from / on, or one of " + known));
+  throw UsageError(fmt::format(
+      "open: {}: \"{}\" is not there{} allowed: a path from / on, or one of {}", key,
+      named.substr(0, 100), hint.empty() ? ";" : hint, fmt::join(shipped_names(kind), ", ")));
 }
 
 // What is open follows what clients have opened, one after the other.

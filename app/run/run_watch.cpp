@@ -85,7 +85,7 @@ std::vector<std::string> RunWatch::cautions() const {
   if (energy_.since >= 0) {
     const std::string allowed =
         promised_ > 0
-            ? fmt::format(" more than the {} that its account allows", joules_text(promised_))
+            ? fmt::format(", more than the {} that its account allows", joules_text(promised_))
             : "";
     all.push_back(
         fmt::format("E_c rose to {}{}, from t = {:.3f} s on: this run is not passive ({})",

@@ -46,12 +46,23 @@ std::optional<fs::path> shipped_file(const std::string& named, const Kinds& kind
 
 std::string shipped_hint(const std::string& named, const Kinds& kinds) {
   if (named.find('/') != std::string::npos) return {};
-  std::vector<std::string> names;
-  for (const char* kind : kinds) {
-    for (std::string& name : shipped_names(kind)) names.push_back(std::move(name));
+  // By their stems, for endings make names alike; one of the same ending comes first.
+  const fs::path wanted = named;
+  std::vector<std::string> stems, names;
+  for (const bool same_ending : {true, false}) {
+    for (const char* kind : kinds) {
+      for (const std::string& name : shipped_names(kind)) {
+        const fs::path file = name;
+        if ((file.extension() == wanted.extension()) != same_ending) continue;
+        stems.push_back(file.stem().string());
+        names.push_back(name);
+      }
+    }
   }
-  const auto meant = nearest(named, names);
-  return meant ? fmt::format("; did you mean {}?", *meant) : "";
+  const auto meant = nearest(wanted.stem().string(), stems);
+  if (!meant) return {};
+  const auto at = std::ranges::find(stems, *meant) - stems.begin();
+  return fmt::format("; did you mean {}?", names[static_cast<std::size_t>(at)]);
 }
 
 }  // namespace limpid

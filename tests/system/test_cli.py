@@ -337,7 +337,8 @@ class Checked(SystemTest):
         plane = '[[plane]]\nname = "wall"\npoint = [0.2, 0.0, {z}]\nnormal = [0.0, 0.0, 1.0]\n'
         for text, said in (
             (plane.format(z=-5) + "stiffness = 600", "beyond the tip's reach"),
-            (plane.format(z=-0.04) + "friction_static = 0.1\nfriction_kinetic = 0.2", "above friction_static"),
+            (plane.format(z=-0.04) + "stiffness = 600\nfriction_static = 0.1\nfriction_kinetic = 0.2",
+             "above friction_static"),
             (plane.format(z=-0.04) + "stiffness = 20000", "is stiffer than"),
             (plane.format(z=0.5) + "stiffness = 600", "mm inside"),
             ('title = "x"\n', "nothing is there to touch"),

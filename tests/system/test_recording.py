@@ -127,7 +127,8 @@ class Recording(WithAnArm):
 
     def test_a_loop_that_saturates_into_a_limit_cycle_is_no_failed_run(self) -> None:
         result = limpid("run", "--eta", "0.05", "--set", "hand.stiffness=3000", "--duration", "2")
-        self.assertEqual((result.status, result.err), (0, ""))
+        self.assertEqual((result.status, len(result.error_lines)), (0, 1), result.err)
+        self.assertRegex(result.err, "warning: E_c rose to .* J.*: this run is not passive")
 
     def test_a_change_comes_at_its_time_whatever_the_tick(self) -> None:
         """Recorded changes are at rows; of another tick other rows have the same time."""

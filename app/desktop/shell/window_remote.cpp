@@ -22,9 +22,10 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
   const std::string named = keys.text(key);
   fs::path file = shipped_file(named, {kind}).value_or(named);
   if (!file.is_absolute() || !fs::exists(file)) {
-    throw keys.error(key, fmt::format("{} is not there{}; allowed: a path from / on, or one that "
+    const std::string hint = shipped_hint(named, {kind});
+    throw keys.error(key, fmt::format("{} is not there{} allowed: a path from / on, or one that "
                                       "came along with the program",
-                                      shown(named), shipped_hint(named, {kind})));
+                                      shown(named), hint.empty() ? ";" : hint));
   }
   return file;
 }

@@ -216,10 +216,11 @@ TEST_F(RemoteTest, SendsRowsAtTheirRateAndCountsThoseThatAreMissing) {
 TEST_F(RemoteTest, KnowsTheNamesThatSessionsHave) {
   const ArmDescription arm = test::omni();
   channels = TraceChannels(arm, layout, {});
-  std::ranges::copy(std::array{1.0, 2.0, 3.0}, layout.in(row, Column::hand_torque).begin());
-  layout.in(row, Column::time)[0] = 0.5;
-  std::ranges::fill(layout.in(row, Column::contact_force), 0.0);
-  layout.in(row, Column::contact_force)[2] = 7;
+  std::ranges::copy(std::array{1.0, 2.0, 3.0},
+                    layout.in(std::span(row), Column::hand_torque).begin());
+  layout.in(std::span(row), Column::time)[0] = 0.5;
+  std::ranges::fill(layout.in(std::span(row), Column::contact_force), 0.0);
+  layout.in(std::span(row), Column::contact_force)[2] = 7;
   start();
   const json ok = ask(R"({"do":"row","channels":["time","hand/torque","hand/torque.2"]})")["ok"];
   EXPECT_EQ(ok["values"],
