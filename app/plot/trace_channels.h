@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/plot/history.h"
@@ -96,6 +97,14 @@ class TraceChannels {
   std::optional<DerivedColumns> tips_;
 };
 
+// Which of two runs in a history: its first channel there, and whether it is the second one.
+struct RunOfHistory {
+  int first = 0;
+  bool twin = false;
+};
+// What the mark of a setting that is the second run's alone begins with.
+inline constexpr std::string_view kTwinMark = "twin: ";
+
 // Whose energy it is: what the coupling gave, apart from what changing a setting put in.
 
 // Of E_c, the energy that the controller gave since the start, the part that is nobody's fault:
@@ -109,17 +118,21 @@ class TraceChannels {
 //
 // What is left is the coupling's own: while it is passive it stays below zero. What it gave before
 // the last change is forgiven: the setting that gave it is gone.
+//
+// So E_c is own() + by_changes() + by_limits() + forgiven() and what was for the device's own
+// forces.
 class EnergyAccount {
  public:
   static constexpr double kSettling = 0.3;  // [s]
 
   // Accounts for the samples up to `end` that were not looked at yet; from the beginning where
   // `end` lies before them. The history has the channels of TraceChannels.
-  void follow(const History& history, SampleIndex end);
+  void follow(const History& history, SampleIndex end, RunOfHistory run = {});
 
   // E_c, without what was for the device's own forces [J].
   double total() const { return total_; }
   double by_changes() const { return changes_; }             // [J]
+  double forgiven() const { return forgiven_; }              // [J]
   double by_limits() const { return limits_; }               // [J]
   double own() const { return without_limits() - limits_; }  // [J]
   // Where the coupling is known not to be passive, its motors' limit is no excuse [J].
