@@ -10,7 +10,21 @@
 
 namespace limpid {
 
-void EnergyAccount::follow(const History& history, SampleIndex end) {
+namespace {
+
+// Of a setting of this run. Those of hand, device and loop are both runs'.
+bool changes(const PlotMark& mark, const RunOfHistory& run) {
+  std::string_view key = mark.key;
+  const bool of_twin = key.starts_with(kTwinMark);
+  if (of_twin) key.remove_prefix(kTwinMark.size());
+  if (key.find('.') == std::string_view::npos || of_twin > run.twin) return false;
+  const ParameterInfo* info = find_parameter(key);
+  return of_twin == run.twin || info == nullptr || !of_controller(*info);
+}
+
+}  // namespace
+
+void EnergyAccount::follow(const History& history, SampleIndex end, RunOfHistory run) {
   if (end < next_) start_over();
   next_ = std::max(next_, history.first());
   // One that was placed at the last sample after it was looked at counts, too.
@@ -22,14 +36,20 @@ void EnergyAccount::follow(const History& history, SampleIndex end) {
         const SampleIndex at = next_;
         start_over();
         next_ = at;
-      } else if (mark->key.find('.') != std::string::npos) {  // a parameter's
+      } else if (changes(*mark, run)) {
         shares_.change(mark->time);
       }
     }
     looked_until_ = time;
-    const auto value = [&](Channel c) { return history.value(static_cast<int>(c), next_); };
+    const auto value = [&](Channel c) {
+      return history.value(run.first + static_cast<int>(c), next_);
+    };
     const double energy = static_cast<double>(value(Channel::energy_total)) -
                           static_cast<double>(value(Channel::energy_compensation));
+    if (std::isnan(energy)) {  // there was no such run yet
+      shares_.forget();
+      continue;
+    }
     shares_.take(time, energy, value(Channel::limited) > 0.5f);
   }
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/plot/history.h"
@@ -95,16 +96,25 @@ class TraceChannels {
   std::optional<DerivedColumns> tips_;
 };
 
+// Which of two runs in a history: its first channel there, and whether it is the second one.
+struct RunOfHistory {
+  int first = 0;
+  bool twin = false;
+};
+// What the mark of a setting that is the second run's alone begins with.
+inline constexpr std::string_view kTwinMark = "twin: ";
+
 // The energy that the coupling gave, followed through a history.
 class EnergyAccount {
  public:
   // Accounts for the samples up to `end` that were not looked at yet; from the beginning where
   // `end` lies before them. The history has the channels of TraceChannels.
-  void follow(const History& history, SampleIndex end);
+  void follow(const History& history, SampleIndex end, RunOfHistory run = {});
 
   // As EnergyShares has them [J].
   double total() const { return shares_.total(); }
   double by_changes() const { return shares_.by_changes(); }
+  double forgiven() const { return shares_.forgiven(); }
   double by_limits() const { return shares_.by_limits(); }
   double own() const { return shares_.own(); }
   double without_limits() const { return shares_.without_limits(); }

@@ -23,7 +23,8 @@ inline constexpr double kGivenEnergy = 1e-3;
 // - What the motors give for the device's own weight, springs and friction the device takes.
 //
 // What is left is the coupling's own: while it is passive it stays below zero. What it gave before
-// the last change is forgiven: the setting that gave it is gone.
+// the last change is forgiven: the setting that gave it is gone. So E_c is own() + by_changes() +
+// by_limits() + forgiven(), and what was for the device's own forces.
 class EnergyShares {
  public:
   static constexpr double kSettling = 0.3;  // [s]
@@ -33,10 +34,13 @@ class EnergyShares {
   // The next row: E_c without what was for the device's own forces [J], and whether a motor was at
   // its limit.
   void take(double time, double energy, bool limited);
+  // No row so far counts: E_c begins with the next one.
+  void forget() { total_ = changes_ = limits_ = forgiven_ = peak_ = 0; }
 
   // E_c, without what was for the device's own forces [J].
   double total() const { return total_; }
   double by_changes() const { return changes_; }             // [J]
+  double forgiven() const { return forgiven_; }              // [J]
   double by_limits() const { return limits_; }               // [J]
   double own() const { return without_limits() - limits_; }  // [J]
   // Where the coupling is known not to be passive, its motors' limit is no excuse [J].

@@ -63,6 +63,15 @@ void open_menu_by_keys(const char* menu) {
   ImGui::GetCurrentContext()->NavDisableHighlight = false;
 }
 
+int menus_open() { return ImGui::GetCurrentContext()->OpenPopupStack.Size; }
+
+int step_to_menu_beside(int before) {
+  if (before != 1 || menus_open() != 1) return 0;
+  const int step = static_cast<int>(key_pressed(GLFW_KEY_RIGHT)) - key_pressed(GLFW_KEY_LEFT);
+  if (step != 0) ImGui::NavMoveRequestCancel();
+  return step;
+}
+
 #if IMGUI_VERSION_NUM >= 18900
 
 namespace {

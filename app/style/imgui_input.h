@@ -19,6 +19,12 @@ void lead_menus_by_keys(bool lead);
 // Opens a menu of the bar that is being drawn, right before ImGui::BeginMenu() of it; its first
 // item is chosen then.
 void open_menu_by_keys(const char* menu);
+// So many menus and popups are open inside of each other.
+int menus_open();
+// After all menus of the bar were drawn, where `before` of them were open inside of each other at
+// first: 1 or -1 where an arrow leaves the one that is open for its neighbour, else 0. ImGui would
+// close it.
+int step_to_menu_beside(int before);
 
 // ImGui::IsKeyPressed().
 bool key_pressed(int key, bool repeat = true);

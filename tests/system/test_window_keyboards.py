@@ -140,7 +140,7 @@ class Menus(WindowTest):
         self.wait("no dialog", lambda s: s["dialog"] == "")
         self.key("F10")
         self.wait("the menu File", lambda s: s["popup"])
-        self.press_and_settle("Right", "Right", "Right", "Down", "Return")
+        self.press_and_settle("Right", "Right", "Left", "Right", "Right", "Return")
         self.wait("the first item of Session", lambda s: s["recording"] and not s["popup"])
 
     def press_and_settle(self, *keys: str) -> None:

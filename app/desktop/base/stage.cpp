@@ -78,6 +78,12 @@ void Stage::name_runs(const RunNames& names) {
   }
 }
 
+void Stage::follow_energy(SampleIndex end) {
+  energy.follow(history, end);
+  const int second = channels_.count();
+  if (history.channels() > second) twin_energy.follow(history, end, {second, true});
+}
+
 void Stage::show(const SceneDocument& document, const MeshModels& models,
                  std::optional<std::size_t> highlighted) {
   if (!same_items(document_, document)) {

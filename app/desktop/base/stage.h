@@ -43,6 +43,9 @@ class Stage {
   // What the motors can give under these parameters, from the next row on.
   void follow(const Parameters& p) { channels_.set_limits(motor_limits(arm_, p)); }
 
+  // Whose energy it is in the samples up to `end`.
+  void follow_energy(SampleIndex end);
+
   // Adds a row to the plots, and a second run's beside it.
   void append(std::span<const double> row, std::span<const double> beside = {}) {
     channels_.append(history, row, beside);
@@ -53,7 +56,7 @@ class Stage {
   History history;
   PlotGroup group;
   std::vector<Plot> plots;  // one for each choice
-  EnergyAccount energy;
+  EnergyAccount energy, twin_energy;
 
  private:
   void show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted);

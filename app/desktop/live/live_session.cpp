@@ -166,7 +166,7 @@ void LiveSession::update(const Parameters& p, const Parameters* twin) {
   stage_->follow(p);
   take_rows();
   set_marks();
-  stage_->energy.follow(stage_->history, stage_->history.end());
+  stage_->follow_energy(stage_->history.end());
   watch_loop();
 }
 

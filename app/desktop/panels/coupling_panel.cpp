@@ -291,11 +291,12 @@ const char* way_out(const Parameters& p) {
              : "A softer k_vc, more damping (condition (3)), or the predictive law, avoid it.";
 }
 
-// Of E_c, what the coupling itself gave is judged; the rest is said apart.
-void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysis& a) {
-  const bool at_fault = passivity(a, p).passive == false;
+// E_c as the plots have it, and whose it is; what the coupling itself gave of it is judged.
+void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
+  const EnergyAccount& energy = now.energy;
+  const bool at_fault = now.chatters || passivity(a, p).passive == false;
   // A law with a ledger promises another thing: what the ledger says.
-  const bool judged = !info(p.kind).keeps_ledger;
+  const bool judged = now.chatters || !info(p.kind).keeps_ledger;
   const double own = at_fault ? energy.without_limits() : energy.own();
   const std::string broken =
       judged && own > kGivenEnergy
@@ -303,19 +304,26 @@ void draw_energy(const EnergyAccount& energy, const Parameters& p, const Analysi
                 "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
                 energy_text(own), way_out(p))
           : "";
-  read_out("Energy given E_c", energy_text(own), broken,
-           "What the coupling gave, with the device's own damping: stays below zero while it is "
-           "passive. What switching and motors at their limit put in is counted apart.");
+  read_out("Energy given E_c", energy_text(now.energy_total), {},
+           "What the coupling gave since the start, with the device's own damping, as the plots "
+           "show it. Below it stands whose it is.");
+  read_out("The coupling's own", energy_text(own), broken,
+           "Of E_c, what the coupling itself gave: it stays below zero while that is passive. What "
+           "switching and motors at their limit put in is counted apart.");
   const auto apart = [](const char* label, double joules, const char* help) {
-    if (joules > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
+    if (std::abs(joules) > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
   };
   apart("Put in by switching", energy.by_changes(),
-        "Changing a law or a setting while the coupling is stretched puts energy in, as bending a "
-        "spring does. It is no fault of the coupling.");
+        "Of E_c: changing a law or a setting while the coupling is stretched puts energy in, as "
+        "bending a spring does. It is no fault of the coupling.");
+  apart("Before the last change", energy.forgiven(),
+        "Of E_c: what settings gave that are no longer there.");
+  apart("For the device's own forces", now.compensation,
+        "Of E_c: what the motors gave for the device's weight, springs and friction.");
   if (at_fault) return;
   apart("Put in at the motors' limit", energy.by_limits(),
-        "A motor at its limit gives another torque than the coupling asks for. It is no fault of "
-        "the coupling.");
+        "Of E_c: a motor at its limit gives another torque than the coupling asks for. It is no "
+        "fault of the coupling.");
 }
 
 void draw_limited(const std::vector<int>& joints) {
@@ -349,7 +357,7 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
   } else if (info(p.kind).keeps_ledger) {
     draw_ledger(reading);
   }
-  draw_energy(reading.energy, p, analysis);
+  draw_energy(reading, p, analysis);
   draw_limited(reading.limited);
 }
 

@@ -12,7 +12,10 @@ namespace limpid {
 
 // What the present row says of it.
 struct CouplingReading {
+  double energy_total;  // E_c [J]
+  double compensation;  // of it for the device's own forces [J]
   EnergyAccount energy;
+  bool chatters;
   std::vector<int> limited;  // joints whose motors are at their limit
   double reserve;            // of the ledger [J]
   double contact_governor;   // shares let through, 0 to 1

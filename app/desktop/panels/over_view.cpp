@@ -24,7 +24,8 @@ float buttons_width(const Banner& banner) {
   const ImGuiStyle& style = ImGui::GetStyle();
   float width = 0;
   for (const Banner::Button& button : banner.buttons) {
-    width += style.ItemSpacing.x + 2 * style.FramePadding.x + ImGui::CalcTextSize(button.label).x;
+    width += style.ItemSpacing.x + 2 * style.FramePadding.x +
+             ImGui::CalcTextSize(button.label.c_str()).x;
   }
   return width;
 }
@@ -46,7 +47,7 @@ void draw_contents(const Banner& banner, float room, const Act& act) {
   bool first = !one_line;
   for (const Banner::Button& button : banner.buttons) {
     if (!std::exchange(first, false)) ImGui::SameLine();
-    if (noted_button(button.label)) act(button.command);
+    if (noted_button(button.label.c_str())) act(button.command);
   }
 }
 

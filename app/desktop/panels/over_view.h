@@ -15,7 +15,7 @@ namespace limpid {
 
 struct Banner {
   struct Button {
-    const char* label;
+    std::string label;
     const char* command;  // its id
   };
   const char* id;  // of its window

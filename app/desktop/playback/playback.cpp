@@ -107,7 +107,7 @@ bool Playback::update(double dt) {
   if (shown_) {
     shown_->player().advance(dt);
     Stage& stage = shown_->stage();
-    stage.energy.follow(stage.history, shown_->player().index() + 1);
+    stage.follow_energy(shown_->player().index() + 1);
   }
   return opened;
 }

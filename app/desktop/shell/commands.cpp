@@ -206,6 +206,10 @@ std::string not_broken(const Desktop& d) {
   return passivity_broken(d.settings) ? "" : "Passivity is whole.";
 }
 
+std::string no_chatter(const Desktop& d) {
+  return d.chatter.found() ? "" : "The loop does not chatter.";
+}
+
 std::string may_not_break(const Desktop& d) {
   const std::string why = no_virtual_arm(d);
   return why.empty() ? in_playback(d) : why;
@@ -268,6 +272,12 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.tuning.break_passivity(); }, {.why_not = may_not_break}),
     row("coupling.end_break", "End broken passivity", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.tuning.end_break(); }, {.why_not = not_broken}),
+    row("coupling.mend_chatter", "The predictive law against chatter", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.chatter.take_predictive(); }, {.why_not = no_chatter}),
+    row("coupling.forget_chatter", "Say no more of the chatter", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.chatter.forget(); }, {.why_not = no_chatter}),
+    row("scene.soften_wall", "A softer wall against chatter", nullptr, nullptr, nullptr,
+        [](Desktop& d) { d.chatter.soften_wall(); }, {.why_not = no_chatter}),
     row("scene.new", "New scene", "File", "Ctrl+N", "a new scene; open one",
         [](Desktop& d) { d.world.new_scene(); }),
     row("scene.open", "Open scene...", "File", "Ctrl+Shift+O", "",

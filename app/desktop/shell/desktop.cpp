@@ -121,6 +121,20 @@ std::optional<Banner> live_force(const LiveSession& live) {
   return banner;
 }
 
+Banner chatter_banner(const ChatterWatch& chatter) {
+  Banner banner{.id = "banner of the chatter", .text = chatter.text(), .bad = true};
+  const ChatterWatch::Found& found = *chatter.found();
+  if (found.parameters.kind != CouplingKind::predictive) {
+    banner.buttons.push_back({info(CouplingKind::predictive).label, "coupling.mend_chatter"});
+  }
+  if (found.wall) {
+    banner.buttons.push_back(
+        {fmt::format("Soften the wall to {:.4g} N/m", found.wall->softer), "scene.soften_wall"});
+  }
+  banner.buttons.push_back({"Close", "coupling.forget_chatter"});
+  return banner;
+}
+
 // "23 November, 14:32", when the file was written.
 std::string when(const fs::path& file) {
   std::error_code none;
@@ -244,6 +258,7 @@ void Desktop::update(double dt) {
   shown.stage().choose_plots(settings.plot_choices);
   world.hand_over(false);
   live.update(settings.parameters, settings.twin.on ? &settings.twin.parameters : nullptr);
+  chatter.follow();
   if (const auto recorded = live.take_recorded()) {
     playback.set_last(*recorded);
     make_thumbnail(*recorded, live.stage(), live.row(), live.twin_row(), settings.theme);
@@ -389,6 +404,7 @@ std::vector<Banner> Desktop::banners() const {
                    .bad = true,
                    .buttons = {{"End it (C)", "coupling.end_break"}}});
   }
+  if (chatter.found() && !playback.on()) all.push_back(chatter_banner(chatter));
   if (!exporter.written().empty()) {
     all.push_back({.id = "banner of the export",
                    .text = fmt::format("{} is in {}.", exporter.written().filename().string(),

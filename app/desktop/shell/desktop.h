@@ -19,6 +19,7 @@
 #include "app/desktop/panels/person_question.h"
 #include "app/desktop/panels/transform_tool.h"
 #include "app/desktop/playback/playback.h"
+#include "app/desktop/shell/chatter_watch.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/exporter.h"
 #include "app/desktop/shell/focus.h"
@@ -113,6 +114,7 @@ class Desktop {
   SweepController sweep;
   Shown shown;
   Tuning tuning;
+  ChatterWatch chatter{settings, live, document};
   PlotLayout plots;
   Exporter exporter{live, dialog, notices};
   Marking marking{settings, live, playback, dialog, notices};

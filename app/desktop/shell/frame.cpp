@@ -208,7 +208,11 @@ void Frame::draw_coupling(ScreenRect rect) {
   const bool of_twin = desktop_.tuning.edits_twin() && !twin.empty();
   const std::span<const double> row = of_twin ? twin : desktop_.shown.row();
   const auto at = [&](Column c) { return layout.in(row, c)[0]; };
-  CouplingReading reading{shown.energy,
+  const auto& chatter = desktop_.chatter.found();
+  CouplingReading reading{at(Column::energy_total),
+                          at(Column::energy_compensation),
+                          of_twin ? shown.twin_energy : shown.energy,
+                          chatter && chatter->of_twin == of_twin && !desktop_.playback.on(),
                           {},
                           at(Column::energy_ledger),
                           at(Column::governor),

@@ -155,13 +155,28 @@ void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
   }
 }
 
-void draw_menus(Desktop& d, FileMenus& files, bool by_keys) {
-  for (const char* menu : kMenus) {
-    if (std::exchange(by_keys, false)) open_menu_by_keys(menu);
-    if (!ImGui::BeginMenu(menu)) continue;
-    draw_menu(menu, d, files);
+// Returns the one that is open, if one is.
+std::optional<std::size_t> draw_menus(Desktop& d, FileMenus& files) {
+  const auto by_keys = std::exchange(files.by_keys, std::nullopt);
+  std::optional<std::size_t> open;
+  for (std::size_t i = 0; i < kMenus.size(); ++i) {
+    if (by_keys == i) open_menu_by_keys(kMenus[i]);
+    if (!ImGui::BeginMenu(kMenus[i])) continue;
+    open = i;
+    draw_menu(kMenus[i], d, files);
     ImGui::EndMenu();
   }
+  return open;
+}
+
+// Side by side; arrows go from one to the next.
+void draw_bar_of_menus(Desktop& d, FileMenus& files) {
+  const int before = menus_open();
+  const auto open = draw_menus(d, files);
+  const int step = open ? step_to_menu_beside(before) : 0;
+  // One less than none is the last one.
+  const std::size_t on = step > 0 ? 1 : kMenus.size() - 1;
+  if (step != 0) files.by_keys = (*open + on) % kMenus.size();
 }
 
 // Of all menus side by side.
@@ -247,14 +262,14 @@ void draw_object_menu(Desktop& d) {
 void draw_menu_bar(Desktop& desktop, FileMenus& files) {
   if (!ImGui::BeginMainMenuBar()) return;
   const LiveLoop& loop = desktop.live.loop();
-  const bool by_keys = std::exchange(desktop.asked.menu, false);
+  if (std::exchange(desktop.asked.menu, false)) files.by_keys = 0;
   constexpr const char* kAll = "Menu";
   if (menus_width() + least_status_width(loop) < ImGui::GetWindowWidth()) {
-    draw_menus(desktop, files, by_keys);
+    draw_bar_of_menus(desktop, files);
   } else {
-    if (by_keys) open_menu_by_keys(kAll);
+    if (std::exchange(files.by_keys, std::nullopt)) open_menu_by_keys(kAll);
     if (ImGui::BeginMenu(kAll)) {
-      draw_menus(desktop, files, false);
+      draw_menus(desktop, files);
       ImGui::EndMenu();
     }
   }

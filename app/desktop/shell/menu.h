@@ -1,7 +1,9 @@
 // The menu bar, with what is going on at its end.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,8 @@ class FileMenus {
   // The same of the shipped scenes; `present`: the one that is open.
   std::filesystem::path draw_scenes(const std::string& present);
   void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
+
+  std::optional<std::size_t> by_keys;  // the menu of the bar that opens in the next frame
 
  private:
   struct Entry {

@@ -130,7 +130,7 @@ void Tuning::update() {
   if (!changed && analysed_of_twin_ == edits_twin()) return;
   if (!playback_.on()) {
     mark_changes(first, analysed_, "");
-    if (settings_.twin.on) mark_changes(twin, analysed_twin_, "twin: ");
+    if (settings_.twin.on) mark_changes(twin, analysed_twin_, std::string(kTwinMark));
   }
   analysed_ = first;
   analysed_twin_ = twin;

@@ -100,6 +100,54 @@ TEST(EnergyAccount, TakesARecordingsBeginForNoChange) {
   EXPECT_NEAR(books.account.own(), 0.05, kRound);
 }
 
+// All that E_c is made of, whoever's it is.
+TEST(EnergyAccount, AddsUpToAllThatWasGiven) {
+  Books books;
+  books.go_to(0.2, 100);
+  books.change("coupling.kind");
+  books.go_to(0.5, 100);
+  books.go_to(0.45, 1000);
+  books.go_to(0.6, 100, true);
+  books.go_to(0.55, 100);
+  const EnergyAccount& a = books.account;
+  EXPECT_NEAR(a.own() + a.by_changes() + a.by_limits() + a.forgiven(), a.total(), kRound);
+  EXPECT_NEAR(a.total(), 0.55, kRound);
+  EXPECT_NEAR(a.forgiven(), 0.2, kRound);
+}
+
+// Each of two runs has its own: what changes in one is no excuse for the other.
+TEST(EnergyAccount, OfATwinIsItsOwn) {
+  const TraceChannels channels{RowLayout(3)};
+  const int one = channels.count();
+  History history({.channels = 2 * one, .seconds = 10});
+  EnergyAccount first, second;
+  const auto go_on = [&](int from, int to, double of_second) {
+    for (int k = from; k < to; ++k) {
+      std::vector<double> values(static_cast<std::size_t>(2 * one), 0.0);
+      values[static_cast<std::size_t>(Channel::energy_total)] = -1e-4 * k;
+      values[static_cast<std::size_t>(one) + static_cast<std::size_t>(Channel::energy_total)] =
+          of_second;
+      history.append(1e-3 * k, values);
+    }
+    first.follow(history, history.end());
+    second.follow(history, history.end(), {one, true});
+  };
+  go_on(0, 100, std::nan(""));
+  go_on(100, 200, 0);
+  history.mark(0.199, "eta 1", "coupling.eta");  // of the first run
+  go_on(200, 300, 0.3);
+  EXPECT_NEAR(first.own(), -0.0299, kRound);
+  EXPECT_NEAR(second.own(), 0.3, kRound);
+  EXPECT_EQ(second.by_changes(), 0);
+  history.mark(0.299, "twin: eta 1", std::string(kTwinMark) + "coupling.eta");
+  go_on(300, 400, 0.5);
+  EXPECT_NEAR(second.by_changes(), 0.2, kRound);
+  EXPECT_EQ(first.by_changes(), 0);
+  history.mark(0.399, "grip", "hand.stiffness");  // of both
+  go_on(400, 450, 0.6);
+  EXPECT_NEAR(second.by_changes(), 0.3, kRound);
+}
+
 TEST(EnergyAccount, BooksWhatIsGainedAtTheMotorsLimitApart) {
   Books books;
   books.go_to(-0.1, 100);

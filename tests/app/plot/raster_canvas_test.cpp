@@ -9,6 +9,7 @@
 
 #include "app/plot/plot_export.h"
 #include "app/style/theme.h"
+#include "tests/support/computer.h"
 
 namespace limpid {
 namespace {
@@ -91,7 +92,7 @@ TEST_P(Pixels, StaysWithinThePictureWhateverIsDrawn) {
 }
 
 TEST_P(Pixels, SetsTextWhereItsAnchorIs) {
-  if (font_file(Face::regular).empty()) GTEST_SKIP() << "Inter is not installed";
+  if (!test::has_inter()) GTEST_SKIP() << "Inter is not installed";
   const auto middle_of = [&](PlotCanvas::Anchor anchor) {
     RasterCanvas text(200, 40, GetParam(), kWhite);
     text.text({100, 25}, anchor, kBlack, "ooooo", false);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/realtime/realtime.h"
+#include "tests/support/computer.h"
 #include "tests/support/sanitized.h"
 
 namespace limpid {
@@ -75,7 +76,7 @@ int look(dl_phdr_info* object, std::size_t, void* into) {
   return 0;
 }
 
-bool locked() { return !test::kOnlyPretendsToLock && lock_memory(); }
+bool may_lock() { return !test::kOnlyPretendsToLock && test::may_lock_memory(); }
 
 class CodeOfTicks : public testing::TestWithParam<std::string_view> {};
 
@@ -83,7 +84,8 @@ TEST_P(CodeOfTicks, IsThereBeforeTheFirstOne) {
   const Verdict there = in_a_child([] {
     Code before{GetParam()}, after{GetParam()};
     dl_iterate_phdr(look, &before);
-    if (!locked() || before.absent < 0) return skipped;
+    if (!may_lock() || before.absent < 0) return skipped;
+    if (!lock_memory()) return no;
     dl_iterate_phdr(look, &after);
     return after.pages > 0 && before.absent > 0 && after.absent == 0 ? yes : no;
   });
@@ -99,7 +101,8 @@ TEST(LockMemory, BringsInNothingThatNobodyUsesHoweverOften) {
     constexpr std::size_t kBytes = 1 << 20;
     const void* reserved =
         mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (reserved == MAP_FAILED || !locked() || !locked()) return skipped;
+    if (reserved == MAP_FAILED || !may_lock()) return skipped;
+    if (!lock_memory() || !lock_memory()) return no;
     const int count = absent(reserved, kBytes);
     return count < 0 ? skipped : count == static_cast<int>(kBytes / kPage) ? yes : no;
   });
@@ -109,7 +112,8 @@ TEST(LockMemory, BringsInNothingThatNobodyUsesHoweverOften) {
 
 TEST(LockMemory, KeepsWhatIsMappedLaterOnceItIsTouched) {
   const Verdict kept = in_a_child([] {
-    if (!locked()) return skipped;
+    if (!may_lock()) return skipped;
+    if (!lock_memory()) return no;
     void* later = mmap(nullptr, kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (later == MAP_FAILED) return skipped;
     *static_cast<volatile char*>(later) = 1;

@@ -68,6 +68,51 @@ TEST(Place, IsInReachAndNeverAroundATipOrAnotherObject) {
   }
 }
 
+// A cube of 4 cm stands 1.2 cm clear of a tip at rest: its middle is 3.2 cm from it, in front,
+// which is nearer to 1 cm in front of the tip than anything beside or behind it.
+TEST(Place, IsInFrontOfTheTipWhicheverWayTheArmPoints) {
+  for (const double angle : {0.0, 1.2, 3.0}) {
+    const Vec3 forward(std::cos(angle), std::sin(angle), 0), left(-forward.y(), forward.x(), 0);
+    Workplace at;
+    at.reach = 0.5;
+    at.rest = 0.2 * forward;
+    const Vec3 place = find_place(Vec3::Constant(0.04), -0.04, at) - at.rest;
+    const double steps = (0.6 * 0.5 + 0.04) / 30;  // of what is tried
+    // Of a turned arm the corners of what is kept clear come first.
+    EXPECT_GT(place.dot(forward), angle == 0 ? 0.032 : 0.02) << angle;
+    EXPECT_LT(place.head<2>().norm(), 0.032 * std::sqrt(2) + steps) << angle;
+    EXPECT_LT(std::abs(place.dot(left)), angle == 0 ? 1e-9 : 0.03) << angle;
+    EXPECT_NEAR(place.z(), -0.02, 1e-12) << "it stands";
+  }
+}
+
+TEST(Place, LeavesAGapToOthersAndIsNotInTheArm) {
+  test::Random random(5);
+  for (int i = 0; i < 100; ++i) {
+    Workplace at = desk();
+    const Vec3 other = at.rest + Vec3(0.06, 0, 0) + random.point(0.02);
+    at.taken.push_back(Bounds(other - Vec3::Constant(0.02), other + Vec3::Constant(0.02)));
+    const Vec3 size = Vec3::Constant(0.03);
+    const Vec3 place = find_place(size, std::nullopt, at);
+    const Bounds box(place - size / 2, place + size / 2);
+    EXPECT_GE(box.exteriorDistance(at.taken[0]), 0.004 - 1e-12) << i;
+    for (int part = 1; part < 8; ++part) {
+      EXPECT_FALSE(box.contains(at.base + part / 8.0 * (at.rest - at.base))) << i;
+    }
+    EXPECT_GE(box.exteriorDistance(at.rest), 0.012 - 1e-12) << i;
+  }
+}
+
+// What is beyond the arm's reach cannot be touched, however much is in the way.
+TEST(Place, StaysInReachWhereTheFrontIsTaken) {
+  Workplace at = desk();
+  at.taken.push_back(Bounds(Vec3(0.2, -0.1, -0.05), Vec3(0.6, 0.1, 0.05)));
+  const Vec3 size = Vec3::Constant(0.03);
+  const Vec3 place = find_place(size, -0.04, at);
+  EXPECT_LT((place - at.base).norm(), at.reach);
+  EXPECT_FALSE(Bounds(place - size / 2, place + size / 2).intersects(at.taken[0]));
+}
+
 TEST(Place, OfAModelIsUprightOnTheTable) {
   // glTF's y is up: 10 m tall, 4 m deep, off its origin.
   const Bounds model(Vec3(3, 5, 1), Vec3(6, 15, 5));

@@ -99,5 +99,60 @@ TEST(PadHand, LetsGoWhenItIsUnpluggedOfWhatItHeldAlone) {
   EXPECT_TRUE(held.controls.grab);
 }
 
+// Whoever let go of what the pad had taken has ended its hold: what is held later is theirs.
+TEST(PadHand, LeavesTheHandToWhoTookItAfterSomebodyLetGo) {
+  Held held;
+  held.lead({.left_x = 1});
+  ASSERT_TRUE(held.controls.grab);
+  held.controls.grab = false;  // by the mouse, or a loop that started over
+  held.lead({});
+  held.controls.grab = true;  // the mouse
+  held.lead({});
+  held.hand.lose(held.controls);
+  EXPECT_TRUE(held.controls.grab);
+}
+
+TEST(PadHand, HoldsAloneWhatItTookFromTheMouseByPushing) {
+  Held held;
+  held.controls.grab = true;  // the mouse
+  held.controls.goal = kTip;
+  held.lead({.left_x = 1});
+  held.hand.lose(held.controls);
+  EXPECT_FALSE(held.controls.grab);
+}
+
+TEST(PadHand, LetsGoOfWhatTheMouseHoldsByItsButtonToo) {
+  Held held;
+  held.controls.grab = true;
+  held.lead({.a = true});
+  EXPECT_FALSE(held.controls.grab);
+  held.controls.grab = true;  // the mouse once more
+  held.hand.lose(held.controls);
+  EXPECT_TRUE(held.controls.grab) << "the pad holds nothing";
+}
+
+TEST(PadHand, TakesHoldWhereTheTipIsByItsButtonAndHeldDownDoesNothingMore) {
+  Held held;
+  held.controls.goal = kTip + Vec3(0.05, 0, 0);  // of an earlier hold
+  held.lead({.a = true});
+  EXPECT_TRUE(held.controls.grab);
+  EXPECT_EQ(held.controls.goal, kTip);
+  held.lead({.a = true});
+  EXPECT_TRUE(held.controls.grab);
+  held.lead({});
+  held.lead({.a = true});
+  EXPECT_FALSE(held.controls.grab);
+}
+
+// One that comes back with a stick pushed takes hold as a new one does.
+TEST(PadHand, ForgetsWithItsPlugThatItsStickHadToRest) {
+  Held held;
+  held.lead({.left_x = 1});
+  held.lead({.left_x = 1, .a = true});
+  held.hand.lose(held.controls);
+  held.lead({.left_x = 1});
+  EXPECT_TRUE(held.controls.grab);
+}
+
 }  // namespace
 }  // namespace limpid
