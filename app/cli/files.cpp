@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "app/cli/commands.h"
@@ -17,6 +18,7 @@
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
+#include "devices/files/session/session_stream.h"
 
 namespace limpid {
 namespace {
@@ -26,12 +28,52 @@ struct InfoOptions {
   bool force = false;
 };
 
-// Recordings of the first edition have but the torque of their contacts.
-std::string contacts(const Session& session) {
-  const bool known = session.size() > 0 && !std::isnan(session.at(0, Column::contact_force)[0]);
-  if (!known) return "where and how hard was not recorded";
-  return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
-}
+// What the rows of a recording amount to, whichever of them are in memory.
+class RowsTold {
+ public:
+  void begins(const Session& about) {
+    const auto arm = recorded_arm(about.info);
+    const std::vector<bool> slides = arm ? slides_of(*arm) : about.info.slides;
+    layout_ = about.layout;
+    first_.emplace(layout_, slides);
+    if (about.twin) twin_.emplace(layout_, slides);
+    force_.emplace(layout_);
+  }
+  void take(std::span<const double> rows, std::span<const double> twin) {
+    const auto stride = static_cast<std::size_t>(layout_.stride());
+    if (count_ == 0 && !rows.empty()) {
+      contacts_ = !std::isnan(layout_.in(rows.first(stride), Column::contact_force)[0]);
+    }
+    for (std::size_t at = 0; at < rows.size(); at += stride, ++count_) {
+      first_->add(rows.subspan(at, stride));
+      force_->add(rows.subspan(at, stride));
+      if (twin_) twin_->add(twin.subspan(at, stride));
+    }
+  }
+
+  std::string text(double tick) const {
+    return fmt::format("length                   {:.3f} s\n", static_cast<double>(count_) * tick) +
+           numbers() + force_->text(tick) +
+           fmt::format("contacts                 {}\n", contacts());
+  }
+
+ private:
+  std::string numbers() const {
+    if (!twin_) return first_->text();
+    return "two runs on one hand\n" + Summary::beside(*first_, "first", *twin_, "twin");
+  }
+  // Recordings of the first edition have but the torque of their contacts.
+  std::string contacts() const {
+    if (!contacts_) return "where and how hard was not recorded";
+    return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
+  }
+
+  RowLayout layout_{3};
+  std::optional<Summary> first_, twin_;
+  std::optional<ForceTally> force_;
+  std::uint64_t count_ = 0;
+  bool contacts_ = false;  // are known
+};
 
 // Those of the first row. What another version wrote and this one does not know is left out.
 std::string settings_text(const Session& session, const std::string& file) {
@@ -70,17 +112,6 @@ std::string what_moves(const SessionInfo& i) {
   return text;
 }
 
-std::string numbers(const Session& session) {
-  const auto arm = recorded_arm(session.info);
-  const std::vector<bool> slides = arm ? slides_of(*arm) : session.info.slides;
-  Summary summary(session.layout, slides);
-  for (std::size_t k = 0; k < session.size(); ++k) summary.add(session.row(k));
-  if (!session.twin) return summary.text();
-  Summary twin(session.layout, slides);
-  for (std::size_t k = 0; k < session.twin->size(); ++k) twin.add(session.twin->row(k));
-  return "two runs on one hand\n" + Summary::beside(summary, "first", twin, "twin");
-}
-
 std::string happened(const Session& session) {
   std::string text;
   const auto seconds = [&](std::uint64_t row) {
@@ -95,18 +126,30 @@ std::string happened(const Session& session) {
   return text;
 }
 
+// Only a table takes all of the recording into memory.
+Session read_and_tell(const InfoOptions& options, RowsTold& told) {
+  if (options.csv.empty()) {
+    return read_session(
+        options.session, [&](const Session& about) { told.begins(about); },
+        [&](std::span<const double> rows, std::span<const double> twin) { told.take(rows, twin); });
+  }
+  Session session = read_session(options.session);
+  told.begins(session);
+  told.take(session.rows,
+            session.twin ? std::span<const double>(session.twin->rows) : std::span<const double>());
+  return session;
+}
+
 int info(const InfoOptions& options) {
   const bool to_stdout = options.csv == kStandardOutput;
   if (!to_stdout) keep_apart("--csv", options.csv, std::span(&options.session, 1));
-  const Session session = read_session(options.session);
+  RowsTold told;
+  const Session session = read_and_tell(options, told);
   std::string text = options.session + "\n" + about(session.info) +
                      settings_text(session, options.session) + what_moves(session.info) +
-                     fmt::format("length                   {:.3f} s\n",
-                                 static_cast<double>(session.size()) * session.info.tick) +
-                     numbers(session) + force_tally(session) +
-                     fmt::format("contacts                 {}\n", contacts(session));
-  if (const ToldSteps told = told_in(session, options.session); !told.steps.empty()) {
-    text += fmt::format("story                    {}, {} steps\n", told.title, told.steps.size());
+                     told.text(session.info.tick);
+  if (const ToldSteps story = told_in(session, options.session); !story.steps.empty()) {
+    text += fmt::format("story                    {}, {} steps\n", story.title, story.steps.size());
   }
   // A table on standard output stands there alone.
   fmt::print(to_stdout ? stderr : stdout, "{}{}", text, happened(session));
