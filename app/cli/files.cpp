@@ -23,6 +23,7 @@
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_csv.h"
+#include "devices/files/session/session_stream.h"
 
 namespace limpid {
 namespace {
@@ -32,12 +33,59 @@ struct InfoOptions {
   bool force = false, json = false;
 };
 
-// Recordings of the first edition have but the torque of their contacts.
-std::string contacts(const Session& session) {
-  const bool known = session.size() > 0 && !std::isnan(session.at(0, Column::contact_force)[0]);
-  if (!known) return "where and how hard was not recorded";
-  return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
-}
+// What the rows of a recording amount to, whichever of them are in memory.
+class RowsTold {
+ public:
+  void begins(const Session& about) {
+    const auto arm = recorded_arm(about.info);
+    const std::vector<bool> slides = arm ? slides_of(*arm) : about.info.slides;
+    layout_ = about.layout;
+    first_.emplace(layout_, slides);
+    if (about.twin) twin_.emplace(layout_, slides);
+    force_.emplace(layout_);
+  }
+  void take(std::span<const double> rows, std::span<const double> twin) {
+    const auto stride = static_cast<std::size_t>(layout_.stride());
+    if (count_ == 0 && !rows.empty()) {
+      contacts_ = !std::isnan(layout_.in(rows.first(stride), Column::contact_force)[0]);
+    }
+    for (std::size_t at = 0; at < rows.size(); at += stride, ++count_) {
+      first_->add(rows.subspan(at, stride));
+      force_->add(rows.subspan(at, stride));
+      if (twin_) twin_->add(twin.subspan(at, stride));
+    }
+  }
+
+  std::uint64_t count() const { return count_; }
+  // A summary of each run.
+  std::vector<const Summary*> lanes() const {
+    std::vector<const Summary*> all{&*first_};
+    if (twin_) all.push_back(&*twin_);
+    return all;
+  }
+  std::string text(double tick) const {
+    return fmt::format("length                   {:.3f} s\n", static_cast<double>(count_) * tick) +
+           numbers() + force_->text(tick) +
+           fmt::format("contacts                 {}\n", contacts());
+  }
+
+ private:
+  std::string numbers() const {
+    if (!twin_) return first_->text();
+    return "two runs on one hand\n" + Summary::beside(*first_, "first", *twin_, "twin");
+  }
+  // Recordings of the first edition have but the torque of their contacts.
+  std::string contacts() const {
+    if (!contacts_) return "where and how hard was not recorded";
+    return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
+  }
+
+  RowLayout layout_{3};
+  std::optional<Summary> first_, twin_;
+  std::optional<ForceTally> force_;
+  std::uint64_t count_ = 0;
+  bool contacts_ = false;  // are known
+};
 
 // Those of the first row. What another version wrote and this one does not know is left out.
 std::string settings_text(const Session& session, const std::string& file) {
@@ -55,10 +103,17 @@ std::string settings_text(const Session& session, const std::string& file) {
 }
 
 // As its rows have them, so those of recordings that were made before there were any, too. None of
-// another version's settings.
+// another version's settings. Rows that are not in memory are read once more.
 std::vector<std::string> warnings_in(const Session& session, const std::string& file) {
   try {
-    return warnings_of(session, file);
+    if (!session.rows.empty()) return warnings_of(session, file);
+    SessionWatch watch(session, file);
+    read_session(
+        file, [](const Session&) {},
+        [&](std::span<const double> rows, std::span<const double> twin) {
+          watch.take(rows, twin);
+        });
+    return watch.warnings();
   } catch (const std::exception&) {
     return {};
   }
@@ -84,20 +139,8 @@ void write_table(const InfoOptions& options, const Session& session) {
              beside);
 }
 
-// A summary of each run.
-std::vector<Summary> summaries(const Session& session) {
-  const auto arm = recorded_arm(session.info);
-  const std::vector<bool> slides = arm ? slides_of(*arm) : session.info.slides;
-  std::vector<Summary> all;
-  for (const Session* run : {&session, static_cast<const Session*>(session.twin.get())}) {
-    if (run == nullptr) continue;
-    Summary& summary = all.emplace_back(session.layout, slides);
-    for (std::size_t k = 0; k < run->size(); ++k) summary.add(run->row(k));
-  }
-  return all;
-}
-
-void print_json(const InfoOptions& options, const Session& session) {
+void print_json(const InfoOptions& options, const Session& session, const RowsTold& told,
+                const std::vector<std::string>& warnings) {
   const SessionInfo& i = session.info;
   nlohmann::ordered_json json{{"provenance", provenance_of(i)},
                               {"file", options.session},
@@ -108,12 +151,9 @@ void print_json(const InfoOptions& options, const Session& session) {
                               {"joints", i.dof},
                               {"tick_s", i.tick},
                               {"seed", i.seed},
-                              {"length_s", static_cast<double>(session.size()) * i.tick},
+                              {"length_s", static_cast<double>(told.count()) * i.tick},
                               {"objects", i.bodies}};
-  const std::vector<Summary> runs = summaries(session);
-  std::vector<const Summary*> lanes;
-  for (const Summary& run : runs) lanes.push_back(&run);
-  json.update(runs_json(lanes, warnings_in(session, options.session)));
+  json.update(runs_json(told.lanes(), warnings));
   json["changes"] = nlohmann::ordered_json::array();
   for (const SettingChange& change : session.changes) {
     json["changes"].push_back({{"row", change.row}, {"setting", change.setting}});
@@ -147,15 +187,9 @@ std::string what_moves(const SessionInfo& i) {
   return text;
 }
 
-std::string numbers(const Session& session) {
-  const std::vector<Summary> runs = summaries(session);
-  if (runs.size() == 1) return runs[0].text();
-  return "two runs on one hand\n" + Summary::beside(runs[0], "first", runs[1], "twin");
-}
-
-std::string warnings(const Session& session, const std::string& file) {
+std::string warnings_text_of(const std::vector<std::string>& warnings) {
   std::string text;
-  for (const std::string& warning : warnings_in(session, file)) {
+  for (const std::string& warning : warnings) {
     text += fmt::format("warning                  {}\n", warning);
   }
   return text;
@@ -175,27 +209,43 @@ std::string happened(const Session& session) {
   return text;
 }
 
+// Only a table takes all of the recording into memory.
+Session read_and_tell(const InfoOptions& options, RowsTold& told) {
+  if (options.csv.empty()) {
+    return read_session(
+        options.session, [&](const Session& about) { told.begins(about); },
+        [&](std::span<const double> rows, std::span<const double> twin) { told.take(rows, twin); });
+  }
+  Session session = read_session(options.session);
+  told.begins(session);
+  told.take(session.rows,
+            session.twin ? std::span<const double>(session.twin->rows) : std::span<const double>());
+  return session;
+}
+
 int info(const InfoOptions& options) {
   const bool to_stdout = options.csv == kStandardOutput;
+  if (to_stdout && options.json) {
+    throw UsageError("--json: not beside --csv -, which is standard output as well");
+  }
   if (!to_stdout) keep_apart("--csv", options.csv, std::span(&options.session, 1));
   std::error_code none;
   const bool pipe = to_stdout || (std::filesystem::exists(options.csv, none) &&
                                   !std::filesystem::is_regular_file(options.csv, none));
   if (!options.csv.empty() && !pipe) check_place(options.csv, options.force);
-  const Session session = read_session(options.session);
+  RowsTold told;
+  const Session session = read_and_tell(options, told);
+  const std::vector<std::string> warnings = warnings_in(session, options.session);
   if (options.json) {
-    print_json(options, session);
+    print_json(options, session, told, warnings);
     if (!options.csv.empty()) write_table(options, session);
     return 0;
   }
   std::string text = options.session + "\n" + about(session.info) +
                      settings_text(session, options.session) + what_moves(session.info) +
-                     fmt::format("length                   {:.3f} s\n",
-                                 static_cast<double>(session.size()) * session.info.tick) +
-                     numbers(session) + warnings(session, options.session) + force_tally(session) +
-                     fmt::format("contacts                 {}\n", contacts(session));
-  if (const ToldSteps told = told_in(session, options.session); !told.steps.empty()) {
-    text += fmt::format("story                    {}, {} steps\n", told.title, told.steps.size());
+                     told.text(session.info.tick) + warnings_text_of(warnings);
+  if (const ToldSteps story = told_in(session, options.session); !story.steps.empty()) {
+    text += fmt::format("story                    {}, {} steps\n", story.title, story.steps.size());
   }
   // A table on standard output stands there alone.
   fmt::print(to_stdout ? stderr : stdout, "{}{}", text, happened(session));

@@ -17,6 +17,8 @@
 namespace limpid {
 namespace {
 
+constexpr double kLeastTick = 1e-4;  // of a loop that a recording asks for [s]
+
 namespace fs = std::filesystem;
 using nlohmann::json;
 using namespace std::chrono_literals;
@@ -209,9 +211,15 @@ Answer ServedSession::open(const Keys& keys) {
   if (busy(opening_)) throw RemoteError("open: something else is being opened");
   opening_ = std::make_shared<std::future<World>>(files_.run(
       [open = options_.open, asked, now = controls_.parameters] { return open(asked, now); }));
-  return Answer::Later([this, loading = opening_, waits]() -> std::optional<json> {
+  return Answer::Later([this, loading = opening_, waits,
+                        of_session = !asked.session.empty()]() -> std::optional<json> {
     if (!ready(*loading)) return std::nullopt;
     World world = loading->get();
+    if (const double tick = world.plan.parameters.tick; of_session && tick < kLeastTick) {
+      throw RemoteError(
+          fmt::format("open: session: a tick of {} s would take the computer; allowed: {} to 0.1",
+                      tick, kLeastTick));
+    }
     if (recording()) throw RemoteError("open: a recording has begun meanwhile");
     if (!loop_.device_in_place()) {
       begin(std::move(world), waits);

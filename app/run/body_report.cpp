@@ -106,6 +106,25 @@ std::string line_of(const Object& object) {
   return text;
 }
 
+void warn_of_inertia(const Object& object, const Vec3& i, BodyReport& report) {
+  if (!possible_inertia(i)) {
+    report.warnings.push_back(fmt::format(
+        "'{}': no body has an inertia of [{:.4g}, {:.4g}, {:.4g}] kg m^2: none of the three may "
+        "be more than the other two together",
+        object.name, i.x(), i.y(), i.z()));
+    return;
+  }
+  // Mass at the ends of a rod has three times the inertia of the rod.
+  const MassProperties solid = solid_mass_properties(object, 1);
+  const double usual = object.body->mass * solid.inertia.diagonal().maxCoeff() / solid.mass;
+  if (i.maxCoeff() > kFarFetched * usual) {
+    report.warnings.push_back(fmt::format(
+        "'{}': an inertia of {:.3g} kg m^2 is {:.0f} times that of a solid of its shape and mass; "
+        "are its moments in kg m^2?",
+        object.name, i.maxCoeff(), i.maxCoeff() / usual));
+  }
+}
+
 void warn(const Object& object, const Scene& scene, const ArmDescription& arm, BodyReport& report) {
   const double reach = farthest_tip(arm).distance;
   const double away = beyond_reach(object, scene, arm);
@@ -119,22 +138,7 @@ void warn(const Object& object, const Scene& scene, const ArmDescription& arm, B
     report.warnings.push_back(fmt::format("'{}' is {:.3g} mm thin: what falls on it may go through",
                                           object.name, 1e3 * thick));
   }
-  if (object.body->inertia && !possible_inertia(*object.body->inertia)) {
-    const Vec3& i = *object.body->inertia;
-    report.warnings.push_back(fmt::format(
-        "'{}': no body has an inertia of [{:.4g}, {:.4g}, {:.4g}] kg m^2: none of the three may "
-        "be more than the other two together",
-        object.name, i.x(), i.y(), i.z()));
-  }
-  // Mass at the ends of a rod has three times the inertia of the rod.
-  const MassProperties solid = solid_mass_properties(object, 1);
-  const double usual = object.body->mass * solid.inertia.diagonal().maxCoeff() / solid.mass;
-  if (object.body->inertia && object.body->inertia->maxCoeff() > kFarFetched * usual) {
-    report.warnings.push_back(fmt::format(
-        "'{}': an inertia of {:.3g} kg m^2 is {:.0f} times that of a solid of its shape and mass; "
-        "are its moments in kg m^2?",
-        object.name, object.body->inertia->maxCoeff(), object.body->inertia->maxCoeff() / usual));
-  }
+  if (object.body->inertia) warn_of_inertia(object, *object.body->inertia, report);
 }
 
 }  // namespace

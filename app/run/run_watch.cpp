@@ -111,23 +111,41 @@ std::string warnings_text(const std::vector<std::string>& warnings) {
   return fmt::format("{}", fmt::join(warnings, "\n"));
 }
 
-std::vector<std::string> warnings_of(const Session& session, const std::string& file) {
-  std::vector<std::string> all;
-  const auto arm = recorded_arm(session.info);
-  if (!arm) return all;
-  const Session* const lanes[] = {&session, session.twin.get()};
-  for (std::size_t i = 0; i < std::size(lanes) && lanes[i] != nullptr; ++i) {
-    const Session& lane = *lanes[i];
-    Parameters p = session_parameters(lane, file);
-    RunWatch watch(*arm, lane.layout, p);
-    for (const SettingChange& change : lane.changes) {
+SessionWatch::SessionWatch(const Session& about, const std::string& file)
+    : stride_(static_cast<std::size_t>(about.layout.stride())) {
+  const auto arm = recorded_arm(about.info);
+  if (!arm) return;
+  for (const Session* lane : {&about, static_cast<const Session*>(about.twin.get())}) {
+    if (lane == nullptr) continue;
+    Parameters p = session_parameters(*lane, file);
+    RunWatch& watch = lanes_.emplace_back(*arm, lane->layout, p);
+    for (const SettingChange& change : lane->changes) {
       apply_change(p, change);
       watch.change(change.row, p);
     }
-    for (std::size_t k = 0; k < lane.size(); ++k) watch.add(lane.row(k));
-    add_warnings(watch.warnings(), i, all);
   }
+}
+
+void SessionWatch::take(std::span<const double> rows, std::span<const double> twin) {
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    const std::span<const double> of_lane = i == 0 ? rows : twin;
+    for (std::size_t at = 0; at < of_lane.size(); at += stride_) {
+      lanes_[i].add(of_lane.subspan(at, stride_));
+    }
+  }
+}
+
+std::vector<std::string> SessionWatch::warnings() const {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < lanes_.size(); ++i) add_warnings(lanes_[i].warnings(), i, all);
   return all;
+}
+
+std::vector<std::string> warnings_of(const Session& session, const std::string& file) {
+  SessionWatch watch(session, file);
+  watch.take(session.rows, session.twin ? std::span<const double>(session.twin->rows)
+                                        : std::span<const double>());
+  return watch.warnings();
 }
 
 }  // namespace limpid

@@ -69,6 +69,21 @@ class RunWatch {
 void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
                   std::vector<std::string>& into);
 
+// Watches the rows of all lanes of a recording, which need not fit into memory.
+class SessionWatch {
+ public:
+  // `about`: the recording with its changes, whether it has its rows or not. Errors: FileError and
+  // ParameterError where its settings cannot be read.
+  SessionWatch(const Session& about, const std::string& file);
+  // Whole rows in turn, and as many of the second run's, if there is one.
+  void take(std::span<const double> rows, std::span<const double> twin);
+  std::vector<std::string> warnings() const;
+
+ private:
+  std::size_t stride_;
+  std::vector<RunWatch> lanes_;  // empty: its arm cannot be read
+};
+
 // Those of a recording, of all its lanes. Errors: FileError and ParameterError where its settings
 // cannot be read. A recording whose arm cannot be read has none.
 std::vector<std::string> warnings_of(const Session& session, const std::string& file);

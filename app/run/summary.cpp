@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/tick/arming.h"
 
@@ -85,23 +84,21 @@ void DivergenceWatch::add(std::span<const double> row) {
   lost_ = lost_ || beyond(excess, kLost);
 }
 
-std::string force_tally(const Session& session) {
-  std::map<int, std::size_t> ticks;  // of each state
-  std::size_t without = 0;
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    const auto state = static_cast<int>(session.at(k, Column::force_state)[0]);
-    if (state == static_cast<int>(ForceState::on)) continue;
-    ++ticks[state];
-    ++without;
-  }
-  if (session.size() == 0) return "rows                     none: nothing was recorded\n";
-  if (without == 0) return "force                    on all the time\n";
-  const auto seconds = [&](std::size_t count) {
-    return static_cast<double>(count) * session.info.tick;
-  };
+void ForceTally::add(std::span<const double> row) {
+  ++rows_;
+  const auto state = static_cast<int>(layout_.in(row, Column::force_state)[0]);
+  if (state == static_cast<int>(ForceState::on)) return;
+  ++ticks_[state];
+  ++without_;
+}
+
+std::string ForceTally::text(double tick) const {
+  if (rows_ == 0) return "rows                     none: nothing was recorded\n";
+  if (without_ == 0) return "force                    on all the time\n";
+  const auto seconds = [&](std::uint64_t count) { return static_cast<double>(count) * tick; };
   std::string text = fmt::format("without full force       {:.3f} s of {:.3f} s\n",
-                                 seconds(without), seconds(session.size()));
-  for (const auto& [state, count] : ticks) {
+                                 seconds(without_), seconds(rows_));
+  for (const auto& [state, count] : ticks_) {
     text += fmt::format("  for {:8.3f} s         {}\n", seconds(count),
                         force_text(static_cast<ForceState>(state)));
   }

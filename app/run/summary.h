@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,8 +43,19 @@ class DivergenceWatch {
 
 // How much of a recording was without force, and why.
 
-// In lines for people, one for each reason.
-std::string force_tally(const Session& session);
+class ForceTally {
+ public:
+  explicit ForceTally(const RowLayout& layout) : layout_(layout) {}
+
+  void add(std::span<const double> row);
+  // In lines for people, one for each reason; `tick` [s].
+  std::string text(double tick) const;
+
+ private:
+  RowLayout layout_;
+  std::uint64_t rows_ = 0, without_ = 0;
+  std::map<int, std::uint64_t> ticks_;  // without full force, of each state
+};
 
 // Of a loop that became unstable: what it did while it was stable, and since when it was not.
 class Summary {

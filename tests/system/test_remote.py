@@ -187,6 +187,16 @@ class TestServe(RemoteTest):
             loop.open(arm=self.home / "no_such.urdf")
         loop.open(hand="touch.csv")
 
+    def test_a_session_does_not_take_the_computer(self) -> None:
+        fast = self.home / "fast.h5"
+        done = subprocess.run([LIMPID, "run", "--set", "loop.tick=1e-5", "--duration", "0.001",
+                               "--record", fast], capture_output=True, text=True, check=False)
+        self.assertTrue(fast.exists(), done.stderr)
+        loop = self.connect()
+        with self.assertRaisesRegex(limpid.RequestError, r"tick of 1e-05 s.*0\.0001 to 0\.1"):
+            loop.open(session=fast)
+        self.assertEqual(loop.get("loop.tick"), {"loop.tick": 0.001})
+
     def test_start_over_begins_the_hand_again(self) -> None:
         loop = self.connect()
         loop.open(hand="touch.csv")

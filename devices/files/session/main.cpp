@@ -32,9 +32,16 @@ void limit_self(const char* file) {
 void answer(std::string_view what, const char* file, limpid::wire::Writer& to) {
   using limpid::wire::Answer;
   if (what == "session") {
-    const limpid::Session session = limpid::read_session_here(file);
-    to.number(Answer::contents);
-    put_session(to, session);
+    const limpid::Session rest = limpid::read_session_here(
+        file,
+        [&](const limpid::Session& about, std::uint64_t rows) {
+          to.number(Answer::contents);
+          put_about(to, about, rows);
+        },
+        [&](std::span<const double> rows, std::span<const double> twin) {
+          put_rows(to, rows, twin);
+        });
+    put_rest(to, rest);
   } else if (what == "marks") {
     limpid::wire::Reader from(STDIN_FILENO, limpid::hdf5::physical_memory());
     limpid::write_marks_here(file, limpid::kCopyToChange, limpid::wire::take_order(from));

@@ -188,9 +188,9 @@ struct stat about(const fs::path& file) {
 
 void copy_whole(const fs::path& file, int from, int to, const struct stat& as) {
   ::fchmod(to, as.st_mode & 07777);
-  constexpr std::size_t kAtOnce = 1 << 30;
+  constexpr std::size_t kCopiedAtOnce = 1 << 30;
   while (true) {
-    const ssize_t copied = ::sendfile(to, from, nullptr, kAtOnce);
+    const ssize_t copied = ::sendfile(to, from, nullptr, kCopiedAtOnce);
     if (copied == 0) return;
     if (copied < 0 && errno != EINTR) {
       throw FileError(fmt::format("{}: cannot be copied for its marks: {}", file.string(),

@@ -9,6 +9,8 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/child.h"
@@ -44,7 +46,6 @@ std::size_t Reader::taken(std::size_t size) {
 namespace {
 
 void put_run(Writer& to, const Session& run) {
-  to.list(std::span<const double>(run.rows));
   to.list(std::span<const double>(run.world));
   to.number<std::uint64_t>(run.changes.size());
   for (const SettingChange& change : run.changes) {
@@ -53,18 +54,13 @@ void put_run(Writer& to, const Session& run) {
   }
 }
 
-void take_run(Reader& from, Session& run) {
-  run.layout = run.info.layout();
-  run.rows = from.list<std::vector<double>>();
-  if (run.rows.size() % static_cast<std::size_t>(run.layout.stride()) != 0) {
-    throw Broken("rows that are not whole");
-  }
+void take_run(Reader& from, std::uint64_t rows, Session& run) {
   run.world = from.list<std::vector<double>>();
   if (run.world.size() > kMostWorld) throw Broken("more of bodies than there can be");
   const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < changes; ++i) {
     const auto row = from.number<std::uint64_t>();
-    if (row > run.size() || (i > 0 && row < run.changes.back().row)) {
+    if (row > rows || (i > 0 && row < run.changes.back().row)) {
       throw Broken("changes that do not follow each other");
     }
     run.changes.push_back({row, from.text()});
@@ -100,7 +96,7 @@ void each_text(Info& info, Work work) {
 
 }  // namespace
 
-void put_session(Writer& to, const Session& session) {
+void put_about(Writer& to, const Session& session, std::uint64_t rows) {
   const SessionInfo& info = session.info;
   to.number(info.tick);
   to.number(info.dof);
@@ -115,17 +111,35 @@ void put_session(Writer& to, const Session& session) {
       std::vector<unsigned char>(info.slides.begin(), info.slides.end())));
   to.number<std::uint64_t>(info.bodies.size());
   for (const std::string& name : info.bodies) to.text(name);
-  put_run(to, session);
-  put_marks(to, session.marks);
   to.number<std::uint8_t>(session.twin != nullptr);
-  if (session.twin == nullptr) return;
-  to.text(session.twin->info.config);
-  put_run(to, *session.twin);
+  if (session.twin != nullptr) to.text(session.twin->info.config);
+  to.number(rows);
 }
 
-Session take_session(Reader& from) {
-  Session session;
-  SessionInfo& info = session.info;
+void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin) {
+  to.number(Answer::rows);
+  to.list(rows);
+  to.list(twin);
+}
+
+void put_rest(Writer& to, const Session& session) {
+  to.number(Answer::end);
+  put_run(to, session);
+  put_marks(to, session.marks);
+  if (session.twin != nullptr) put_run(to, *session.twin);
+}
+
+void put_session(Writer& to, const Session& session) {
+  put_about(to, session, session.size());
+  put_rows(to, session.rows,
+           session.twin ? std::span<const double>(session.twin->rows) : std::span<const double>());
+  put_rest(to, session);
+}
+
+namespace {
+
+SessionInfo take_info(Reader& from) {
+  SessionInfo info;
   info.tick = from.number<double>();
   info.dof = from.number<int>();
   // As check_session_info() has it, which names what is wrong with a file.
@@ -148,19 +162,69 @@ Session take_session(Reader& from) {
   const std::size_t bodies = from.taken(sizeof(std::uint64_t));
   if (bodies > kMostBodies) throw Broken("more bodies than there can be");
   for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
-  take_run(from, session);
+  return info;
+}
+
+// Returns how many there were.
+std::uint64_t take_rows(Reader& from, const Session& about, const TakeRows& take) {
+  const auto stride = static_cast<std::size_t>(about.layout.stride());
+  std::uint64_t rows = 0;
+  while (true) {
+    const auto next = from.number<Answer>();
+    if (next == Answer::refusal) throw FileError(from.text());
+    if (next == Answer::end) return rows;
+    if (next != Answer::rows) throw Broken("no piece of a session");
+    const auto some = from.list<std::vector<double>>(), twin = from.list<std::vector<double>>();
+    if (some.size() % stride != 0) throw Broken("rows that are not whole");
+    if (twin.size() != (about.twin ? some.size() : 0)) {
+      throw Broken("two runs that are not as long as each other");
+    }
+    rows += some.size() / stride;
+    take(some, twin);
+  }
+}
+
+}  // namespace
+
+Session take_session(Reader& from, const std::function<void(const Session&, std::uint64_t)>& begins,
+                     const TakeRows& take) {
+  Session session;
+  session.info = take_info(from);
+  session.layout = session.info.layout();
+  std::shared_ptr<Session> twin;
+  if (from.number<std::uint8_t>() != 0) {
+    twin = std::make_shared<Session>(session);
+    twin->info.config = from.text();
+    session.info.twin = twin->info.config;
+    session.twin = twin;
+  }
+  begins(session, from.number<std::uint64_t>());
+  const std::uint64_t rows = take_rows(from, session, take);
+  take_run(from, rows, session);
   session.marks = take_marks(from);
   for (const Mark& mark : session.marks) {
-    if (mark.tick >= session.size()) throw Broken("a mark behind the end");
+    if (mark.tick >= rows) throw Broken("a mark behind the end");
   }
-  if (from.number<std::uint8_t>() == 0) return session;
-  Session twin;
-  twin.info = info;
-  twin.info.config = from.text();
-  info.twin = twin.info.config;
-  take_run(from, twin);
-  if (twin.size() != session.size()) throw Broken("two runs that are not as long as each other");
-  session.twin = std::make_shared<const Session>(std::move(twin));
+  if (twin) take_run(from, rows, *twin);
+  return session;
+}
+
+Session take_session(Reader& from) {
+  std::vector<double> rows, twin_rows;
+  Session session = take_session(
+      from,
+      [&](const Session& about, std::uint64_t count) {
+        // A claim that the rest of the answer has room for takes no more than that.
+        const auto stride = static_cast<std::size_t>(about.layout.stride());
+        if (!from.has_room(count, stride * sizeof(double))) throw Broken("too much");
+        rows.reserve(count * stride);
+        if (about.twin) twin_rows.reserve(count * stride);
+      },
+      [&](std::span<const double> some, std::span<const double> twin) {
+        rows.insert(rows.end(), some.begin(), some.end());
+        twin_rows.insert(twin_rows.end(), twin.begin(), twin.end());
+      });
+  limpid::put_rows(session, std::move(rows), std::move(twin_rows));
   return session;
 }
 
@@ -252,6 +316,33 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
 }
 
 }  // namespace
+
+void put_rows(Session& session, std::vector<double> rows, std::vector<double> twin) {
+  session.rows = std::move(rows);
+  if (!session.twin) return;
+  Session second = *session.twin;
+  second.rows = std::move(twin);
+  session.twin = std::make_shared<const Session>(std::move(second));
+}
+
+Session read_session(const fs::path& file, const std::function<void(const Session&)>& begins,
+                     const TakeRows& take) {
+  return ask("session", file, [&](wire::Reader& from) {
+    std::optional<RowCheck> first, second;
+    return wire::take_session(
+        from,
+        [&](const Session& about, std::uint64_t) {
+          first.emplace(about.layout, file);
+          second.emplace(about.layout, file);
+          begins(about);
+        },
+        [&](std::span<const double> rows, std::span<const double> twin) {
+          first->take(rows);
+          second->take(twin);
+          take(rows, twin);
+        });
+  });
+}
 
 Session read_session(const fs::path& file) {
   return ask("session", file, [&](wire::Reader& from) {

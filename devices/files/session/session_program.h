@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_marks.h"
+#include "devices/files/session/session_stream.h"
 
 namespace limpid::wire {
 
@@ -20,8 +22,8 @@ struct Broken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The first number of all: what follows.
-enum class Answer : std::uint64_t { refusal, contents };
+// The first number of all, and before each piece of a session's rows: what follows.
+enum class Answer : std::uint64_t { refusal, contents, rows, end };
 
 class Writer {
  public:
@@ -76,14 +78,24 @@ class Reader {
   std::string text() { return list<std::string>(); }
   // How many follow, of at least `size` bytes each. Errors: Broken where those would be too many.
   std::size_t taken(std::size_t size);
+  bool has_room(std::uint64_t count, std::size_t size) const { return count <= left_ / size; }
 
  private:
   int from_;
   std::uint64_t left_;
 };
 
-// Errors: Broken.
-void put_session(Writer& to, const Session& session);
+// A session in pieces: what it is of and how many rows it claims, rows as often as there are some,
+// all else.
+void put_about(Writer& to, const Session& session, std::uint64_t rows);
+void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin);
+void put_rest(Writer& to, const Session& session);
+void put_session(Writer& to, const Session& session);  // one after the other
+// `begins` hears how many rows are claimed. Errors: Broken; FileError for what the other end
+// refuses on the way.
+Session take_session(Reader& from,
+                     const std::function<void(const Session& about, std::uint64_t rows)>& begins,
+                     const TakeRows& take);
 Session take_session(Reader& from);
 void put_order(Writer& to, const MarkOrder& order);
 MarkOrder take_order(Reader& from);

@@ -8,7 +8,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/tick/parameters.h"
 #include "devices/files/session/hdf5_reading.h"
@@ -23,35 +26,14 @@ namespace limpid {
 
 namespace fs = std::filesystem;
 
-void read_changes(hid_t root, Session& session, const fs::path& file, hdf5::Claims& claims) {
-  if (!hdf5::has(root, kEventRowPath, file) || !hdf5::has(root, kEventSettingPath, file)) return;
-  const Source row_source = open_source(root, kEventRowPath, 1, file);
-  const Source setting_source = open_source(root, kEventSettingPath, 1, file);
-  for (const Source* source : {&row_source, &setting_source}) claims.stored(source->dataset);
-  claims.take(row_source.rows, sizeof(std::uint64_t), row_source.path);
-  claims.take(setting_source.rows, sizeof(std::string) + 2 * kSettingLength, setting_source.path);
-  const auto rows = read_row_numbers(row_source, file);
-  const auto settings = read_texts(setting_source, kSettingLength, file);
-  if (rows.size() != settings.size() && !is_leftover(file)) {
-    refuse(file, "/events/row and /events/setting differ in length; needed: the same");
-  }
-  for (std::size_t i = 0; i < std::min(rows.size(), settings.size()); ++i) {
-    if (is_leftover(file) && rows[i] >= session.size()) break;
-    if (rows[i] > session.size() || (i > 0 && rows[i] < rows[i - 1])) {
-      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing, at most {}", i,
-                               rows[i], session.size()));
-    }
-    session.changes.push_back({rows[i], settings[i]});
-  }
-}
-
 // Reads session files, trusting nothing in them.
 
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBlockRows = 4096;  // rows of a column read at once
+constexpr std::size_t kBlockRows = 4096;    // read at once, or more where a sum is over more
+constexpr std::size_t kMostUnit = 1 << 20;  // over which sums of two runs are
 
 // What foreign programs need not write, and what it then is.
 std::optional<double> default_of(Column column) {
@@ -193,76 +175,6 @@ hdf5::Group twin_group(hid_t root, const fs::path& file) {
   return hdf5::open_group(root, kTwinGroup, file);
 }
 
-// Copies a column into the rows. Returns how many rows were there and whole; fewer than asked for
-// only of a leftover.
-std::size_t read_column(const Source& source, Session& session, Column column,
-                        const fs::path& file) {
-  const std::size_t rows = session.size();
-  const auto width = static_cast<std::size_t>(source.width);
-  std::vector<double> block(kBlockRows * width);
-  for (std::size_t from = 0; from < rows; from += kBlockRows) {
-    const std::size_t count = std::min(kBlockRows, rows - from);
-    if (!read_block(source, from, count, block.data())) {
-      if (is_leftover(file)) return from;
-      refuse(file, fmt::format("{}: rows {} to {} cannot be read: {}", source.path, from,
-                               from + count - 1, hdf5::last_error()));
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      if (std::bit_cast<std::uint64_t>(block[k * width]) == kNeverWritten) return from + k;
-      const auto row = std::span(session.rows)
-                           .subspan((from + k) * static_cast<std::size_t>(session.layout.stride()),
-                                    static_cast<std::size_t>(session.layout.stride()));
-      std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(k * width), width,
-                  session.layout.in(row, column).begin());
-    }
-  }
-  return rows;
-}
-
-std::size_t agreed_rows(const std::vector<Source>& sources, const RowLayout& layout,
-                        const fs::path& file, hdf5::Claims& claims) {
-  hsize_t rows = sources.front().rows;
-  for (const Source& source : sources) {
-    claims.stored(source.dataset);
-    if (source.rows != rows && !is_leftover(file)) {
-      refuse(file, fmt::format("{} has {} rows, {} has {}; needed: the same", source.path,
-                               source.rows, sources.front().path, sources.front().rows));
-    }
-    rows = std::min(rows, source.rows);
-  }
-  claims.take(rows, static_cast<std::uint64_t>(layout.stride()) * sizeof(double), "rows");
-  return static_cast<std::size_t>(rows);
-}
-
-void read_rows(hid_t root, Session& session, const fs::path& file, hdf5::Claims& claims) {
-  std::vector<Source> sources;
-  std::vector<Column> columns;
-  for (const ColumnInfo& column : kColumnInfo) {
-    if (!session.layout.has(column.column)) continue;
-    if (!hdf5::has(root, column.path, file)) {
-      if (default_of(column.column)) continue;
-      refuse(file, fmt::format("{}: missing", column.path));
-    }
-    sources.push_back(open_column(root, column, session.layout, file));
-    columns.push_back(column.column);
-  }
-  const auto stride = static_cast<std::size_t>(session.layout.stride());
-  std::size_t whole = agreed_rows(sources, session.layout, file, claims);
-  session.rows.resize(whole * stride);
-  for (const ColumnInfo& column : kColumnInfo) {
-    const auto value = default_of(column.column);
-    if (!value) continue;
-    for (std::size_t k = 0; k < whole; ++k) {
-      const auto row = std::span(session.rows).subspan(k * stride, stride);
-      std::ranges::fill(session.layout.in(row, column.column), *value);
-    }
-  }
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    whole = std::min(whole, read_column(sources[i], session, columns[i], file));
-  }
-  session.rows.resize(whole * stride);
-}
-
 Source open_rounding(hid_t group, hsize_t width, const fs::path& file) {
   Source source = open_source(group, kRoundingPath, width, file);
   const hdf5::Datatype type(H5Dget_type(source.dataset.get()));
@@ -288,45 +200,6 @@ bool take_units_off(const std::vector<SessionUnits::Scaled>& scaled, const std::
   return true;
 }
 
-// The same of all rows. Returns how many from the first are whole; fewer than all only of a
-// leftover.
-std::size_t take_units_off(hid_t group, Session& session, const fs::path& file) {
-  const SessionUnits units(session.layout, session.info.slides);
-  const auto& scaled = units.scaled();
-  std::optional<Source> source;
-  if (!scaled.empty() && hdf5::has(group, kRoundingPath, file)) {
-    source = open_rounding(group, scaled.size(), file);
-  }
-  const auto stride = static_cast<std::size_t>(session.layout.stride());
-  std::vector<std::int8_t> block(source ? kBlockRows * scaled.size() : 0);
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    const auto row = std::span(session.rows).subspan(k * stride, stride);
-    unfile_points(session.layout.in(row, Column::contact_point),
-                  session.at(k, Column::contact_force));
-    const std::size_t within = k % kBlockRows;
-    const std::size_t count = std::min(kBlockRows, session.size() - k);
-    const char* why = nullptr;
-    if (source && within == 0 &&
-        (source->rows < k + count || !read_block(*source, k, count, block.data()))) {
-      why = "missing, or cannot be read";
-    } else if (!take_units_off(scaled, source ? block.data() + within * scaled.size() : nullptr,
-                               session.layout, row)) {
-      why =
-          "not of these numbers: damaged, or they were changed by another program (which then "
-          "has to delete /check)";
-    }
-    if (why == nullptr) continue;
-    if (is_leftover(file)) return k;
-    refuse(file, fmt::format("{}: row {}: {}", kRoundingPath, k, why));
-  }
-  return session.size();
-}
-
-void shorten(Session& session, std::size_t rows) {
-  session.rows.resize(rows * static_cast<std::size_t>(session.layout.stride()));
-  std::erase_if(session.changes, [rows](const SettingChange& c) { return c.row > rows; });
-}
-
 void read_world(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
   if (session.layout.bodies() == 0 || !hdf5::has(group, kWorldPath, file)) return;
   const Source source = open_source(group, kWorldPath, 1, file);
@@ -345,76 +218,259 @@ void read_world(hid_t group, Session& session, const fs::path& file, hdf5::Claim
   session.world.clear();
 }
 
-// One run: at the file's root, or in the twin's group. A leftover's rows that are not whole stay
-// away.
-void read_run(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
-  read_rows(group, session, file, claims);
-  read_world(group, session, file, claims);
-  const CheckedRows checked = checked_rows(group, session, file);
-  if (is_leftover(file)) {
-    session.rows.resize(checked.rows * static_cast<std::size_t>(session.layout.stride()));
+// Which settings changed in a session of so many rows, and when.
+void read_changes(hid_t root, std::size_t size, Session& session, const fs::path& file,
+                  hdf5::Claims& claims) {
+  if (!hdf5::has(root, kEventRowPath, file) || !hdf5::has(root, kEventSettingPath, file)) return;
+  const Source row_source = open_source(root, kEventRowPath, 1, file);
+  const Source setting_source = open_source(root, kEventSettingPath, 1, file);
+  for (const Source* source : {&row_source, &setting_source}) claims.stored(source->dataset);
+  claims.take(row_source.rows, sizeof(std::uint64_t), row_source.path);
+  claims.take(setting_source.rows, sizeof(std::string) + 2 * kSettingLength, setting_source.path);
+  const auto rows = read_row_numbers(row_source, file);
+  const auto settings = read_texts(setting_source, kSettingLength, file);
+  if (rows.size() != settings.size() && !is_leftover(file)) {
+    refuse(file, "/events/row and /events/setting differ in length; needed: the same");
   }
-  read_changes(group, session, file, claims);
-  check_rows(session, file);
-  if (!is_leftover(file) && !checked.why.empty()) refuse(file, checked.why);
-  shorten(session, take_units_off(group, session, file));
+  for (std::size_t i = 0; i < std::min(rows.size(), settings.size()); ++i) {
+    if (is_leftover(file) && rows[i] >= size) break;
+    if (rows[i] > size || (i > 0 && rows[i] < rows[i - 1])) {
+      refuse(file, fmt::format("/events/row: entry {}: row {}; needed: increasing, at most {}", i,
+                               rows[i], size));
+    }
+    session.changes.push_back({rows[i], settings[i]});
+  }
 }
 
-void read_twin(hid_t group, Session& session, const fs::path& file, hdf5::Claims& claims) {
-  session.info.twin = hdf5::read_text(group, "config", file);
-  Session twin;
-  twin.info = session.info;
-  twin.info.config = *session.info.twin;
-  twin.info.twin.reset();
-  twin.layout = session.layout;
-  read_run(group, twin, file, claims);
-  if (twin.size() != session.size() && !is_leftover(file)) {
-    refuse(file, fmt::format("/twin has {} rows, the other run {}; needed: the same", twin.size(),
-                             session.size()));
+// One run: at the file's root, or in the twin's group.
+class RunReader {
+ public:
+  RunReader(hid_t group, const SessionInfo& info, const fs::path& file, hdf5::Claims& claims)
+      : file_(file),
+        layout_(info.layout()),
+        units_(layout_, info.slides),
+        sums_(CheckSums::open(group, file)),
+        check_(layout_, file) {
+    for (const ColumnInfo& column : kColumnInfo) {
+      if (layout_.has(column.column)) open(group, column);
+    }
+    rows_ = agreed_rows(claims);
+    if (!units_.scaled().empty() && hdf5::has(group, kRoundingPath, file)) {
+      rounding_ = open_rounding(group, units_.scaled().size(), file);
+    }
   }
-  const std::size_t rows = std::min(twin.size(), session.size());
-  shorten(session, rows);
-  shorten(twin, rows);
-  session.twin = std::make_shared<const Session>(std::move(twin));
+
+  const RowLayout& layout() const { return layout_; }
+  std::size_t rows() const { return rows_; }  // as the file claims
+  std::size_t block() const { return sums_ ? sums_->block() : 1; }
+  // Rows in turn: `count` more, a multiple of block() but for the last ones. Fewer are whole only
+  // in a leftover. Errors: FileError.
+  void read(std::size_t count, std::vector<double>& rows) {
+    const auto stride = static_cast<std::size_t>(layout_.stride());
+    rows.resize(count * stride);
+    for (const auto& [column, value] : missing_) {
+      for (std::size_t k = 0; k < count; ++k) {
+        std::ranges::fill(layout_.in(std::span(rows).subspan(k * stride, stride), column), value);
+      }
+    }
+    std::size_t whole = count;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      whole = std::min(whole, read_column(sources_[i], columns_[i], whole, rows));
+    }
+    rows.resize(whole * stride);
+    const auto checked = sums_ ? sums_->check(layout_, rows, from_) : CheckSums::Checked{whole, ""};
+    if (is_leftover(file_)) rows.resize(checked.rows * stride);
+    check_.take(rows);
+    if (!is_leftover(file_) && !checked.why.empty()) refuse(file_, checked.why);
+    rows.resize(take_units_off(rows) * stride);
+    from_ += count;
+  }
+
+ private:
+  void open(hid_t group, const ColumnInfo& column) {
+    if (hdf5::has(group, column.path, file_)) {
+      sources_.push_back(open_column(group, column, layout_, file_));
+      columns_.push_back(column.column);
+    } else if (const auto value = default_of(column.column)) {
+      missing_.emplace_back(column.column, *value);
+    } else {
+      refuse(file_, fmt::format("{}: missing", column.path));
+    }
+  }
+
+  std::size_t agreed_rows(hdf5::Claims& claims) const {
+    hsize_t rows = sources_.front().rows;
+    for (const Source& source : sources_) {
+      claims.stored(source.dataset);
+      if (source.rows != rows && !is_leftover(file_)) {
+        refuse(file_, fmt::format("{} has {} rows, {} has {}; needed: the same", source.path,
+                                  source.rows, sources_.front().path, sources_.front().rows));
+      }
+      rows = std::min(rows, source.rows);
+    }
+    claims.take(rows, static_cast<std::uint64_t>(layout_.stride()) * sizeof(double), "rows");
+    return static_cast<std::size_t>(rows);
+  }
+
+  // Copies a column into `count` rows. Returns how many were there and whole.
+  std::size_t read_column(const Source& source, Column column, std::size_t count,
+                          std::vector<double>& rows) {
+    const auto width = static_cast<std::size_t>(source.width);
+    const auto stride = static_cast<std::size_t>(layout_.stride());
+    numbers_.resize(count * width);
+    if (count > 0 && !read_block(source, from_, count, numbers_.data())) {
+      // Some of them may be there: as many as can be read one after the other.
+      if (is_leftover(file_)) return count > 1 ? read_column(source, column, count / 2, rows) : 0;
+      refuse(file_, fmt::format("{}: rows {} to {} cannot be read: {}", source.path, from_,
+                                from_ + count - 1, hdf5::last_error()));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (std::bit_cast<std::uint64_t>(numbers_[k * width]) == kNeverWritten) return k;
+      std::copy_n(numbers_.begin() + static_cast<std::ptrdiff_t>(k * width), width,
+                  layout_.in(std::span(rows).subspan(k * stride, stride), column).begin());
+    }
+    return count;
+  }
+
+  // From the file's units. Returns how many from the first are whole.
+  std::size_t take_units_off(std::span<double> rows) {
+    const auto stride = static_cast<std::size_t>(layout_.stride());
+    const std::size_t count = rows.size() / stride;
+    const auto& scaled = units_.scaled();
+    roundings_.resize(rounding_ ? count * scaled.size() : 0);
+    const bool there = !rounding_ || count == 0 ||
+                       (rounding_->rows >= from_ + count &&
+                        read_block(*rounding_, from_, count, roundings_.data()));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto row = rows.subspan(k * stride, stride);
+      unfile_points(layout_.in(row, Column::contact_point),
+                    layout_.in(std::span<const double>(row), Column::contact_force));
+      const char* why = nullptr;
+      if (!there) {
+        why = "missing, or cannot be read";
+      } else if (!limpid::take_units_off(
+                     scaled, rounding_ ? roundings_.data() + k * scaled.size() : nullptr, layout_,
+                     row)) {
+        why =
+            "not of these numbers: damaged, or they were changed by another program (which then "
+            "has to delete /check)";
+      }
+      if (why == nullptr) continue;
+      if (is_leftover(file_)) return k;
+      refuse(file_, fmt::format("{}: row {}: {}", kRoundingPath, from_ + k, why));
+    }
+    return count;
+  }
+
+  fs::path file_;
+  RowLayout layout_;
+  SessionUnits units_;
+  std::optional<CheckSums> sums_;
+  RowCheck check_;
+  std::vector<Source> sources_;
+  std::vector<Column> columns_;                     // of each of them
+  std::vector<std::pair<Column, double>> missing_;  // and what they are instead
+  std::optional<Source> rounding_;
+  std::size_t rows_ = 0, from_ = 0;  // from_: the next one
+  std::vector<double> numbers_;
+  std::vector<std::int8_t> roundings_;
+};
+
+// Of both runs the same rows in turn. Returns how many there are.
+std::size_t read_rows(RunReader& first, RunReader* second, const fs::path& file,
+                      const TakeRows& take) {
+  const std::size_t rows = second ? std::min(first.rows(), second->rows()) : first.rows();
+  const std::size_t unit = second ? std::lcm(first.block(), second->block()) : first.block();
+  if (unit > kMostUnit)
+    refuse(file, fmt::format("sums over {} rows; allowed: {}", unit, kMostUnit));
+  const std::size_t block = unit * std::max<std::size_t>(1, kBlockRows / unit);
+  std::vector<double> ones, others;
+  std::size_t read = 0;
+  while (read < rows) {
+    const std::size_t count = std::min(block, rows - read);
+    first.read(count, ones);
+    if (second) second->read(count, others);
+    // Of a leftover that lacks a twin's rows.
+    if (second) ones.resize(std::min(ones.size(), others.size())), others.resize(ones.size());
+    if (!ones.empty()) take(ones, others);
+    const std::size_t whole = ones.size() / static_cast<std::size_t>(first.layout().stride());
+    read += whole;
+    if (whole < count) break;
+  }
+  return read;
 }
 
 }  // namespace
 
-void check_rows(const Session& session, const fs::path& file) {
-  double before = -std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    const double time = session.at(k, Column::time)[0];
-    const double kind = session.at(k, Column::kind)[0];
-    const double wanted = session.at(k, Column::force_wanted)[0];
-    if (!std::isfinite(time) || time <= before) {
-      refuse(file, fmt::format("/time: row {}: {}; needed: finite and increasing", k, time));
+void RowCheck::take(std::span<const double> rows) {
+  const auto stride = static_cast<std::size_t>(layout_.stride());
+  for (std::size_t at = 0; at < rows.size(); at += stride, ++row_) {
+    const auto row = rows.subspan(at, stride);
+    const double time = layout_.in(row, Column::time)[0];
+    if (!std::isfinite(time) || time <= before_) {
+      refuse(file_, fmt::format("/time: row {}: {}; needed: finite and increasing", row_, time));
     }
-    const auto at_most = [&](double value, double most, const char* path) {
+    const auto at_most = [&](Column column, double most, const char* path) {
+      const double value = layout_.in(row, column)[0];
       if (value >= 0 && value <= most) return;
-      refuse(file, fmt::format("{}: row {}: {}; allowed: 0 to {}", path, k, value, most));
+      refuse(file_, fmt::format("{}: row {}: {}; allowed: 0 to {}", path, row_, value, most));
     };
-    at_most(kind, kLaws - 1, "/coupling/kind");
-    at_most(wanted, 1, "/device/force_wanted");
-    before = time;
+    at_most(Column::kind, kLaws - 1, "/coupling/kind");
+    at_most(Column::force_wanted, 1, "/device/force_wanted");
+    before_ = time;
   }
 }
 
-Session read_session_here(const fs::path& file) {
+void check_rows(const Session& session, const fs::path& file) {
+  RowCheck(session.layout, file).take(session.rows);
+}
+
+Session read_session_here(const fs::path& file,
+                          const std::function<void(const Session&, std::uint64_t)>& begins,
+                          const TakeRows& take) {
   const hdf5::Quiet quiet;
   const hdf5::File opened = open(file);
   Session session;
   hdf5::Claims claims(file);
   session.info = read_info(opened.get(), file, claims);
   session.layout = session.info.layout();
-  try {
-    read_run(opened.get(), session, file, claims);
-    session.marks = read_marks(opened.get(), session.size(), file, claims);
-    if (const hdf5::Group twin = twin_group(opened.get(), file)) {
-      read_twin(twin.get(), session, file, claims);
+  RunReader first(opened.get(), session.info, file, claims);
+  std::optional<RunReader> second;
+  const hdf5::Group group = twin_group(opened.get(), file);
+  std::shared_ptr<Session> twin;
+  if (group) {
+    second.emplace(group.get(), session.info, file, claims);
+    session.info.twin = hdf5::read_text(group.get(), "config", file);
+    twin = std::make_shared<Session>(session);
+    twin->info.config = *session.info.twin;
+    twin->info.twin.reset();
+    session.twin = twin;
+    if (second->rows() != first.rows() && !is_leftover(file)) {
+      refuse(file, fmt::format("/twin has {} rows, the other run {}; needed: the same",
+                               second->rows(), first.rows()));
     }
-  } catch (const std::bad_alloc&) {
-    refuse(file, "larger than this computer's memory");
   }
+  begins(session, first.rows());
+  const std::size_t rows = read_rows(first, second ? &*second : nullptr, file, take);
+  read_world(opened.get(), session, file, claims);
+  read_changes(opened.get(), rows, session, file, claims);
+  session.marks = read_marks(opened.get(), rows, file, claims);
+  if (group) {
+    read_world(group.get(), *twin, file, claims);
+    read_changes(group.get(), rows, *twin, file, claims);
+  }
+  return session;
+}
+
+Session read_session_here(const fs::path& file) {
+  std::vector<double> rows, twin_rows;
+  Session session = read_session_here(
+      file, [](const Session&, std::uint64_t) {},
+      [&](std::span<const double> some, std::span<const double> twin) {
+        rows.insert(rows.end(), some.begin(), some.end());
+        twin_rows.insert(twin_rows.end(), twin.begin(), twin.end());
+      });
+  put_rows(session, std::move(rows), std::move(twin_rows));
   return session;
 }
 

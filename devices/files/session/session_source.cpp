@@ -76,42 +76,51 @@ std::string check_columns(const RowLayout& layout) {
   return paths;
 }
 
-CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file) {
-  if (!hdf5::has(root, kCheckPath, file)) return {session.size(), ""};
-  const hdf5::Dataset sums = hdf5::open_dataset(root, kCheckPath, file);
-  const std::uint64_t block = hdf5::read_count(sums.get(), kCheckRows, file);
-  const auto columns = columns_in(hdf5::read_text(sums.get(), kCheckColumns, file));
-  if (block < 1 || block > kMostBlockRead || columns.empty() || columns.size() > kMostColumns) {
-    refuse(file,
-           fmt::format("{}: {} rows, {} columns; needed: some", kCheckPath, block, columns.size()));
+std::optional<CheckSums> CheckSums::open(hid_t root, const std::filesystem::path& file) {
+  if (!hdf5::has(root, kCheckPath, file)) return std::nullopt;
+  CheckSums sums;
+  sums.root_ = root;
+  sums.file_ = file;
+  const hdf5::Dataset dataset = hdf5::open_dataset(root, kCheckPath, file);
+  const std::uint64_t block = hdf5::read_count(dataset.get(), kCheckRows, file);
+  sums.columns_ = columns_in(hdf5::read_text(dataset.get(), kCheckColumns, file));
+  const std::size_t columns = sums.columns_.size();
+  if (block < 1 || block > kMostBlockRead || columns == 0 || columns > kMostColumns) {
+    refuse(file, fmt::format("{}: {} rows, {} columns; needed: some", kCheckPath, block, columns));
   }
-  const Source source = open_source(root, kCheckPath, columns.size(), file);
-  const hdf5::Datatype type(H5Dget_type(sums.get()));
+  sums.block_ = static_cast<std::size_t>(block);
+  sums.source_ = open_source(root, kCheckPath, columns, file);
+  const hdf5::Datatype type(H5Dget_type(sums.source_.dataset.get()));
   if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 8) {
     refuse(file, fmt::format("{}: of another type; needed: uint64", kCheckPath));
   }
+  return sums;
+}
 
-  const AllColumns in_memory = columns_of(session.layout, session.rows);
-  std::vector<std::uint64_t> wanted(columns.size());
-  for (std::size_t from = 0; from < session.size(); from += block) {
-    const std::size_t count = std::min<std::size_t>(block, session.size() - from);
-    const std::string rows = fmt::format("rows {} to {}", from, from + count - 1);
-    if (from / block >= source.rows || !read_row(source, from / block, wanted.data())) {
-      return {from, fmt::format("{} were never written", rows)};
+CheckSums::Checked CheckSums::check(const RowLayout& layout, std::span<const double> rows,
+                                    std::size_t from) const {
+  const std::size_t size = rows.size() / static_cast<std::size_t>(layout.stride());
+  const AllColumns in_memory = columns_of(layout, rows);
+  std::vector<std::uint64_t> wanted(columns_.size());
+  for (std::size_t at = 0; at < size; at += block_) {
+    const std::size_t count = std::min(block_, size - at), which = (from + at) / block_;
+    const std::string these = fmt::format("rows {} to {}", from + at, from + at + count - 1);
+    if (which >= source_.rows || !read_row(source_, which, wanted.data())) {
+      return {at, fmt::format("{} were never written", these)};
     }
-    const auto found = column_sums(in_memory, from, count);
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (!columns[i]) continue;
-      const auto column = static_cast<std::size_t>(*columns[i]);
+    const auto found = column_sums(in_memory, at, count);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      if (!columns_[i]) continue;
+      const auto column = static_cast<std::size_t>(*columns_[i]);
       if (found[column] == wanted[i]) continue;
       const char* path = kColumnInfo[column].path;
-      if (!hdf5::has(root, path, file)) continue;  // a column that somebody left out
-      return {from, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
-                                "another program (which then has to delete /check)",
-                                path, rows)};
+      if (!hdf5::has(root_, path, file_)) continue;  // a column that somebody left out
+      return {at, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
+                              "another program (which then has to delete /check)",
+                              path, these)};
     }
   }
-  return {session.size(), ""};
+  return {size, ""};
 }
 
 void refuse(const std::filesystem::path& file, const std::string& why) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,15 +53,6 @@ inline bool summed(const RowLayout& layout, const ColumnInfo& column) {
 std::size_t count_summed(const RowLayout& layout);
 std::string check_columns(const RowLayout& layout);
 
-// How many rows from the first are as they were recorded, and why the next one is not. The rows are
-// still in the file's units.
-struct CheckedRows {
-  std::size_t rows = 0;
-  std::string why;  // empty if all are
-};
-// Errors: FileError for sums that are not laid out as above.
-CheckedRows checked_rows(hid_t root, const Session& session, const std::filesystem::path& file);
-
 // One dataset with its shape checked: rows, rows x width, or rows x bodies x what each has.
 struct Source {
   hdf5::Dataset dataset;
@@ -99,6 +91,29 @@ bool read_block(const Source& source, hsize_t from, hsize_t count, double* out);
 bool read_block(const Source& source, hsize_t from, hsize_t count, std::int8_t* out);
 // One row of whole numbers.
 bool read_row(const Source& source, hsize_t row, std::uint64_t* out);
+
+// The sums of a run, held against its rows block by block.
+class CheckSums {
+ public:
+  // Nothing where the file has none. Errors: FileError for sums that are not laid out as above.
+  static std::optional<CheckSums> open(hid_t root, const std::filesystem::path& file);
+
+  std::size_t block() const { return block_; }  // rows of a sum
+  // How many of the rows, of which the first is row `from` of the file, a multiple of block(), are
+  // as they were recorded, and why the next one is not. They are still in the file's units.
+  struct Checked {
+    std::size_t rows = 0;
+    std::string why;  // empty if all are
+  };
+  Checked check(const RowLayout& layout, std::span<const double> rows, std::size_t from) const;
+
+ private:
+  hid_t root_ = H5I_INVALID_HID;
+  std::filesystem::path file_;
+  Source source_;
+  std::size_t block_ = 0;
+  std::vector<std::optional<Column>> columns_;  // none: one that this program does not know
+};
 
 // The whole of a list beside the rows: numbers of rows, or texts of at most so many bytes. Errors:
 // FileError for lists of another kind.

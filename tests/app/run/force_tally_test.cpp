@@ -11,38 +11,36 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Two milliseconds a tick; so many ticks in each state, one after the other.
-Session with(std::initializer_list<std::pair<ForceState, int>> states) {
-  Session session;
-  session.info.tick = 0.002;
-  std::vector<double> row(static_cast<std::size_t>(session.layout.stride()));
+std::string tally(std::initializer_list<std::pair<ForceState, int>> states) {
+  const RowLayout layout(3);
+  ForceTally tally(layout);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
   for (const auto& [state, ticks] : states) {
-    session.layout.in(std::span<double>(row), Column::force_state)[0] = static_cast<double>(state);
-    for (int k = 0; k < ticks; ++k) {
-      session.rows.insert(session.rows.end(), row.begin(), row.end());
-    }
+    layout.in(std::span<double>(row), Column::force_state)[0] = static_cast<double>(state);
+    for (int k = 0; k < ticks; ++k) tally.add(row);
   }
-  return session;
+  return tally.text(0.002);
 }
 
 TEST(ForceTally, SaysThatTheForceWasOnAllTheTime) {
-  const std::string text = force_tally(with({{ForceState::on, 100}}));
+  const std::string text = tally({{ForceState::on, 100}});
   EXPECT_THAT(text, HasSubstr("on all the time"));
   EXPECT_THAT(text, Not(HasSubstr("without")));
 }
 
 TEST(ForceTally, OfNoRowsSaysThatNothingWasRecorded) {
-  const std::string text = force_tally(with({}));
+  const std::string text = tally({});
   EXPECT_THAT(text, HasSubstr("nothing was recorded"));
   EXPECT_THAT(text, Not(HasSubstr("all the time")));
 }
 
 TEST(ForceTally, HasTheSecondsWithoutForceAndEachReason) {
-  const std::string text = force_tally(with({{ForceState::on, 500},
-                                             {ForceState::off, 250},
-                                             {ForceState::on, 100},
-                                             {ForceState::lost, 50},
-                                             {ForceState::off, 50},
-                                             {ForceState::too_fast, 50}}));
+  const std::string text = tally({{ForceState::on, 500},
+                                  {ForceState::off, 250},
+                                  {ForceState::on, 100},
+                                  {ForceState::lost, 50},
+                                  {ForceState::off, 50},
+                                  {ForceState::too_fast, 50}});
   EXPECT_THAT(text, HasSubstr("0.800 s of 2.000 s"));
   EXPECT_THAT(text, HasSubstr("0.600 s         force off: not armed"));
   EXPECT_THAT(text, HasSubstr("0.100 s         force off: the device is not connected"));

@@ -133,7 +133,8 @@ TEST(UrdfMotion, AsksForATipWhereOnlyAGripperMoves) {
 // The square of such a length is no number any more.
 TEST(UrdfMotion, TakesAnAxisOfAnyLengthThatIsOne) {
   const auto axis_of = [](const std::string& xyz) {
-    return parse(link("a") + joint("a", "b", "revolute", kLimit + "<axis xyz='" + xyz + "'/>") +
+    return parse(link("a") +
+                 joint("a", "b", "revolute", std::string(kLimit) + "<axis xyz='" + xyz + "'/>") +
                  link("b") + joint("b", "end", "fixed", at("0.3 0 0")) + link("end", ""))
         .joints.at(0)
         .axis;

@@ -14,6 +14,7 @@
 #include "devices/files/session/hand_file.h"
 #include "devices/files/session/session_csv.h"
 #include "devices/files/session/session_source.h"
+#include "devices/files/session/session_stream.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 
@@ -415,6 +416,44 @@ TEST(Session, KeepsABlockWithoutASingleNumber) {
     writer.close();
     EXPECT_TRUE(same_bits(read_session(dir / "a.h5").rows, rows)) << nothing;
   }
+}
+
+// Both runs side by side, a few thousand rows at a time, whatever the length.
+TEST(Session, IsReadInPieces) {
+  const test::TempDir dir;
+  SessionInfo info = sample_info();
+  info.twin = "coupling.eta = 0.5\n";
+  const std::vector<double> rows = sample_rows(RowLayout(3), 0, 20'000);
+  std::vector<double> others = rows;
+  for (std::size_t i = 1; i < others.size(); i += RowLayout(3).stride()) others[i] = 7;
+  SessionWriter writer(dir / "a.h5", info, false);
+  writer.append(rows, kMainLane);
+  writer.append(others, kTwinLane);
+  writer.append(SettingChange{12'345, "coupling.k_vc = 8"});
+  writer.append(Mark{19'999, "last"});
+  writer.close();
+
+  std::vector<double> got, got_twin;
+  std::size_t largest = 0;
+  std::string config;
+  const Session rest = read_session(
+      dir / "a.h5", [&](const Session& about) { config = about.info.config; },
+      [&](std::span<const double> some, std::span<const double> twin) {
+        largest = std::max(largest, some.size());
+        got.insert(got.end(), some.begin(), some.end());
+        got_twin.insert(got_twin.end(), twin.begin(), twin.end());
+      });
+  EXPECT_TRUE(same_bits(got, rows));
+  EXPECT_TRUE(same_bits(got_twin, others));
+  EXPECT_LE(largest, 4096 * static_cast<std::size_t>(RowLayout(3).stride()));
+  EXPECT_EQ(config, info.config);
+  EXPECT_EQ(rest.size(), 0u);
+  EXPECT_EQ(rest.changes.at(0).row, 12'345u);
+  EXPECT_EQ(rest.marks.at(0).tick, 19'999u);
+  EXPECT_EQ(rest.twin->info.config, "coupling.eta = 0.5\n");
+  const Session whole = read_session(dir / "a.h5");
+  EXPECT_TRUE(same_bits(whole.rows, rows));
+  EXPECT_TRUE(same_bits(whole.twin->rows, others));
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// Sessions that need not fit into memory: their rows in turn.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "devices/files/session/session.h"
+
+namespace limpid {
+
+// Rows of a session in turn, whole ones, and as many of its twin's; empty: it has none.
+using TakeRows = std::function<void(std::span<const double> rows, std::span<const double> twin)>;
+
+// As read_session(file), but that `begins` hears what the session is of, `take` its rows, and that
+// what is returned has all else.
+Session read_session(const std::filesystem::path& file,
+                     const std::function<void(const Session& about)>& begins, const TakeRows& take);
+
+// Gives a session that was read so its rows.
+void put_rows(Session& session, std::vector<double> rows, std::vector<double> twin);
+
+}  // namespace limpid
