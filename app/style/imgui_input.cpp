@@ -58,10 +58,7 @@ void lead_menus_by_keys(bool lead) {
   ui.NavDisableMouseHover = false;
 }
 
-void open_menu_by_keys(const char* menu) {
-  ImGui::OpenPopup(menu);
-  ImGui::GetCurrentContext()->NavDisableHighlight = false;
-}
+void show_chosen_item() { ImGui::GetCurrentContext()->NavDisableHighlight = false; }
 
 int menus_open() { return ImGui::GetCurrentContext()->OpenPopupStack.Size; }
 

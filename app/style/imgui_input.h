@@ -16,9 +16,8 @@ void show_mouse_button(int button, bool down);
 
 // Whether arrows and the space bar go through what ImGui has open, as through a menu.
 void lead_menus_by_keys(bool lead);
-// Opens a menu of the bar that is being drawn, right before ImGui::BeginMenu() of it; its first
-// item is chosen then.
-void open_menu_by_keys(const char* menu);
+// Shows which item keys have chosen, in a frame before it is drawn; ImGui hides it now and then.
+void show_chosen_item();
 // So many menus and popups are open inside of each other.
 int menus_open();
 // After all menus of the bar were drawn, where `before` of them were open inside of each other at

@@ -157,10 +157,11 @@ void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
 
 // Returns the one that is open, if one is.
 std::optional<std::size_t> draw_menus(Desktop& d, FileMenus& files) {
-  const auto by_keys = std::exchange(files.by_keys, std::nullopt);
+  // Before the others: they share a window, which belongs to one of them in a frame.
+  if (files.to_open) ImGui::OpenPopup(kMenus[*files.to_open]);
+  files.to_open.reset();
   std::optional<std::size_t> open;
   for (std::size_t i = 0; i < kMenus.size(); ++i) {
-    if (by_keys == i) open_menu_by_keys(kMenus[i]);
     if (!ImGui::BeginMenu(kMenus[i])) continue;
     open = i;
     draw_menu(kMenus[i], d, files);
@@ -176,7 +177,7 @@ void draw_bar_of_menus(Desktop& d, FileMenus& files) {
   const int step = open ? step_to_menu_beside(before) : 0;
   // One less than none is the last one.
   const std::size_t on = step > 0 ? 1 : kMenus.size() - 1;
-  if (step != 0) files.by_keys = (*open + on) % kMenus.size();
+  if (step != 0) files.to_open = (*open + on) % kMenus.size();
 }
 
 // Of all menus side by side.
@@ -262,12 +263,18 @@ void draw_object_menu(Desktop& d) {
 void draw_menu_bar(Desktop& desktop, FileMenus& files) {
   if (!ImGui::BeginMainMenuBar()) return;
   const LiveLoop& loop = desktop.live.loop();
-  if (std::exchange(desktop.asked.menu, false)) files.by_keys = 0;
+  if (std::exchange(desktop.asked.menu, false)) {
+    files.to_open = 0;
+    files.by_keys = true;
+  }
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  if ((menus_open() == 0 && !files.to_open) || moved.x != 0 || moved.y != 0) files.by_keys = false;
+  if (files.by_keys) show_chosen_item();
   constexpr const char* kAll = "Menu";
   if (menus_width() + least_status_width(loop) < ImGui::GetWindowWidth()) {
     draw_bar_of_menus(desktop, files);
   } else {
-    if (std::exchange(files.by_keys, std::nullopt)) open_menu_by_keys(kAll);
+    if (std::exchange(files.to_open, std::nullopt)) ImGui::OpenPopup(kAll);
     if (ImGui::BeginMenu(kAll)) {
       draw_menus(desktop, files);
       ImGui::EndMenu();

@@ -22,7 +22,8 @@ class FileMenus {
   std::filesystem::path draw_scenes(const std::string& present);
   void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
 
-  std::optional<std::size_t> by_keys;  // the menu of the bar that opens in the next frame
+  std::optional<std::size_t> to_open;  // of the bar, in the next frame, by a key
+  bool by_keys = false;                // keys lead through the menu that is open, not the mouse
 
  private:
   struct Entry {
