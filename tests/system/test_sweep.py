@@ -107,6 +107,12 @@ class Tiny(SystemTest):
             self.assertEqual(written, list(table["/measure/human_rms"][:]))
             self.assertEqual({row["kind"] for row in rows}, {"proposed", "predictive"})
 
+    def test_the_figure_says_which_plan_it_is_of_and_no_day(self) -> None:
+        with h5py.File(self.out_dir / "table.h5") as table:
+            key = str(table.attrs["key"])[:8]
+        svg = (self.out_dir / "figure.svg").read_text()
+        self.assertRegex(svg, rf"<metadata>limpid \S+, settings {key}, seed \d+</metadata>")
+
     def test_there_is_a_figure_and_nothing_half_written(self) -> None:
         self.assertEqual((self.out_dir / "figure.png").read_bytes()[:4], b"\x89PNG")
         self.assertEqual(list(self.out_dir.rglob("*.new")), [])

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import resource
 import signal
 import struct
@@ -12,6 +13,8 @@ import subprocess
 import time
 import unittest
 from pathlib import Path
+
+import h5py
 
 from support import ASSETS, LIMPID, Result, Started, SystemTest, limpid
 
@@ -95,6 +98,15 @@ class Video(SystemTest):
         at = header.index(b"mvhd") + 4
         scale, duration = struct.unpack(">II", header[at + 12 : at + 20])
         self.assertAlmostEqual(duration / scale, 0.5, delta=1 / scale)
+
+    def test_an_mp4_says_which_recording_it_is_of(self) -> None:
+        out = self.out(".mp4")
+        self.video(out, "--size", "160x120", "--fps", "5", "--to", "0.4")
+        with h5py.File(SESSION) as file:
+            version, seed = file.attrs["app_version"], file.attrs["seed"]
+            day = str(file.attrs["created"])[:10]
+        wanted = rf"limpid {re.escape(str(version))}, settings [0-9a-f]{{8}}, seed {seed}, {day}"
+        self.assertRegex(out.read_bytes(), wanted.encode())
 
     def test_a_gif_has_its_size_and_runs_for_ever(self) -> None:
         out = self.out(".gif")
