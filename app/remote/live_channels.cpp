@@ -4,11 +4,12 @@
 #include <cmath>
 
 namespace limpid {
-namespace {
 
 using nlohmann::json;
 
 json number(double x) { return std::isfinite(x) ? json(x) : json(); }
+
+namespace {
 
 // "hand/torque.1", "hand/torque.2", ...
 std::vector<int> parts_of(const TraceChannels& channels, const std::string& name) {

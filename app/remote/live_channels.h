@@ -11,6 +11,9 @@
 
 namespace limpid {
 
+// A number as the socket has it: null for what is none.
+nlohmann::json number(double x);
+
 // One name that a client asks for. What is a vector in a session comes as a list: "hand/torque" of
 // all joints, "device/tip" as x, y, z. A plot's channel, "hand/torque.1", comes as a number.
 struct LiveChannel {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/base/version.h"
+#include "app/remote/live_channels.h"
 #include "app/remote/remote_settings.h"
 
 namespace limpid {
@@ -17,8 +18,6 @@ using nlohmann::json;
 
 constexpr std::size_t kRowsInALine = 128;
 constexpr std::string_view kTwinPrefix = "twin/";
-
-json number(double x) { return std::isfinite(x) ? json(x) : json(); }
 
 }  // namespace
 
