@@ -10,6 +10,8 @@ import sys
 import h5py
 import numpy as np
 
+if len(sys.argv) != 2:
+    sys.exit("which recording? read_session.py SESSION.h5")
 with h5py.File(sys.argv[1]) as session:
     apart = session["device/tip"][:] - session["proxy/tip"][:]
     force = np.linalg.norm(session["contact/total_force"][:], axis=1)

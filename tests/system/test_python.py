@@ -157,6 +157,13 @@ class TestNumbers(InAFolder):
         patch.start()
         self.addCleanup(patch.stop)
 
+    def test_of_a_run_that_gave_energy_come_with_a_warning(self) -> None:
+        with h5py.File(self.folder / "recorded.h5", "a") as recorded:
+            recorded.attrs["warnings"] = "E_c rose to 15 J\nthe second run: E_c rose to 2 J"
+        with self.assertWarnsRegex(limpid.RunWarning, "E_c rose to 15 J"):
+            session = limpid.run()
+        self.assertEqual(session.warnings, ["E_c rose to 15 J", "the second run: E_c rose to 2 J"])
+
     def words(self) -> list[str]:
         return (self.folder / "words").read_text().splitlines()
 

@@ -14,11 +14,11 @@ sessions are read with h5py and numpy. Documentation: README.md beside this file
 """
 
 from limpid.client import Answer, Client, Rows, connect, serve
-from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError
+from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError, RunWarning
 from limpid.runs import run, sweep
 from limpid.session import Contact, Session, session
 
 __all__ = [
     "Answer", "ArgumentError", "Client", "Contact", "LimpidError", "ProgramError", "RecordingError",
-    "RequestError", "Rows", "Session", "connect", "run", "serve", "session", "sweep",
+    "RequestError", "Rows", "RunWarning", "Session", "connect", "run", "serve", "session", "sweep",
 ]  # fmt: skip

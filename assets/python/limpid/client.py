@@ -33,7 +33,8 @@ class Rows(NamedTuple):
     """Rows of the channels that are followed, as they came."""
 
     ticks: List[int]  # of each row, counted since the loop was opened
-    values: List[List[Optional[float]]]  # of each row, in the order of the channels; None: no number
+    # Of each row, in the order of the channels: a number, None where it is none, or a list of a vector.
+    values: List[List[Any]]
     dropped: int  # rows that were due since follow() and found no room
 
 

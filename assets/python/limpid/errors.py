@@ -19,5 +19,9 @@ class RecordingError(LimpidError):
     was recorded until then."""
 
 
+class RunWarning(UserWarning):
+    """A run gave energy, or moved as no hand does: its numbers are those of a run that went wrong."""
+
+
 class ProgramError(LimpidError):
     """The program is missing, did not start, refused its input or has ended."""

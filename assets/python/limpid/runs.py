@@ -7,10 +7,11 @@ import hashlib
 import itertools
 import os
 import tempfile
+import warnings
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
-from limpid.errors import ArgumentError, ProgramError
+from limpid.errors import ArgumentError, ProgramError, RunWarning
 from limpid.program import carry_out, setting_words
 from limpid.session import Session
 from limpid.values import Hand, PathLike, hand_rows, is_path, number, path_of, settings_of, text_of, whole
@@ -57,6 +58,7 @@ def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
     dot: coupling__k_vc=8. `record`: where the session is kept, also in place of one that is there with
     `force`; else it goes once it has been read. `channels`: only these are read.
 
+    A run that gave energy, or moved as no hand does, warns of it (RunWarning; session.warnings).
     Raises ProgramError for what the program refuses, or where the run becomes unstable, and
     ArgumentError for what cannot be asked of it."""
     chosen = settings_of(settings, {**more, **{name: value for name, value in (
@@ -81,6 +83,8 @@ def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
         except ProgramError as error:
             raise ProgramError(str(error).replace("--force", "force=True")) from error
         session = Session(out, channels)
+        for warning in session.warnings:
+            warnings.warn(warning, RunWarning, stacklevel=2)
         if record is None:
             session.keep()
         return session

@@ -236,6 +236,12 @@ class Session:
         return self._recording.lanes[self._lane].law
 
     @property
+    def warnings(self) -> List[str]:
+        """What went wrong in the run, a sentence each: it gave energy, became unstable, or moved as no
+        hand does. Those of the second run begin with "the second run: "."""
+        return str(self.attributes.get("warnings", "")).splitlines()
+
+    @property
     def device_tip(self) -> "numpy.ndarray":
         """N x 3, where the device's tip is [m]."""
         return self.channel("device/tip")
