@@ -50,7 +50,7 @@ int say_arm(const ArmOptions& options) {
   return 0;
 }
 
-void print_json(const DeviceHub& hub) {
+void print_json(DeviceHub& hub) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const FoundDevice& found : hub.found()) {
     list.push_back({{"id", found.place.id},
@@ -67,7 +67,7 @@ void print_json(const DeviceHub& hub) {
   fmt::print("{}\n", json.dump(2));
 }
 
-void print_text(const DeviceHub& hub) {
+void print_text(DeviceHub& hub) {
   fmt::print(
       "virtual arm\n  built in; any URDF chain of 1 to 32 joints (--device), driven by "
       "the mouse or a recorded hand\n");
