@@ -25,8 +25,8 @@ ArmDescription built_in(const DeviceTraits& traits) {
   if (traits.dof >= 1 && static_cast<std::size_t>(traits.dof) <= kBuiltIn.size()) {
     return shipped(kBuiltIn[static_cast<std::size_t>(traits.dof) - 1]);
   }
-  throw UnknownArmError(fmt::format("{} has {}, and no built-in arm has as many: {}", traits.name,
-                                    joints(traits.dof), kSayWhich));
+  throw UnknownArmError(
+      fmt::format("{} has {}, and no built-in arm has as many", traits.name, joints(traits.dof)));
 }
 
 // Another arm in its place would be one that nobody has measured or named: it is for people to say
@@ -104,7 +104,8 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
                    "for its usual one again");
     if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
     if (arm.dof() != traits.dof) {
-      add(besides, not_as_many("was identified as", arm, traits));
+      add(besides,
+          not_as_many("was identified as", arm, traits) + " `limpid identify --forget` ends that.");
     } else if (has_own(kind) && !same_joints(arm, shipped(kind->arm))) {
       add(besides,
           fmt::format("The arm {} that {} was identified as has other joints than its own.",
@@ -133,11 +134,13 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
     }
   }
   TakenArm last;
-  const ArmDescription arm = built_in(traits);
   try {
-    last = taken(arm, traits, fmt::format("a built-in one, until you {}", kSayWhich), besides);
+    last = taken(built_in(traits), traits, fmt::format("a built-in one, until you {}", kSayWhich),
+                 besides);
   } catch (const FileError& error) {
-    throw UnknownArmError(fmt::format("{}; {}", error.what(), kSayWhich));
+    std::string why = besides;
+    add(why, fmt::format("{}; {}", error.what(), kSayWhich));
+    throw UnknownArmError(why);
   }
   last.known = false;
   double most = 0;

@@ -27,13 +27,14 @@ struct TakenArm {
 // Errors: FileError, where the joints are not as many, or a joint's ranges have nothing in common.
 ArmDescription narrowed(ArmDescription arm, const DeviceTraits& traits);
 
+inline constexpr double kShortestLever = 0.05;  // of a device that nothing is known of [m]
+
 // The arm that it was identified as, else its own, else `named` (by the command that is carried
 // out; null: none is), else what somebody has said, else a built-in one. What is known but does not
 // fit the device any more is said, and not used. As nobody knows how long the levers of a device
-// are of which nothing is known, its torque is held to the tip's limit at kShortestLever [m].
+// are of which nothing is known, its torque is held to the tip's limit at kShortestLever.
 // `kind` null: nothing is plugged in. Errors: FileError, where an arm's file cannot be read;
 // UnknownArmError.
-inline constexpr double kShortestLever = 0.05;
 TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const DeviceTraits& traits,
                    const ArmDescription* named = nullptr);
 

@@ -129,6 +129,14 @@ TEST_F(ATakenArm, SaysThatADeviceHasOtherJointsNowThanItWasIdentifiedWith) {
   EXPECT_EQ(taken.arm.dof(), 3);
   EXPECT_THAT(taken.why, HasSubstr("was identified as the arm"));
   EXPECT_THAT(taken.why, HasSubstr("of 2 joints, and has 3 joints now"));
+  try {
+    taken_arm(notes, &kRaw, test::pushing(5, 3));
+    ADD_FAILURE() << "no built-in arm has five joints";
+  } catch (const UnknownArmError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("of 2 joints, and has 5 joints now"));
+    EXPECT_THAT(error.what(), HasSubstr("identify --forget"));
+    EXPECT_THAT(error.what(), HasSubstr("--arm"));
+  }
 }
 
 // Its own levers and ranges are known: three slides in other places are not it.
