@@ -88,7 +88,7 @@ std::vector<Line> recorded_runs(const Line& unit) {
     recorder.finish();
   }));
   lines.push_back(line("run/writing", "writing the file alone, a row", [&] {
-    SessionWriter writer(out.file, info, true);
+    SessionWriter writer(out.file, info, true, Packing::no);
     writer.append(rows);
     writer.close();
   }));

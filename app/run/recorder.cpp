@@ -49,7 +49,8 @@ std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Paramet
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
                    const Parameters& initial, bool force, std::size_t room, const Parameters* twin)
     : out_(out),
-      writer_(out, info, force),
+      // Nobody waits for the packing where a clock sets the pace.
+      writer_(out, info, force, room > kWaitingRoom ? Packing::yes : Packing::no),
       ring_(ring_rows(room, (twin ? 2 : 1) * info.layout().stride()),
             static_cast<std::size_t>((twin ? 2 : 1) * info.layout().stride())),
       lanes_(twin ? 2 : 1),

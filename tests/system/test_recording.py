@@ -249,8 +249,12 @@ class Places(WithAnArm):
         self.assertGreaterEqual(len(read_session(elsewhere)), 100)
         self.assertFalse(out.exists() or self.part(out).exists())
 
-    def test_it_is_packed_and_nothing_else_is_left(self) -> None:
-        out = self.record(*self.arm, "--duration", "2")
+    def test_it_is_packed_where_a_clock_sets_the_pace_and_nothing_else_is_left(self) -> None:
+        quick = self.record(*self.arm, "--duration", "2")
+        with h5py.File(quick, "r") as file:
+            self.assertIsNone(file["time"].compression)
+        quick.unlink()
+        out = self.record(*self.arm, "--duration", "2", "--realtime")
         with h5py.File(out, "r") as file:
             time = file["time"]
             self.assertEqual((time.compression, time.shuffle), ("gzip", True))

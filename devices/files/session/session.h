@@ -114,6 +114,9 @@ struct Session {
 // Which of a twin's runs.
 inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 
+// Whether a session that is complete is packed. That takes several times as long as writing it.
+enum class Packing { no, yes };
+
 // Writes OUT.h5.part while running (SWMR: readable live), which OUT.h5 takes the place of when it
 // is closed: the same, packed where the file system has files without a name and room for it. Rows
 // reach the disk at least every three quarters of a second of ticks. Not for the haptic thread.
@@ -121,7 +124,8 @@ inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 // fails (disk full); after a failed write the .part keeps what had been flushed.
 class SessionWriter {
  public:
-  SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force);
+  SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force,
+                Packing packing = Packing::yes);
   ~SessionWriter();  // without close(): leaves the .part, as a killed program would
   SessionWriter(const SessionWriter&) = delete;
   SessionWriter& operator=(const SessionWriter&) = delete;

@@ -157,16 +157,16 @@ struct SessionWriter::File {
   bool force;
   std::optional<WriteLock> lock;
   std::optional<SessionFile> session;
-  std::optional<PackedCopy> packed;
+  std::optional<PackedCopy> packed;  // none: it is not packed
 
   template <class... What>
   void append(const What&... what) {
     session->append(what...);
-    packed->with([&](SessionFile& copy) { copy.append(what...); });
+    if (packed) packed->with([&](SessionFile& copy) { copy.append(what...); });
   }
 };
 
-SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
+SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force, Packing packing)
     : file_(std::make_unique<File>()) {
   check_session_info(info, out);
   file_->out = std::move(out);
@@ -184,7 +184,7 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force)
   file_->lock.emplace(file_->part, WriteLock::Make::yes);
   try {
     file_->session.emplace(file_->part, file_->lock->descriptor(), info, Storage::safe);
-    file_->packed.emplace(file_->out, info);
+    if (packing == Packing::yes) file_->packed.emplace(file_->out, info);
   } catch (const FileError&) {
     std::error_code ignored;
     fs::remove(file_->part, ignored);  // it holds nothing yet
@@ -203,6 +203,7 @@ void SessionWriter::append(const SettingChange& change, std::size_t lane) {
 void SessionWriter::append(const Mark& mark) { file_->append(mark); }
 void SessionWriter::append_world(std::span<const double> world, std::size_t lane) {
   file_->session->append_world(world, lane);
+  if (!file_->packed) return;
   file_->packed->with([&](SessionFile& copy) { copy.append_world(world, lane); });
 }
 std::uint64_t SessionWriter::rows_written() const { return file_->session->rows(); }
@@ -214,7 +215,7 @@ void SessionWriter::close(const std::string& warnings) {
   file_->session->close(warnings);
   std::error_code none;
   const bool free = file_->force || !fs::exists(file_->out, none);
-  if (free && file_->packed->keep(warnings)) {
+  if (free && file_->packed && file_->packed->keep(warnings)) {
     fs::remove(file_->part, none);
   } else {
     publish(file_->part, file_->out, file_->force);
