@@ -40,13 +40,16 @@ std::vector<Case> laws() {
   return cases;
 }
 
+void add_plane(Scene& scene, const Vec3& normal, const Material& material) {
+  scene.objects.emplace_back();
+  scene.objects.back().shape.emplace<Plane>(Plane{normal});
+  scene.objects.back().pose = pose_at(kTable);
+  scene.objects.back().material = material;
+}
+
 Scene table(double damping, double friction_static, double friction_kinetic) {
   Scene scene;
-  Object plane;
-  plane.shape = Plane{};
-  plane.pose = pose_at(kTable);
-  plane.material = {kStiffness, damping, friction_static, friction_kinetic};
-  scene.add(plane);
+  add_plane(scene, Vec3::UnitZ(), {kStiffness, damping, friction_static, friction_kinetic});
   return scene;
 }
 
@@ -173,14 +176,11 @@ TEST(Surfaces, ThatMakeEdgesAndCornersGiveNoEnergyEither) {
   for (int round = 0; round < 12; ++round) {
     Scene scene;
     for (int i = 0; i < 1 + round % 3; ++i) {
-      Object plane;
-      plane.shape = Plane{
-          Vec3(random.between(-1, 1), random.between(-1, 1), random.between(0.2, 1)).normalized()};
-      plane.pose = pose_at(kTable);
-      const double friction = random.between(0, 1.2);
-      plane.material = {std::pow(10, random.between(2, 3.7)), random.between(0, 5), friction,
-                        friction * random.between(0.3, 1)};
-      scene.add(plane);
+      const Vec3 normal(random.between(-1, 1), random.between(-1, 1), random.between(0.2, 1));
+      const double stiffness = std::pow(10, random.between(2, 3.7));
+      const double damping = random.between(0, 5), friction = random.between(0, 1.2);
+      add_plane(scene, normal.normalized(),
+                {stiffness, damping, friction, friction * random.between(0.3, 1)});
     }
     const Vec3 sway(random.between(-0.01, 0.01), random.between(-0.01, 0.01), 0.01);
     const Vec3 often(random.between(3, 20), random.between(3, 20), random.between(3, 20));
