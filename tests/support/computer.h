@@ -5,13 +5,10 @@
 #include <dlfcn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <string>
 #include <string_view>
 
 namespace limpid::test {
@@ -36,26 +33,19 @@ inline bool has_offscreen_pictures() {
   return here != nullptr && start(here, nullptr, nullptr) != 0;
 }
 
-// All memory of a process, whatever it comes to need: by a capability, or without a limit.
+// All memory of a process, whatever it comes to need: it has no limit, or may lock beyond it. Asked
+// without a child, after whose fork() the pages of this process would fault once more.
 inline bool may_lock_memory() {
-  constexpr unsigned kIpcLock = 14;  // CAP_IPC_LOCK
-  unsigned long long capabilities = 0;
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    if (word == "CapEff:") status >> std::hex >> capabilities;
-  }
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
-  if ((capabilities >> kIpcLock & 1) == 0 && limit.rlim_max != RLIM_INFINITY) return false;
-  const pid_t child = fork();
-  if (child == 0) {
-    limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_MEMLOCK, &limit);
-    _exit(mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : 1);
-  }
-  int left = 1;
-  waitpid(child, &left, 0);
-  return left == 0;
+  if (limit.rlim_max == RLIM_INFINITY) return true;
+  const std::size_t beyond = limit.rlim_cur + (std::size_t{1} << 20);
+  void* const room = mmap(nullptr, beyond, PROT_READ | PROT_WRITE,
+                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) return false;
+  const bool may = mlock2(room, beyond, MLOCK_ONFAULT) == 0;
+  munmap(room, beyond);
+  return may;
 }
 
 // The font that Debian's package fonts-inter brings.
