@@ -114,13 +114,16 @@ Command declare_devices(CLI::App& app) {
                   ->type_name("FILE.urdf");
   command->add_option("--tip", options->tip, "the link in that URDF that the hand holds")
       ->needs(arm);
-  command
-      ->add_option("DEVICE", options->device,
-                   "with --arm: its id, as listed here; default: the one in use")
-      ->needs(arm);
+  command->add_option("DEVICE", options->device,
+                      "with --arm: its id, as listed here; default: the one in use");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "one JSON object on standard output")->excludes(arm);
-  return [options, json] { return options->arm.empty() ? devices(*json) : say_arm(*options); };
+  return [options, json] {
+    if (!options->arm.empty()) return say_arm(*options);
+    if (options->device.empty()) return devices(*json);
+    throw UsageError(fmt::format(
+        "{}: a device is named beside --arm only, which says which arm it is", options->device));
+  };
 }
 
 }  // namespace limpid

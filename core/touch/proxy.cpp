@@ -130,7 +130,7 @@ void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
   Motion<N> motion = answer.solve({Vec<N>::Zero(n), momentum(T) + drive.constant});
   friction_.collect(*contacts_, arm_, frames_, motion.u, T);
   if (friction_.any()) friction_.solve(answer, T, motion);
-  stood_still_ = friction_.any() && friction_.last_change() > kMostChange;
+  stood_still_ = friction_.any() && !friction_.settled() && friction_.last_change() > kMostChange;
   if (stood_still_) {
     ++unsettled_;
     friction_.prepare(answer, T);

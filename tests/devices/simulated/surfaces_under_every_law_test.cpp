@@ -144,6 +144,7 @@ TEST(Surfaces, DampWhatIsPressedInAndLetOutUnderEveryLaw) {
 struct Books {
   double most_gain = 0, lost = 0;  // of a tick in contact, and of all [J]
   int touched = 0;
+  double unsettled = 0;  // ticks for which the proxy stood still
 };
 Books books(const Rows& rows) {
   Books b;
@@ -152,6 +153,7 @@ Books books(const Rows& rows) {
     b.most_gain = std::max(b.most_gain, gain);
     b.lost -= gain;
     b.touched += rows.touches(k).empty() ? 0 : 1;
+    b.unsettled = rows.at(k, Column::unsettled);
   }
   return b;
 }
@@ -165,9 +167,27 @@ TEST(Surfaces, ThatRubAndDampGiveNoEnergyUnderAnyLaw) {
     SCOPED_TRACE(c.name);
     const Books b = books(run(c.p, table(2, 0.7, 0.5), 5, hand));
     EXPECT_LE(b.most_gain, 1e-9);
+    EXPECT_EQ(b.unsettled, 0);
     EXPECT_GT(b.lost, 1e-3);
     EXPECT_GT(b.touched, 1000);
     EXPECT_LT(b.touched, 4990);
+  }
+}
+
+// One contact alone, and without friction, though the scene has some elsewhere.
+TEST(Surfaces, ThatAreSmoothBesideRoughOnesPushAsEver) {
+  for (const Case& c : laws()) {
+    SCOPED_TRACE(c.name);
+    Scene scene;
+    add_plane(scene, Vec3::UnitZ(), {kStiffness, 0, 0, 0});
+    const Rows smooth = run(c.p, scene, 2, stroke);
+    add_plane(scene, -Vec3::UnitX(), {kStiffness, 0, 0.5, 0.5});
+    scene.objects.back().pose = pose_at(kTable + Vec3(1, 0, 0));  // far behind
+    const Rows beside = run(c.p, scene, 2, stroke);
+    const std::size_t last = smooth.size() - 1;
+    EXPECT_EQ(beside.at(last, Column::unsettled), 0);
+    EXPECT_GT(force(smooth, last).z(), 0.5);
+    EXPECT_NEAR(force(beside, last).z(), force(smooth, last).z(), 0.01);
   }
 }
 
@@ -192,6 +212,7 @@ TEST(Surfaces, ThatMakeEdgesAndCornersGiveNoEnergyEither) {
       SCOPED_TRACE(testing::Message() << c.name << ", corner " << round);
       const Books b = books(run(c.p, scene, 2, hand));
       EXPECT_LE(b.most_gain, 1e-9);
+      EXPECT_EQ(b.unsettled, 0);
       EXPECT_GT(b.touched, 300);
     }
   }
