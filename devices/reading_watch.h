@@ -12,7 +12,7 @@ namespace limpid {
 // may have been up to kStaleReading old when it was read.
 class ReadingWatch {
  public:
-  // Of a device that has just been plugged in: its first reading is judged by its range alone.
+  // Begins with a device that was just plugged in: its first reading is judged by its range alone.
   void start() { *this = {}; }
 
   void wait(double dt) noexcept { since_ += dt; }  // so much time passes [s]

@@ -103,7 +103,7 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
   return json;
 }
 
-// Of every number above by its key; what is not here has none.
+// Units of the numbers above, by their keys; numbers without an entry have no unit.
 nlohmann::ordered_json units() {
   return {{"w_f", "rad/s"},
           {"w_c", "rad/s"},

@@ -33,7 +33,7 @@ struct InfoOptions {
   bool force = false, json = false;
 };
 
-// What the rows of a recording amount to, whichever of them are in memory.
+// Summary of a recording's rows, which come in pieces and need not be in memory.
 class RowsTold {
  public:
   void begins(const Session& about) {
@@ -102,8 +102,8 @@ std::string settings_text(const Session& session, const std::string& file) {
   }
 }
 
-// As its rows have them, so those of recordings that were made before there were any, too. None of
-// another version's settings. Rows that are not in memory are read once more.
+// Warnings worked out of the rows, so that older recordings have them as well; none where another
+// version wrote the settings. Rows that are not in memory are read once more.
 std::vector<std::string> warnings_in(const Session& session, const std::string& file) {
   try {
     if (!session.rows.empty()) return warnings_of(session, file);

@@ -268,7 +268,7 @@ int identify_device(IdentifyOptions options) {
   const std::unique_ptr<Device> device = open_device(
       options.device, hub, fmt::format(", and \"{}\" tries it without one", kSimulated));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
-  // Who names an arm here means that one, whatever it was identified as before.
+  // An arm that is named here counts before the one that was identified.
   order.guess = options.input.device.empty() ? arm_of_device(device->traits(), hub, options.input)
                                              : narrowed(order.guess, device->traits());
   const auto move = [&](bool, IdentifyProgress& motion) {

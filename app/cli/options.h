@@ -81,7 +81,7 @@ std::function<std::string(std::string)> or_shipped(Kinds kinds);
 
 // For the help text: every key with its default and what is allowed.
 std::string parameter_help();
-// What is said of each option in lines that a terminal has room for.
+// Breaks the texts of all options into lines that fit into a terminal.
 void wrap_help(CLI::App& command);
 // A word of the command line and what it is.
 struct HelpWord {

@@ -1,4 +1,4 @@
-// What a run or a recording amounts to, as JSON.
+// Summaries of runs and recordings as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

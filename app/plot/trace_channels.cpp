@@ -12,7 +12,7 @@ namespace limpid {
 
 namespace {
 
-// Of a setting of this run. Those of hand, device and loop are both runs'.
+// Whether the mark is of a setting of this run. Settings of hand, device and loop are both runs'.
 bool changes(const PlotMark& mark, const RunOfHistory& run) {
   std::string_view key = mark.key;
   const bool of_twin = key.starts_with(kTwinMark);

@@ -73,7 +73,7 @@ class TraceChannels {
   void append(History& history, std::span<const double> row,
               std::span<const double> again = {}) const;
   const RowLayout& layout() const { return layout_; }
-  // What works the tips out; null without an arm.
+  // Columns that are worked out of rows, the tips among them; null without an arm.
   const DerivedColumns* tips() const { return tips_ ? &*tips_ : nullptr; }
 
  private:
@@ -101,7 +101,7 @@ struct RunOfHistory {
   int first = 0;
   bool twin = false;
 };
-// What the mark of a setting that is the second run's alone begins with.
+// Beginning of the marks of settings that are the second run's alone.
 inline constexpr std::string_view kTwinMark = "twin: ";
 
 // The energy that the coupling gave, followed through a history.
@@ -111,7 +111,7 @@ class EnergyAccount {
   // `end` lies before them. The history has the channels of TraceChannels.
   void follow(const History& history, SampleIndex end, RunOfHistory run = {});
 
-  // As EnergyShares has them [J].
+  // Shares of E_c as EnergyShares has them [J].
   double total() const { return shares_.total(); }
   double by_changes() const { return shares_.by_changes(); }
   double forgiven() const { return shares_.forgiven(); }

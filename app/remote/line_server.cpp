@@ -263,7 +263,7 @@ void LineServer::live() {
       if (quit_) return;
       if (events_.size() > kMostEvents) files[1].fd = -1;
       for (const auto& [id, c] : connections_) {
-        // One without room is heard as well: what it says may be that the force is to be cut.
+        // A client without room is heard as well: it may ask to cut the force.
         const bool listens = !c.parting && !c.ended && !c.too_long;
         const int wanted = (listens ? POLLIN : 0) | (c.out.empty() ? 0 : POLLOUT);
         // One that has ended would be reported all the time.

@@ -60,8 +60,8 @@ class LineServer {
   static constexpr std::size_t kMostUnanswered = 16;                  // lines of one client
   // Then no further line of the client is taken [bytes].
   static constexpr std::size_t kMostUnsent = std::size_t{256} << 10;
-  // Of lines that wait to be taken; those beyond are dropped, and the client is told how many
-  // [bytes].
+  // Room for lines that wait to be taken; lines beyond it are dropped, and the client is told how
+  // many [bytes].
   static constexpr std::size_t kMostWaiting = std::size_t{256} << 10;
   static constexpr std::chrono::milliseconds kParting{1000};  // to take what is left
 

@@ -14,8 +14,8 @@ namespace limpid {
 // A number as the socket has it: null for what is none.
 nlohmann::json number(double x);
 
-// One name that a client asks for. What is a vector in a session comes as a list: "hand/torque" of
-// all joints, "device/tip" as x, y, z. A plot's channel, "hand/torque.1", comes as a number.
+// A channel that a client asks for by its name. A session's vector comes as a list: "hand/torque"
+// of all joints, "device/tip" as x, y, z. A plot's channel, "hand/torque.1", comes as a number.
 struct LiveChannel {
   std::vector<int> parts = {};              // of TraceChannels, if it is made of these
   std::optional<Column> column = {};        // else one of the row as it is

@@ -57,8 +57,8 @@ struct RemoteHost {
   std::function<std::uint64_t()> tick;                     // of the newest row
   // By the names of their verbs; those that are missing need a window.
   std::map<std::string, Action> actions;
-  // What has gone wrong by itself and lasts, in words, as a recording that has ended on a full
-  // disk; empty: nothing. Every client is told at once.
+  // Trouble that came by itself and lasts, in words, as a recording that has ended on a full disk;
+  // empty: none. Every client is told at once.
   std::function<std::string()> trouble = [] { return std::string(); };
   std::function<void(LineServer::Client)> gone = [](LineServer::Client) {};
 };

@@ -146,7 +146,7 @@ namespace {
 
 constexpr double kTriedTick = 1.001e-3;  // [s]
 
-// Of spring and damper alone.
+// Passivity of spring and damper alone.
 Passivity by_condition3(const Condition3& c) {
   if (!c.known) return {std::nullopt, "no bound is known, as packets are lost (link.loss)"};
   return {c.holds, c.holds ? "condition (3) holds" : "condition (3) is broken"};

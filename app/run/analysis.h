@@ -42,7 +42,7 @@ struct Passivity {
   std::optional<bool> passive;  // none: no bound is known
   std::string by;               // what says so, in words: "condition (3)"
 };
-// Of the parameters that `a` is the analysis of.
+// Passivity of the law chosen; `p`: the parameters that `a` is the analysis of.
 Passivity passivity(const Analysis& a, const Parameters& p);
 
 // b_d of every joint: the setting, or what the arm's file says [N m s/rad].

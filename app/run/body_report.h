@@ -22,7 +22,7 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm);
 // without one as far as the tip gets [J].
 double most_weight_energy(const Scene& scene, const ArmDescription& arm);
 
-// What springs hold at the start: those between bodies, and those of their joints [J].
+// Energy of all springs at the start: those between bodies, and those of their joints [J].
 double spring_energy(const Scene& scene);
 
 // How far the tip stays away from the object at the least [m]; not above 0: it gets there. Of a

@@ -13,18 +13,18 @@ namespace limpid {
 // Energy that counts: what E_c is above less than this is noise [J].
 inline constexpr double kGivenEnergy = 1e-3;
 
-// Of E_c, the energy that the controller gave since the start, the part that is nobody's fault:
+// Shares of E_c, the energy that the controller gave since the start. Three are no fault of the
+// coupling:
 //
-// - Who switches the coupling, or moves one of its sliders, while it is stretched puts energy in,
-// as
-//   one who bends a spring does. What E_c gains within kSettling after a change is the change's.
-// - A motor at its limit gives another torque than the coupling asks for. What E_c gains meanwhile
+// - A person who switches the coupling, or moves one of its sliders, while it is stretched puts
+//   energy in, as bending a spring does. The gain of E_c within kSettling after a change counts so.
+// - A motor at its limit gives another torque than the coupling asks for. The gain of E_c meanwhile
 //   is the limit's.
-// - What the motors give for the device's own weight, springs and friction the device takes.
+// - The motors give energy for the device's own weight, springs and friction; the device takes it.
 //
-// What is left is the coupling's own: while it is passive it stays below zero. What it gave before
-// the last change is forgiven: the setting that gave it is gone. So E_c is own() + by_changes() +
-// by_limits() + forgiven(), and what was for the device's own forces.
+// The rest is the coupling's own: while it is passive it stays below zero. Energy that it gave
+// before the last change is forgiven: the setting that gave it is gone. So E_c is own() +
+// by_changes() + by_limits() + forgiven(), and the energy for the device's own forces.
 class EnergyShares {
  public:
   static constexpr double kSettling = 0.3;  // [s]
@@ -43,7 +43,8 @@ class EnergyShares {
   double forgiven() const { return forgiven_; }              // [J]
   double by_limits() const { return limits_; }               // [J]
   double own() const { return without_limits() - limits_; }  // [J]
-  // Where the coupling is known not to be passive, its motors' limit is no excuse [J].
+  // The coupling's own share where it is known not to be passive: its motors' limit is no excuse
+  // then [J].
   double without_limits() const { return total_ - changes_ - forgiven_; }
 
  private:

@@ -1,4 +1,4 @@
-// Where a figure or a table comes from, in a line.
+// Provenance of figures and tables: one line that says which program made them, of which settings.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ std::string today();
 std::string provenance(const std::string& settings, std::optional<std::uint64_t> seed,
                        const std::string& date = today());
 
-// Of a recording: the version that made it, its settings, its seed, the day it was made.
+// The line of a recording: the version that made it, its settings, its seed, the day it was made.
 std::string provenance_of(const SessionInfo& info);
 
 // With the line in a <metadata> behind the root's first tag; as it is where there is no such tag.

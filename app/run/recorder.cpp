@@ -34,7 +34,7 @@ std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t la
   return worlds;
 }
 
-// Of a recording that does not say whose rows they are there is nothing to watch.
+// One watch for each lane; none where the recording does not say which arm its rows are of.
 std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Parameters> initial,
                                 std::size_t lanes) {
   std::deque<RunWatch> watches;

@@ -43,7 +43,7 @@ class Recorder {
   void begins(std::span<const double> world, std::size_t lane = kMainLane) noexcept;
 
   // The owner's side.
-  // What somebody notes at a row that was pushed. Errors: FileError for a text that is too long, or
+  // Notes something at a row that was pushed. Errors: FileError for a text that is too long, or
   // where kMostMarks are kept already.
   void mark(Mark mark);
   std::uint64_t newest() const noexcept { return rows() > 0 ? rows() - 1 : 0; }  // row
@@ -93,10 +93,10 @@ class Recorder {
   std::thread thread_;
 };
 
-// What is said of one whose file system has no locks, for people; empty of any other.
+// Sentence about a recording whose file system has no locks, for people; empty where it has.
 std::string lock_note(const Recorder& recorder);
 
-// Of one that has failed: that it ended by itself, and what saves it, for people.
+// Sentence about a recording that has failed: that it ended by itself, and how to save it.
 std::string why_it_ended(const Recorder& recorder);
 
 }  // namespace limpid

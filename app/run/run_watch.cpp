@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kTipVelocity = 1;  // of the device, in kDerivedInfo
 const std::string kSecondRun = "the second run: ";
 
-// What the law lets E_c rise to [J].
+// The largest E_c that the law allows [J].
 double promised(const Parameters& p) {
   if (!info(p.kind).keeps_ledger) return 0;
   return p.kind == CouplingKind::tank ? p.tank_energy : p.energy;

@@ -1,5 +1,5 @@
-// What of a run must not pass without a word: energy that the coupling gave, speeds of no hand,
-// rows that no arm could follow.
+// Faults of a run that must not pass without a word: energy that the coupling gave, speeds of no
+// hand, rows that no arm could follow.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class RunWatch {
   void change(std::uint64_t row, const Parameters& p);
   void add(std::span<const double> row);
 
-  // What to say, a sentence each; none of a run that is as it should be.
+  // Warnings, a sentence each; none of a run that is as it should be.
   std::vector<std::string> warnings() const;
   // The same without that it became unstable, for whoever says that by RunEnd.
   std::vector<std::string> cautions() const;
@@ -87,7 +87,7 @@ class SessionWatch {
 // Those of a recording, of all its lanes. Errors: FileError and ParameterError where its settings
 // cannot be read. A recording whose arm cannot be read has none.
 std::vector<std::string> warnings_of(const Session& session, const std::string& file);
-// One a line, as recordings keep them.
+// Warnings joined one a line, as recordings keep them.
 std::string warnings_text(const std::vector<std::string>& warnings);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// What is wrong with a scene before anybody touches it.
+// Flaws of a scene that can be known before anybody touches it.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-// Of what stands still, in sentences: things beyond the tip's reach, walls
+// Flaws of still objects, in sentences: things beyond the tip's reach, walls
 // stiffer than the law of `p` renders on this arm, kinetic friction above the static one, and the
 // tip inside something at the rest pose. Meshes have their triangles. Of things that move
 // report_on_bodies() says it.

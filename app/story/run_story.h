@@ -22,7 +22,7 @@ struct ToldSteps {
 std::string told_text(const ToldSteps& told);
 ToldSteps read_told(const std::string& text, const std::string& where);
 
-// Of a session, read from `file`. Errors: as read_told().
+// Steps that a session tells; `file`: where it was read. Errors: as read_told().
 ToldSteps told_in(const Session& session, const std::filesystem::path& file);
 
 // What one run did in one step.

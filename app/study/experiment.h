@@ -32,7 +32,7 @@ class Conditions {
   std::string text() const;
   // The same without the hand, which is a person's, and what belongs to a simulated device.
   std::string of_the_device() const;
-  // Of the settings of all of them, as settings_digest() has it; empty without any run.
+  // Digest of all runs' settings, as settings_digest() has it; empty without any run.
   std::string settings() const;
 
  private:

@@ -63,8 +63,9 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #endif
 
-// What reading a file, memory, and an orderly end take. None of these has another use: calls that
-// have are allowed by their arguments, below. Writing goes to descriptors that are open for it.
+// Calls for reading a file, for memory, and for an orderly end. None of these has another use:
+// calls that have are allowed by their arguments, below. Writing goes to descriptors that are open
+// for it.
 constexpr int kAllowed[] = {
     SYS_read,
     SYS_pread64,
@@ -109,8 +110,8 @@ constexpr int kAllowed[] = {
 #endif
 };
 
-// Of an argument its lower half; no flag and no process has more. Both kinds of processor have it
-// first.
+// Offset of an argument's lower half; no flag and no process has more. Both kinds of processor have
+// it first.
 constexpr std::uint32_t argument(unsigned i) {
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + i * sizeof(std::uint64_t));
 }
@@ -125,7 +126,7 @@ class Filter {
   }
 
   void allow(int call) { when(call, 1), answer(SECCOMP_RET_ALLOW); }
-  // Where none of these bits is set in the argument.
+  // Allows the call where none of these bits is set in the argument.
   void allow_without(int call, unsigned which, std::uint32_t flags) {
     when(call, 4);
     load(argument(which));
@@ -133,7 +134,7 @@ class Filter {
     answer(SECCOMP_RET_ALLOW);
     answer(SECCOMP_RET_ERRNO | EACCES);
   }
-  // Where the argument is one of these.
+  // Allows the call where the argument is one of these.
   void allow_with(int call, unsigned which, std::initializer_list<std::uint32_t> values) {
     const auto count = static_cast<std::uint8_t>(values.size());
     when(call, static_cast<std::uint8_t>(count + 3));
@@ -143,7 +144,7 @@ class Filter {
     answer(SECCOMP_RET_ERRNO | EPERM);
     answer(SECCOMP_RET_ALLOW);
   }
-  // Where the first argument is 0, and the pointer that is the argument is null.
+  // Allows the call where its first argument is 0 and the pointer is null.
   void allow_asking(int call, unsigned pointer) {
     when(call, 8);
     load(argument(0));

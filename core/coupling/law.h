@@ -61,7 +61,7 @@ struct LawInput {
   int delay_most;                         // between command and motor, at most [ticks]
   ProxyLink<N>* link = nullptr;           // between device and proxy; null: none
   bool armed_anew = false;                // somebody has just asked for force, which was off
-  // That the motors may make at the tip, beside `limit` [N].
+  // The largest force that the motors may make at the tip, beside `limit` [N].
   double tip_force = std::numeric_limits<double>::infinity();
 };
 

@@ -72,8 +72,8 @@ struct LawInfo {
   bool observes;
   // It accounts for the energy that the human is given, and bounds it.
   bool keeps_ledger;
-  // It solves device, proxy and contacts together, so it knows no link. The others have a spring or
-  // what is fed forward between device and proxy.
+  // The law solves device, proxy and contacts together, so it knows no link. The others have a
+  // spring or fed-forward torques between device and proxy.
   bool solves_together;
   bool for_links;            // without a link it only takes something off the standard law
   const char* through_link;  // what is known of it with a delay between device and proxy

@@ -71,8 +71,8 @@ class Ledger {
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
-  // What is stored meanwhile [J]. At first that is nobody's debt, nor is what is added to it while
-  // no torque leaves for the motors (idle): the hand alone brought it there.
+  // Takes the energy that is stored now [J]. At first that is nobody's debt, nor is its growth
+  // while no torque leaves for the motors (idle): the hand alone brought it there.
   void settle(double E0, double stored, bool idle = false) {
     E0_ = E0;
     const double added = stored - std::exchange(stored_, stored);
@@ -94,10 +94,9 @@ class Ledger {
     E_.fill(E0_ + stored_);
   }
 
-  // After settle(), of a device whose damping is not sure: what that took of the hand's energy
-  // stands in no book, and a hand that holds still could never pay what it seems to owe for it. So
-  // that is forgiven, up to E0 for each half second that it holds still. q: the encoders' step
-  // [rad].
+  // After settle(), for a device whose damping is not sure. The damping took energy from the hand
+  // that stands in no book, and a hand that holds still could never pay that debt. So it is
+  // forgiven, up to E0 for each half second that the hand holds still. q: the encoders' step [rad].
   void forgive_at_rest(double q, double T) {
     const double within = std::max(kStill, 1.5 * q);
     rested_ += T;
@@ -139,7 +138,7 @@ class Ledger {
   // Of E0: the most that H may be, as a heavy arm on a wall asks for, or the force would be cut
   // where the prediction is off by a little; where g_b is 1 and where 0, and all torque 0.
   static constexpr double kCap = 4, kWhole = 0.8, kNone = 0.35, kGone = 0.25;
-  // What a hand at rest has at least, of E0: enough for all force but not for g_b.
+  // The least that a hand at rest has, of E0: enough for all force but not for g_b.
   static constexpr double kForgiven = 0.4;
   static constexpr double kRest = 0.5, kStill = 5e-4;  // how long, and how still that is [s, rad]
 

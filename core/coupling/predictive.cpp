@@ -39,7 +39,8 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
   return limit.dot(x.cwiseAbs());
 }
 
-// Of the predictors at the next reading; a force at the tip moves the device by on_tip [-].
+// Memory p of the predictors at the next reading; a force at the tip moves the device by on_tip
+// [-].
 template <int N>
 double chosen_memory(const WallMemory& wall, double least, const Jacobian<N>& J,
                      const Levers<N>& on_tip) {

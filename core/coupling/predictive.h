@@ -60,7 +60,7 @@ class PredictiveLaw::Of {
   bool goes_on_ = false;  // and so has this one, whatever comes
   TickSolve solved_ = TickSolve::usual;
   Motion<N> last_;  // of a tick solved together
-  // Of the last tick without motors at their limit, see held():
+  // Spring of the last tick without motors at their limit, see held():
   Vec<N> apart_;       // [rad]
   double spring_ = 0;  // [J]
   int unsettled_ = 0;  // ticks without a solution, see LimitedSolve::stand_still()

@@ -32,8 +32,8 @@ struct TorqueLimits {
   bool tip_cuts(const Vec<N>& tau) const {
     return part(tau.cwiseMin(joints).cwiseMax(-joints)) < 1;
   }
-  // What of the joints' limits the tip's leaves to torques in about this direction: clipping each
-  // joint to that takes one in this direction where within() does.
+  // Joint limits that keep the tip's limit for torques in about this direction: clipping each joint
+  // to them takes a torque in this direction where within() does [N m].
   Vec<N> along(const Vec<N>& tau) const {
     constexpr double kAside = 0.01;  // of a joint's limit is left where the torque has none of it
     if (!tip_cuts(tau)) return joints;

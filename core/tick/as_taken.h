@@ -1,5 +1,5 @@
-// What the loop makes of settings while a real device has the arm's place. Tick, recordings and
-// what is reckoned of them ask here, so that they agree.
+// Settings as the loop takes them while a real device has the arm's place. Tick, recordings and
+// verdicts ask here, so that they agree.
 #pragma once
 
 #include <algorithm>

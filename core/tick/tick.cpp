@@ -160,7 +160,7 @@ Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, dou
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }
 
-// What of the limit at the tip the device's own forces leave to the law [N].
+// The part of the tip's limit that the device's own forces leave to the law [N].
 template <int N>
 double Tick<N>::tip_force_left(bool guarded) const {
   if (!guarded) return std::numeric_limits<double>::infinity();
@@ -183,8 +183,8 @@ void Tick<N>::begin_anew(const Reading<N>& in) {
   x1_before_ = in.x;
 }
 
-// What a device does that may not be pushed at all can take the proxy anywhere: that must pull on
-// nothing when force may leave again.
+// Brings the proxy to the device. A device that must not be pushed can have gone anywhere; the
+// proxy must pull on nothing when force may leave again.
 template <int N>
 void Tick<N>::bring_proxy(const Vec<N>& x, const Parameters& p) {
   proxy_.catch_up();

@@ -46,7 +46,7 @@ struct ContactAnswer {
   CoupledSystem<N> system;
   double on_device = 0;  // of f2, what reaches the first rows
   Wide<N> on_proxy;      // and the second ones [-]
-  // Of what a wall finds heavy; null: walls have the damping of their material and no more.
+  // Inertia that a wall finds heavy; null: walls have the damping of their material and no more.
   const SymmetricFactor<N>* inertia = nullptr;
   double damping = 0;       // see wall_damping() [-]
   double jump = 0;          // of a joint's velocity when its encoder makes a step [rad/s]

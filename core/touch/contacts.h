@@ -50,7 +50,7 @@ struct Contact {
   Vec3 friction = Vec3::Zero();  // the same, along the surface [N]
 };
 
-// What a contact keeps from tick to tick, where surfaces rub.
+// State of a contact from tick to tick, where surfaces rub.
 struct ContactMemory {
   Vec3 push = Vec3::Zero();    // of the wall: along x the force [N]; of a mesh: as a vector [N]
   Vec3 anchor = Vec3::Zero();  // how far the spring of friction is stretched [m]

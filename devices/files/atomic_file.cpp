@@ -46,7 +46,7 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// That nobody else takes, on whatever computer. Short: names have 255 bytes at most.
+// A name that nobody else takes, on whatever computer. Short: names have 255 bytes at most.
 fs::path fresh_name(const fs::path& folder) {
   std::random_device chance;
   return folder / fmt::format(".limpid-{:08x}{:08x}.new", chance(), chance());
@@ -176,7 +176,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kPart = ".part";
-// As long as a name may be, less what goes behind it: .part, and of a video .frames.
+// The longest name, less the endings that go behind it: .part, and .frames of a video [bytes].
 constexpr std::size_t kLongestName = NAME_MAX - 12;
 
 [[noreturn]] void fail(const fs::path& file, const char* what, int code) {

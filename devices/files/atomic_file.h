@@ -57,7 +57,7 @@ class Draft {
   int descriptor_;
 };
 
-// What a link leads to, and any other file itself.
+// The file that a link leads to; any other file itself.
 std::filesystem::path past_links(const std::filesystem::path& file);
 
 // Puts the bytes on the disk beside `file` and gives them its name then. Errors: FileError; the

@@ -26,8 +26,8 @@ class DeviceClaim {
   // or why nobody can tell.
   explicit DeviceClaim(const std::string& key,
                        const std::filesystem::path& folder = claim_folder());
-  // Of the device's node itself, by whatever name it is known. Throws HidError: another program has
-  // it, or it cannot be opened.
+  // Claims the device's node itself, by whatever name it is known. Throws HidError: another program
+  // has it, or it cannot be opened.
   static DeviceClaim on_node(const std::filesystem::path& node);
   DeviceClaim(DeviceClaim&& other) noexcept;
   DeviceClaim& operator=(DeviceClaim&& other) noexcept;

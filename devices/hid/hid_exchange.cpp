@@ -117,7 +117,7 @@ void HidExchange::deliver_if_due(std::span<const std::uint8_t> report) noexcept 
   if (!overtaken_) deliver(report);
 }
 
-// Of the newest command, as far as the loop knows how the device is.
+// Whether the newest command pushes, and the loop knew the device as it is.
 bool HidExchange::wants_torque() const noexcept {
   const Command& command = commands_.front();
   return command.any && command.lapses == arrival_.reading.lapses &&

@@ -99,8 +99,8 @@ void Rig::limit(const SafetyLimits& limits) {
   std::visit([&](auto& of) { of->tick.limit(limits); }, of_);
 }
 
-// What the loop sees. Of a device that says nothing, or what cannot be: where it was when it last
-// did. What one without a hand on it says is not made better: the tick finds that it diverged.
+// The reading that the loop sees. A device that says nothing, or what cannot be, is where it was
+// when it last spoke. A virtual arm's reading is not made better: the tick finds that it diverged.
 template <int N>
 Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   device->expect(p, now.hand);

@@ -1,4 +1,4 @@
-// What of the settings is on the disk for the next start, and when it is written.
+// Settings on the disk for the next start, and when they are written.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class KeptSettings {
 
   explicit KeptSettings(const Settings& read) : kept_(read), settled_(read) {}
 
-  // As they were read, or written last.
+  // The settings on the disk, as they were read or written last.
   const Settings& kept() const { return kept_; }
   // Writes them. Returns what went wrong; empty: nothing.
   std::string keep(const Settings& settings);

@@ -128,8 +128,8 @@ void remember_recent(Settings& settings, const std::string& file) {
 
 namespace {
 
-// Of which less is stricter: what a person has lowered stays lowered, also where the file cannot be
-// understood.
+// Limits of which less is stricter. A limit that a person has lowered stays lowered, also where the
+// file cannot be understood.
 constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"};
 
 void complain(std::string& complaint, const std::string& why) {

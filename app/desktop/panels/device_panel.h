@@ -17,7 +17,7 @@ struct PadChoice {
 // can.
 Parameters reckoning_with(Parameters p, double delay);
 
-// What somebody has changed of a device's notes, and is done with.
+// Changes of a device's notes that a person has finished.
 struct NotesEdited {
   bool anew = false;    // the device has to be connected anew for it
   bool limits = false;  // of its force
@@ -36,7 +36,7 @@ inline constexpr const char* kBuiltInArmButton = "the built-in one";
 inline constexpr const char* kOpenArmButton = "the open one";
 inline constexpr const char* kArmOfFileButton = "a file...";
 
-// What somebody asks for in it.
+// Requests that a person has made in the panel.
 struct DevicePanelAsks {
   bool identify = false;
   bool arm_file = false;  // for the file of the device's arm

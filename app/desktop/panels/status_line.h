@@ -13,8 +13,8 @@ struct StatusLaw {
   double eta;
 };
 
-// What goes on: the name of the recording that is shown, empty for the loop; how a virtual arm's
-// time goes, empty as usual; and whether a program leads the window.
+// Activity of the window: the name of the recording that is shown, empty for the loop; how a
+// virtual arm's time goes, empty as usual; and whether a program leads the window.
 struct StatusGoing {
   std::string played, pace;
   bool led = false;

@@ -33,8 +33,8 @@ class ChatterWatch {
 
   // Once a frame, with the rows that the loop has made.
   void follow();
-  // What is said of it, for a while after it ended, as a hand that lets go ends it; not after what
-  // it was found with has changed.
+  // The newest finding, kept for a while after the chatter ended, as a hand that lets go ends it.
+  // A change of law or scene forgets it.
   const std::optional<Found>& found() const { return found_; }
   // In words: which wall, which law, by how much.
   std::string text() const;

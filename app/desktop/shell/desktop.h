@@ -131,8 +131,8 @@ class Desktop {
   bool recording_may_end = false;  // with the window: somebody was asked
   // Of experiments that go on beside the window, also while their dialog is closed: "3 of 12: ...".
   std::string experiments_under_way;
-  // Of the system's window: how it is, the work of its last frame, without waiting [s], and what
-  // its keyboard has where.
+  // State of the system's window: its size on the screen, the work of its last frame without
+  // waiting [s], and the labels of its keyboard.
   bool full_screen = false;
   double frame_time = 0;
   const KeyLabels* key_labels = &kUsKeyboard;

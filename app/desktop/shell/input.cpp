@@ -60,7 +60,7 @@ void KeyInput::deal(const Focus& focus) {
   show(modifiers);
 }
 
-// What ImGui knows a key as; 0: nothing. In a menu ImGui takes an item by the space bar and closes
+// ImGui's code of a key; 0: it has none. In a menu ImGui takes an item by the space bar and closes
 // it by Esc. There Enter takes it, as the space bar cuts the force and Esc is a command.
 int KeyInput::seen_as(int key) const {
   if (!in_menu_) return key;

@@ -33,10 +33,10 @@ class KeyInput {
     unsigned character = 0;
   };
 
-  // Of the keyboard from now on; that of a US one before.
+  // Labels of the keyboard from now on; before the first call those of a US one.
   void set_labels(KeyLabels labels) { labels_ = std::move(labels); }
   const KeyLabels& labels() const { return labels_; }
-  // What GLFW says, in the order it happened; `place`: its name of a key.
+  // Events of GLFW in the order in which they happened; `place`: its name of a key.
   void key(int place, int action, int modifiers);
   void character(unsigned character);
 

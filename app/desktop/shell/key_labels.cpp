@@ -20,7 +20,7 @@ bool is_us(int key) {
   return is_of_commands(key) || std::ranges::find(kSigns, key) != kSigns.end();
 }
 
-// That a US keyboard names so; 0: it has none.
+// The key that a US keyboard labels so; 0: it has none.
 int us_key(const std::string& name) {
   if (name.size() != 1) return 0;
   const int key = std::toupper(static_cast<unsigned char>(name[0]));

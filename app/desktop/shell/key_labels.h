@@ -18,7 +18,7 @@ namespace limpid {
 // brackets, which commands have, come before other signs there.
 class KeyLabels {
  public:
-  // What stands on the key at a place, in UTF-8; null: nothing.
+  // Gives the label of the key at a place, in UTF-8; null: it has none.
   using NameOf = std::function<const char*(int place)>;
 
   KeyLabels();  // of a US keyboard

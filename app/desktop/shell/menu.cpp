@@ -175,7 +175,7 @@ void draw_bar_of_menus(Desktop& d, FileMenus& files) {
   const int before = menus_open();
   const auto open = draw_menus(d, files);
   const int step = open ? step_to_menu_beside(before) : 0;
-  // One less than none is the last one.
+  // The step before the first menu leads to the last one.
   const std::size_t on = step > 0 ? 1 : kMenus.size() - 1;
   if (step != 0) files.to_open = (*open + on) % kMenus.size();
 }

@@ -267,7 +267,7 @@ void Application::keep() {
   }
 }
 
-// Of a window that a program has started nothing but its looks: all else is the program's.
+// A window that a program has started keeps nothing but its looks: all else is the program's.
 Settings Application::settings_to_keep() const {
   Settings kept = desktop_.lead.settings_to_keep();
   if (!options_.until_eof) return kept;

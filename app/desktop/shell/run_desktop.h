@@ -22,7 +22,7 @@ struct DesktopOptions {
   bool print_state = false;                  // one line of JSON ten times a second
   double ui_scale = 0;                       // 0: the screen's
   std::filesystem::path listen;              // a socket for programs; empty: none
-  // It ends as soon as standard input does, and keeps no settings: a program has started it.
+  // A program has started the window: it ends with standard input and keeps no settings.
   bool until_eof = false;
 };
 

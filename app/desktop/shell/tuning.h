@@ -47,9 +47,9 @@ class Tuning {
   void reset();  // all to their usual values
   void use_preset(const std::string& name);
 
-  // What the settings become when an arm comes into the loop, perhaps a real device in its place:
-  // gains that suit it, and what its motors give for its own weight; with the encoders that it has.
-  // `device` null: the virtual arm. They are the settings once they are taken.
+  // Settings for an arm that comes into the loop, perhaps with a real device in its place: gains
+  // that suit it, the share of its own weight that motors give, and its encoders. `device` null:
+  // the virtual arm. take() makes them the settings.
   struct Suited {
     Parameters first, twin;
     std::optional<ArmDescription> fitted_for;
@@ -65,9 +65,9 @@ class Tuning {
   // Once a frame, before and after the loop has had them.
   void update();
   void follow_recorded(bool another);  // session
-  // What of its own forces the device's motors take off the hand is remembered with it.
+  // Remembers with the device how much of its own forces its motors take off the hand.
   void note_compensation();
-  // What is chosen for both runs, as it is with the virtual arm, and the arm that it suits.
+  // Settings of both runs, as they are with the virtual arm, and the arm that they suit.
   struct Choices {
     Parameters first;
     TwinSettings twin;

@@ -89,7 +89,7 @@ class Window {
   bool focused() const;
   // Keys pressed in this frame, without those held since somebody else had the focus.
   const std::vector<KeyPress>& keys() const;
-  // Of the keyboard that is chosen now.
+  // Labels of the keyboard that is chosen now.
   const KeyLabels& key_labels() const;
   // Files dropped on the window in this frame.
   const std::vector<std::filesystem::path>& dropped() const;

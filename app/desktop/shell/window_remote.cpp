@@ -54,7 +54,7 @@ WindowRemote::WindowRemote(const fs::path& socket, Desktop& desktop)
 
 bool WindowRemote::turn() {
   follow_limits();
-  // What a new arm fitted to itself nobody has chosen.
+  // Gains that were fitted to a new arm are no choice of a person.
   if (const Stage* now = &d_.live.stage(); std::exchange(stage_, now) != now) {
     remote_.reopened();
     if (d_.lead.on()) d_.lead.note_program();

@@ -302,7 +302,7 @@ bool World::virtual_arm_again() {
   return false;
 }
 
-// What there is goes on where the arm or its scene is refused.
+// An arm or scene that is refused leaves everything as it is.
 void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device) {
   if (auto scene = d_.document.scene_for(arm)) {
     return open(arm, std::move(scene->document), std::move(scene->models), std::move(device),
@@ -315,8 +315,8 @@ void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device
   d_.document.set_file(file.string());
 }
 
-// What was open before a device brought its own scene, with its changes. It goes on waiting where
-// this arm has no such scene.
+// Brings back the scene that was open before a device brought its own, with its changes. It goes on
+// waiting where this arm cannot have it.
 void World::take_up_set_aside(const ArmDescription& arm) {
   const SetAside& waiting = *d_.document.waiting();
   auto scene = Document::scene_for(arm, waiting);

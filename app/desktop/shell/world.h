@@ -54,7 +54,7 @@ class World {
   void open_device(std::unique_ptr<Device> device);
   void close_device(const std::function<void()>& then = [] {});
 
-  // What is open now, to come back to.
+  // Arm, device and scene that are open now, to come back to.
   struct Place {
     ArmDescription arm;
     std::string device_file, device_tip;

@@ -27,7 +27,7 @@ struct OpenFile {
 OpenFile& own(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
 const OpenFile& own(const H5FD_t* file) { return *reinterpret_cast<const OpenFile*>(file); }
 
-// As HDF5's own driver says it, for last_error().
+// Reports an error as HDF5's own driver does, for last_error().
 herr_t failed(const char* what) {
   H5Epush2(H5E_DEFAULT, __FILE__, what, 0, H5E_ERR_CLS, H5E_IO, H5E_CANTOPERATE,
            "%s failed, errno = %d", what, errno);
@@ -54,7 +54,7 @@ herr_t close(H5FD_t* file) {
   return result;
 }
 
-// What HDF5's own driver for files can.
+// Abilities of HDF5's own driver for files.
 herr_t query(const H5FD_t*, unsigned long* can) {
   *can = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
          H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_SUPPORTS_SWMR_IO |
@@ -115,7 +115,7 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   return failed("truncate");
 }
 
-// That there are such makes HDF5 write into the file that it is being written.
+// HDF5 marks a file as being written only where its driver has these functions.
 herr_t lock(H5FD_t*, hbool_t) { return 0; }
 herr_t unlock(H5FD_t*) { return 0; }
 

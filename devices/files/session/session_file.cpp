@@ -246,7 +246,7 @@ void SessionFile::write_warnings(const std::string& warnings) {
   const hdf5::Properties access = hdf5::access_by(descriptor_, path_);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   hdf5::File again(H5Fopen(path_.c_str(), H5F_ACC_RDWR, access.get()));
-  // Where somebody has opened it meanwhile the recording goes without: its rows say the same.
+  // A recording that somebody has opened meanwhile goes without: its rows say the same.
   if (!again) return;
   hdf5::write_text(again.get(), "warnings", warnings, path_);
   check(again.close(), path_, "cannot write");

@@ -68,7 +68,7 @@ void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row
 }  // namespace limpid::hdf5
 namespace limpid {
 
-// What a session's file is for: `safe` may be killed at any moment while it is written, `packed`
+// Purpose of a session's file: `safe` may be killed at any moment while it is written, `packed`
 // takes little room once it is closed.
 enum class Storage { safe, packed };
 

@@ -112,7 +112,7 @@ std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const fs::path& fil
 
 namespace {
 
-// What the file has to hold then: of other programs' marks all.
+// Marks that the file has to hold then: these, and all of other programs.
 std::vector<Mark> merged(const MarkOrder& order, const std::vector<Mark>& found) {
   std::set<std::pair<std::uint64_t, std::string>> own;
   for (const auto* const marks : {&order.known, &order.marks}) {
@@ -211,7 +211,7 @@ void write_marks(const fs::path& session, std::span<const Mark> marks,
     const WriteLock lock(file, WriteLock::Make::no, kPatience);
     struct stat locked {};
     ::fstat(lock.descriptor(), &locked);
-    // Who had the lock may have put another file in its place.
+    // The program that had the lock may have put another file in its place.
     if (!(Version::of(locked) == Version::of(about(file)))) continue;
     Draft copy(file);
     copy_whole(session, lock.descriptor(), copy.descriptor(), locked);

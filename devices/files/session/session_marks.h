@@ -34,7 +34,7 @@ class MarkTable {
 std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const std::filesystem::path& file,
                              hdf5::Claims& claims);
 
-// What write_marks() asks for.
+// Order of write_marks(): the marks to hold, and those that the writer knew of.
 struct MarkOrder {
   std::vector<Mark> marks, known;
 };

@@ -284,7 +284,7 @@ std::string why_ended(int status) {
   return why_failed(status, kSessionProgram);
 }
 
-// What the program says of `file`, as `take` understands it, which has the descriptors of `given`.
+// The program's answer about `file`, as `take` understands it; `given`: descriptors that it gets.
 template <class Take>
 auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> given = {}) {
   std::array<int, 2> ends{-1, -1};

@@ -242,7 +242,7 @@ void read_changes(hid_t root, std::size_t size, Session& session, const fs::path
   }
 }
 
-// One run: at the file's root, or in the twin's group.
+// Reader of a run, at the file's root or in the twin's group.
 class RunReader {
  public:
   RunReader(hid_t group, const SessionInfo& info, const fs::path& file, hdf5::Claims& claims)
@@ -376,7 +376,7 @@ class RunReader {
   std::vector<std::int8_t> roundings_;
 };
 
-// Of both runs the same rows in turn. Returns how many there are.
+// Reads the same rows of both runs in turn. Returns how many there are.
 std::size_t read_rows(RunReader& first, RunReader* second, const fs::path& file,
                       const TakeRows& take) {
   const std::size_t rows = second ? std::min(first.rows(), second->rows()) : first.rows();
@@ -390,7 +390,7 @@ std::size_t read_rows(RunReader& first, RunReader* second, const fs::path& file,
     const std::size_t count = std::min(block, rows - read);
     first.read(count, ones);
     if (second) second->read(count, others);
-    // Of a leftover that lacks a twin's rows.
+    // A leftover may lack some of a twin's rows.
     if (second) ones.resize(std::min(ones.size(), others.size())), others.resize(ones.size());
     if (!ones.empty()) take(ones, others);
     const std::size_t whole = ones.size() / static_cast<std::size_t>(first.layout().stride());

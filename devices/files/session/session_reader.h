@@ -41,7 +41,7 @@ class RowCheck {
   double before_ = -std::numeric_limits<double>::infinity();
   std::size_t row_ = 0;
 };
-// Of a whole session. Errors: FileError.
+// Checks the rows of a whole session. Errors: FileError.
 void check_rows(const Session& session, const std::filesystem::path& file);
 
 }  // namespace limpid

@@ -13,8 +13,8 @@ namespace limpid {
 // Rows of a session in turn, whole ones, and as many of its twin's; empty: it has none.
 using TakeRows = std::function<void(std::span<const double> rows, std::span<const double> twin)>;
 
-// As read_session(file), but that `begins` hears what the session is of, `take` its rows, and that
-// what is returned has all else.
+// Reads a session in pieces: `begins` hears what it is of, `take` its rows. Returns all else.
+// Errors: as read_session(file).
 Session read_session(const std::filesystem::path& file,
                      const std::function<void(const Session& about)>& begins, const TakeRows& take);
 

@@ -108,7 +108,7 @@ class PackedCopy {
   PackedCopy(const fs::path& out, const SessionInfo& info) {
     attempt([&] {
       draft_.emplace(out);
-      // One with a name would stay when the program is killed.
+      // A draft with a name would stay when the program is killed.
       if (draft_->has_name()) throw FileError("no files without a name");
       file_.emplace(out, draft_->descriptor(), info, Storage::packed);
     });
