@@ -238,13 +238,13 @@ bool LiveSession::may_record() {
   return !closing_.valid();
 }
 
-void LiveSession::record(const RunPlan& plan, const fs::path& file) {
+void LiveSession::record(const RunPlan& plan, const fs::path& file, bool replaces) {
   last_ = {.file = file};
   SessionInfo about = session_info(plan);
   if (loop_.device_in_place()) about.safety = limits_text(controls_.limits);
   opening_ = file_tasks_.run(
-      [file, info = std::move(about), initial = plan.parameters, twin = plan.beside] {
-        return std::make_unique<Recorder>(file, info, initial, false, Recorder::kLiveRoom,
+      [file, replaces, info = std::move(about), initial = plan.parameters, twin = plan.beside] {
+        return std::make_unique<Recorder>(file, info, initial, replaces, Recorder::kLiveRoom,
                                           twin.empty() ? nullptr : &twin[0].parameters);
       });
 }

@@ -70,7 +70,8 @@ class LiveSession {
   bool recording() const { return loop_.recording() || opening_.valid(); }
   // False while the last one is still being opened or closed.
   bool may_record();
-  void record(const RunPlan& plan, const std::filesystem::path& file);
+  // `replaces`: a file that is there, once the recording is complete.
+  void record(const RunPlan& plan, const std::filesystem::path& file, bool replaces = false);
   void stop_recording() { loop_.stop_recording(); }
   // What has been stopped is not complete yet.
   bool closing() const { return loop_.recorder() != nullptr || closing_.valid(); }

@@ -245,15 +245,15 @@ Answer WindowRemote::record(const Keys& keys) {
   if (d_.live.recording()) throw RemoteError("record: a recording is under way; stop it before");
   if (!d_.live.may_record()) throw RemoteError("record: the last one is being closed");
   fs::path file;
+  const bool replaces = keys.flag_or("force", false);
   if (keys.has("file")) {
     file = keys.file(".h5");
-    if (fs::exists(file) && !keys.flag_or("force", false)) {
+    if (fs::exists(file) && !replaces) {
       throw keys.error("file", file.string() + " exists already; with force it is replaced");
     }
-    fs::remove(file);
   }
   d_.notices.clear();
-  d_.world.record(file);
+  d_.world.record(file, replaces);
   records_ = true;
   return Answer::Later([this]() -> std::optional<json> {
     if (!d_.live.recording()) throw RemoteError(last_complaint("record: it has not begun"));

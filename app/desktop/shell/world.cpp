@@ -511,16 +511,16 @@ void World::toggle_recording() {
   d_.live.loop().recording() ? d_.live.stop_recording() : record({});
 }
 
-void World::record(const fs::path& file) {
+void World::record(const fs::path& file, bool replaces) {
   if (!d_.live.may_record()) return;
   try {
-    start_recording(file);
+    start_recording(file, replaces);
   } catch (const std::exception& e) {
     d_.notices.say(e.what(), true);
   }
 }
 
-void World::start_recording(fs::path file) {
+void World::start_recording(fs::path file, bool replaces) {
   d_.playback.close();
   if (file.empty()) {
     file = sessions_dir() /
@@ -539,7 +539,7 @@ void World::start_recording(fs::path file) {
                    true);
     return;
   }
-  d_.live.record(plan, file);
+  d_.live.record(plan, file, replaces);
 }
 
 void World::open_files(const std::vector<fs::path>& files) {

@@ -68,7 +68,9 @@ class World {
   void go_to(const Place& place);
 
   void toggle_recording();  // of all that is there now, in a new file of the user's sessions
-  void record(const std::filesystem::path& file);  // the same in this one; empty: a new one
+  // The same in this one; empty: a new one. `replaces`: also where there is one, which stays until
+  // the recording is complete.
+  void record(const std::filesystem::path& file, bool replaces = false);
   std::string why_fixed() const;
 
   // Once a frame: what is ready goes into loop and document, what was changed to picture and loop.
@@ -93,7 +95,7 @@ class World {
   void take_up_set_aside(const ArmDescription& arm);
   void open_sweep(const std::filesystem::path& table);  // in its map
   void run_hand(const std::filesystem::path& file);
-  void start_recording(std::filesystem::path file);
+  void start_recording(std::filesystem::path file, bool replaces);
   Workplace workplace() const;
   void load_scene(const std::filesystem::path& file);
   void leave_for_scene(std::function<void()> then);
