@@ -515,8 +515,11 @@ class TestRemoteWindow(WindowTest):
         self.loop.stop()
         with self.assertRaisesRegex(limpid.RequestError, "exists already; with force it is replaced"):
             self.loop.record(file)
+        first = Path(file).read_bytes()
         self.loop.record(file, force=True)
+        self.assertEqual(Path(file).read_bytes(), first, "it stays until the new one is complete")
         self.loop.stop()
+        self.assertNotEqual(Path(file).read_bytes(), first)
 
     def test_scenes_and_sessions_are_opened(self) -> None:
         self.assertEqual(self.loop.open(scene="spheres.toml")["scene"], "Soft and hard")
