@@ -328,6 +328,9 @@ class TestRemoteWindow(WindowTest):
     def test_goes_on_after_the_window_was_closed_in_a_trial(self) -> None:
         def close() -> None:
             self.close_by_cross()
+            self.wait("the question", lambda s: s["dialog"] == "quit")
+            self.settled()
+            self.key("Return", closes=True)
             self.app.wait(30)
 
         self.check_goes_on(close)

@@ -29,7 +29,7 @@ const OpenFile& own(const H5FD_t* file) { return *reinterpret_cast<const OpenFil
 
 // Reports an error as HDF5's own driver does, for last_error().
 herr_t failed(const char* what) {
-  H5Epush2(H5E_DEFAULT, __FILE__, what, 0, H5E_ERR_CLS, H5E_IO, H5E_CANTOPERATE,
+  H5Epush2(H5E_DEFAULT, "hdf5_descriptor.cpp", what, 0, H5E_ERR_CLS, H5E_IO, H5E_CANTOPERATE,
            "%s failed, errno = %d", what, errno);
   return -1;
 }

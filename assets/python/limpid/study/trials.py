@@ -13,7 +13,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
-from limpid.errors import ArgumentError, ProgramError, RequestError
+from limpid.errors import ArgumentError, ProgramError, RecordingError, RequestError
 from limpid.study.answers import Answers, StudyError
 from limpid.study.methods import Adjustment, ConstantStimuli, Quest, Staircase
 from limpid.study.orders import order_for
@@ -103,7 +103,7 @@ class Study:
                              "again: change the study. Limits `low` and `high` of a method are those of its "
                              "level, which in trials of two intervals comes on top of the standard. Every "
                              f"answer up to then is in {self.file}; {self._goes_on()}") from error  # fmt: skip
-        except (ProgramError, RequestError) as error:
+        except (ProgramError, RecordingError, RequestError) as error:
             ended = isinstance(error, ProgramError)
             raise StudyError(f"{error}. Every answer up to then is in {self.file}; start "
                              f"{'`limpid --listen` and ' * ended}the study again with the same words: "
