@@ -108,11 +108,15 @@ axis = [{ key = "coupling.eta", values = [0.7, 1, 2] }]
   }
 }
 
-// The wall behind the coupling's spring, seen from the tip: 1/K = 1/K_wall + n'JJ'n / k_vc.
+// The wall behind the coupling's spring, seen from the tip: 1/K = 1/K_wall + n'JJ'n / k_vc. A rough
+// wall would hold the tip across n as well.
 TEST_F(Measures, StiffnessFeltIsTheWallBehindTheSpring) {
+  std::ofstream(dir_ / "smooth.toml")
+      << "[[plane]]\npoint = [0.2, 0.0, -0.04]\nnormal = [0.0, 0.0, 1.0]\n";
   std::ofstream(dir_ / "press.csv")
       << "time_s,x_m,y_m,z_m\n0,0.19,0,-0.0395\n3,0.19,0,-0.0435\n6,0.19,0,-0.0395\n";
-  read(R"(hand = "press.csv"
+  read(R"(scene = "smooth.toml"
+hand = "press.csv"
 measure = ["felt_stiffness"]
 set = ["hand.stiffness = 1000"]
 axis = [{ key = "coupling.kind", values = ["standard", "predictive"] },

@@ -667,11 +667,28 @@ TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
   RunPlan plan;
   plan.arm = test::omni();
   plan.hand.source = "mouse";
-  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+  plan.rows = 5000;
+  {
+    Recorder cut(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+    simulate(plan, {},
+             [&](std::span<const double> row, LaneChanges) { return cut.push_waiting(row); });
+  }
   ASSERT_TRUE(fs::exists(sessions / "cut.h5.part"));
   desktop->playback.recover_leftovers(sessions);
   EXPECT_TRUE(said("Recovered cut.h5"));
   EXPECT_EQ(desktop->playback.last(), sessions / "cut.h5");
+}
+
+TEST_F(ADesktop, SaysThatALeftoverHasNothingToRecover) {
+  const fs::path sessions = dir / "data/limpid/sessions";
+  fs::create_directories(sessions);
+  RunPlan plan;
+  plan.arm = test::omni();
+  plan.hand.source = "mouse";
+  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+  desktop->playback.recover_leftovers(sessions);
+  EXPECT_TRUE(said("nothing was recorded"));
+  EXPECT_FALSE(fs::exists(sessions / "cut.h5"));
 }
 
 TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
