@@ -112,7 +112,8 @@ axis = [{ key = "coupling.eta", values = [0.7, 1, 2] }]
 // wall would hold the tip across n as well.
 TEST_F(Measures, StiffnessFeltIsTheWallBehindTheSpring) {
   std::ofstream(dir_ / "smooth.toml")
-      << "[[plane]]\npoint = [0.2, 0.0, -0.04]\nnormal = [0.0, 0.0, 1.0]\n";
+      << "[[plane]]\nname = \"table top\"\npoint = [0.2, 0.0, -0.04]\nnormal = [0.0, 0.0, 1.0]\n"
+         "stiffness = 600\n";
   std::ofstream(dir_ / "press.csv")
       << "time_s,x_m,y_m,z_m\n0,0.19,0,-0.0395\n3,0.19,0,-0.0435\n6,0.19,0,-0.0395\n";
   read(R"(scene = "smooth.toml"

@@ -22,6 +22,7 @@
 #include "tests/support/computer.h"
 #include "tests/support/device_traits.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/test_session.h"
 
 namespace limpid {
 namespace {
@@ -664,10 +665,7 @@ TEST_F(ADesktop, ChangesNoDeviceInARecording) {
 TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
   const fs::path sessions = dir / "data/limpid/sessions";
   fs::create_directories(sessions);
-  RunPlan plan;
-  plan.arm = test::omni();
-  plan.hand.source = "mouse";
-  plan.rows = 5000;
+  const RunPlan plan = test::plan("table.toml", "touch.csv", 5);
   {
     Recorder cut(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
     simulate(plan, {},
