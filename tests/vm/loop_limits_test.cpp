@@ -45,9 +45,12 @@ struct LimitedLoop : testing::Test {
   template <class Choose>
   double extreme(Time from, Time to, Choose choose, double result) {
     return desk->device->with([&](Time) {
-      for (const ForceSample& sample : desk->model->forces().samples()) {
-        if (sample.time < began + from || sample.time > began + to) continue;
-        result = choose(result, std::abs(sample.torque[0]));
+      // A torque acts until the next one does.
+      const std::span<const ForceSample> all = desk->model->forces().samples();
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool over = i + 1 < all.size() && all[i + 1].time <= began + from;
+        if (over || all[i].time > began + to) continue;
+        result = choose(result, std::abs(all[i].torque[0]));
       }
       return result;
     });
