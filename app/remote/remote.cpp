@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "app/base/version.h"
+#include "app/device/device_store.h"
 #include "app/remote/live_channels.h"
 #include "app/remote/remote_settings.h"
+#include "app/run/fitted_gains.h"
 
 namespace limpid {
 namespace {
@@ -26,6 +28,20 @@ std::string noted(const Keys& keys) {
   if (text.size() <= kMarkLength) return text;
   throw RemoteError(
       fmt::format("mark: text: {} bytes; allowed: 1 to {}", text.size(), kMarkLength));
+}
+
+Parameters usual_settings(const Parameters& now, const Parameters& chosen,
+                          const ArmDescription& arm, bool with_device) {
+  Parameters p = fitted(arm);
+  for (const ParameterInfo& info : parameter_table()) {
+    if (!info.live) set_parameter_number(p, info, parameter_number(now, info));
+  }
+  if (with_device) {
+    OwnForces::of(now).give(p);
+    p.encoder_step = now.encoder_step;
+  }
+  hold_limits(p, chosen, arm);
+  return p;
 }
 
 json loop_state(const LiveLoop& loop, const ArmDescription& arm) {

@@ -7,9 +7,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "app/device/device_store.h"
-#include "app/run/fitted_gains.h"
-
 namespace limpid {
 namespace {
 
@@ -85,20 +82,6 @@ void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& 
     if (parameter_number(p, info) <= parameter_number(most, info)) continue;
     set_parameter_number(p, info, parameter_number(chosen, info));
   }
-}
-
-Parameters usual_settings(const Parameters& now, const Parameters& chosen,
-                          const ArmDescription& arm, bool with_device) {
-  Parameters p = fitted(arm);
-  for (const ParameterInfo& info : parameter_table()) {
-    if (!info.live) set_parameter_number(p, info, parameter_number(now, info));
-  }
-  if (with_device) {
-    OwnForces::of(now).give(p);
-    p.encoder_step = now.encoder_step;
-  }
-  hold_limits(p, chosen, arm);
-  return p;
 }
 
 }  // namespace limpid
