@@ -36,7 +36,14 @@ struct InfoOptions {
 // Summary of a recording's rows, which come in pieces and need not be in memory.
 class RowsTold {
  public:
+  explicit RowsTold(std::string file) : file_(std::move(file)) {}
+
   void begins(const Session& about) {
+    try {
+      watch_.emplace(about, file_);
+    } catch (const std::exception&) {
+      watch_.reset();  // another version wrote the settings
+    }
     const auto arm = recorded_arm(about.info);
     const std::vector<bool> slides = arm ? slides_of(*arm) : about.info.slides;
     layout_ = about.layout;
@@ -54,9 +61,14 @@ class RowsTold {
       force_->add(rows.subspan(at, stride));
       if (twin_) twin_->add(twin.subspan(at, stride));
     }
+    if (watch_) watch_->take(rows, twin);
   }
 
   std::uint64_t count() const { return count_; }
+  // Warnings worked out of the rows, so that older recordings have them as well.
+  std::vector<std::string> warnings() const {
+    return watch_ ? watch_->warnings() : std::vector<std::string>();
+  }
   // A summary of each run.
   std::vector<const Summary*> lanes() const {
     std::vector<const Summary*> all{&*first_};
@@ -80,7 +92,9 @@ class RowsTold {
     return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
   }
 
+  std::string file_;
   RowLayout layout_{3};
+  std::optional<SessionWatch> watch_;
   std::optional<Summary> first_, twin_;
   std::optional<ForceTally> force_;
   std::uint64_t count_ = 0;
@@ -97,23 +111,6 @@ std::string settings_text(const Session& session, const std::string& file) {
     return text +
            fmt::format("link at first            {} ticks each way, jitter {}, loss {:.3g}\n",
                        p.link_delay, p.link_jitter, p.link_loss);
-  } catch (const std::exception&) {
-    return {};
-  }
-}
-
-// Warnings worked out of the rows, so that older recordings have them as well; none where another
-// version wrote the settings. Rows that are not in memory are read once more.
-std::vector<std::string> warnings_in(const Session& session, const std::string& file) {
-  try {
-    if (!session.rows.empty()) return warnings_of(session, file);
-    SessionWatch watch(session, file);
-    read_session(
-        file, [](const Session&) {},
-        [&](std::span<const double> rows, std::span<const double> twin) {
-          watch.take(rows, twin);
-        });
-    return watch.warnings();
   } catch (const std::exception&) {
     return {};
   }
@@ -233,9 +230,9 @@ int info(const InfoOptions& options) {
   const bool pipe = to_stdout || (std::filesystem::exists(options.csv, none) &&
                                   !std::filesystem::is_regular_file(options.csv, none));
   if (!options.csv.empty() && !pipe) check_place(options.csv, options.force);
-  RowsTold told;
+  RowsTold told(options.session);
   const Session session = read_and_tell(options, told);
-  const std::vector<std::string> warnings = warnings_in(session, options.session);
+  const std::vector<std::string> warnings = told.warnings();
   if (options.json) {
     print_json(options, session, told, warnings);
     if (!options.csv.empty()) write_table(options, session);

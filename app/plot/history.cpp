@@ -10,7 +10,7 @@ namespace limpid {
 namespace {
 
 template <class T>
-void put(std::vector<T>& ring, std::size_t at, const T& value) {
+void put(LargeVector<T>& ring, std::size_t at, const T& value) {
   if (at < ring.size()) {
     ring[at] = value;
   } else {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/large_memory.h"
+
 namespace limpid {
 
 // Smallest and largest of some values.
@@ -83,8 +85,8 @@ class MinMaxRing {
 
   std::size_t capacity_;
   // Their memory is taken at once, and touched only as samples come.
-  std::vector<float> samples_;
-  std::array<std::vector<Extent>, kLevels> blocks_;
+  LargeVector<float> samples_;
+  std::array<LargeVector<Extent>, kLevels> blocks_;
   SampleIndex end_ = 0;
   SampleIndex lap_ = 0;
 };
@@ -176,7 +178,7 @@ class History {
   double offset_ = 0;
   double run_start_ = 0;
   std::vector<MinMaxRing> rings_;
-  std::vector<double> times_;
+  LargeVector<double> times_;
   std::deque<PlotMark> marks_;
 };
 

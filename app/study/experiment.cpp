@@ -161,7 +161,7 @@ TrialResult TrialRunner::run_one(const Trial& trial) const {
                      Recorder::kWaitingRoom);
     tell_start(*recorder, trial.plan);
   }
-  std::vector<double>& rows = result.session.rows;
+  LargeVector<double>& rows = result.session.rows;
   rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));
   result.end = simulate(trial.plan, {.realtime = false, .stop = options_.stop},
                         [&](std::span<const double> row, LaneChanges changed) {

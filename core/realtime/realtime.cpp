@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/base/large_memory.h"
+
 namespace limpid {
 
 namespace {
@@ -68,6 +70,7 @@ int bring_in(dl_phdr_info* object, std::size_t, void* done) {
 
 bool lock_memory() {
   if (!may_lock_everything() || mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) return false;
+  unlock_large_blocks();
   bool done = true;
   dl_iterate_phdr(bring_in, &done);
   return done;

@@ -33,6 +33,7 @@ History history_of(const Session& session, const std::string& where, const ArmDe
                    .seconds = length + 1,
                    .tick = session.info.tick});
   const auto stride = static_cast<std::size_t>(session.layout.stride());
+  const std::size_t forget_every = kForgetAfter / (stride * sizeof(double)) + 1;
   auto change = session.changes.begin();
   for (std::size_t k = 0; k < session.size(); ++k) {
     for (; change != session.changes.end() && change->row <= k; ++change) {
@@ -48,7 +49,9 @@ History history_of(const Session& session, const std::string& where, const ArmDe
     }
     const auto second = again.empty() ? again : again.subspan(k * stride, stride);
     channels.append(history, session.row(k), second);
+    if (k % forget_every == 0) forget_large_blocks();
   }
+  forget_large_blocks();
   return history;
 }
 
@@ -107,12 +110,15 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                 TaskProgress& progress) {
   RunPlan plan = replay(session, where, chosen);
   plan.beside.clear();
-  std::vector<double> rows;
+  LargeVector<double> rows;
   rows.reserve(session.rows.size());
   std::uint64_t count = 0;
+  const auto stride = static_cast<std::size_t>(session.layout.stride());
+  const std::size_t forget_every = kForgetAfter / (stride * sizeof(double)) + 1;
   const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
                               [&](std::span<const double> row, LaneChanges) {
                                 rows.insert(rows.end(), row.begin(), row.end());
+                                if (count % forget_every == 0) forget_large_blocks();
                                 progress.part =
                                     static_cast<double>(++count) / static_cast<double>(plan.rows);
                                 return true;

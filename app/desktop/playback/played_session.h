@@ -51,7 +51,7 @@ class RecordedSettings {
 
 // A second run of a recording's hand.
 struct Rerun {
-  std::vector<double> rows;  // as many as the session's
+  LargeVector<double> rows;  // as many as the session's
   RunEnd end;                // where it diverged the last row stands for those that are missing
   History history;           // of both
   std::string note;          // why it may come out otherwise than recorded; for people
@@ -129,7 +129,7 @@ class PlayedSession {
   std::vector<Mark> marks_;
   RecordedSettings first_;
   std::optional<RecordedSettings> second_;
-  std::vector<double> rerun_;  // rows of the second run; or none
+  LargeVector<double> rerun_;  // rows of the second run; or none
   std::unique_ptr<Stage> stage_;
 };
 

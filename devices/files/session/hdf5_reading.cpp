@@ -407,14 +407,18 @@ void Claims::stored(const Dataset& dataset) {
   stored_ = std::min(file_size_, stored_ + std::min(size, file_size_));
 }
 
-void Claims::take(std::uint64_t count, std::uint64_t size, const std::string& what) {
+void Claims::pass(std::uint64_t count, std::uint64_t size, const std::string& what) {
   constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max() / 4;
   const std::uint64_t bytes = count > kEndless / size ? kEndless : count * size;
-  taken_ = std::min(kEndless, taken_ + bytes);
-  if (taken_ / kMostPerByte > stored_) {
-    refuse(file_, what,
-           fmt::format("claims {} values, more than a file of its size can hold", count));
-  }
+  passed_ = std::min(kEndless, passed_ + bytes);
+  if (passed_ / kMostPerByte <= stored_) return;
+  refuse(file_, what,
+         fmt::format("claims {} values, more than a file of its size can hold", count));
+}
+
+void Claims::take(std::uint64_t count, std::uint64_t size, const std::string& what) {
+  pass(count, size, what);
+  taken_ += count * size;
   if (taken_ > most_) {
     refuse(
         file_, what,

@@ -131,14 +131,16 @@ class Claims {
   explicit Claims(std::filesystem::path file, std::uint64_t most = physical_memory());
 
   void stored(const Dataset& dataset);  // will be read; counts once, however many links it has
-  // Before memory is taken for it. Errors: FileError where all that was asked for is more than the
-  // datasets can unpack to, or than `most`.
+  // Before values are read in turn. Errors: FileError where all that was asked for is more than the
+  // datasets can unpack to.
+  void pass(std::uint64_t count, std::uint64_t size, const std::string& what);
+  // Before memory is taken for all of them. Errors: as pass(), and for more than `most`.
   void take(std::uint64_t count, std::uint64_t size, const std::string& what);
 
  private:
   std::filesystem::path file_;
   std::uint64_t file_size_, most_;
-  std::uint64_t stored_ = 0, taken_ = 0;  // [bytes]
+  std::uint64_t stored_ = 0, passed_ = 0, taken_ = 0;  // [bytes]
   std::set<std::pair<unsigned long, unsigned long>> counted_;
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/large_memory.h"
 #include "core/tick/row.h"
 #include "devices/files/scene_files.h"
 #include "devices/files/text_file.h"
@@ -93,7 +94,7 @@ struct Mark {
 struct Session {
   SessionInfo info;
   RowLayout layout{3};
-  std::vector<double> rows;  // N x layout.stride(), row-major
+  LargeVector<double> rows;  // N x layout.stride(), row-major
   std::vector<SettingChange> changes;
   std::vector<Mark> marks;  // in the order of their ticks
   // All that the loop keeps of its bodies at the first row, as RigStart has it. Empty: they begin

@@ -57,6 +57,7 @@ void put_run(Writer& to, const Session& run) {
 void take_run(Reader& from, std::uint64_t rows, Session& run) {
   run.world = from.list<std::vector<double>>();
   if (run.world.size() > kMostWorld) throw Broken("more of bodies than there can be");
+  run.changes.clear();
   const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < changes; ++i) {
     const auto row = from.number<std::uint64_t>();
@@ -114,6 +115,8 @@ void put_about(Writer& to, const Session& session, std::uint64_t rows) {
   to.number<std::uint8_t>(session.twin != nullptr);
   if (session.twin != nullptr) to.text(session.twin->info.config);
   to.number(rows);
+  put_run(to, session);
+  if (session.twin != nullptr) put_run(to, *session.twin);
 }
 
 void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin) {
@@ -170,6 +173,7 @@ std::uint64_t take_rows(Reader& from, const Session& about, const TakeRows& take
   const auto stride = static_cast<std::size_t>(about.layout.stride());
   std::uint64_t rows = 0;
   while (true) {
+    from.begin_piece();
     const auto next = from.number<Answer>();
     if (next == Answer::refusal) throw FileError(from.text());
     if (next == Answer::end) return rows;
@@ -198,7 +202,10 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
     session.info.twin = twin->info.config;
     session.twin = twin;
   }
-  begins(session, from.number<std::uint64_t>());
+  const auto claimed = from.number<std::uint64_t>();
+  take_run(from, claimed, session);
+  if (twin) take_run(from, claimed, *twin);
+  begins(session, claimed);
   const std::uint64_t rows = take_rows(from, session, take);
   take_run(from, rows, session);
   session.marks = take_marks(from);
@@ -210,19 +217,24 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
 }
 
 Session take_session(Reader& from) {
-  std::vector<double> rows, twin_rows;
+  constexpr std::uint64_t kMostRows = std::uint64_t{1} << 40;  // more than 30 years of ticks
+  LargeVector<double> rows, twin_rows;
+  std::size_t since = 0;
   Session session = take_session(
       from,
       [&](const Session& about, std::uint64_t count) {
-        // A claim that the rest of the answer has room for takes no more than that.
         const auto stride = static_cast<std::size_t>(about.layout.stride());
-        if (!from.has_room(count, stride * sizeof(double))) throw Broken("too much");
+        if (count > kMostRows) throw Broken("too much");
         rows.reserve(count * stride);
         if (about.twin) twin_rows.reserve(count * stride);
       },
       [&](std::span<const double> some, std::span<const double> twin) {
         rows.insert(rows.end(), some.begin(), some.end());
         twin_rows.insert(twin_rows.end(), twin.begin(), twin.end());
+        since += some.size_bytes() + twin.size_bytes();
+        if (since < kForgetAfter) return;
+        since = 0;
+        forget_large_blocks();
       });
   limpid::put_rows(session, std::move(rows), std::move(twin_rows));
   return session;
@@ -310,6 +322,8 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
     const std::string why = why_ended(child.end());
     refuse(file,
            why.empty() ? fmt::format("what reads it answers wrongly: {}", broken.what()) : why);
+  } catch (const NoRoom& none) {
+    refuse(file, fmt::format("larger than this computer has room for: {}", none.what()));
   } catch (const std::bad_alloc&) {
     refuse(file, "larger than this computer's memory");
   }
@@ -317,7 +331,7 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
 
 }  // namespace
 
-void put_rows(Session& session, std::vector<double> rows, std::vector<double> twin) {
+void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin) {
   session.rows = std::move(rows);
   if (!session.twin) return;
   Session second = *session.twin;

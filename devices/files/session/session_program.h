@@ -50,8 +50,10 @@ class Writer {
 // Trusts nothing: memory is taken as the bytes arrive.
 class Reader {
  public:
-  // `most`: [bytes] in all.
-  Reader(int from, std::uint64_t most) : from_(from), left_(most) {}
+  // `most`: [bytes] in all, or in each piece.
+  Reader(int from, std::uint64_t most) : from_(from), most_(most), left_(most) {}
+
+  void begin_piece() { left_ = most_; }
 
   void bytes(std::span<unsigned char> all);
   template <class Number>
@@ -78,15 +80,14 @@ class Reader {
   std::string text() { return list<std::string>(); }
   // How many follow, of at least `size` bytes each. Errors: Broken where those would be too many.
   std::size_t taken(std::size_t size);
-  bool has_room(std::uint64_t count, std::size_t size) const { return count <= left_ / size; }
 
  private:
   int from_;
-  std::uint64_t left_;
+  std::uint64_t most_, left_;
 };
 
-// A session in pieces: what it is of and how many rows it claims, rows as often as there are some,
-// all else.
+// A session in pieces: what it is of, how many rows it claims and what changed at them; rows as
+// often as there are some; all else, with the changes at rows that are there.
 void put_about(Writer& to, const Session& session, std::uint64_t rows);
 void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin);
 void put_rest(Writer& to, const Session& session);

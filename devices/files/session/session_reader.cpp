@@ -308,7 +308,7 @@ class RunReader {
       }
       rows = std::min(rows, source.rows);
     }
-    claims.take(rows, static_cast<std::uint64_t>(layout_.stride()) * sizeof(double), "rows");
+    claims.pass(rows, static_cast<std::uint64_t>(layout_.stride()) * sizeof(double), "rows");
     return static_cast<std::size_t>(rows);
   }
 
@@ -450,20 +450,24 @@ Session read_session_here(const fs::path& file,
                                second->rows(), first.rows()));
     }
   }
+  const auto read_beside = [&](hid_t of, Session& run) {
+    read_world(of, run, file, claims);
+    read_changes(of, first.rows(), run, file, claims);
+  };
+  read_beside(opened.get(), session);
+  if (group) read_beside(group.get(), *twin);
   begins(session, first.rows());
   const std::size_t rows = read_rows(first, second ? &*second : nullptr, file, take);
-  read_world(opened.get(), session, file, claims);
-  read_changes(opened.get(), rows, session, file, claims);
   session.marks = read_marks(opened.get(), rows, file, claims);
-  if (group) {
-    read_world(group.get(), *twin, file, claims);
-    read_changes(group.get(), rows, *twin, file, claims);
-  }
+  // A leftover may have lost the rows that something changed at.
+  const auto lost = [&](const SettingChange& change) { return change.row >= rows; };
+  if (rows < first.rows()) std::erase_if(session.changes, lost);
+  if (rows < first.rows() && twin) std::erase_if(twin->changes, lost);
   return session;
 }
 
 Session read_session_here(const fs::path& file) {
-  std::vector<double> rows, twin_rows;
+  LargeVector<double> rows, twin_rows;
   Session session = read_session_here(
       file, [](const Session&, std::uint64_t) {},
       [&](std::span<const double> some, std::span<const double> twin) {

@@ -18,8 +18,8 @@ namespace limpid {
 // to HDF5's library ends that program. The others have read_session(), write_marks() and
 // read_table(), which call it.
 Session read_session_here(const std::filesystem::path& file);
-// The same in pieces, for a session that need not fit into memory: what it is of and how many rows
-// it claims; its rows in turn; what is returned has all else. Of a leftover fewer rows may come.
+// The same in pieces, for a session that need not fit into memory: what it is of, what changes and
+// how many rows it claims; its rows in turn. Returns all but rows. A leftover may have fewer rows.
 Session read_session_here(
     const std::filesystem::path& file,
     const std::function<void(const Session& about, std::uint64_t rows)>& begins,

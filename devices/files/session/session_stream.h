@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <functional>
 #include <span>
-#include <vector>
 
 #include "devices/files/session/session.h"
 
@@ -13,12 +12,13 @@ namespace limpid {
 // Rows of a session in turn, whole ones, and as many of its twin's; empty: it has none.
 using TakeRows = std::function<void(std::span<const double> rows, std::span<const double> twin)>;
 
-// Reads a session in pieces: `begins` hears what it is of, `take` its rows. Returns all else.
+// Reads a session in pieces: `begins` hears what it is of and what changes, `take` its rows.
+// Returns all but rows. A leftover may lack its last rows; changes at them are not returned.
 // Errors: as read_session(file).
 Session read_session(const std::filesystem::path& file,
                      const std::function<void(const Session& about)>& begins, const TakeRows& take);
 
 // Gives a session that was read so its rows.
-void put_rows(Session& session, std::vector<double> rows, std::vector<double> twin);
+void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin);
 
 }  // namespace limpid

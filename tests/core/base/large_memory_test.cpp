@@ -1,0 +1,101 @@
+#include "core/base/large_memory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+#include <optional>
+#include <string>
+
+namespace limpid {
+namespace {
+
+constexpr std::size_t kMebibyte = 1 << 20;
+
+// TMPDIR has another value for as long as it lives.
+class WithFolder {
+ public:
+  explicit WithFolder(const char* folder) {
+    if (const char* was = std::getenv("TMPDIR")) was_ = was;
+    setenv("TMPDIR", folder, 1);
+  }
+  ~WithFolder() { was_ ? setenv("TMPDIR", was_->c_str(), 1) : unsetenv("TMPDIR"); }
+  WithFolder(const WithFolder&) = delete;
+  WithFolder& operator=(const WithFolder&) = delete;
+
+ private:
+  std::optional<std::string> was_;
+};
+
+// Resident pages of files [bytes].
+std::size_t resident_of_files() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::size_t kibibytes = 0;
+    if (word == "RssFile:" && status >> kibibytes) return kibibytes << 10;
+  }
+  return 0;
+}
+
+std::size_t physical_memory() {
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST(LargeMemory, IsPlainAsLongAsThereIsLittleOfIt) {
+  const LargeVector<double> some(32 * kMebibyte / sizeof(double), 1.5);
+  EXPECT_EQ(large_bytes_on_disk(), 0u);
+  EXPECT_EQ(some.back(), 1.5);
+}
+
+TEST(LargeMemory, LiesOnTheDiskBeyondItsBudgetAndGoesWithItsOwner) {
+  {
+    LargeVector<double> plain, beyond;
+    plain.reserve(kPlainBudget / sizeof(double));
+    beyond.reserve(16 * kMebibyte / sizeof(double));
+    EXPECT_EQ(large_bytes_on_disk(), 16 * kMebibyte);
+  }
+  EXPECT_EQ(large_bytes_on_disk(), 0u);
+  const LargeVector<double> again(16 * kMebibyte / sizeof(double));
+  EXPECT_EQ(large_bytes_on_disk(), 0u) << "the budget was not given back";
+}
+
+TEST(LargeMemory, IsForgottenAndReadAgain) {
+  LargeVector<double> plain, beyond;
+  plain.reserve(kPlainBudget / sizeof(double));
+  beyond.resize(64 * kMebibyte / sizeof(double));
+  std::iota(beyond.begin(), beyond.end(), 0.25);
+  const std::size_t before = resident_of_files();
+  forget_large_blocks();
+  EXPECT_LT(resident_of_files() + 48 * kMebibyte, before);
+  for (std::size_t i = 0; i < beyond.size(); ++i) {
+    ASSERT_EQ(beyond[i], static_cast<double>(i) + 0.25);
+  }
+}
+
+TEST(LargeMemory, RefusesWhatNeitherDiskNorMemoryHasRoomFor) {
+  const WithFolder none("/proc/self");
+  LargeVector<double> more;
+  try {
+    more.reserve(physical_memory() / sizeof(double));
+    FAIL() << "all of the memory was handed out";
+  } catch (const NoRoom& no_room) {
+    EXPECT_THAT(no_room.what(), ::testing::HasSubstr("/proc/self has"));
+    EXPECT_THAT(no_room.what(), ::testing::HasSubstr("TMPDIR"));
+  }
+}
+
+TEST(LargeMemory, IsPlainWhereTheFolderTakesNoFiles) {
+  const WithFolder none("/proc/self");
+  LargeVector<double> plain;
+  plain.reserve(kPlainBudget / sizeof(double));
+  const LargeVector<double> beyond(16 * kMebibyte / sizeof(double), 3.0);
+  EXPECT_EQ(large_bytes_on_disk(), 0u);
+  EXPECT_EQ(beyond.front() + beyond.back(), 6.0);
+}
+
+}  // namespace
+}  // namespace limpid
