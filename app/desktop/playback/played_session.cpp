@@ -199,6 +199,7 @@ std::size_t PlayedSession::row_to_show() const {
     most = torque;
     hardest = k;
   }
+  forget_large_blocks();
   return hardest;
 }
 

@@ -10,7 +10,8 @@ namespace {
 Player player(std::size_t rows) {
   Session session;
   session.info = test::sample_info(3);
-  session.rows = test::sample_rows(session.layout, 0, rows);
+  const std::vector<double> sample = test::sample_rows(session.layout, 0, rows);
+  session.rows.assign(sample.begin(), sample.end());
   return Player(std::make_shared<const Session>(std::move(session)));
 }
 

@@ -71,7 +71,7 @@ TEST(Marks, AreReplacedInAWholeNewFile) {
   test::write_sample(dir / "a.h5", 600);
   fs::create_hard_link(dir / "a.h5", dir / "before.h5");
   const std::string before = test::file_bytes(dir / "a.h5");
-  const std::vector<double> rows = read_session(dir / "a.h5").rows;
+  const LargeVector<double> rows = read_session(dir / "a.h5").rows;
   const std::vector<Mark> first{{5, "one"}, {500, "two"}}, second{{599, "three"}};
   write_marks(dir / "a.h5", first, {});
   EXPECT_EQ(marks_of(dir / "a.h5"), first);

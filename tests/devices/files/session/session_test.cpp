@@ -28,7 +28,7 @@ using test::sample_rows;
 using testing::AllOf;
 using testing::HasSubstr;
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+bool same_bits(std::span<const double> a, std::span<const double> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
@@ -436,8 +436,13 @@ TEST(Session, IsReadInPieces) {
   std::vector<double> got, got_twin;
   std::size_t largest = 0;
   std::string config;
+  std::vector<SettingChange> changes;
   const Session rest = read_session(
-      dir / "a.h5", [&](const Session& about) { config = about.info.config; },
+      dir / "a.h5",
+      [&](const Session& about) {
+        config = about.info.config;
+        changes = about.changes;
+      },
       [&](std::span<const double> some, std::span<const double> twin) {
         largest = std::max(largest, some.size());
         got.insert(got.end(), some.begin(), some.end());
@@ -447,6 +452,8 @@ TEST(Session, IsReadInPieces) {
   EXPECT_TRUE(same_bits(got_twin, others));
   EXPECT_LE(largest, 4096 * static_cast<std::size_t>(RowLayout(3).stride()));
   EXPECT_EQ(config, info.config);
+  ASSERT_EQ(changes.size(), 1u) << "who takes rows in turn has to know what changes at them";
+  EXPECT_EQ(changes[0].row, 12'345u);
   EXPECT_EQ(rest.size(), 0u);
   EXPECT_EQ(rest.changes.at(0).row, 12'345u);
   EXPECT_EQ(rest.marks.at(0).tick, 19'999u);

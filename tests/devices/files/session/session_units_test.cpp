@@ -119,7 +119,7 @@ class SlidingSession : public testing::Test {
     writer.append(rows_);
     writer.close();
   }
-  void expect_same(const std::vector<double>& again) const {
+  void expect_same(std::span<const double> again) const {
     ASSERT_EQ(again.size(), rows_.size());
     EXPECT_EQ(std::memcmp(again.data(), rows_.data(), rows_.size() * sizeof(double)), 0);
   }

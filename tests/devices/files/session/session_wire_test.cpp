@@ -27,7 +27,8 @@ class SessionWire : public testing::Test {
   SessionWire() {
     session_.info = test::sample_info();
     session_.layout = RowLayout(3);
-    session_.rows = test::sample_rows(session_.layout, 0, 40);
+    const std::vector<double> sample = test::sample_rows(session_.layout, 0, 40);
+    session_.rows.assign(sample.begin(), sample.end());
     session_.info.slides = {false, true, false};
     session_.changes = {{3, "coupling.k_vc = 8"}, {40, ""}};
     Session twin = session_;
