@@ -132,8 +132,8 @@ class Document {
   std::string toml() const;
   // Returns the file that saving writes to; empty for scenes that came with Limpid.
   std::filesystem::path own_file() const;
-  bool save_as(const std::filesystem::path&
-                   file);  // returns whether it was saved; shows a notice in any case
+  // Returns whether it was saved; shows a notice in any case.
+  bool save_as(const std::filesystem::path& file);
 
   // Calls `then` at once, or after the user was asked what to do with unsaved changes.
   void leave(std::function<void()> then);
@@ -179,9 +179,8 @@ class Document {
   SceneLoader loader_;
   std::string file_;
   UndoHistory<EditState> history_;
-  EditState known_;  // as of the last frame
-  std::function<void()>
-      after_question_;  // what waits for the answer on unsaved changes; none: not asked
+  EditState known_;                       // as of the last frame
+  std::function<void()> after_question_;  // waits for the question's answer; none: not asked
   std::optional<SetAside> set_aside_;
 };
 
