@@ -50,7 +50,7 @@ struct Settings {
   bool twin_overlaid = false;  // both runs in one picture, else one beside the other
   bool hold_on_release = false;
   bool own_file_dialogs = false;  // even if the desktop has file dialogs
-  bool hint_seen = false;         // the story was offered, and the user did something else
+  bool hint_seen = false;         // the story's button was pressed, or the arm was dragged
   bool your_turn = false;         // the list of first steps is shown
   std::string tried;              // letters of the steps done, see first_steps.h
   std::string picture_quality = "automatic";  // or high, medium, low

@@ -256,7 +256,7 @@ bool Document::save_as(const fs::path& file) {
     const SceneDocument saved = save_scene(editor_.document(), arm_, file);
     const fs::path kept = keep_comments(before, file);
     editor_.saved(saved);
-    // Saving changes names of files, not what can be touched: it is no step for undo.
+    // Saving changes only names of files: it is no step for undo.
     known_.scene = editor_.version();
     remember_file(fs::absolute(file).lexically_normal().string());
     notices_.say(kept.empty()

@@ -147,8 +147,8 @@ class Document {
   std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
   static std::optional<SceneEditor::World> scene_for(const ArmDescription& arm,
                                                      const SetAside& waiting);
-  // Keep a scene waiting: the present one as it would wait, the beginning (unless one waits
-  // already), the scene that waits, and the end.
+  // Keeps a scene while a device has its own: to_set_aside() makes it of the present scene,
+  // set_aside() keeps the first one, end_waiting() forgets it.
   SetAside to_set_aside() const { return {file_, arm_, editor_.version().world, editor_.dirty()}; }
   void set_aside(SetAside scene) {
     if (!set_aside_) set_aside_ = std::move(scene);

@@ -20,7 +20,7 @@ Bounds bounds_of(const Object& object, const Model* model);
 // a file says exactly.
 class SceneEditor {
  public:
-  // Scene at one time. Versions share what they have in common; equal pointers: nothing changed.
+  // Scene at one time. Versions share their equal parts; equal pointers: nothing changed.
   struct World {
     SceneDocument document;
     MeshModels models;  // as many as objects

@@ -48,8 +48,7 @@ LoadedArm load_arm(const std::filesystem::path& file, const std::string& tip, Xa
 
 class SceneLoader {
  public:
-  // Queues a scene. `arm` is called by start_next() at the scene's turn, as an arm may come before
-  // it.
+  // Queues a scene. `arm` is called at the scene's turn, as another arm may come before it.
   void open_scene(std::filesystem::path file, std::function<ArmDescription()> arm);
   void add_model(std::filesystem::path file);
   void open_arm(std::filesystem::path file, const std::string& tip, Xacro xacro);
@@ -62,11 +61,11 @@ class SceneLoader {
   double part() const { return work_.part(); }
   double seconds_left() const;  // negative: nobody can tell yet
   std::size_t waiting() const { return waiting_.size(); }
-  // Drops what waits, and cancels what runs, which ends at its own pace.
+  // Drops the queue, and cancels the running work, which ends at its own pace.
   void cancel();
 
-  // Returns what is ready; to be called once a frame. Throws what loading threw, but nothing of
-  // what was cancelled.
+  // Returns a result that is ready; to be called once a frame. Throws the errors of loading, unless
+  // it was cancelled.
   std::optional<Loaded> take();
 
  private:

@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{1000};      // between two looks at what is plugged in
+constexpr milliseconds kLook{1000};      // between two looks for plugged devices
 constexpr milliseconds kServices{5000};  // between two questions to programs that serve devices
 constexpr milliseconds kRetry{3000};     // between two attempts to open a device
 constexpr milliseconds kSettle{500};     // until the loop shows whether a new device answers
@@ -27,7 +27,7 @@ void DeviceController::update() {
     return;
   }
   decide_who_chooses();
-  if (!hub_.refusal().empty()) {  // until somebody mends the file
+  if (!hub_.refusal().empty()) {  // until the file is mended
     hub_.read_again();
     retry_at_ = Clock::now() + kRetry;
   }

@@ -15,7 +15,7 @@
 namespace limpid {
 namespace {
 
-// Returns what is violated, by how much, and what would mend it; empty if nothing is. So do all
+// Returns the violated condition, by how much, and a remedy; empty if it holds. So do all
 // ..._broken().
 std::string eta_broken(const Parameters& p, const Analysis& a) {
   if (!info(p.kind).observes || a.above_eta_min) return {};

@@ -25,8 +25,8 @@ void choice(DeviceController& devices, const char* label, const std::string& id,
   tooltip(help);
 }
 
-// Draws a device, a gamepad or the mouse as a choice for the virtual arm's hand; the mouse can
-// always lead it.
+// Draws the choice of the mouse, or of a gamepad, for the virtual arm's hand; the mouse can always
+// lead it.
 void hand_choice(DeviceController& devices, const PadChoice& pads, const std::string& label,
                  const std::string& id, const char* help) {
   ImGui::PushID(id.c_str());

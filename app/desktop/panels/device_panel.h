@@ -23,7 +23,7 @@ struct NotesEdited {
   bool limits = false;  // limits of force
 };
 
-// Draws axes, a joystick's settings, and limits of force; changes only what is edited. `joints` of
+// Draws axes, a joystick's settings, and limits of force; changes only edited values. `joints` of
 // the arm, as many as `angles`; empty for a cap, which has none.
 NotesEdited draw_notes(DeviceNotes& notes, std::span<const double> angles,
                        std::span<const Joint> joints, bool uncalibrated, bool limits_fixed);

@@ -12,7 +12,7 @@ class NamedDialog {
   struct Options {
     const char* title;
     const char* what;  // "layout"
-    const char* help;  // a sentence on what is kept
+    const char* help;  // sentence on its contents
   };
   explicit NamedDialog(Options options) : options_(options) {}
 

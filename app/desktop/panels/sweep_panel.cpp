@@ -497,7 +497,7 @@ void draw_legend(const SweepMap& map, const OpenedSweep& sweep) {
   }
 }
 
-// Draws what a click does, the progress of loading, or an obstacle; and the closing button.
+// Draws the effect of a click, the progress of loading, or an obstacle; and the closing button.
 void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   const Palette& colours = current_palette();
   const float left = ImGui::GetCursorPosX();

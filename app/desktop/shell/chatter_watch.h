@@ -1,4 +1,4 @@
-// Watch for chatter of the loop: which wall causes it, and what mends it.
+// Watch for chatter of the loop, its wall and its remedies.
 #pragma once
 
 #include <array>

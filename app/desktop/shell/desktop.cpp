@@ -284,7 +284,7 @@ void Desktop::update(double dt) {
   notices.forget_old();
 }
 
-// Takes over what was loaded: a recording, a point of a sweep, a sweep.
+// Takes over loaded recordings and sweeps, and the session of a sweep's point.
 void Desktop::follow_playback(double dt) {
   if (sweep.update()) remember_recent(settings, sweep.sweep()->file.string());
   const bool another = playback.update(dt);

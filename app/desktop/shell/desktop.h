@@ -34,7 +34,7 @@
 
 namespace limpid {
 
-// View of what is on screen: the recording that is played, or else the loop.
+// View of the screen's content: the recording that is played, or else the loop.
 class Shown {
  public:
   Shown(const Settings& settings, Playback& playback, LiveSession& live)
@@ -153,7 +153,8 @@ class Desktop {
   void toggle_force();
   // Cuts the force of the arm, of a check of its axes, and of a device that is moved by itself.
   void cut_force();
-  // Closes what is open. If nothing is, or on a real device, also cuts the force.
+  // Closes one open thing. Cuts the force, too, if nothing was open or a real device is in the
+  // loop.
   void escape();
   // Returns the banners over the picture.
   std::vector<Banner> banners() const;

@@ -74,7 +74,7 @@ void Frame::draw() {
   draw_notices(desktop_.notices, at.view, below_banners_);
 }
 
-// Draws the picture and what cannot be missed, but nothing that tells couplings apart.
+// Draws only the picture, banners and modal dialogs: nothing that tells couplings apart.
 void Frame::draw_blind() {
   int width = 0, height = 0;
   window_.size(width, height);

@@ -121,8 +121,8 @@ void Marking::step(std::vector<Marks>& from, std::vector<Marks>& to) {
   from.pop_back();
 }
 
-// Writes the marks beside the window, one file after the other. If that fails, they stay in the
-// plots, and a notice says so.
+// Writes the marks beside the window, after earlier changes. If that fails, they stay in the plots,
+// and a notice says so.
 void Marking::save(Marks marks) {
   then_ = settings_.parameters;
   live_.save_beside([file = playback_.shown()->file(), marks = std::move(marks), known = known_] {

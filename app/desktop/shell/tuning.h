@@ -61,9 +61,10 @@ class Tuning {
   void keep_as_they_are_for(const ArmDescription& arm) { fitted_for_ = arm; }
   // Makes analysis() for the present arm.
   void analyze_anew();
-  // Follows the settings once the loop has taken them; to be called once a frame.
+  // Follows the settings of both runs, before the loop takes them. follow_recorded() follows those
+  // of a recording, after the loop. Both are to be called once a frame.
   void update();
-  void follow_recorded(bool another);  // session
+  void follow_recorded(bool another);  // session is shown
   // Remembers with the device which part of its own forces its motors compensate.
   void note_compensation();
   // Settings of both runs as with the virtual arm, and the arm that they suit.

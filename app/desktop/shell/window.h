@@ -15,8 +15,8 @@ struct GLFWwindow;
 namespace limpid {
 
 // Calls `leave` when the display is lost, once, on the thread that used the display. X11's library
-// then ends the program, so that `leave` has to keep what is needed, without drawing. Does nothing
-// if the window is not X11's. Precondition: the window is there.
+// then ends the program: `leave` has to keep unsaved work, without drawing. Does nothing if the
+// window is not X11's. Precondition: the window is there.
 void when_display_is_lost(std::function<void()> leave);
 
 // Returns the window's name for the desktop's portals; empty if it has none, as on Wayland.

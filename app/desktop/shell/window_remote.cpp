@@ -363,7 +363,7 @@ Answer WindowRemote::picture(const Keys& keys) {
   });
 }
 
-// Ends what the client has hidden or asked.
+// Ends the client's hiding and its question.
 void WindowRemote::gone(LineServer::Client client) {
   if (hides_ == client) {
     d_.blind = false;

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kSaid = 3;  // warnings that fit beside the picture
 constexpr auto kBetweenWorlds = std::chrono::milliseconds(33);
 
-// Returns whether two arms are alike in what the loop takes from them only when it opens.
+// Returns whether two arms have the same limits, which the loop takes only when it opens.
 bool same_limits(const ArmDescription& one, const ArmDescription& other) {
   const auto same = [](const Joint& a, const Joint& b) {
     return a.effort == b.effort && a.lower == b.lower && a.upper == b.upper;
@@ -128,7 +128,7 @@ void World::open(ArmDescription arm, SceneDocument document, MeshModels models,
   take_stage(std::move(models), saved);
 }
 
-// Makes the stage's scene the one that is edited.
+// Takes the stage's scene as the one to edit.
 void World::take_stage(MeshModels models, bool saved) {
   const Stage& stage = d_.live.stage();
   if (!d_.playback.on()) {

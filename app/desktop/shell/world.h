@@ -24,10 +24,11 @@ class World {
  public:
   explicit World(Desktop& desktop) : d_(desktop) {}
 
-  // Opens what was given by hand, once the window is there. Errors: FileError and the like.
+  // Opens files named by the user, once the window is there; empty: the default. Errors: FileError
+  // and the like.
   void open_given(const std::string& device, const std::string& tip, const std::string& scene);
-  // Opens what was given; empty: what was open last time. A scene of last time that is gone only
-  // shows a notice. `fixed`: settings that were given by hand stay as they are, whatever the arm.
+  // Opens files named by the user; empty: those of last time. A missing scene of last time only
+  // shows a notice. `fixed`: settings named by the user stay as they are, whatever the arm.
   void open_last(const std::string& device, const std::string& tip, const std::string& scene,
                  bool fixed);
 
@@ -51,7 +52,8 @@ class World {
   void add_object(Object object);
 
   // Puts a real device in the arm's place, or lets it lead the virtual arm's hand; and back. The
-  // scene comes along with all its changes; if it cannot, the user is asked first.
+  // scene comes along with all its changes, or else waits until the device is gone. The user is
+  // then asked about changes of the device's own scene.
   void open_device(std::unique_ptr<Device> device);
   void close_device(const std::function<void()>& then = [] {});
 

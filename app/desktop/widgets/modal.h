@@ -19,8 +19,8 @@ class UiStack {
   int fonts_;
 };
 
-// Does `work`, and calls `complain(what)` on an exception, so that the next frame comes. Unfinished
-// drawing is closed if it began outside of other ImGui windows.
+// Does `work`, and calls `complain(message)` on an exception, so that the next frame comes. Ends
+// unfinished drawing, if that began outside of other ImGui windows.
 template <class Work, class Complain>
 void guarded(Complain&& complain, Work&& work) {
   const UiStack before;
