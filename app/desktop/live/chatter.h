@@ -9,8 +9,8 @@ namespace limpid {
 
 // Looks for chatter in stretches of a quarter of a second. In each of three successive stretches
 //
-// - the coordination error of the joint where it is largest goes to and fro faster than a hand can
-//   shake, which is up to some 12 Hz;
+// - the largest coordination error of a joint goes to and fro faster than a hand can shake (up to
+//   some 12 Hz);
 // - the coupling gives energy: E_c grows, also with the energy of its spring added. Under a passive
 //   coupling the sum never grows, however quickly something is touched, rubbed or let go: the
 //   spring gives back only energy that it held. If motors at their limit keep the spring from

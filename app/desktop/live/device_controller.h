@@ -90,7 +90,7 @@ class DeviceController {
   void follow_check();
   // Returns why the device is not connected at present, for people; empty: nothing prevents it.
   std::string obstacle() const;
-  // Connects by itself if this is the first window that has a device.
+  // Lets this window connect by itself if it is the first that has a device.
   void decide_who_chooses();
   void choose();
   void take_turn(const std::string& id);

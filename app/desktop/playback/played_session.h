@@ -15,7 +15,7 @@
 
 namespace limpid {
 
-// Line of knowledge on a recording.
+// Fact on a recording.
 struct Fact {
   std::string name, value;
 };
