@@ -43,8 +43,8 @@ class TransformTool {
               ImDrawList& list);
 
   TransformKind kind_ = TransformKind::move;
-  std::optional<TransformKind> wanted_;  // wish of a key, for the next frame
-  std::optional<Transform> transform_;   // that goes on
+  std::optional<TransformKind> wanted_;  // a key asks for it, from the next frame on
+  std::optional<Transform> transform_;   // transform that goes on
   std::size_t place_ = 0;                // place of the object in the scene
   SceneEditor::Version before_;
   Eigen::Vector2d begin_ = Eigen::Vector2d::Zero();  // of the mouse [px]
