@@ -1,4 +1,4 @@
-// What somebody new is asked to try, and what of it was done once: hints and "Your turn" go by it.
+// First steps: things that a new user is asked to try, and which of them were done once.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@ enum class FirstStep : std::uint8_t { pull, push, press, law, eta, twin, play };
 
 struct FirstStepInfo {
   FirstStep step;
-  char letter;  // in the settings
+  char letter;  // in Settings::tried
   const char* what;
   const char* how;  // key or mouse
 };
-// In the order in which they are worth trying.
+// Steps in the order in which they are worth trying; hints and "Your turn" go by them.
 inline constexpr std::array kFirstSteps{
     FirstStepInfo{FirstStep::pull, 'd', "Pull the arm by its tip", "left drag"},
     FirstStepInfo{FirstStep::push, 'w', "Push it nearer and farther", "wheel while dragging"},

@@ -1,4 +1,4 @@
-// How a part of the window asks for what can be done in it.
+// Notices that the window shows for a while, and the type of function that runs a command.
 #pragma once
 
 #include <chrono>
@@ -9,10 +9,10 @@
 
 namespace limpid {
 
-// Has a command run, by its id in the table of app/desktop/shell/commands.cpp.
+// Runs a command, by its id in the table of app/desktop/shell/commands.cpp.
 using Act = std::function<void(std::string_view id)>;
 
-// What the window tells its user, for a while.
+// Message to the window's user, shown until a moment.
 struct Notice {
   std::string text;
   bool bad = false;
@@ -21,12 +21,12 @@ struct Notice {
 
 class Notices {
  public:
-  // What is said again stands there once.
+  // Shows a text; the same text, if it is shown already, moves to the end.
   void say(std::string text, bool bad = false);
-  // Not what is being said already.
+  // Shows a text unless it is shown already.
   void say_once(const std::string& text, bool bad);
   const std::deque<Notice>& all() const { return notices_; }
-  // Once a frame.
+  // Removes notices whose time is over; to be called once a frame.
   void forget_old();
   void clear() { notices_.clear(); }
 

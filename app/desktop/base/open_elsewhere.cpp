@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatience = 3000;  // [ms]
+constexpr int kPatience = 3000;  // longest wait for an answer over D-Bus [ms]
 
 bool ask_file_manager(const fs::path& file) {
   const Bus bus = session_bus();
@@ -38,7 +38,7 @@ bool ask_file_manager(const fs::path& file) {
 
 }  // namespace
 
-// A shell of its own lets go of what xdg-open starts, which may run for hours.
+// Starts xdg-open from a shell, which does not wait for it: it may run for hours.
 bool open_elsewhere(const fs::path& file) {
   std::string shell = "/bin/sh", option = "-c",
               words = "command -v xdg-open >/dev/null || exit 1; xdg-open \"$0\" >/dev/null 2>&1 &",

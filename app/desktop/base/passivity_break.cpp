@@ -12,7 +12,7 @@ namespace limpid {
 namespace {
 
 constexpr double kStiffGrip = 3000;   // [N/m]
-constexpr double kBelowLimit = 0.75;  // of Routh's limit: energy grows within a second
+constexpr double kBelowLimit = 0.75;  // part of Routh's limit: energy grows within a second
 
 Parameters& run_of(Settings& settings, bool twin) {
   return twin ? settings.twin.parameters : settings.parameters;
@@ -37,7 +37,7 @@ void break_passivity(Settings& settings, const ArmDescription& arm) {
   settings.before_break = {settings.parameters, settings.twin.parameters, twin};
   Parameters& run = run_of(settings, twin);
   run = without_passivity(run, arm);
-  // The hand is one for both, and the first run says which.
+  // The hand is the same for both runs, and the first run's settings hold it.
   settings.parameters.hand_stiffness = run.hand_stiffness;
   settings.parameters.hand_damping = run.hand_damping;
   share_world(settings.parameters, settings.twin.parameters);

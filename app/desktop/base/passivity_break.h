@@ -1,4 +1,4 @@
-// Shows what passivity is for: settings under which the loop gives energy without end, for a while.
+// Demonstration of broken passivity: settings under which the loop gives energy without end.
 #pragma once
 
 #include "app/desktop/base/settings.h"
@@ -6,18 +6,19 @@
 
 namespace limpid {
 
-// The proposed law in a stiff, undamped grip, with eta well below Routh's limit for it. All else
-// stays.
+// Returns `p` with the proposed law in a stiff, undamped grip and eta well below Routh's limit for
+// it.
 Parameters without_passivity(const Parameters& p, const ArmDescription& arm);
 
-// From now on the run that is edited has these. Once more changes nothing.
+// Gives these settings to the run that is edited; does nothing if passivity is broken already.
 void break_passivity(Settings& settings, const ArmDescription& arm);
 inline constexpr const char* kBreakEnded =
     "Passivity is whole again: all settings are what they were before it was broken.";
 inline bool passivity_broken(const Settings& settings) { return settings.before_break.has_value(); }
-// All settings of both runs are what they were before; nothing where it is not broken.
+// Puts back all settings of both runs from before; does nothing if passivity is not broken.
 void end_passivity_break(Settings& settings);
-// Somebody has chosen another law for the broken run: it ends, and that law stays. Whether it did.
+// Ends the break if another law was chosen for the broken run, and keeps that law. Returns whether
+// it ended.
 bool end_break_by_law(Settings& settings);
 
 }  // namespace limpid

@@ -12,8 +12,47 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeastGap = 1e-5;  // to speak of [m]
-constexpr float kBetween = 2;       // of the halves of a twin's picture [px]
+constexpr double kLeastGap = 1e-5;  // least gap that is shown [m]
+constexpr float kBetween = 2;       // between the halves of a twin's picture [px]
+
+bool overlap(ScreenRect a, ScreenRect b) {
+  return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
+}
+
+// Draws the gap beside the middle of the tips, above or below it.
+void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool below,
+                      const Camera& camera, const GapPlace& at, ImDrawList& list) {
+  const ScreenRect& picture = at.picture;
+  const auto pixel = camera.project(0.5 * (a + b));
+  std::string text = gap_text((a - b).norm());
+  if (text.empty() || !pixel) return;
+  if (!run.empty()) text = run + ": " + text;
+  ImFont* face = font(Face::small);
+  const float em = face->FontSize, pad = 0.35f * em;
+  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
+  const ImVec2 tips = in_window(picture, *pixel);
+  const float edge = picture.max.x - 1.6f * em;  // a panel's tab may be to the right of it
+  const float top = tips.y + (below ? 1.2f : -2.2f) * em;
+  const auto box_at = [&](float left) {
+    return ScreenRect{{left - pad, top - 0.5f * pad},
+                      {left + size.x + pad, top + size.y + 0.5f * pad}};
+  };
+  ScreenRect box = box_at(std::min(tips.x + 1.6f * em, edge - size.x - pad));
+  if (at.lens && overlap(box, *at.lens)) box = box_at(tips.x - 1.6f * em - size.x);
+  const ImVec2 place(box.min.x + pad, top);
+  const Palette& colours = current_palette();
+  list.AddRectFilled(box.min, box.max, colour(colours.backdrop, 0.75f), 3);
+  list.AddText(face, em, place, colour(colours.text), text.c_str());
+}
+
+void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Camera& camera,
+               ScreenRect picture, ImDrawList& list) {
+  const auto pixel = camera.project(around);
+  if (!pixel) return;
+  const ImVec2 middle = in_window(picture, *pixel);
+  list.AddCircle(middle, radius, colour(current_palette().backdrop, 0.75f), 0, thick + 2);
+  list.AddCircle(middle, radius, colour(tint), 0, thick);
+}
 
 }  // namespace
 
@@ -28,40 +67,6 @@ std::string gap_text(double meters) {
   return mm < 9.95 ? fmt::format("gap {:.2f} mm", mm) : fmt::format("gap {:.1f} mm", mm);
 }
 
-namespace {
-
-bool overlap(ScreenRect a, ScreenRect b) {
-  return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
-}
-
-// Beside the middle of the tips, above them or below.
-void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool below,
-                      const Camera& camera, const GapPlace& at, ImDrawList& list) {
-  const ScreenRect& picture = at.picture;
-  const auto pixel = camera.project(0.5 * (a + b));
-  std::string text = gap_text((a - b).norm());
-  if (text.empty() || !pixel) return;
-  if (!run.empty()) text = run + ": " + text;
-  ImFont* face = font(Face::small);
-  const float em = face->FontSize, pad = 0.35f * em;
-  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
-  const ImVec2 tips = in_window(picture, *pixel);
-  const float edge = picture.max.x - 1.6f * em;  // where a panel's tab may be
-  const float top = tips.y + (below ? 1.2f : -2.2f) * em;
-  const auto box_at = [&](float left) {
-    return ScreenRect{{left - pad, top - 0.5f * pad},
-                      {left + size.x + pad, top + size.y + 0.5f * pad}};
-  };
-  ScreenRect box = box_at(std::min(tips.x + 1.6f * em, edge - size.x - pad));
-  if (at.lens && overlap(box, *at.lens)) box = box_at(tips.x - 1.6f * em - size.x);
-  const ImVec2 place(box.min.x + pad, top);
-  const Palette& colours = current_palette();
-  list.AddRectFilled(box.min, box.max, colour(colours.backdrop, 0.75f), 3);
-  list.AddText(face, em, place, colour(colours.text), text.c_str());
-}
-
-}  // namespace
-
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names) {
   if (view.device.links.empty() || view.proxy.links.empty()) return;
@@ -70,19 +75,6 @@ void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, I
   draw_gap_between(view.twin->device.tip, view.twin->proxy.tip, names.second, true, camera, at,
                    list);
 }
-
-namespace {
-
-void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Camera& camera,
-               ScreenRect picture, ImDrawList& list) {
-  const auto pixel = camera.project(around);
-  if (!pixel) return;
-  const ImVec2 middle = in_window(picture, *pixel);
-  list.AddCircle(middle, radius, colour(current_palette().backdrop, 0.75f), 0, thick + 2);
-  list.AddCircle(middle, radius, colour(tint), 0, thick);
-}
-
-}  // namespace
 
 void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
   if (!view.pull) return;

@@ -13,37 +13,38 @@
 
 namespace limpid {
 
-// A place in the picture, in pixels from its upper left corner, as one in the window.
+// Returns a pixel of the picture, counted from its upper left corner, as a place in the window.
 ImVec2 in_window(ScreenRect picture, const Eigen::Vector2d& pixel);
 
-// "gap 0.42 mm"; empty where there is none to speak of, below a hundredth of a millimetre.
+// Returns "gap 0.42 mm", or an empty text below a hundredth of a millimetre.
 std::string gap_text(double meters);
-// Where the camera's picture is, and in it a lens that is to stay free.
+// Place of the camera's picture, and of a lens in it that stays free.
 struct GapPlace {
   ScreenRect picture;
   std::optional<ScreenRect> lens = {};
 };
-// At the two tips: how far apart they are. Of two runs in one picture each has its number, with its
-// name.
+// Draws the gap at the two tips. Two runs in one picture have a number each, with its run's name.
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
-// A line from the body that is pulled on to where it is pulled.
+// Draws a line from the body that is pulled to the point it is pulled to.
 void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
-// A ring around the proxy's tip while its magnet is on, thick while that holds something.
+// Draws a ring around the proxy's tip while its magnet is on, thick while the magnet holds
+// something.
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
-// A ring around the device's tip: the mouse has hold of it, or would have.
+// Draws a ring around the device's tip: the mouse has hold of it, or would have.
 void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
-// What the first or the second run of a twin is called, at the top of its half, with a sample of
-// its curves.
+// Draws the name of a twin's first or second run at the top of its half, with a sample of its
+// curves.
 void draw_run_name(const RunNames& names, bool second, ScreenRect half, ImDrawList& list);
 
-// What must not be missed, at the top of a picture, or below the names of a twin's halves.
+// Draws a sign that must not be missed, at the top of a picture or below the names of a twin's
+// halves.
 void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list);
 
-// A sentence at the bottom of a picture, in lines as they fit.
+// Draws a sentence at the bottom of a picture, in as many lines as it needs.
 void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list);
 
-// The halves of a twin's picture.
+// Returns the left or right half of a twin's picture.
 ScreenRect half_of(ScreenRect picture, bool right);
 
 }  // namespace limpid

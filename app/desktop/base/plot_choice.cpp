@@ -10,7 +10,7 @@
 namespace limpid {
 namespace {
 
-constexpr float kTwinTint = 0.55f;  // of the second run's curves
+constexpr float kTwinTint = 0.55f;  // shade of the second run's curves
 
 struct Scale {
   std::string_view unit;
@@ -18,7 +18,7 @@ struct Scale {
   std::vector<PlotUnit> units;
 };
 
-// How quantities of a unit are written, and how little of them is worth a whole axis.
+// Returns how quantities of a unit are written, and the least span of an axis for them.
 const Scale& scale_of(std::string_view unit) {
   static const std::array scales{
       Scale{"rad", 20e-3, {{"mrad", 1e3, 1}, {"rad", 1, 1e9}}},
@@ -34,7 +34,7 @@ const Scale& scale_of(std::string_view unit) {
   return found == scales.end() ? scales.back() : *found;
 }
 
-// The axis for these; different units stand beside one another, unscaled.
+// Returns the axis for these channels; different units stand beside one another, unscaled.
 PlotAxis axis_for(const std::vector<ChannelInfo>& shown, bool log) {
   PlotAxis axis{.zero_line = false, .smallest_span = 1, .log = log};
   if (shown.empty()) return axis;
@@ -55,7 +55,7 @@ PlotAxis axis_for(const std::vector<ChannelInfo>& shown, bool log) {
   return axis;
 }
 
-// A colour that no curve has yet.
+// Gives the curve a colour that no other curve has.
 void tell_apart(Curve& curve, const std::vector<Curve>& others) {
   const auto taken = [&] {
     return std::ranges::any_of(others, [&](const Curve& other) {
@@ -76,7 +76,7 @@ void tell_apart(Curve& curve, const std::vector<Curve>& others) {
   }
 }
 
-// The same channel of the second run.
+// Returns the curve of the same channel of the second run.
 Curve of_second(const Curve& first, std::size_t number, const TraceChannels& channels,
                 const RunNames& names) {
   constexpr std::array kShades{0.0f, 0.5f, -0.5f, 0.25f, -0.25f};
@@ -111,7 +111,7 @@ std::string slug(const std::string& title) {
   return text.empty() ? "plot" : text;
 }
 
-// Where there was no force, or less of it.
+// Returns the band that shows when force was off or reduced.
 Band force_band(int channel) {
   Band band{.channel = channel, .names = {""}, .striped = true};
   for (std::uint8_t i = 1; *explain(ForceState{i}) != '\0'; ++i) {
@@ -120,7 +120,7 @@ Band force_band(int channel) {
   return band;
 }
 
-// Where a single run had which law, where a motor was at its limit, and where force was off.
+// Returns bands for the law of a single run, for motors at their limit, and for missing force.
 std::vector<Band> bands(const TraceChannels& channels, bool single) {
   std::vector<Band> bands;
   if (single) {
@@ -201,7 +201,7 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     curve.visible = !names.twin || !info.seldom;
     firsts.push_back(std::move(curve));
   }
-  // Where each run is one curve, that is its law's.
+  // A curve that is its run's only one has the colour of the run's law.
   if (names.twin && firsts.size() == 1) firsts[0].law = names.laws[0];
   spec.y = axis_for(shown, choice.kind == PlotKind::spectrum);
   if (spec.y.unit.find(',') != std::string::npos) {

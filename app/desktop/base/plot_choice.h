@@ -1,4 +1,4 @@
-// What somebody chose to see in a plot, by the names of channels: the same for every arm and run.
+// Plots that a user has chosen, by the names of channels: the same for every arm and run.
 #pragma once
 
 #include <array>
@@ -12,37 +12,38 @@
 namespace limpid {
 
 struct PlotChoice {
-  std::string title = {};  // empty: what it shows is its title
+  std::string title = {};  // if empty, title_of() finds one
   PlotKind kind = PlotKind::time;
-  std::string across = {};                 // kind cross: the channel along the horizontal axis
-  std::vector<std::string> channels = {};  // their keys
+  std::string across = {};  // for PlotKind::cross: the channel along the horizontal axis
+  std::vector<std::string> channels = {};  // keys of the channels
 
   friend bool operator==(const PlotChoice&, const PlotChoice&) = default;
 };
 
-// As files have a kind: "time", "cross", "spectrum".
+// Returns the kind's name in files: "time", "cross", "spectrum".
 const char* name(PlotKind kind);
 
-// Coordination error, controller energy, torques, and error against contact torque.
+// Returns plots of coordination error, controller energy, torques, and error against contact
+// torque.
 std::vector<PlotChoice> default_plots();
 
-// What the curves of two runs are called, in front of what they show.
+// Names of two runs, in front of their curves' labels.
 struct RunNames {
-  std::string first, second;        // of one run both are empty
-  bool twin = false;                // the second is another one now, not one of before
-  std::array<int, 2> laws{-1, -1};  // of a twin's runs, by their numbers, as far as they are known
+  std::string first, second;        // both empty for a single run
+  bool twin = false;                // the second runs beside the first, and not before it
+  std::array<int, 2> laws{-1, -1};  // numbers of a twin's laws; -1: unknown
 
   friend bool operator==(const RunNames&, const RunNames&) = default;
 };
 
-// The laws of a session's runs at a time of it [s].
+// Returns the laws of a session's runs at a time of the session [s].
 std::array<int, 2> laws_at(const Session& session, double time);
 
-// Channels that the arm does not have are left out. A second run's channels follow the first one's
-// and are drawn beside them, if it has a name.
+// Returns the plot of a choice. Leaves out channels that the arm does not have. A second run's
+// channels follow the first one's and are drawn beside them, if the run has a name.
 PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, const RunNames& names);
 
-// What a plot without a title of its own is called.
+// Returns the choice's title, or one made of its channels.
 std::string title_of(const PlotChoice& choice, const TraceChannels& channels);
 
 }  // namespace limpid

@@ -11,7 +11,7 @@ namespace limpid {
 
 namespace {
 
-constexpr double kTrail = 1.0;        // [s]
+constexpr double kTrail = 1.0;        // duration of the tips' trail [s]
 constexpr double kSamePlace = 0.015;  // a contact that moved less is the same one [m]
 constexpr double kPause = 0.05;       // a contact away for less has not ended [s]
 
@@ -121,7 +121,7 @@ void ViewMemory::clear() {
 
 void ViewMemory::update(ViewState& view, std::span<const ContactForce> contacts, double time) {
   if (!tips_.empty() && (time < tips_.back().time || time > tips_.back().time + 1)) clear();
-  if (!tips_.empty() && tips_.back().time == time) tips_.pop_back();  // it stands still
+  if (!tips_.empty() && tips_.back().time == time) tips_.pop_back();  // time stands still
   tips_.push_back({time, view.device.tip, view.proxy.tip});
   while (tips_.front().time < time - kTrail) tips_.pop_front();
   for (const Tips& tips : tips_) {

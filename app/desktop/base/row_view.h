@@ -1,4 +1,4 @@
-// A scene's models as the 3D view wants them.
+// Scenes' models and rows of the trace as the 3D view shows them.
 #pragma once
 
 #include <algorithm>
@@ -41,32 +41,32 @@ inline std::vector<VisualPicture> visual_pictures(const SceneDocument& document)
   return pictures;
 }
 
-// From a row of the trace to what the 3D view shows.
+// Makes the 3D view's state from rows of the trace.
 class RowView {
  public:
   explicit RowView(const ArmDescription& arm, const Scene& scene = {});
 
-  // Another scene: where the centres of mass of its bodies are.
+  // Takes over another scene: the centres of mass of its bodies.
   void show(const Scene& scene);
 
   ArmPose pose(std::span<const double> x) const;
   Vec3 tip(std::span<const double> x) const;
-  // Torque at the joints as a force at the tip there, least squares [N].
+  // Returns the force at the tip that fits the joints' torque, by least squares [N].
   Vec3 tip_force(std::span<const double> x, std::span<const double> torque) const;
-  // Where the proxy is touched. A recording that has but the torque of its contacts shows it as one
+  // Returns the contacts of the proxy. If a recording has only their torque, returns it as one
   // force at the tip.
   std::vector<ContactForce> contacts(const RowLayout& layout, std::span<const double> row) const;
-  // The frames of the scene's objects that move, as many as row and scene have.
+  // Returns the frames of the scene's moving objects, as many as both row and scene have.
   std::vector<Pose> bodies(const RowLayout& layout, std::span<const double> row) const;
-  // Both arms, the hand and its force, and what moves; no contacts, no trails.
+  // Returns both arms, the hand with its force, and the moving objects; no contacts, no trails.
   ViewState view(const RowLayout& layout, std::span<const double> row) const;
 
  private:
   Arm<kAnyDof> arm_;
-  std::vector<Vec3> centers_;  // of mass, of each body, in its frame [m]
+  std::vector<Vec3> centers_;  // of mass of each body, in the body's frame [m]
 };
 
-// A second run's view in the first one's picture.
+// Puts a second run's view into the first one's picture.
 void lay_over(ViewState& view, const ViewState& twin);
 
 // Remembers when each contact began and where the tips were in the last second.

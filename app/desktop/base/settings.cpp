@@ -19,6 +19,8 @@ namespace limpid {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kMostPlots = 24, kMostChannels = 32;
 constexpr std::array kKinds{PlotKind::time, PlotKind::cross, PlotKind::spectrum};
 
@@ -44,36 +46,6 @@ PlotChoice plot_of(const TomlTable& table) {
   return plot;
 }
 
-}  // namespace
-
-toml::array plots_toml(const std::vector<PlotChoice>& plots) {
-  toml::array all;
-  for (const PlotChoice& plot : plots) {
-    toml::table table;
-    if (!plot.title.empty()) table.insert("title", plot.title);
-    table.insert("kind", name(plot.kind));
-    if (!plot.across.empty()) table.insert("across", plot.across);
-    toml::array channels;
-    for (const std::string& key : plot.channels) channels.push_back(key);
-    table.insert("channels", std::move(channels));
-    all.push_back(std::move(table));
-  }
-  return all;
-}
-
-std::vector<PlotChoice> plots_of(const toml::table& table, const std::string& where) {
-  const TomlTable whole(table, where, "");
-  if (whole.find("plot") == nullptr) return default_plots();
-  std::vector<PlotChoice> plots;
-  for (const TomlTable& each : whole.tables("plot")) plots.push_back(plot_of(each));
-  if (plots.size() > kMostPlots) whole.refuse("plot", "at most 24 tables [[plot]]");
-  return plots;
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
 fs::path made(const fs::path& dir) {
   std::error_code error;
   fs::create_directories(dir, error);
@@ -81,11 +53,11 @@ fs::path made(const fs::path& dir) {
 }
 
 constexpr std::size_t kMostRecent = 8;
-constexpr std::size_t kLongestSettings = 1 << 20;  // of the file [bytes]
+constexpr std::size_t kLongestSettings = 1 << 20;  // longest settings file [bytes]
 
 fs::path settings_file() { return user_config_dir() / "settings.toml"; }
 
-// Every setting but the parameters, once, for reading and writing.
+// Visits every setting but the parameters, for reading and for writing.
 template <class S, class Visit>
 void each(S& s, Visit&& visit) {
   visit("ui_scale", s.ui_scale);
@@ -118,18 +90,8 @@ void each(S& s, Visit&& visit) {
   visit("gamepad", s.gamepad);
 }
 
-}  // namespace
-
-void remember_recent(Settings& settings, const std::string& file) {
-  std::erase(settings.recent, file);
-  settings.recent.insert(settings.recent.begin(), file);
-  if (settings.recent.size() > kMostRecent) settings.recent.resize(kMostRecent);
-}
-
-namespace {
-
-// Limits of which less is stricter. A limit that a person has lowered stays lowered, also where the
-// file cannot be understood.
+// Limits of which less is stricter. A limit that a user has lowered stays lowered, even if the file
+// cannot be understood.
 constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"};
 
 void complain(std::string& complaint, const std::string& why) {
@@ -147,8 +109,8 @@ void lower_all(Parameters& p, std::string& complaint) {
   for (const char* limit : kLimits) lower(p, limit, complaint);
 }
 
-// A limit whose own line is wrong, or that is meant by a key that does not exist, is as low as it
-// can be: nobody knows how low it was.
+// Lowers a limit as far as possible if its own line is wrong or an unknown key may mean it: nobody
+// knows how low it was.
 void lower_untaken(Parameters& p, const std::vector<UntakenKey>& untaken, std::string& complaint) {
   const std::vector<std::string> limits(kLimits.begin(), kLimits.end());
   for (const UntakenKey& one : untaken) {
@@ -161,7 +123,7 @@ void lower_untaken(Parameters& p, const std::vector<UntakenKey>& untaken, std::s
   }
 }
 
-// Key by key: one that is wrong costs no other.
+// Reads key by key: a wrong key costs no other.
 void read_parameters(const std::string& text, const char* table, const std::string& where,
                      Parameters& p, std::string& complaint) {
   const std::vector<UntakenKey> untaken = take_config_table(p, text, table, where);
@@ -177,7 +139,7 @@ Settings settings_of(const std::string& text, const fs::path& file, std::string&
       using T = std::remove_reference_t<decltype(value)>;
       if (const auto found = table["window"][key].value<T>()) value = *found;
     });
-    // Who has used a Limpid that did not ask yet needs no hints.
+    // A user of an older Limpid, which did not ask yet, needs no hints.
     if (s.hint_seen && !table["window"]["tried"].is_string()) note_all_done(s);
     if (const toml::array* recent = table["window"]["recent"].as_array()) {
       for (const toml::node& node : *recent) {
@@ -223,7 +185,7 @@ bool same(const toml::node& a, const toml::node& b) {
   });
 }
 
-// Puts into `there` what is otherwise `now` than it `began`.
+// Changes in `there` the values in which `now` differs from `began`.
 void put_changes(toml::table& there, const toml::table& now, const toml::table& began) {
   for (const auto& [key, node] : now) {
     const toml::node* before = began.get(key);
@@ -241,7 +203,7 @@ void put_changes(toml::table& there, const toml::table& now, const toml::table& 
   }
 }
 
-// What this window opened, what others opened meanwhile, and what was there before.
+// Returns this window's newly opened files, then other windows', then those from before.
 std::vector<std::string> recent_of_all(const Settings& now, const Settings& began,
                                        const Settings& there) {
   if (there.recent == began.recent) return now.recent;
@@ -263,7 +225,7 @@ std::vector<std::string> recent_of_all(const Settings& now, const Settings& bega
   return all.recent;
 }
 
-// The text of a settings file, brought up to date.
+// Returns the text of a settings file, brought up to date.
 std::string text_with(const Settings& settings, const Settings& began, const std::string& text) {
   toml::table all = table_of(settings);
   std::string complaint;
@@ -282,6 +244,36 @@ std::string text_with(const Settings& settings, const Settings& began, const std
 }
 
 }  // namespace
+
+toml::array plots_toml(const std::vector<PlotChoice>& plots) {
+  toml::array all;
+  for (const PlotChoice& plot : plots) {
+    toml::table table;
+    if (!plot.title.empty()) table.insert("title", plot.title);
+    table.insert("kind", name(plot.kind));
+    if (!plot.across.empty()) table.insert("across", plot.across);
+    toml::array channels;
+    for (const std::string& key : plot.channels) channels.push_back(key);
+    table.insert("channels", std::move(channels));
+    all.push_back(std::move(table));
+  }
+  return all;
+}
+
+std::vector<PlotChoice> plots_of(const toml::table& table, const std::string& where) {
+  const TomlTable whole(table, where, "");
+  if (whole.find("plot") == nullptr) return default_plots();
+  std::vector<PlotChoice> plots;
+  for (const TomlTable& each : whole.tables("plot")) plots.push_back(plot_of(each));
+  if (plots.size() > kMostPlots) whole.refuse("plot", "at most 24 tables [[plot]]");
+  return plots;
+}
+
+void remember_recent(Settings& settings, const std::string& file) {
+  std::erase(settings.recent, file);
+  settings.recent.insert(settings.recent.begin(), file);
+  if (settings.recent.size() > kMostRecent) settings.recent.resize(kMostRecent);
+}
 
 bool kept_alike(const Settings& a, const Settings& b) { return table_of(a) == table_of(b); }
 

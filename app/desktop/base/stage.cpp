@@ -13,7 +13,8 @@ bool same_part(const BodyPart& a, const BodyPart& b) {
   return a.shape == b.shape && a.pose.matrix() == b.pose.matrix() && a.color == b.color;
 }
 
-// Everything SceneView::set_scene() looks at, which reads files and builds shapes: not meshes.
+// Returns true if two documents are alike in all that SceneView::set_scene() reads; it reads files
+// and builds shapes. Meshes do not count.
 bool same_items(const SceneDocument& first, const SceneDocument& second) {
   const auto seen = [](const SceneDocument& document) {
     std::vector<const Object*> objects;
@@ -32,7 +33,7 @@ bool same_items(const SceneDocument& first, const SceneDocument& second) {
                             &SceneVisual::file);
 }
 
-// The pictures are read once: whatever else is made of the stage's arm has them.
+// Reads the pictures once: all that is made of the stage's arm has them.
 const ArmDescription& with_look(ArmDescription& arm) {
   load_visuals(arm);
   return arm;
@@ -53,7 +54,6 @@ Stage::Stage(ArmDescription arm, SceneDocument document, const MeshModels& model
   show_meshes(models, std::nullopt);
 }
 
-// Plots that stay keep where they are looked at.
 void Stage::choose_plots(const std::vector<PlotChoice>& choices) {
   if (choices == choices_) return;
   std::vector<Plot> chosen;

@@ -1,4 +1,4 @@
-// A world as it is seen: arm and scene, their picture, and the plots of what happens there.
+// Stage: arm and scene, their picture, and the plots of their rows.
 #pragma once
 
 #include <memory>
@@ -17,22 +17,22 @@ namespace limpid {
 
 class Stage {
  public:
-  // `models` are what the scene's meshes look like; `history`: of the arm's channels, or twice as
-  // many, for a second run beside the first; `shown`: how much of it at first [s]. Needs a current
-  // OpenGL context. Errors: std::runtime_error naming the file of a picture.
+  // Draws the scene's meshes by `models`. `history` has the arm's channels, or twice as many for a
+  // second run beside the first; the plots show `shown` of it at first [s]. Needs a current OpenGL
+  // context. Errors: std::runtime_error naming the file of a picture.
   Stage(ArmDescription arm, SceneDocument document, const MeshModels& models, History history,
         double shown);
 
-  // The same arm in another scene; `highlighted` is the number of a mesh. Errors as above; the
-  // picture stays as it was then.
+  // Shows the same arm in another scene; `highlighted` is the number of a mesh. Errors as above;
+  // the picture stays as it was then.
   void show(const SceneDocument& document, const MeshModels& models,
             std::optional<std::size_t> highlighted);
-  // What there is a plot of.
+  // Makes a plot for each choice; plots that stay keep their range.
   void choose_plots(const std::vector<PlotChoice>& choices);
-  // What the plots call their runs; a second one is drawn while it has a name.
+  // Names the runs in the plots; a second run is drawn while it has a name.
   void name_runs(const RunNames& names);
   const RunNames& names() const { return names_; }
-  // A level of Quality.
+  // Draws at a level of Quality.
   void draw_at(int quality);
 
   const ArmDescription& arm() const { return arm_; }
@@ -40,10 +40,10 @@ class Stage {
   const RowView& rows() const { return rows_; }
   const TraceChannels& channels() const { return channels_; }
 
-  // What the motors can give under these parameters, from the next row on.
+  // Sets the torque limits under these parameters, from the next row on.
   void follow(const Parameters& p) { channels_.set_limits(motor_limits(arm_, p)); }
 
-  // Whose energy it is in the samples up to `end`.
+  // Accounts for the energy of both runs in the samples up to `end`.
   void follow_energy(SampleIndex end);
 
   // Adds a row to the plots, and a second run's beside it.

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 fs::path thumbnails_dir() { return user_cache_dir() / "thumbnails"; }
 
-// The arms alone: arrows and flashes would hide them in so small a picture.
+// Returns a view of the arms alone: arrows and flashes would hide them in so small a picture.
 ViewState view_of(const Stage& stage, std::span<const double> row) {
   ViewState view = stage.rows().view(stage.channels().layout(), row);
   view.show_hand = view.show_forces = false;
@@ -62,7 +62,7 @@ void make_thumbnail(const fs::path& session, Stage& stage, std::span<const doubl
     keep_newest(thumbnails_dir(), kMostThumbnails);
   } catch (const std::exception&) {
     std::error_code none;
-    fs::remove(thumbnail_of(session), none);  // half of one, on a full disk
+    fs::remove(thumbnail_of(session), none);  // a part, if the disk is full
   }
 }
 

@@ -1,4 +1,5 @@
-// Small pictures of sessions, for lists of files. They are in the user's cache and may go any time.
+// Thumbnails: small pictures of sessions for lists of files, in the user's cache. They may go any
+// time.
 #pragma once
 
 #include <filesystem>
@@ -12,18 +13,18 @@ namespace limpid {
 inline constexpr int kThumbnailWidth = 256, kThumbnailHeight = 144;  // [px]
 inline constexpr std::size_t kMostThumbnails = 64;
 
-// What a session's picture is called, whether there is one or not; the same for the same file.
+// Returns the file of a session's picture, whether it exists or not.
 std::filesystem::path thumbnail_of(const std::filesystem::path& session);
 
-// What a list shows of a recording or a scene, whether it is there or not: of scenes that came with
-// Limpid, and of the sessions recorded in them, the picture that came along, too.
+// Returns the file of a recording's or scene's picture, whether it exists or not. Scenes that came
+// with Limpid, and the sessions recorded in them, have pictures that came along.
 std::filesystem::path picture_of(const std::filesystem::path& file);
 
-// Draws one of a row, and of a twin's, and keeps it; the oldest ones go where there are too many.
-// Needs a current OpenGL context. Never throws: a picture less is no harm.
+// Draws and keeps the picture of a row, and of a twin's; removes the oldest pictures beyond
+// kMostThumbnails. Needs a current OpenGL context. Never throws: a missing picture is no harm.
 void make_thumbnail(const std::filesystem::path& session, Stage& stage, std::span<const double> row,
                     std::span<const double> twin, Theme theme);
-// Removes the oldest pictures of a folder beyond that many.
+// Removes all but the `most` newest pictures of a folder.
 void keep_newest(const std::filesystem::path& folder, std::size_t most);
 
 }  // namespace limpid

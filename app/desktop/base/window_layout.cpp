@@ -20,12 +20,42 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t kLongest = 1 << 20;  // of a file [bytes]
+constexpr std::size_t kLongest = 1 << 20;  // longest file [bytes]
 
 std::string text_of(const toml::table& table) {
   std::ostringstream text;
   text << toml::toml_formatter(table);
   return text.str();
+}
+
+constexpr double kLeastPanel = 100, kMostPanel = 1000;  // [px at scale 1]
+
+// Visits every setting of a layout but its plots, for reading and for writing.
+template <class S, class Visit>
+void each_of_layout(S& s, Visit&& visit) {
+  visit("show_left", s.show_left);
+  visit("show_right", s.show_right);
+  visit("show_plots", s.show_plots);
+  visit("left", s.left);
+  visit("right", s.right);
+  visit("plots", s.plots);
+}
+
+void read_layout(const TomlTable& table, const char* key, bool& value) {
+  const toml::node* node = table.find(key);
+  if (node == nullptr) return;
+  if (!node->is_boolean()) table.refuse(key, "true, false");
+  value = *node->value<bool>();
+}
+
+void read_layout(const TomlTable& table, const char* key, double& value) {
+  value = table.number(key, {kLeastPanel, kMostPanel}).value_or(value);
+}
+
+bool of_preset(const ParameterInfo& info) {
+  const std::string_view key = info.key;
+  return std::ranges::any_of(std::array<std::string_view, 3>{"coupling.", "observer.", "ledger."},
+                             [key](std::string_view group) { return key.starts_with(group); });
 }
 
 }  // namespace
@@ -58,7 +88,8 @@ NamedTexts::NamedTexts(const fs::path& shipped, fs::path own) : own_(std::move(o
   if (fs::exists(own_, none)) read(own_, false);
 }
 
-// Those that come along hide the user's own of the same name, which stay in their file.
+// Takes the tables over. Shipped texts hide the user's own of the same name, which stay in their
+// file.
 void NamedTexts::take(const Tables& tables, bool shipped) {
   std::erase_if(entries_, [&](const Entry& entry) { return entry.shipped == shipped; });
   for (const auto& [name, node] : tables.all) {
@@ -98,7 +129,7 @@ std::string NamedTexts::remove(const std::string& name) {
   return change([&](Tables& own) { own.all.erase(name); });
 }
 
-// Of the file as it is now: another window may have changed it.
+// Changes the file as it is now: another window may have changed it.
 std::string NamedTexts::change(const std::function<void(Tables&)>& what) {
   try {
     Tables own;
@@ -119,40 +150,6 @@ std::string NamedTexts::change(const std::function<void(Tables&)>& what) {
     return e.what();
   }
 }
-
-namespace {
-
-constexpr double kLeastPanel = 100, kMostPanel = 1000;  // [px at scale 1]
-
-// Every setting of a layout but its plots, once, for reading and writing.
-template <class S, class Visit>
-void each_of_layout(S& s, Visit&& visit) {
-  visit("show_left", s.show_left);
-  visit("show_right", s.show_right);
-  visit("show_plots", s.show_plots);
-  visit("left", s.left);
-  visit("right", s.right);
-  visit("plots", s.plots);
-}
-
-void read_layout(const TomlTable& table, const char* key, bool& value) {
-  const toml::node* node = table.find(key);
-  if (node == nullptr) return;
-  if (!node->is_boolean()) table.refuse(key, "true, false");
-  value = *node->value<bool>();
-}
-
-void read_layout(const TomlTable& table, const char* key, double& value) {
-  value = table.number(key, {kLeastPanel, kMostPanel}).value_or(value);
-}
-
-bool of_preset(const ParameterInfo& info) {
-  const std::string_view key = info.key;
-  return std::ranges::any_of(std::array<std::string_view, 3>{"coupling.", "observer.", "ledger."},
-                             [key](std::string_view group) { return key.starts_with(group); });
-}
-
-}  // namespace
 
 std::string layout_text(const Settings& settings) {
   toml::table table;

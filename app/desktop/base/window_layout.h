@@ -1,4 +1,4 @@
-// What a user keeps by name, in a file of tables: layouts of the window, presets of settings.
+// Named texts that a user keeps in a file of tables: layouts of the window, presets of settings.
 #pragma once
 
 #include <filesystem>
@@ -15,29 +15,28 @@ class NamedTexts {
   struct Entry {
     std::string name;
     std::string text;      // TOML
-    bool shipped = false;  // comes along with the program: to be used, not changed
+    bool shipped = false;  // comes with the program: can be used, not changed
   };
 
-  // Reads both files: one that comes along, and the user's own, which may not be there yet. What
-  // cannot be read is left out, and complaint() says why.
+  // Reads both files: the program's, and the user's own, which may not exist. Unreadable entries
+  // are left out, and complaint() says why.
   NamedTexts(const std::filesystem::path& shipped, std::filesystem::path own);
 
   const std::filesystem::path& file() const { return own_; }
   const std::string& complaint() const { return complaint_; }
-  const std::vector<Entry>& all() const { return entries_; }  // those that come along first
+  const std::vector<Entry>& all() const { return entries_; }  // shipped ones first
   const Entry* find(const std::string& name) const;           // null: there is none
-  bool may_change(const std::string& name) const;             // or have anew
+  bool may_change(const std::string& name) const;             // or be given to a new one
 
-  // Each changes this one only, in the file as it is by then, which another window may have
-  // changed, and takes over what that left. Returns what went wrong, empty if nothing did; nothing
-  // has changed then. A file that could not be read is kept beside it, with ".unread" behind its
-  // name.
-  std::string keep(const std::string& name, const std::string& text);  // also in place of another
+  // Changes one text in the user's file, which another window may have changed, and reads all its
+  // texts anew. Returns the reason of a failure, with nothing changed, or an empty text. An
+  // unreadable file is kept beside it, with ".unread" behind its name.
+  std::string keep(const std::string& name, const std::string& text);  // may replace one
   std::string rename(const std::string& from, const std::string& to);
   std::string remove(const std::string& name);
 
  private:
-  struct Tables;  // of a file
+  struct Tables;  // the tables of one file
   static Tables tables_of(const std::string& text, const std::filesystem::path& file);
   void take(const Tables& tables, bool shipped);
   std::string change(const std::function<void(Tables&)>& what);
@@ -47,18 +46,16 @@ class NamedTexts {
   std::vector<Entry> entries_;
 };
 
-// Which plots and panels the window shows, as text: for layouts that have a name.
-
-// TOML of the layout that these settings have.
+// Returns a layout as TOML: the plots and panels that the window shows under these settings.
 std::string layout_text(const Settings& settings);
-// The layout of a text; other settings stay. Errors: FileError naming `where`, key and what is
+// Applies a layout's text; other settings stay. Errors: FileError naming `where`, key and what is
 // allowed; nothing has changed then.
 void apply_layout(Settings& settings, const std::string& text, const std::string& where);
 
-// The settings that a preset has: those of coupling, observer and ledger.
+// Returns a preset as TOML: the parameters of coupling, observer and ledger.
 std::string preset_text(const Parameters& p);
-// The preset of a text; what it does not name of these settings gets the paper's value, all others
-// stay. Errors: as apply_config_text().
+// Applies a preset's text. Parameters of a preset that it does not name get the paper's value, all
+// others stay. Errors: as apply_config_text().
 void apply_preset(Parameters& p, const std::string& text, const std::string& where);
 
 }  // namespace limpid

@@ -32,9 +32,57 @@ std::string with_commas(std::size_t number) {
   return text;
 }
 
-// Of what stands before an Omni a joystick reaches nothing, nor the other way round.
+// A scene for an Omni is out of a joystick's reach, and the other way round.
 bool share_a_workspace(const ArmDescription& a, const ArmDescription& b) {
   return (a.dof() == 2) == (b.dof() == 2);
+}
+
+std::string text_of(const SceneDocument& scene, const ArmDescription& arm,
+                    const std::string& file) {
+  return scene.toml.empty() ? scene_text(scene, arm, fs::path(file).parent_path()) : scene.toml;
+}
+
+std::string text_there(const fs::path& file) {
+  std::error_code none;
+  return fs::is_regular_file(file, none) ? read_text(file, scene_limits::kLargestModel)
+                                         : std::string();
+}
+
+// Returns the comments of a TOML text.
+std::vector<std::string> comments_in(const std::string& text) {
+  std::vector<std::string> all;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') quote = 0;  // good enough: a part of a long string may count as a comment
+    if (quote != 0) {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      const std::size_t end = std::min(text.find('\n', i), text.size());
+      all.push_back(text.substr(i, end - i));
+      i = end - 1;
+    }
+  }
+  return all;
+}
+
+// Keeps the text `before` of a file that was written anew, if comments of it are gone. Returns the
+// file of that text, or nothing. Errors: std::runtime_error if the text cannot be kept; the file
+// then has it again.
+fs::path keep_comments(const std::string& before, const fs::path& file) {
+  const std::vector<std::string> comments = comments_in(before);
+  const std::string now = text_there(file);
+  const auto stays = [&](const std::string& each) { return now.find(each) != std::string::npos; };
+  if (std::ranges::all_of(comments, stays)) return {};
+  fs::path kept = file.string() + "~";
+  if (const std::string wrong = try_write_atomically(kept, before); !wrong.empty()) {
+    try_write_atomically(file, before);
+    throw std::runtime_error(wrong);
+  }
+  return kept;
 }
 
 }  // namespace
@@ -127,8 +175,8 @@ Bounds Document::selected_bounds() const {
   return object ? bounds_of(*object, editor_.models()[*editor_.selected()].get()) : Bounds();
 }
 
-// The world that a twin shares with the first run is no setting of its own; what breaks passivity
-// for a while is no step.
+// Returns the settings as undo sees them. The world that a twin shares with the first run is no
+// setting of its own, and breaking passivity is no step.
 Document::EditState Document::present() const {
   EditState now{settings_.parameters, settings_.twin.parameters, editor_.version()};
   if (const auto& before = settings_.before_break) {
@@ -192,15 +240,6 @@ void Document::redo() {
   if (may_go_to(history_.next_redo(), "Nothing to redo.")) go_to(history_.redo(known_));
 }
 
-namespace {
-
-std::string text_of(const SceneDocument& scene, const ArmDescription& arm,
-                    const std::string& file) {
-  return scene.toml.empty() ? scene_text(scene, arm, fs::path(file).parent_path()) : scene.toml;
-}
-
-}  // namespace
-
 std::string Document::toml() const { return text_of(editor_.document(), arm_, file_); }
 
 fs::path Document::own_file() const {
@@ -210,53 +249,6 @@ fs::path Document::own_file() const {
   return shipped ? fs::path() : file;
 }
 
-namespace {
-
-std::string text_there(const fs::path& file) {
-  std::error_code none;
-  return fs::is_regular_file(file, none) ? read_text(file, scene_limits::kLargestModel)
-                                         : std::string();
-}
-
-// The comments of a TOML text.
-std::vector<std::string> comments_in(const std::string& text) {
-  std::vector<std::string> all;
-  char quote = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') quote = 0;  // good enough: a text of several lines may count as a comment
-    if (quote != 0) {
-      if (c == '\\' && quote == '"') ++i;
-      if (c == quote) quote = 0;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '#') {
-      const std::size_t end = std::min(text.find('\n', i), text.size());
-      all.push_back(text.substr(i, end - i));
-      i = end - 1;
-    }
-  }
-  return all;
-}
-
-// After a file was written anew: where the text lies that was in it, if comments of it are no
-// longer there; else nothing. Errors: std::runtime_error where it cannot be kept; it is in the file
-// again then.
-fs::path keep_comments(const std::string& before, const fs::path& file) {
-  const std::vector<std::string> comments = comments_in(before);
-  const std::string now = text_there(file);
-  const auto stays = [&](const std::string& each) { return now.find(each) != std::string::npos; };
-  if (std::ranges::all_of(comments, stays)) return {};
-  fs::path kept = file.string() + "~";
-  if (const std::string wrong = try_write_atomically(kept, before); !wrong.empty()) {
-    try_write_atomically(file, before);
-    throw std::runtime_error(wrong);
-  }
-  return kept;
-}
-
-}  // namespace
-
 bool Document::save_as(const fs::path& file) {
   if (!may_edit()) return false;
   try {
@@ -264,7 +256,7 @@ bool Document::save_as(const fs::path& file) {
     const SceneDocument saved = save_scene(editor_.document(), arm_, file);
     const fs::path kept = keep_comments(before, file);
     editor_.saved(saved);
-    // The names of files are other ones, what can be touched is not.
+    // Saving changes only names of files: it is no step for undo.
     known_.scene = editor_.version();
     remember_file(fs::absolute(file).lexically_normal().string());
     notices_.say(kept.empty()
@@ -295,7 +287,8 @@ std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm)
   return scene_for(arm, to_set_aside());
 }
 
-// Shapes and pictures of meshes are the same for every arm.
+// Reads the scene's text anew for `arm`; shapes and pictures of meshes stay, as they are the same
+// for every arm.
 std::optional<SceneEditor::World> Document::scene_for(const ArmDescription& arm,
                                                       const SetAside& waiting) {
   const auto& [present, models] = *waiting.world;

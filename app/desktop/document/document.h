@@ -1,4 +1,5 @@
-// The scene and the settings that are worked on: changing them, undo, and the scene's file.
+// Document: the scene and the settings that are worked on, their changes with undo, and the scene's
+// file.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +19,8 @@
 
 namespace limpid {
 
-// What was done, in order of time, whatever it was done to.
-
-// Steps between states. Changes of the same name in quick succession, or while the mouse is held
-// down, are one step: a drag is undone at once.
+// Undoable steps between states, in order of time, whatever they change. Changes of the same name
+// in quick succession, or while the mouse is held down, are one step: a drag is undone at once.
 template <class State>
 class UndoHistory {
  public:
@@ -29,14 +28,13 @@ class UndoHistory {
   static constexpr std::size_t kMost = 200;
   static constexpr std::chrono::milliseconds kPause{500};
 
-  // Once a frame.
+  // Tells whether the mouse is held down; to be called once a frame.
   void hold(bool held) {
     if (held_ && !held) open_.clear();
     held_ = held;
   }
 
-  // Something became different from `before`. `what` names it; without a name it is a step of its
-  // own.
+  // Notes a change from `before`. `what` names it; a change without a name is a step of its own.
   void changed(const State& before, const std::string& what, Time now) {
     const bool same = !what.empty() && what == open_ && (held_ || now - last_ < kPause);
     last_ = now;
@@ -47,13 +45,13 @@ class UndoHistory {
     if (undo_.size() > kMost) undo_.erase(undo_.begin());
   }
 
-  // The state to go back, or forward, to; nothing where there is none.
+  // Returns the state to go back or forward to, if there is one.
   std::optional<State> undo(const State& now) { return go(undo_, redo_, now); }
   std::optional<State> redo(const State& now) { return go(redo_, undo_, now); }
   const State* next_undo() const { return undo_.empty() ? nullptr : &undo_.back(); }
   const State* next_redo() const { return redo_.empty() ? nullptr : &redo_.back(); }
 
-  // Rewrites what is remembered; steps between equal states are forgotten then.
+  // Rewrites the remembered states and merges neighbours that are then equal.
   template <class Rewrite, class Same>
   void rewrite(Rewrite rewrite, Same same) {
     for (auto* list : {&undo_, &redo_}) {
@@ -74,7 +72,7 @@ class UndoHistory {
   }
 
   std::vector<State> undo_, redo_;
-  std::string open_;  // the step that may still grow
+  std::string open_;  // name of the step that may still grow
   Time last_;
   bool held_ = false;
 };
@@ -89,16 +87,17 @@ struct SetAside {
 
 class Document {
  public:
-  // Why the scene has to stay as it is now; empty: it may be changed.
+  // Returns why the scene cannot be changed now; empty: it may be.
   using WhyFixed = std::function<std::string()>;
 
-  // Works on the parameters of the settings, and keeps there which scene was opened last.
+  // Works on the settings' parameters, and keeps there which scene was opened last. Keeps
+  // references to both.
   Document(Settings& settings, Notices& notices, WhyFixed why_fixed)
       : settings_(settings), notices_(notices), why_fixed_(std::move(why_fixed)) {
     known_ = present();
   }
 
-  // From now on this scene for this arm is edited, as its file has it; not `saved`: no file has it.
+  // Begins to edit this scene for this arm; not `saved`: no file has it.
   void open(const ArmDescription& arm, SceneDocument document, MeshModels models, bool saved);
 
   SceneEditor& editor() { return editor_; }
@@ -107,60 +106,62 @@ class Document {
   SceneLoader& loader() { return loader_; }
   const SceneLoader& loader() const { return loader_; }
 
-  // Why the scene has to stay as it is, for people; empty: it may be changed.
+  // Returns a sentence on why the scene cannot be changed now; empty: it may be.
   std::string why_fixed() const;
-  // False, and says why, while that is so.
+  // Returns whether the scene may be changed; shows a notice if not.
   bool may_edit();
-  void add_object(Object object, const Workplace& at);  // it gets a place in reach
+  void add_object(Object object, const Workplace& at);  // finds a place in reach
   void add_model(LoadedModel loaded, const Workplace& at);
   void add_spring(BodySpring spring);
   void remove_selected();
   void duplicate_selected();
-  Bounds selected_bounds() const;  // [m]; empty for what has none, or with nothing selected
+  Bounds selected_bounds() const;  // [m]; empty without a selection, or if the object has none
 
-  void undo();  // where passivity is broken, it ends that
+  void undo();  // if passivity is broken, ends that instead
   void redo();
-  // Once a frame: notices what a panel, a key or a mouse changed, for undo.
+  // Notes changes by panels, keys and mouse for undo; to be called once a frame.
   void note_changes();
   void hold(bool mouse_held) { history_.hold(mouse_held); }
 
-  // Where the scene came from.
+  // Returns the file that the scene came from.
   const std::string& file() const { return file_; }
   void set_file(const std::string& file) { file_ = file; }
-  // The same, and it is the one to open at the next start.
+  // Sets the scene's file, and opens it at the next start, too.
   void remember_file(const std::string& file) { file_ = settings_.scene = file; }
-  // The text that a recording keeps of the present scene.
+  // Returns the text that a recording keeps of the present scene.
   std::string toml() const;
-  // Where saving writes to; empty for scenes that came with Limpid.
+  // Returns the file that saving writes to; empty for scenes that came with Limpid.
   std::filesystem::path own_file() const;
-  bool save_as(const std::filesystem::path& file);  // false, and says why, if it was not
+  // Returns whether it was saved; shows a notice in any case.
+  bool save_as(const std::filesystem::path& file);
 
-  // Does it at once, or after the user has been asked what to do with unsaved changes.
+  // Calls `then` at once, or after the user was asked what to do with unsaved changes.
   void leave(std::function<void()> then);
   bool asking() const { return after_question_ != nullptr; }
-  void stay() { after_question_ = nullptr; }  // the answers
-  void leave_now();                           // after saving
+  void stay() { after_question_ = nullptr; }  // this and the next two answer the question
+  void leave_now();                           // once the scene is saved
   void discard_and_leave();
 
-  // The present scene with all its changes, if there is one like it for this arm; the same of one
-  // that waits.
+  // Returns the present scene with all its changes for this arm, or the scene that waits; nothing
+  // if the arm cannot have such a scene.
   std::optional<SceneEditor::World> scene_for(const ArmDescription& arm) const;
   static std::optional<SceneEditor::World> scene_for(const ArmDescription& arm,
                                                      const SetAside& waiting);
-  // The present scene as one that waits; from now on it does, if none does yet; and it comes back.
+  // Keeps a scene while a device has its own: to_set_aside() makes it of the present scene,
+  // set_aside() keeps the first one, end_waiting() forgets it.
   SetAside to_set_aside() const { return {file_, arm_, editor_.version().world, editor_.dirty()}; }
   void set_aside(SetAside scene) {
     if (!set_aside_) set_aside_ = std::move(scene);
   }
   const SetAside* waiting() const { return set_aside_ ? &*set_aside_ : nullptr; }
   void end_waiting() { set_aside_.reset(); }
-  // The one that waits, if it has changes that no file has.
+  // Returns the scene that waits, if it has changes that no file has.
   const SetAside* unsaved_set_aside() const {
     return set_aside_ && set_aside_->unsaved ? &*set_aside_ : nullptr;
   }
 
  private:
-  // What undo goes back to.
+  // State that undo goes back to.
   struct EditState {
     Parameters parameters, twin;
     SceneEditor::Version scene;
@@ -178,8 +179,8 @@ class Document {
   SceneLoader loader_;
   std::string file_;
   UndoHistory<EditState> history_;
-  EditState known_;                       // at the last frame
-  std::function<void()> after_question_;  // of what to do with unsaved changes; none: not asked
+  EditState known_;                       // as of the last frame
+  std::function<void()> after_question_;  // waits for the question's answer; none: not asked
   std::optional<SetAside> set_aside_;
 };
 

@@ -10,12 +10,12 @@ namespace limpid {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kPlaneReach = 0.5;  // of a plane around its point, as far as it is drawn [m]
-
-// How far along a ray, in the frame of a shape, it is met from outside [m]; kNone: it is not.
+constexpr double kPlaneReach = 0.5;  // of a plane around its point, as it is drawn [m]
 
 double at_least_zero(double way) { return way >= 0 ? way : kNone; }
 
+// Returns the way along the ray to the shape from outside, in the shape's frame [m]; kNone: no hit.
+// All way_to...() do so.
 double way_to_ball(const Ray& ray, const Vec3& middle, double radius) {
   const Vec3 from = ray.origin - middle;
   const double b = from.dot(ray.direction), c = from.squaredNorm() - radius * radius;
@@ -43,7 +43,7 @@ double way_to(const Ray& ray, const Box& box, const Model*) {
   return way_to_box(ray, {Vec3(-box.size / 2), Vec3(box.size / 2)});
 }
 
-// Of the side of a tube about z, between these heights.
+// Returns the way to the side of a tube about z, between these heights.
 double way_to_side(const Ray& ray, double radius, double half) {
   const auto o = ray.origin.head<2>(), d = ray.direction.head<2>();
   const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - radius * radius;
@@ -102,13 +102,14 @@ double way_to(const Ray& ray, const Plane& plane, const Model*) {
 
 double way_to(const Ray&, const JointStop&, const Model*) { return kNone; }
 
-// The ray in a frame whose unit is `unit`. The way is the same number there, as the direction keeps
-// its length of the world.
+// Returns the ray in a frame whose unit is `unit`. Ways keep their numbers, as the direction keeps
+// its length in the world.
 Ray in_frame(const Ray& ray, const Pose& frame, double unit = 1) {
   return {frame.inverse() * ray.origin / unit, frame.linear().transpose() * ray.direction / unit};
 }
 
-// The way in [m], whatever unit the direction has: shapes are met at a number of directions.
+// Returns the way [m], whatever the unit of the direction: shapes are met at a number of
+// directions.
 double way_to(const Ray& ray, const Shape& shape, const Pose& pose, const Model* model) {
   if (const auto* mesh = std::get_if<Mesh>(&shape)) {
     return way_to(in_frame(ray, mesh->stood(pose), mesh->size()), *mesh, model);
@@ -120,7 +121,7 @@ double way_to(const Ray& ray, const Shape& shape, const Pose& pose, const Model*
   return std::visit([&](const auto& each) { return way_to(local, each, model); }, shape);
 }
 
-// To the object or to what else it consists of.
+// Returns the way to the object's shape or to its nearest part.
 double way_to(const Ray& ray, const Object& object, const Model* model) {
   double way = way_to(ray, object.shape, object.pose, model);
   for (const BodyPart& part : object.parts) {
@@ -131,10 +132,10 @@ double way_to(const Ray& ray, const Object& object, const Model* model) {
 
 struct Met {
   std::size_t object = 0;
-  double way = kNone;  // [m]
+  double way = kNone;  // along the ray [m]
 };
 
-// The first one along the ray.
+// Returns the first object along the ray.
 Met first_met(const Ray& ray, const Scene& scene, const MeshModels& models,
               std::span<const Pose> bodies) {
   Met met;
@@ -145,7 +146,7 @@ Met first_met(const Ray& ray, const Scene& scene, const MeshModels& models,
   return met;
 }
 
-// As the loop counts those that move.
+// Returns the number of a moving object as the loop counts such objects.
 int number_of_body(const Scene& scene, std::size_t place) {
   int number = 0;
   for (std::size_t i = 0; i < place; ++i) number += scene.objects[i].body ? 1 : 0;
@@ -162,7 +163,6 @@ Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> b
   return object;
 }
 
-// Meshes by what is touched of them, which answers at once however large they are.
 bool covered(const Ray& ray, double within, const Scene& scene, std::span<const Pose> bodies) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (std::holds_alternative<Plane>(scene.objects[i].shape)) continue;

@@ -1,4 +1,4 @@
-// What is under the mouse.
+// Picking: the objects and bodies under the mouse.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,22 @@
 
 namespace limpid {
 
-// The place among the scene's objects of the first one that the ray meets; of an object that moves
-// where `bodies` says that its frame is, in their order. `models`: as many as objects.
+// Returns the place among the scene's objects of the first one that the ray meets. `bodies` are the
+// present frames of the moving objects, in their order; `models`: as many as objects.
 std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
                                         const MeshModels& models, std::span<const Pose> bodies);
 
-// The body under the ray, by the point that is there, for the mouse to pull; none where something
-// that stands still is nearer.
+// Returns the body under the ray, with the point hit, for the mouse to pull; nothing if a fixed
+// object is nearer.
 std::optional<BodyPull> body_under(const Ray& ray, const Scene& scene, const MeshModels& models,
                                    std::span<const Pose> bodies);
 
-// Whether one of the scene's objects is met within so many metres of the ray's origin. Planes are
-// none: what is drawn lies on them.
+// Returns whether an object is met within `within` [m] of the ray's origin. Planes do not count:
+// things are drawn on them. Uses a mesh's contact triangles, which answer at once whatever its
+// size.
 bool covered(const Ray& ray, double within, const Scene& scene, std::span<const Pose> bodies);
 
-// The object as it is in the world now.
+// Returns the object as it is in the world now.
 Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> bodies);
 
 }  // namespace limpid

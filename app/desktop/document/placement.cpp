@@ -9,7 +9,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeast = 0.02, kMost = 0.20, kHandy = 0.08;  // of a model [m]
+constexpr double kLeast = 0.02, kMost = 0.20, kHandy = 0.08;  // extents of a model [m]
 constexpr double kClear = 0.012;                              // around a tip [m]
 constexpr double kGap = 0.004;                                // between objects [m]
 
@@ -18,7 +18,7 @@ Bounds around(const Vec3& middle, const Vec3& size, double more) {
   return {middle - half, middle + half};
 }
 
-// How bad a place is; the least of all is taken.
+// Returns a measure of how bad a place is; the least bad place is taken.
 double badness(const Bounds& box, const Vec3& wanted, const Workplace& at) {
   double bad = (box.center() - wanted).head<2>().norm();
   const Bounds clear(box.min() - Vec3::Constant(kClear), box.max() + Vec3::Constant(kClear));
@@ -26,7 +26,7 @@ double badness(const Bounds& box, const Vec3& wanted, const Workplace& at) {
   bad += clear.contains(at.rest) ? 100 : 0;
   const Bounds apart(box.min() - Vec3::Constant(kGap), box.max() + Vec3::Constant(kGap));
   for (const Bounds& other : at.taken) bad += apart.intersects(other) ? 1 : 0;
-  // The arm itself reaches from its base to the tip.
+  // The arm reaches from its base to the tip.
   for (int i = 1; i < 8; ++i) {
     bad += box.contains(at.base + i / 8.0 * (at.rest - at.base)) ? 0.5 : 0;
   }

@@ -28,7 +28,7 @@ Bounds bounds(const Box& box, const Pose& pose, const Model*) {
   return moved(Bounds(Vec3(-box.size / 2), Vec3(box.size / 2)), pose);
 }
 Bounds bounds(const Cylinder& cylinder, const Pose& pose, const Model*) {
-  // A disc reaches as far along an axis as that is in its plane.
+  // The rim of a disc reaches along a world axis as far as the axis lies in the disc's plane.
   const Vec3 axis = pose.linear().col(2);
   const Vec3 half = cylinder.length / 2 * axis.cwiseAbs() +
                     cylinder.radius * (1 - axis.array().square()).max(0).sqrt().matrix();
@@ -44,7 +44,7 @@ Bounds bounds(const Mesh& mesh, const Pose& pose, const Model* model) {
   return moved(model->bounds(), Eigen::Affine3d(mesh.stood(pose)) * Eigen::Scaling(mesh.size()));
 }
 
-// Nothing hangs on the body `name` any more. Returns what did, for people.
+// Frees joints and springs from the body `name`. Returns sentences on them.
 std::string let_go(Scene& scene, const std::string& name) {
   std::string said;
   for (Object& object : scene.objects) {
@@ -95,7 +95,7 @@ template <class Change>
 void SceneEditor::change(std::string what, Change&& change) {
   World next = *now_.world;
   change(next);
-  // The text no longer tells what is there; settled rotations are those that a new one can.
+  // The text is out of date; rotations are settled at those that a new text can say.
   next.document.toml.clear();
   for (Object& object : next.document.scene.objects) {
     object.pose.linear() = settled(object.pose.linear());
@@ -205,7 +205,7 @@ void SceneEditor::insert(Object object, std::shared_ptr<const Model> model, cons
 void SceneEditor::duplicate(std::size_t place) {
   Object copy = scene().objects.at(place);
   const auto model = models()[place];
-  // A little beside the first one, to be seen.
+  // The copy is a little beside the original, to be seen.
   if (const auto* plane = std::get_if<Plane>(&copy.shape)) {
     copy.pose.translation() += 0.02 * plane->normal;
   } else if (const Bounds box = bounds_of(copy, model.get()); !box.isEmpty()) {
@@ -259,7 +259,7 @@ std::string SceneEditor::free_name(const std::string& wanted,
     return false;
   };
   if (!wanted.empty() && !taken(wanted)) return wanted;
-  // "gear 2" is followed by "gear 3".
+  // The name after "gear 2" is "gear 3".
   std::string stem = wanted.empty() ? "object" : wanted;
   const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
   if (digits > 1 && digits < stem.size() && stem[digits - 1] == ' ') stem.resize(digits - 1);

@@ -1,4 +1,4 @@
-// The scene that is being worked on, and every way to change it.
+// Editor of the scene that is worked on, with every way to change it.
 #pragma once
 
 #include <memory>
@@ -12,23 +12,25 @@
 
 namespace limpid {
 
-// What it takes of the world [m]; empty for planes, stops of joints and meshes without a model.
+// Returns the room that an object takes [m]; empty for planes, stops of joints and meshes without a
+// model.
 Bounds bounds_of(const Object& object, const Model* model);
 
-// Numbers are held within what a scene's file may say, rotations at those it says exactly.
+// Changes the scene. Keeps numbers within the limits of a scene's file, and rotations at those that
+// a file says exactly.
 class SceneEditor {
  public:
-  // A scene at one time. Versions share what they have in common; equal pointers: nothing changed.
+  // Scene at one time. Versions share their equal parts; equal pointers: nothing changed.
   struct World {
     SceneDocument document;
     MeshModels models;  // as many as objects
   };
   struct Version {
     std::shared_ptr<const World> world = std::make_shared<const World>();
-    std::optional<std::size_t> selected;  // its place among the objects
+    std::optional<std::size_t> selected;  // place of the selected object
   };
 
-  // Another scene, as its file has it; not `saved`: no file has it yet.
+  // Opens another scene, as its file has it; not `saved`: no file has it yet.
   void open(SceneDocument document, MeshModels models, bool saved = true);
 
   const SceneDocument& document() const { return now_.world->document; }
@@ -36,7 +38,7 @@ class SceneEditor {
   const MeshModels& models() const { return now_.world->models; }
   const Version& version() const { return now_; }
   void restore(const Version& version);  // an earlier one
-  // Names the last change for UndoHistory; empty: a step of its own.
+  // Returns the name of the last change for UndoHistory; empty: a step of its own.
   const std::string& last_change() const { return last_change_; }
   bool dirty() const { return now_.world != saved_; }
 
@@ -45,21 +47,23 @@ class SceneEditor {
     return now_.selected ? &scene().objects[*now_.selected] : nullptr;
   }
   void select(std::optional<std::size_t> place) { now_.selected = place; }
-  // One further in the list, or back.
+  // Selects the object that is `step` places further in the list.
   void select_next(int step);
 
-  // Replaces the object at a place by one of the same shape; `what` names the number that was
-  // changed. One that begins to move, or no longer does, gets another place and is selected there.
+  // Replaces an object by one of the same shape; `what` names the number that was changed. An
+  // object that begins or ceases to move gets another place and is selected there.
   void set(std::size_t place, Object object, const std::string& what);
   void set_tip_radius(double radius);
-  // The name gets a number where another object has it already. All select what they made. Errors:
-  // std::runtime_error if the scene is full.
+  // Adds and selects an object, as the other add() and duplicate() do. A name that is taken gets a
+  // number. Errors: std::runtime_error if the scene is full.
   void add(Object object) { insert(std::move(object), nullptr); }
-  // A mesh with its model. That gets a number, too, where its file was another one earlier.
+  // Adds a mesh with its model. The model's name gets a number, too, if another file already has
+  // it.
   void add(Object mesh, ModelFile file, std::shared_ptr<const Model> model);
   void duplicate(std::size_t place);
   void rename(std::size_t place, const std::string& name);
-  // Joints to it then hold to the world, and its springs go. What did, for people; mostly nothing.
+  // Removes an object and its springs; joints to it then hold to the world. Returns sentences on
+  // both; mostly empty.
   std::string remove(std::size_t place);
 
   void set_gravity(const Vec3& gravity);
@@ -67,7 +71,7 @@ class SceneEditor {
   void set_spring(std::size_t place, BodySpring spring, const std::string& what);
   void remove_spring(std::size_t place);
 
-  // The scene was written, and has become this one by that.
+  // Notes that the scene was written, and takes over the scene as written.
   void saved(SceneDocument document);
 
  private:

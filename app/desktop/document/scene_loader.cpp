@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The window draws while this thread works. It inherits the window's scheduling, never the haptic
-// thread's.
+// Lowers this thread's priority, as the window draws meanwhile. The thread inherits the window's
+// scheduling, never the haptic thread's.
 void step_back() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10); }
 
 LoadProgress progress_of(TaskProgress& progress) {

@@ -1,4 +1,4 @@
-// Scenes and models brought in beside the window, one after the other.
+// Loads scenes, models and arms beside the window, one after the other.
 #pragma once
 
 #include <deque>
@@ -16,30 +16,30 @@
 
 namespace limpid {
 
-// What was asked for, ready to be touched and drawn.
+// Loaded scene, ready to be touched and drawn.
 struct LoadedScene {
   std::filesystem::path file;
   SceneDocument document;
   MeshModels models;
   std::vector<std::string> warnings;
-  std::string urdf;  // of the arm that it was read for
+  std::string urdf;  // URDF of the arm that the scene was read for
 };
 struct LoadedModel {
   Object mesh;  // named for its file; without a place
   ModelFile file;
   std::shared_ptr<const Model> model;
-  ModelAxes axes;  // as the mesh has them
+  ModelAxes axes;  // of the model, as the mesh has them
   std::vector<std::string> warnings;
 };
 struct LoadedArm {
   std::filesystem::path file;
-  std::string tip;     // the link that was asked for; empty: none
+  std::string tip;     // the link that was chosen; empty: none
   ArmDescription arm;  // with its pictures
 };
 using Loaded = std::variant<LoadedScene, LoadedModel, LoadedArm>;
 
-// Errors of all of these: FileError; LoadCancelled. Not for the window's thread where files may be
-// large.
+// Loads a scene; large files take too long for the window's thread. Errors of all three: FileError;
+// LoadCancelled.
 LoadedScene load_scene(const std::filesystem::path& file, const ArmDescription& arm,
                        const LoadProgress& progress = {});
 LoadedModel load_model(const std::filesystem::path& file, const LoadProgress& progress = {});
@@ -48,7 +48,7 @@ LoadedArm load_arm(const std::filesystem::path& file, const std::string& tip, Xa
 
 class SceneLoader {
  public:
-  // `arm` is asked when its turn comes, by start or take(): what comes before it may be an arm.
+  // Queues a scene. `arm` is called at the scene's turn, as another arm may come before it.
   void open_scene(std::filesystem::path file, std::function<ArmDescription()> arm);
   void add_model(std::filesystem::path file);
   void open_arm(std::filesystem::path file, const std::string& tip, Xacro xacro);
@@ -56,15 +56,16 @@ class SceneLoader {
   bool busy() const { return work_.busy() || !waiting_.empty(); }
   bool opening_scene() const { return opening(Kind::scene) || opening_arm(); }  // or an arm
   bool opening_arm() const { return opening(Kind::arm); }
-  // For people: "loading gear.glb", and how far it has come, 0 to 1.
+  // Returns "loading gear.glb" for people; part() is the part that is done, 0 to 1.
   const std::string& what() const { return work_.what(); }
   double part() const { return work_.part(); }
   double seconds_left() const;  // negative: nobody can tell yet
   std::size_t waiting() const { return waiting_.size(); }
-  // Gives up what is under way and what waits; it ends at its own pace.
+  // Drops the queue, and cancels the running work, which ends at its own pace.
   void cancel();
 
-  // Once a frame: what is ready. Throws what loading threw; what was cancelled says nothing.
+  // Returns a result that is ready; to be called once a frame. Throws the errors of loading, unless
+  // it was cancelled.
   std::optional<Loaded> take();
 
  private:
@@ -79,8 +80,8 @@ class SceneLoader {
 
   std::deque<Request> waiting_;
   Task<Loaded> work_;
-  Kind kind_ = Kind::model;  // of what is under way
-  bool unwanted_ = false;    // it
+  Kind kind_ = Kind::model;  // of the request that runs
+  bool unwanted_ = false;    // the request that runs was cancelled
 };
 
 }  // namespace limpid

@@ -16,14 +16,14 @@ namespace {
 constexpr double kStep = 0.005, kAngleStep = std::numbers::pi / 12, kFactorStep = 0.1;
 constexpr double kLeastFactor = 0.02, kMostFactor = 50;
 constexpr std::array kAxisNames{"x", "y", "z"};
-constexpr double kNearest = 8;  // to the pivot, from where a size can be told [px]
+constexpr double kNearest = 8;  // least distance to the pivot for scaling [px]
 
 double whole(double number, double step, bool steps) {
   return steps ? step * std::round(number / step) : number;
 }
 
-// How far along the line through `through` the mouse is [m]; nothing where the line points at the
-// eye.
+// Returns how far along the line through `through` the mouse is [m]; nothing if the line points at
+// the eye.
 std::optional<double> along(const Ray& ray, const Vec3& through, const Vec3& direction) {
   const Vec3 off = through - ray.origin;
   const double slant = direction.dot(ray.direction);
@@ -32,7 +32,7 @@ std::optional<double> along(const Ray& ray, const Vec3& through, const Vec3& dir
   return (slant * off.dot(ray.direction) - off.dot(direction)) / apart;
 }
 
-// Of the mouse about the pivot, against the clock as the eye sees it [rad].
+// Returns the mouse's angle about the pivot, anticlockwise as the eye sees it [rad].
 double angle_of(const Eigen::Vector2d& pixel, const Eigen::Vector2d& middle) {
   return std::atan2(middle.y() - pixel.y(), pixel.x() - middle.x());
 }
@@ -132,7 +132,7 @@ Transform::Result Transform::scaled(double factor, bool steps) const {
   Object object = from;
   factor = std::clamp(whole(factor, kFactorStep, steps), kLeastFactor, kMostFactor);
   std::visit([&](auto& shape) { scale(shape, factor, axis); }, object.shape);
-  if (has_shape<Mesh>(object)) {  // whose middle need not be its frame's
+  if (has_shape<Mesh>(object)) {  // a mesh's middle need not be its frame's origin
     object.pose.translation() = pivot + factor * (from.pose.translation() - pivot);
   }
   return {object, fmt::format("\xC3\x97{:.2f}", factor)};

@@ -1,4 +1,4 @@
-// An object that the mouse moves, turns or scales in the picture.
+// Transform: moves, turns or scales an object with the mouse in the picture.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +13,31 @@ namespace limpid {
 
 enum class TransformKind : std::uint8_t { move, turn, scale };
 
-// Whether there is such a thing for this object: a stop of a joint is nowhere, a plane has no size,
-// and a ball that stands still looks the same from everywhere.
+// Returns whether the object can be transformed so: a stop of a joint is nowhere, a plane has no
+// size, and a fixed ball looks the same from everywhere.
 bool can(TransformKind kind, const Object& object);
 
 struct Transform {
   TransformKind kind = TransformKind::move;
-  Object from{};              // as it was
-  Vec3 pivot = Vec3::Zero();  // about which it turns and grows [m]
+  Object from{};              // before the transform
+  Vec3 pivot = Vec3::Zero();  // point that stays while it turns or grows [m]
   std::optional<int> axis{};  // 0 x, 1 y, 2 z; without one: in the picture's plane, or as a whole
 
   Transform() = default;
-  // About the middle of what the object takes.
+  // Puts the pivot into the middle of the object's bounds.
   Transform(TransformKind kind, Object from, const Model* model);
 
-  // Unit, in the world: those of the world, or the object's own for its size.
+  // Returns the unit direction of an axis: the world's, or the object's own for scaling.
   Vec3 direction(int axis) const;
-  // What it becomes while the mouse goes from one pixel to another, and how much that is, for
-  // people. `steps`: whole ones only, of 5 mm, 15 degrees or a tenth.
+  // Returns the object after the mouse went from one pixel to another, and the amount for people.
+  // `steps`: only whole steps of 5 mm, 15 degrees or a tenth.
   struct Result {
     Object object;
     std::string text;
   };
   Result to(const Camera& camera, const Eigen::Vector2d& begin, const Eigen::Vector2d& now,
             bool steps) const;
-  // Names the change for undo.
+  // Returns the change's name for undo.
   const char* what() const;
 
  private:

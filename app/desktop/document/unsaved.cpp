@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view kUnsaved = "-unsaved";
 
-// folder/STEM.toml, or with the first number that makes it a new one.
+// Returns folder/STEM.toml, or the first of STEM-2.toml and so on that does not exist.
 fs::path free_name(const fs::path& folder, const std::string& stem) {
   fs::path file = folder / (stem + ".toml");
   for (int number = 2; fs::exists(file); ++number) {

@@ -1,4 +1,4 @@
-// Changes of a scene that nobody could be asked about, because Limpid was ended from outside.
+// Unsaved changes of a scene, kept when Limpid is ended from outside and nobody can be asked.
 #pragma once
 
 #include <filesystem>
@@ -12,25 +12,26 @@
 
 namespace limpid {
 
-// Writes the scene, known as `name`, to folder/NAME-unsaved.toml, or beside one of an earlier time.
-// Returns the file. Errors: FileError and std::filesystem::filesystem_error.
+// Writes the scene, known as `name`, to folder/NAME-unsaved.toml, or beside an older file of that
+// name. Returns the file. Errors: FileError and std::filesystem::filesystem_error.
 std::filesystem::path keep_unsaved(const SceneDocument& document, const ArmDescription& arm,
                                    const std::string& name, const std::filesystem::path& folder);
 
-// What was kept so, each once: from then on it is a scene like others, NAME-recovered.toml.
+// Renames all kept scenes to NAME-recovered.toml, so that each is returned only once. Returns the
+// files.
 std::vector<std::filesystem::path> take_unsaved(const std::filesystem::path& folder);
 
-// Those that are offered to the user, one after the other, the newest first.
+// Offers kept scenes to the user, one after the other, the last one first.
 class KeptScenes {
  public:
   explicit KeptScenes(Notices& notices) : notices_(notices) {}
 
   void offer(std::vector<std::filesystem::path> files) { files_ = std::move(files); }
   bool any() const { return !files_.empty(); }
-  // Precondition of the others: any().
+  // Returns the scene that is offered. Precondition of this and all below: any().
   const std::filesystem::path& newest() const { return files_.back(); }
-  std::filesystem::path take();  // it is no longer offered
-  void leave();                  // in its folder, for another time
+  std::filesystem::path take();  // stops offering it
+  void leave();                  // stops offering it; it stays in its folder
   void discard();
 
  private:

@@ -24,7 +24,7 @@ void Chatter::follow(const History& history, SampleIndex end, int first, int dof
   for (; end - next_ >= size; next_ += size) {
     const double took = history.time(next_ + size - 1) - history.time(next_);
     const Stretch now = measure(history, next_, next_ + size, first, dof, k_vc);
-    // A run that began anew or stood still in between, or one that is not there.
+    // The run began anew or stood still in between, or does not exist.
     if (took > 1.1 * kStretch || !std::isfinite(now.energy)) {
       before_.reset();
       in_a_row_ = 0;
@@ -60,7 +60,7 @@ Chatter::Stretch Chatter::measure(const History& history, SampleIndex from, Samp
     }
     if (high - low <= widest) continue;
     widest = high - low;
-    // To and fro through the middle, by a quarter of the whole way at the least.
+    // A crossing goes through the middle by at least a quarter of the whole way.
     int side = 0, crossings = 0;
     for (SampleIndex k = from; k < to; ++k) {
       const double x = at(joint, k) - sum / count;

@@ -9,9 +9,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{1000};      // between two looks at what is plugged in
-constexpr milliseconds kServices{5000};  // between two questions to the programs that have devices
-constexpr milliseconds kRetry{3000};     // after a device could not be opened
+constexpr milliseconds kLook{1000};      // between two looks for plugged devices
+constexpr milliseconds kServices{5000};  // between two questions to programs that serve devices
+constexpr milliseconds kRetry{3000};     // between two attempts to open a device
 constexpr milliseconds kSettle{500};     // until the loop shows whether a new device answers
 
 }  // namespace
@@ -27,7 +27,7 @@ void DeviceController::update() {
     return;
   }
   decide_who_chooses();
-  if (!hub_.refusal().empty()) {  // until somebody mends the file
+  if (!hub_.refusal().empty()) {  // until the file is mended
     hub_.read_again();
     retry_at_ = Clock::now() + kRetry;
   }
@@ -64,7 +64,7 @@ void DeviceController::decide_who_chooses() {
   }
 }
 
-// If another window is the first, it stays that.
+// Lets the user's choice stand. Another window that is the first stays so.
 void DeviceController::choose() {
   decided_ = true;
   waits_.clear();
@@ -103,7 +103,8 @@ void DeviceController::look() {
   look_at_ = now + kLook;
 }
 
-// Those of the start are in the menu and the panel; one that is used is spoken of elsewhere.
+// Shows a notice on new devices: not on those of the start, which are in menu and panel, nor on the
+// device in use.
 void DeviceController::say_what_came() {
   std::vector<std::string> here;
   for (const FoundDevice& found : hub_.found()) {
@@ -146,7 +147,7 @@ void DeviceController::take_connected() {
   try {
     auto ready = take_ready(connecting_);
     if (!ready) return;
-    if (connecting_id_ != hub_.in_use() || must_wait()) {  // meanwhile it is not wanted
+    if (connecting_id_ != hub_.in_use() || must_wait()) {  // not wanted any more
       return live_.let_go(std::move(*ready));
     }
     const DeviceTraits traits = (*ready)->traits();
@@ -223,7 +224,7 @@ void DeviceController::use(const std::string& id) {
   });
 }
 
-// Of the windows that would connect to a device by themselves.
+// Takes or gives up this window's turn to connect to devices by itself.
 void DeviceController::take_turn(const std::string& id) {
   if (id.empty()) return hub_.give_way();
   choose();

@@ -1,6 +1,6 @@
-// Keeps the chosen device in the loop: connects it when it is there, notices when it goes, takes it
-// up again when it comes back, always without force until the user arms it. What takes time is done
-// beside the window.
+// Controller of the chosen device: connects it to the loop when it appears, notices when it goes,
+// and takes it up again. The device has no force until the user arms it. Slow work is done beside
+// the window.
 #pragma once
 
 #include <chrono>
@@ -17,19 +17,19 @@
 
 namespace limpid {
 
-// A URDF and the tip in it.
+// URDF file and the tip in it.
 struct NamedArm {
   std::string file, tip;
 };
 
-// What it asks for that changes more than the loop.
+// Requests of the controller that change more than the loop.
 struct DeviceRequests {
-  std::function<void(std::unique_ptr<Device>)> open;  // this device into the loop
-  // The virtual arm by the mouse; `then` just before, once nothing that is not saved keeps the
-  // device in the loop.
+  std::function<void(std::unique_ptr<Device>)> open;  // opens this device in the loop
+  // Puts the virtual arm in the device's place, after unsaved changes are settled; calls `then`
+  // just before.
   std::function<void(std::function<void()> then)> close;
   std::function<void()> first_button, second_button;
-  std::function<NamedArm()> open_arm;  // that the window has, whatever device is in its place
+  std::function<NamedArm()> open_arm;  // returns the window's arm, whatever device is in its place
 };
 
 class DeviceController {
@@ -40,39 +40,39 @@ class DeviceController {
         hub_(device_store_file(), std::move(ask)),
         requests_(std::move(requests)) {}
 
-  // Once a frame.
+  // Does the work of a frame; to be called once a frame.
   void update();
-  // A device has just been given to the loop.
+  // Notes that a device has just been given to the loop.
   void plugged();
-  // Another device; empty: the virtual arm. The one in the loop loses its force at once, and its
-  // place when the user has said what becomes of changes that are not saved.
+  // Chooses another device; empty: the virtual arm. The present one loses its force at once, and
+  // its place once the user has decided on unsaved changes.
   void use(const std::string& id);
-  // From now on it connects to what the user chooses only; `why`, for people: a sentence.
+  // Connects only to the user's choice from now on. `why`: a sentence for people.
   void wait_for_choice(std::string why) { waits_ = std::move(why); }
-  // The device in use is there, and the user may choose it by use().
+  // Returns whether the device in use is there, and the user may choose it by use().
   bool waits_for_choice() const;
-  // After the notes on the device in use have changed.
+  // Saves the notes on the device in use, after they have changed.
   void save();
-  // The same, where it has to be connected anew for it.
+  // Saves the notes, and connects the device anew.
   void connect_anew();
 
-  const std::string& problem() const { return problem_; }  // why it is not in the loop
+  const std::string& problem() const { return problem_; }  // why the device is not in the loop
 
-  // The check of a device's axes, which has to come before it may push.
+  // Returns whether the device's axes have to be checked before it may push.
   bool awaits_check() const;
   void start_check();
   void cancel_check() {
     if (progress_) progress_->cancel = true;
   }
-  // What goes on in it; null: none does.
+  // Returns the progress of the check; null: none runs.
   const AxisCheckProgress* check() const { return check_.valid() ? progress_.get() : nullptr; }
 
-  // Which arm the device in use is: kBuiltInArm, or a file; empty: nobody has said. It is connected
-  // anew for it.
+  // Notes which arm the device in use is, and connects it anew. The arm's file: kBuiltInArm, or a
+  // file; empty: unknown.
   void say_arm(const NamedArm& arm);
   NamedArm open_arm() const { return requests_.open_arm(); }
 
-  // The device in use leaves the loop, without force, and stays away until it is taken back.
+  // Takes the device in use out of the loop, without force, until take_back().
   void lend();
   void take_back() { lent_ = false; }
 
@@ -88,13 +88,13 @@ class DeviceController {
   void take_connected();
   void watch();
   void follow_check();
-  // Why it is not connected to at present, for people; empty: nothing keeps it from that.
+  // Returns why the device is not connected at present, for people; empty: nothing prevents it.
   std::string obstacle() const;
-  // The first window that has a device connects to it by itself.
+  // Lets this window connect by itself if it is the first that has a device.
   void decide_who_chooses();
   void choose();
   void take_turn(const std::string& id);
-  // A recording goes on with the device that it began with only.
+  // Returns whether the device has to wait: a recording goes on only with the device it began with.
   bool must_wait() const;
 
   LiveSession& live_;
@@ -104,15 +104,15 @@ class DeviceController {
   std::string problem_;
   Clock::time_point look_at_{}, services_at_{}, retry_at_{}, plugged_at_{};
   ButtonPresses buttons_;
-  Arming arming_ = Arming::off;  // at the last frame
+  Arming arming_ = Arming::off;  // as of the last frame
   std::future<std::vector<FoundDevice>> looking_;
-  std::optional<std::vector<std::string>> known_;  // ids of those that were there; none: not asked
+  std::optional<std::vector<std::string>> known_;  // ids of the devices seen last; none: not asked
   bool asking_services_ = false, lent_ = false;
   std::future<std::unique_ptr<Device>> connecting_;
   std::string connecting_id_;
-  std::string unchecked_;  // id of one that pushes, as its opening has shown
-  std::string waits_;      // why the user has to choose; empty: need not, or has chosen
-  bool decided_ = false;   // whether the user has to
+  std::string unchecked_;  // id of a device that proved to push when it was opened
+  std::string waits_;      // why the user has to choose; empty: no need, or done
+  bool decided_ = false;   // decide_who_chooses() has decided
   bool blocked_ = false;   // the problem is an obstacle
   std::future<AxisCheck> check_;
   std::shared_ptr<AxisCheckProgress> progress_;

@@ -21,7 +21,7 @@ fs::path folder_for(const std::string& name) {
          fmt::format("{}-{:%Y%m%d-%H%M%S}", as_file_name(name), fmt::localtime(std::time(nullptr)));
 }
 
-// What moved is kept, whatever can be made of it.
+// Keeps the recorded motion, even if nothing can be concluded from it.
 IdentifyController::Done conclude(const std::string& name, const IdentifyRequest& order,
                                   IdentifyRun bare, IdentifyRun with_load,
                                   const std::string& last) {
@@ -82,7 +82,7 @@ void IdentifyController::begin(IdentifyRequest order) {
   phase_ = Phase::moving;
 }
 
-// Once the loop has given the device back: nobody else may drive it.
+// Starts the motion. The loop must have given the device back: nobody else may drive it.
 void IdentifyController::move() {
   progress_ = std::make_shared<IdentifyProgress>();
   const auto run = [order = request_, with_load = bare_.has_value(), progress = progress_,
@@ -174,7 +174,7 @@ void IdentifyController::keep() {
   const std::string wrong = devices_.hub().remember(profile_of(done_->identification));
   if (!wrong.empty()) return fail(wrong);
   stop();
-  devices_.connect_anew();  // it may be in the loop already, as what it was
+  devices_.connect_anew();  // the loop may still have it with the values of before
   notices_.say("Remembered: " + name_ + " is what was found from now on.");
 }
 

@@ -1,5 +1,5 @@
-// A device that is moved by itself to be identified, step by step as the window leads through it.
-// In place of the virtual arm one that is unlike its file is moved, to try it on.
+// Controller of an identification: the device is moved by itself, step by step as the window leads
+// through it. Without a device, a simulated one that differs from its file is moved for practice.
 #pragma once
 
 #include <filesystem>
@@ -18,42 +18,42 @@ class IdentifyController {
   enum class Phase { asking, moving, load, working, found };
   struct Done {
     Identification identification;
-    std::vector<Drift> drift;      // since last time
-    std::filesystem::path report;  // folder of it
-    std::string no_pictures;       // why there are none
+    std::vector<Drift> drift;      // since the last identification
+    std::filesystem::path report;  // folder of the report
+    std::string no_pictures;       // why there are no pictures
   };
 
   IdentifyController(LiveSession& live, DeviceController& devices, Notices& notices)
       : live_(live), devices_(devices), notices_(notices) {}
   ~IdentifyController() { stop(); }
 
-  // Once a frame.
+  // Does the work of a frame; to be called once a frame.
   void update();
 
   Phase phase() const { return phase_; }
   bool busy() const { return phase_ != Phase::asking && phase_ != Phase::found; }
-  // The device is, or will be, moved by itself.
+  // Returns whether the device is moved by itself now, or will be.
   bool moving() const { return phase_ == Phase::moving || phase_ == Phase::load; }
   bool simulated() const { return devices_.hub().in_use().empty(); }
-  // Why it cannot begin; empty: it can.
+  // Returns why an identification cannot begin; empty: it can.
   std::string why_not() const;
-  // How long it will move [s].
+  // Returns the duration of the motion [s].
   double duration(const ExcitationPlan& plan) const;
-  // Moves the device, which leaves the loop for it, without its force; of the order the arm and the
-  // limits are the device's.
+  // Moves the device, which leaves the loop without force. The device's arm and limits replace
+  // those of the order.
   void begin(IdentifyRequest order);
-  void go_on();  // the load is fixed to the tip
-  // No motion; what was found is forgotten, and the device comes back into the loop.
+  void go_on();  // once the load is fixed to the tip
+  // Stops the motion, forgets the result, and gives the device back to the loop.
   void stop();
-  // Nobody looks at it any more: what moves stops, what was found stays to be looked at again, and
-  // the device comes back into the loop.
+  // Notes that the dialog was closed: stops a motion, but keeps work and results. Gives the device
+  // back to the loop.
   void leave();
-  // What was found is the device's from now on.
+  // Remembers the result as the device's.
   void keep();
 
-  const IdentifyProgress& progress() const { return *progress_; }  // while it moves
+  const IdentifyProgress& progress() const { return *progress_; }  // of the motion
   const Done* done() const { return done_ ? &*done_ : nullptr; }
-  const std::string& wrong() const { return wrong_; }  // why the last one came to nothing
+  const std::string& wrong() const { return wrong_; }  // why the last identification failed
 
  private:
   void move();
@@ -66,8 +66,8 @@ class IdentifyController {
   Notices& notices_;
   Phase phase_ = Phase::asking;
   IdentifyRequest request_;
-  SimulatedBench bench_;  // in place of the virtual arm
-  bool left_ = false;     // before it was found
+  SimulatedBench bench_;  // simulates the device if there is none
+  bool left_ = false;     // leave() was called while results were made
   std::string name_, id_, wrong_;
   std::shared_ptr<IdentifyProgress> progress_ = std::make_shared<IdentifyProgress>();
   std::future<IdentifyRun> moving_;

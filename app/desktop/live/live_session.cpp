@@ -33,7 +33,7 @@ LiveSession::~LiveSession() {
 }
 
 void LiveSession::complete_recording() {
-  if (opening_.valid()) {  // it never began
+  if (opening_.valid()) {  // no row was recorded
     const std::unique_ptr<Recorder> empty = opening_.get();
     empty->finish();
     fs::remove(empty->out());
@@ -71,7 +71,7 @@ void LiveSession::open_beside(SceneDocument document, const MeshModels& models, 
 }
 
 void LiveSession::touch(const Scene& scene) {
-  controls_.pull = {};  // bodies may be counted anew
+  controls_.pull = {};  // bodies may have other numbers
   loop_.exchange(std::make_unique<TouchWorlds>(stage_->arm(), scene));
 }
 
@@ -196,7 +196,8 @@ void LiveSession::note(const Moment& at, const std::string& text) {
   stage_->history.mark_at(at.time, text, kNoteMark);
 }
 
-// The rows up to here are those of before: however long a frame takes, a mark stands at its change.
+// Sets marks after the rows of before the change: however long a frame takes, a mark stands at its
+// change.
 void LiveSession::set_marks() {
   History& history = stage_->history;
   for (PlotMark& change : changes_) {

@@ -8,10 +8,10 @@ namespace limpid {
 
 namespace {
 
-constexpr double kRest = 0.15;         // of a stick's way: what a worn one is off by
-constexpr double kTriggerRest = 0.05;  // of a trigger's
-constexpr double kFastest = 0.25;      // [m/s]
-constexpr double kFarthest = 0.10;     // from the tip, which something may hold [m]
+constexpr double kRest = 0.15;         // part of a stick's way: a worn stick rests that far off
+constexpr double kTriggerRest = 0.05;  // part of a trigger's way
+constexpr double kFastest = 0.25;      // speed of the hand [m/s]
+constexpr double kFarthest = 0.10;  // distance of the hand from the tip, which may be blocked [m]
 
 double beyond(double way, double rest) {
   const double part = std::clamp((std::abs(way) - rest) / (1 - rest), 0.0, 1.0);
@@ -39,7 +39,7 @@ PadHand::Asked PadHand::lead(const PadReading& now, const PictureAxes& axes,
   const PadReading before = std::exchange(before_, now);
   const Vec3 push = pad_push(now);
   const bool pushes = !push.isZero(0);
-  holds_ = holds_ && controls.grab;  // somebody else may have let go
+  holds_ = holds_ && controls.grab;  // the mouse, say, may have let go
   if (now.a && !before.a) {
     if (controls.grab) {
       controls.grab = holds_ = rested_ = false;

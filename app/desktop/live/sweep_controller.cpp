@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kBetweenLooks{500};
 
-// Where it lies on each axis.
+// Returns the point's place on each axis.
 std::vector<Fact> axes_of(const SweepPlan& plan, std::uint64_t number) {
   const SweepPoint point = point_of(plan, number);
   std::vector<Fact> facts;
@@ -28,7 +28,7 @@ std::vector<Fact> axes_of(const SweepPlan& plan, std::uint64_t number) {
   return facts;
 }
 
-// "kind predictive, stiffness 100 N/m"
+// Returns a point's name, as "kind predictive, stiffness 100 N/m".
 std::string named(const SweepPlan& plan, std::uint64_t number) {
   std::string text;
   for (const Fact& axis : axes_of(plan, number)) {
@@ -46,7 +46,7 @@ std::vector<Fact> facts_of(const SweepPlan& plan, std::uint64_t number, std::opt
   return facts;
 }
 
-// What was measured of it, as the table has it or would have it.
+// Returns the point's measures, as in the table's columns.
 std::vector<Fact> measured_of(const OpenedSweep& sweep, std::optional<double> at,
                               const std::vector<double>& again) {
   const auto fact = [](const std::string& name, const std::string& unit, bool yes_no, double x) {
@@ -66,7 +66,8 @@ std::vector<Fact> measured_of(const OpenedSweep& sweep, std::optional<double> at
   return facts;
 }
 
-// Beside the table, or, where nothing can be written, among the user's own sessions.
+// Returns the file for a point's session: beside the table or, if that cannot be written, among the
+// user's sessions.
 fs::path place_for(const fs::path& table, std::uint64_t point, std::optional<double> at) {
   fs::path beside = point_file(table.parent_path(), point, at);
   const fs::path folder = beside.parent_path();
@@ -77,7 +78,7 @@ fs::path place_for(const fs::path& table, std::uint64_t point, std::optional<dou
   return sessions_dir() / fmt::format("{}-{}", sweep, beside.filename().string());
 }
 
-// Whether it came out as the table has it.
+// Notes for people whether the results `again` are as in the table.
 void compare(const OpenedSweep& sweep, std::uint64_t point, std::optional<double> at,
              const std::vector<double>& again, LoadedSession& loaded) {
   const SweepPlan& plan = *sweep.plan;

@@ -1,5 +1,5 @@
-// A sweep's table that is looked at: it follows its file while that fills, and its points can be
-// run again.
+// Controller of a sweep that is shown: follows its table's file while that fills, and runs its
+// points again.
 #pragma once
 
 #include <optional>
@@ -14,28 +14,30 @@ class SweepController {
  public:
   explicit SweepController(Notices& notices) : notices_(notices) {}
 
-  // The table comes in beside the window.
+  // Loads the table beside the window.
   void open(const std::filesystem::path& table);
   bool loading() const { return !asked_.empty(); }
 
-  // What is shown, null before the first; the map follows choice and table a moment later.
+  // Returns the sweep shown, null before the first. The map follows choice and table a moment
+  // later.
   const OpenedSweep* sweep() const { return sweep_.get(); }
   const SweepMap* map() const { return map_ ? &*map_ : nullptr; }
   const MapChoice& choice() const { return choice_; }  // precondition: sweep()
   void choose(const MapChoice& choice);
 
-  // Runs a point (of a boundary with its axis at `at`) beside the window and plays it then. Says so
-  // where that cannot be; says, too, whether it came out as in the table.
+  // Runs a point (of a boundary with its axis at `at`) beside the window, then plays it. Shows
+  // notices on failure and on whether the results are as in the table.
   void play(std::uint64_t point, std::optional<double> at, Playback& playback);
-  // The session of the last of them.
+  // Returns the session of the point that was played last.
   const std::filesystem::path& last_point() const { return last_point_; }
 
-  // Once a frame. True when a table has come that was asked for.
+  // Does the work of a frame; to be called once a frame. Returns true when a table that was opened
+  // has come.
   bool update();
-  std::uint64_t revision() const { return revision_; }  // of what there is to see
+  std::uint64_t revision() const { return revision_; }  // changes with all that is shown
 
-  // Where the map stands in the window, for who drives the window from outside; empty while it is
-  // not shown.
+  // Place of the map in the window, for programs that drive the window; empty while the map is not
+  // shown.
   struct OnScreen {
     ScreenRect rect;
     std::optional<std::uint64_t> pointed_at;
@@ -45,7 +47,7 @@ class SweepController {
  private:
   using Time = std::filesystem::file_time_type;
   struct Look {
-    std::shared_ptr<const OpenedSweep> sweep;  // null: the file is as it was
+    std::shared_ptr<const OpenedSweep> sweep;  // null: the file is unchanged
     Time changed;
   };
   struct Made {
@@ -57,11 +59,11 @@ class SweepController {
   void follow_map();
 
   Notices& notices_;
-  std::filesystem::path asked_;  // not there yet
+  std::filesystem::path asked_;  // file of the table that is being loaded
   std::shared_ptr<const OpenedSweep> sweep_;
   std::optional<SweepMap> map_;
   MapChoice choice_;
-  std::shared_ptr<const OpenedSweep> mapped_;  // that the map is of
+  std::shared_ptr<const OpenedSweep> mapped_;  // the sweep that map_ shows
   std::filesystem::path last_point_;
   std::chrono::steady_clock::time_point next_look_;
   Time changed_;

@@ -16,13 +16,13 @@
 namespace limpid {
 namespace {
 
-constexpr double kLookAgain = 0.25;                  // [s]
+constexpr double kLookAgain = 0.25;                  // time between two analyses [s]
 constexpr int kPoints = 120;                         // of a curve
-constexpr double kSoftest = 100, kStiffest = 30000;  // of walls that are drawn [N/m]
-constexpr double kSlowest = 0.3, kFastest = 30;      // of free motion [Hz]
+constexpr double kSoftest = 100, kStiffest = 30000;  // range of the walls' axis [N/m]
+constexpr double kSlowest = 0.3, kFastest = 30;      // range of free motion [Hz]
 constexpr double kGram = 1000;                       // [g/kg]
 
-// H_L(jw) times b: 1/eta at standstill, whatever the mode.
+// Returns H_L(jw) times b, which is 1/eta at standstill for every mode.
 std::vector<std::complex<double>> nyquist(const LockedMode& mode, double eta) {
   std::vector<std::complex<double>> curve;
   const double slow = 0.01 * mode.w_c(), fast = 100 * std::max(mode.w_f(), mode.w_c());
@@ -54,7 +54,7 @@ std::string newtons_per_metre(double stiffness) {
                           : fmt::format("{:.0f}", stiffness);
 }
 
-// "-11.9 rad/s", or "-11.9 ± 40i rad/s" for a pair.
+// Returns "-11.9 rad/s", or "-11.9 ± 40i rad/s" for a pair.
 std::string pole_text(std::complex<double> pole) {
   const std::string real = fixed_text(pole.real(), 1);
   if (std::abs(pole.imag()) < 0.5) return real + " rad/s";
@@ -86,7 +86,7 @@ void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const S
   if (info(p.kind).observes) draw_observed(p, band);
 }
 
-// One bar a law on a logarithmic axis, the scene's stiffest wall across them.
+// Draws one bar a law on a logarithmic axis, and the scene's stiffest wall across them.
 void AnalysisPanel::draw_walls(const Parameters& p) const {
   const Palette& colours = current_palette();
   const double rows = kLaws;

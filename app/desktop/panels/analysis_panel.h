@@ -1,5 +1,5 @@
-// What the couplings can do at the arm's present pose: walls, what is felt in free motion, limits
-// of eta, poles in the hand.
+// Panel of the couplings' analysis at the arm's present pose: walls, free motion, limits of eta,
+// poles in the hand.
 #pragma once
 
 #include <complex>
@@ -15,8 +15,8 @@ namespace limpid {
 
 class AnalysisPanel {
  public:
-  // Draws into the ImGui window that is open. `x`: the arm's pose [rad]; `band`: the human's
-  // bandwidth [Hz], which can be changed here.
+  // Draws into the open ImGui window. `x`: the arm's pose [rad]; `band`: the human's bandwidth
+  // [Hz], which can be changed here.
   void draw(const Parameters& p, const ArmDescription& arm, const Scene& scene,
             std::span<const double> x, double& band);
 
@@ -31,8 +31,8 @@ class AnalysisPanel {
   Analysis analysis_;
   TipLimits tip_;
   std::vector<std::complex<double>> poles_;
-  std::string basis_;  // what all of it rests on
-  double due_ = 0;     // when to look at the pose again [s of ImGui's time]
+  std::string basis_;  // how the analysis knows inertia, damping and delay
+  double due_ = 0;     // when the pose is read again [s of ImGui's time]
 };
 
 }  // namespace limpid

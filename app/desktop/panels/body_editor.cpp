@@ -24,12 +24,12 @@ namespace {
 using Kind = BodyJoint::Kind;
 using namespace scene_limits;
 
-constexpr double kWood = 600;  // of what begins to move [kg/m^3]
+constexpr double kWood = 600;  // density of a new body [kg/m^3]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What numbers along a joint are shown in: slides in mm, turns in degrees.
+// Units in which numbers along a joint are shown: mm for slides, degrees for turns.
 struct JointUnit {
-  double of_one;  // how many make one m or rad
+  double of_one;  // shown number for one m or rad
   const char* format;
   const char* force;
   const char* stiffness;
@@ -40,7 +40,7 @@ JointUnit unit_of(Kind kind) {
   return {180 / std::numbers::pi, "%.1f\xC2\xB0", "%.3g N m", "%.6g N m/rad", "%.4g N m s/rad"};
 }
 
-// Dragged, a step is a part of what is there.
+// Returns a drag's step as a part of the value.
 double pace(double value, double least) { return std::max(least, 0.005 * std::abs(value)); }
 
 bool drag_scaled(const char* label, double& value, double per_one, const Range& range,
@@ -72,7 +72,7 @@ bool share_slider(const char* label, double& value, const char* help) {
   return changed;
 }
 
-// Bodies that `allowed` takes, and the world under an empty name.
+// Lets choose among the bodies that `allowed` takes, and the world with its empty name.
 template <class Allowed>
 bool choose_body(const char* label, std::string& name, const Scene& scene, const char* help,
                  Allowed allowed) {
@@ -116,7 +116,7 @@ bool choose_kind(Body& body) {
   }
   BodyJoint joint = body.joint.value_or(BodyJoint{});
   if (static_cast<int>(joint.kind) != kind - 1) {
-    // Metres are no radians: what is measured along the joint begins anew.
+    // Values along the joint begin anew, as metres are no radians.
     BodyJoint fresh;
     fresh.to = joint.to;
     fresh.axis = joint.axis;
@@ -139,7 +139,7 @@ std::string_view edit_limits(BodyJoint& joint, const JointUnit& unit) {
   }
   tooltip("Where its way ends on both sides; 0 is where it starts.");
   if (!limited) return what;
-  constexpr double kLeast = 1e-4;  // between the stops [m or rad]
+  constexpr double kLeast = 1e-4;  // distance of the stops [m or rad]
   const double far = 100;
   double low = std::max(joint.low, -far), high = std::min(joint.high, far);
   if (drag_scaled("From", low, unit.of_one, {-far, high - kLeast}, unit.format,
@@ -285,7 +285,7 @@ void draw_spring(Document& document, std::size_t place) {
   ImGui::PopID();
 }
 
-// From the selected body, else the first one, to where it hangs in the world.
+// Returns a spring from the selected body, else the first one, to its place in the world.
 BodySpring new_spring(const SceneEditor& editor) {
   const Object* body = editor.selected_object();
   if (body == nullptr || !body->body) {
@@ -301,7 +301,7 @@ bool noted_checkbox(const char* label, bool& on) {
   return changed;
 }
 
-// Where its mass is, where that is not what a solid has.
+// Edits centre of mass and inertia, where they are not those of a solid.
 std::string_view edit_moments(Object& object) {
   std::string_view what;
   Body& body = *object.body;

@@ -1,4 +1,4 @@
-// What can be changed about an object that moves, and about the springs between such objects.
+// Editor of an object that moves, and of the springs between such objects.
 #pragma once
 
 #include <string_view>
@@ -7,11 +7,10 @@
 
 namespace limpid {
 
-// Of the object at a place: whether it moves, and all that goes with it. Returns what was changed,
-// "" for nothing.
+// Edits whether an object moves, and its body. Returns the name of the change, "" for none.
 std::string_view edit_body(Object& object, const Scene& scene, std::size_t place);
 
-// The springs and gravity of a scene in which something moves; nothing of others.
+// Edits springs and gravity of a scene with moving objects; draws nothing for others.
 void draw_springs(Document& document);
 
 }  // namespace limpid

@@ -15,7 +15,8 @@
 namespace limpid {
 namespace {
 
-// What is broken, by how much, and what would mend it; empty while the promise holds.
+// Returns the violated condition, by how much, and a remedy; empty if it holds. So do all
+// ..._broken().
 std::string eta_broken(const Parameters& p, const Analysis& a) {
   if (!info(p.kind).observes || a.above_eta_min) return {};
   return fmt::format(
@@ -24,7 +25,7 @@ std::string eta_broken(const Parameters& p, const Analysis& a) {
       p.eta, a.eta_min, a.eta_min - p.eta);
 }
 
-// What (3) asks for where the device answers late, and what the two know of each other is old.
+// Adds the delays that tighten condition (3): of the device's answer, and of the link.
 std::string with_delays(const Analysis& a, std::string text) {
   if (a.delay > 0) text += fmt::format(", delay {:.1f} ms", 1e3 * a.delay);
   if (a.link > 0) text += fmt::format(", link {:.4g} ms", 1e3 * a.link);
@@ -79,8 +80,8 @@ void kind_buttons(Parameters& p) {
   const Palette& colours = palette(current_theme());
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float width = ImGui::GetContentRegionAvail().x;
-  // Each as wide as its word, and what is left shared: they fit beside each other in the narrowest
-  // panel.
+  // Buttons are as wide as their words, with the rest of the width shared: so they fit into the
+  // narrowest panel.
   float left = width - gap * (kLaws - 1);
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     left -= ImGui::CalcTextSize(info(static_cast<CouplingKind>(i)).label).x;
@@ -105,14 +106,14 @@ void kind_buttons(Parameters& p) {
   }
   ImGui::PopStyleVar();
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
-  // As high for every law, so that nothing below it moves when they change.
+  // The verdict has the same height for every law, so that nothing below it moves.
   const float below = ImGui::GetCursorPosY() + 2 * ImGui::GetTextLineHeightWithSpacing();
   ImGui::TextWrapped("%s", info(p.kind).verdict);
   ImGui::SetCursorPosY(below);
   ImGui::PopStyleColor();
 }
 
-// What few people move: what ties device and proxy, and how well.
+// Returns whether few people change the parameter: those that tie device and proxy, and its energy.
 bool advanced(std::string_view key) {
   return key == "coupling.k_vc" || key == "coupling.b_vc" || key == "coupling.b_v" ||
          key == "coupling.band" || key == "ledger.energy" || key == "tank.energy" ||
@@ -120,7 +121,7 @@ bool advanced(std::string_view key) {
 }
 bool of_link(std::string_view key) { return key.starts_with("link."); }
 
-// Whether the gains are those that suit the arm, and a way back to them.
+// Draws whether the gains suit the arm, and a button that makes them suit it.
 void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   Parameters fit = p;
   const Parameters own = fitted(arm, fit, a.delay, p);
@@ -142,7 +143,7 @@ void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   tooltip((std::string(help) + (text.empty() ? "\nThe paper's suit it." : "\n" + text)).c_str());
 }
 
-// A delay between device and proxy, as if the world were far away.
+// Draws a delay between device and proxy, as if the world were far away.
 void draw_link(Parameters& p) {
   const std::string set =
       p.linked() ? fmt::format("Link: {:.4g} ms each way###link", 1e3 * p.tick * p.link_delay)
@@ -162,7 +163,8 @@ void draw_link(Parameters& p) {
 
 void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const std::string eta = eta_broken(p, a);
-  // The tanks are passive without it, and what solves both together knows no link.
+  // Condition (3) does not apply to the tanks, nor to laws that solve both sides together, unless
+  // linked.
   const LawInfo& law = info(p.kind);
   const bool asked = !law.keeps_ledger || (law.solves_together && !p.linked());
   const std::string device = asked ? device_broken(p, a) : "";
@@ -247,7 +249,7 @@ void draw_tanks(const CouplingReading& now) {
         "100 % while the device's tank can pay for the tick that comes");
 }
 
-// What bounds the energy that the human is given, for a law that keeps account of it.
+// Draws the bounds on the human's energy, for a law that keeps account of it.
 void draw_ledger(const CouplingReading& now) {
   heading("Energy ledger");
   read_out("Reserve", energy_text(now.reserve), {},
@@ -283,7 +285,7 @@ void draw_ledger(const CouplingReading& now) {
   }
 }
 
-// Out of a coupling that gives energy.
+// Returns a way out of a coupling that gives energy.
 const char* way_out(const Parameters& p) {
   if (p.linked()) return "A shorter link, a softer k_vc, more damping, or the tank, avoid it.";
   return info(p.kind).observes
@@ -291,11 +293,11 @@ const char* way_out(const Parameters& p) {
              : "A softer k_vc, more damping (condition (3)), or the predictive law, avoid it.";
 }
 
-// E_c as the plots have it, and whose it is; what the coupling itself gave of it is judged.
+// Draws E_c as in the plots, by its sources; only the coupling's own part is judged.
 void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   const EnergyAccount& energy = now.energy;
   const bool at_fault = now.chatters || passivity(a, p).passive == false;
-  // A law with a ledger promises another thing: what the ledger says.
+  // A law with a ledger makes another promise, which the ledger shows.
   const bool judged = now.chatters || !info(p.kind).keeps_ledger;
   const double own = at_fault ? energy.without_limits() : energy.own();
   const std::string broken =

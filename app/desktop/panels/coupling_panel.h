@@ -1,4 +1,4 @@
-// The coupling: its law, its parameters, and whether it is passive.
+// Panel of the coupling: its law, its parameters, and whether it is passive.
 #pragma once
 
 #include <vector>
@@ -10,36 +10,35 @@
 
 namespace limpid {
 
-// What the present row says of it.
+// Values of the present row that are about the coupling.
 struct CouplingReading {
   double energy_total;  // E_c [J]
-  double compensation;  // of it for the device's own forces [J]
+  double compensation;  // part of E_c for the device's own forces [J]
   EnergyAccount energy;
   bool chatters;
   std::vector<int> limited;  // joints whose motors are at their limit
-  double reserve;            // of the ledger [J]
-  double contact_governor;   // shares let through, 0 to 1
+  double reserve;            // of the energy ledger [J]
+  double contact_governor;   // share let through, as the two below, 0 to 1
   double damping_governor;
   double torque_governor;
-  double unsettled;  // ticks without a solution for motors at their limit and contacts together
-  double left_out;   // points at which bodies meet that there is no room for
+  double unsettled;  // ticks without a joint solution for contacts and motors at their limit
+  double left_out;   // contacts of bodies for which there was no room
 };
 
-// Both draw into the ImGui window that is open.
-
-// Of the loop that runs. `analysis` of these parameters; `real`: a device is in the arm's place,
-// whose grip is nobody's to choose; `broken`: its passivity is, on purpose.
+// Situation of the coupling. `analysis` is of these parameters; `real`: a device is in the arm's
+// place, and its grip cannot be chosen; `broken`: passivity is broken on purpose.
 struct CouplingSituation {
   const Analysis& analysis;
   const ArmDescription& arm;
   bool real = false;
   bool broken = false;
 };
+// Draws the running loop's coupling into the open ImGui window, as the two below do.
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
                    const Act& act);
-// What the next re-run of a recording is to have.
+// Draws the parameters for the next re-run of a recording.
 void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now);
-// What a recording says of energy and motors at the row that is shown.
+// Draws energy and motors at a recording's row.
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis);
 
 }  // namespace limpid

@@ -25,7 +25,8 @@ void choice(DeviceController& devices, const char* label, const std::string& id,
   tooltip(help);
 }
 
-// Who leads the hand on the virtual arm: the mouse can at any time.
+// Draws the choice of the mouse, or of a gamepad, for the virtual arm's hand; the mouse can always
+// lead it.
 void hand_choice(DeviceController& devices, const PadChoice& pads, const std::string& label,
                  const std::string& id, const char* help) {
   ImGui::PushID(id.c_str());
@@ -69,7 +70,7 @@ void choices(DeviceController& devices, const PadChoice& pads) {
   if (!known) choice(devices, "the one used before", devices.hub().in_use(), "Not plugged in.");
 }
 
-// The guided check of a device that has not been used before; true while there is one to show.
+// Draws the guided check of a new device's axes; returns whether there is one to show.
 bool axis_check(DeviceController& devices) {
   if (const AxisCheckProgress* check = devices.check()) {
     ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
@@ -108,8 +109,8 @@ void status(DeviceController& devices, const LiveLoop& loop) {
            "Force is off until the hand has the device and F arms it; it then fades in.");
 }
 
-// What of the device was measured and what is assumed, and the delay that the law reckons with.
-// True once more of it shall be measured.
+// Draws measured and assumed values of the device, and the delay that the law reckons with. Returns
+// true if the user wants more measured.
 bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p) {
   if (!live.loop().device_in_place()) return false;
   const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
@@ -138,7 +139,7 @@ bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p
   return wanted;
 }
 
-// Which arm the device is; true where a file is to be chosen for it.
+// Asks which arm the device is; returns true if a file is to be chosen.
 bool arm_question(DeviceController& devices, const LiveSession& live) {
   const DeviceHub& hub = devices.hub();
   if (!hub.may_say_arm()) return false;
@@ -163,7 +164,7 @@ bool arm_question(DeviceController& devices, const LiveSession& live) {
   return noted_button(kArmOfFileButton);
 }
 
-// What the motors take of the device's own forces off the hand.
+// Draws which part of the device's own forces the motors compensate.
 void compensation(const ArmDescription& arm, Parameters& p) {
   if (!section("Compensation", true)) return;
   tooltip(
@@ -193,11 +194,12 @@ void compensation(const ArmDescription& arm, Parameters& p) {
   where_there("model.friction", friction > 0, "no friction known");
 }
 
-// A joint of the arm, or of a cap, which has none: where it is, which way round, how far, its zero.
+// Draws a joint of the arm, or an axis of a cap, which has no joint: angle, direction, travel and
+// zero.
 bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* joint) {
   bool changed = false;
   ImGui::PushID(static_cast<int>(i));
-  if (joint == nullptr) {  // part of the cap's full deflection
+  if (joint == nullptr) {  // shown as part of the cap's full deflection
     ImGui::Text("axis %zu  %+5.2f", i + 1, angle);
     ImGui::SameLine(8.5f * ImGui::GetFontSize());
     changed = ImGui::Checkbox("invert", &axis.inverted);
@@ -237,7 +239,7 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   return changed;
 }
 
-// True once they were changed.
+// Returns true once the settings were changed.
 bool joystick_settings(DeviceNotes& notes) {
   bool changed = false;
   auto effort = static_cast<float>(notes.pid.effort);
@@ -245,7 +247,7 @@ bool joystick_settings(DeviceNotes& notes) {
   if (ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m",
                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
     notes.pid.effort = static_cast<double>(effort);
-    notes.torque_scale = 1;  // which was found with the other one
+    notes.torque_scale = 1;  // the old scale was found with the other effort
   }
   changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   tooltip(
@@ -262,7 +264,7 @@ bool joystick_settings(DeviceNotes& notes) {
   return changed;
 }
 
-// True once a limit was changed.
+// Returns true once a limit was changed.
 bool limit_sliders(SafetyLimits& limits) {
   if (!ImGui::TreeNode("Limits of force")) return false;
   tooltip("They can be lowered for this device; as they are at first is the most they can be.");
@@ -284,7 +286,7 @@ bool limit_sliders(SafetyLimits& limits) {
   return changed;
 }
 
-// True once an axis was changed.
+// Returns true once an axis was changed.
 bool axis_rows(DeviceNotes& notes, std::span<const double> angles, std::span<const Joint> joints) {
   std::vector<AxisAdjustment> axes = notes.axes;
   axes.resize(std::max(axes.size(), angles.size()));

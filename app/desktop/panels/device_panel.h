@@ -1,4 +1,4 @@
-// The panel of the device: which one drives the loop, what it says, why force is off.
+// Panel of the device: which one drives the loop, its state, and why force is off.
 #pragma once
 
 #include <span>
@@ -9,37 +9,37 @@
 namespace limpid {
 
 struct PadChoice {
-  const std::vector<Pad>& pads;  // that are plugged in
+  const std::vector<Pad>& pads;  // plugged in
   std::string& chosen;           // the one that leads the hand; empty: the mouse alone
 };
 
-// The predictive law then reckons with a delay [s] that was measured, in whole ticks, as many as it
-// can.
+// Returns the parameters with the predictive law's delay set to a measured one [s], in whole ticks
+// up to its limit.
 Parameters reckoning_with(Parameters p, double delay);
 
-// Changes of a device's notes that a person has finished.
+// Finished changes of a device's notes.
 struct NotesEdited {
-  bool anew = false;    // the device has to be connected anew for it
-  bool limits = false;  // of its force
+  bool anew = false;    // the device has to be connected anew
+  bool limits = false;  // limits of force
 };
 
-// Axes, a joystick's settings, and limits of force. Changes what somebody edits, and nothing that
-// is only shown. `joints`: of the arm, as many as `angles`; empty: a cap, which has none.
+// Draws axes, a joystick's settings, and limits of force; changes only edited values. `joints` of
+// the arm, as many as `angles`; empty for a cap, which has none.
 NotesEdited draw_notes(DeviceNotes& notes, std::span<const double> angles,
                        std::span<const Joint> joints, bool uncalibrated, bool limits_fixed);
 
-// The button that begins the check of a device's axes.
+// Label of the button that begins the check of a device's axes.
 inline constexpr const char* kCheckAxes = "Check the axes";
 
-// The buttons of the question which arm a device is.
+// Labels of the buttons that say which arm a device is.
 inline constexpr const char* kBuiltInArmButton = "the built-in one";
 inline constexpr const char* kOpenArmButton = "the open one";
 inline constexpr const char* kArmOfFileButton = "a file...";
 
-// Requests that a person has made in the panel.
+// Requests made in the panel.
 struct DevicePanelAsks {
   bool identify = false;
-  bool arm_file = false;  // for the file of the device's arm
+  bool arm_file = false;  // asks for the file of the device's arm
 };
 DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveSession& live,
                                   const PadChoice& pads, Parameters& p);

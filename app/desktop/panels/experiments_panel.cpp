@@ -42,7 +42,7 @@ void ExperimentsPanel::start(const Experiment& experiment) {
     options.stop = &progress.cancel;
     options.progress = [&progress](double part) { progress.part = part; };
     Outcome outcome = carry_out(experiment, options);
-    write_report(options.dir);  // of all that there are results of
+    write_report(options.dir);  // on all results in the folder
     return outcome;
   });
 }
@@ -92,7 +92,7 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   take();
   if (!open) return {};
   fs::path chosen;
-  // At the right edge: the arm, its plots and what was pressed stay in sight and at hand.
+  // At the window's right edge it leaves the arm, its plots and the pressed button in sight.
   const ImVec2 room = ImGui::GetMainViewport()->Size;
   const float left = std::min(0.42f * room.x, room.x - 44 * ImGui::GetFontSize());
   ImGui::SetNextWindowPos({std::max(0.0f, left), view.min.y}, ImGuiCond_Appearing);
@@ -129,7 +129,7 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   return chosen;
 }
 
-// What a row says of its experiment at its end.
+// Draws the state of an experiment at the end of its row.
 void ExperimentsPanel::draw_state(const Experiment& experiment) {
   const Palette& colours = current_palette();
   if (running_.busy() && current_ == &experiment) {
@@ -146,7 +146,7 @@ void ExperimentsPanel::draw_state(const Experiment& experiment) {
                      passed ? "passed" : "failed");
 }
 
-// Nothing moves when an experiment starts or ends: each column keeps its width.
+// Each column keeps its width, so that nothing moves when an experiment starts or ends.
 void ExperimentsPanel::draw_list() {
   const float em = ImGui::GetFontSize();
   if (ImGui::BeginTable("experiments", 3)) {
@@ -184,7 +184,7 @@ void ExperimentsPanel::draw_buttons() {
     if (noted_button("Stop")) {
       queue_.clear();
       stopping_ = true;
-      running_.ask_to_stop();  // it ends in its own time; the window goes on
+      running_.ask_to_stop();  // ends at its own pace while the window goes on
     }
     ImGui::EndDisabled();
   } else if (noted_button("Run all")) {
@@ -193,7 +193,7 @@ void ExperimentsPanel::draw_buttons() {
   }
 }
 
-// The files are for print, on white; in the window they are as dark as everything else.
+// Loads the figure for the theme. Files are for print, on white; a dark window shows them dark.
 void ExperimentsPanel::show_figure(Verdict& verdict) {
   const Theme theme = current_theme();
   if (verdict.shown_in == theme) return;

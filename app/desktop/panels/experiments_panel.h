@@ -1,4 +1,4 @@
-// The paper's experiments in the window: run them, see figure and verdict, play every trial.
+// Panel of the paper's experiments: runs them, shows figure and verdict, plays every trial.
 #pragma once
 
 #include <filesystem>
@@ -19,12 +19,12 @@ class ExperimentsPanel {
  public:
   explicit ExperimentsPanel(Notices& notices) : notices_(notices) {}
 
-  // Experiments go on while it is closed. A window beside the picture while `open`, which closing
-  // it clears. `view`: where the picture is. The trial that is to be played, if one was chosen.
+  // Draws a window beside the picture while `open`; closing it clears `open`, and experiments go
+  // on. `view`: place of the picture. Returns the trial to be played, if one was chosen.
   std::filesystem::path draw(bool& open, ScreenRect view);
-  // "3 of 12: zwidth, 40 s left"; empty while none runs.
+  // Returns "3 of 12: zwidth, 40 s left"; empty while none runs.
   std::string under_way() const;
-  double part() const { return running_.part(); }  // of the one that runs, 0 to 1
+  double part() const { return running_.part(); }  // of the running experiment, 0 to 1
   void drop_pictures();                            // before the OpenGL context goes
 
  private:
@@ -32,7 +32,7 @@ class ExperimentsPanel {
     Outcome outcome;
     std::filesystem::path file = {};  // of the figure
     std::optional<PictureTexture> figure = {};
-    std::optional<Theme> shown_in = {};  // that it was tried for
+    std::optional<Theme> shown_in = {};  // theme that the figure was loaded for
     std::vector<std::filesystem::path> trials = {};
   };
 
@@ -46,14 +46,14 @@ class ExperimentsPanel {
 
   Notices& notices_;
   Task<Outcome> running_;
-  const Experiment* current_ = nullptr;  // that runs
+  const Experiment* current_ = nullptr;  // the one that runs
   const Experiment* shown_ = nullptr;
-  bool chosen_ = false;    // somebody wants to see this one; else the latest result is shown
-  bool stopping_ = false;  // asked to
+  bool chosen_ = false;    // the user chose shown_; else the latest result is shown
+  bool stopping_ = false;  // the user asked the experiment to stop
   std::vector<const Experiment*> queue_;
   std::map<std::string, Verdict> verdicts_;
   double began_ = 0;  // [s of ImGui's time]
-  int begun_ = 0;     // since none ran
+  int begun_ = 0;     // experiments begun since none ran
 };
 
 }  // namespace limpid

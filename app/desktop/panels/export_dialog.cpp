@@ -24,7 +24,7 @@ using Format = ExportOrder::Format;
 
 constexpr std::array kWhat{"a plot, as a picture", "a plot, as a table (CSV)", "the whole window",
                            "the recording, as a video"};
-constexpr double kLeastSize = 40, kMostSize = 400;  // [mm]
+constexpr double kLeastSize = 40, kMostSize = 400;  // limits of a size [mm]
 constexpr int kLeastDpi = 72, kMostDpi = 1200;
 
 const char* ending(const ExportOrder& order) {
@@ -32,7 +32,7 @@ const char* ending(const ExportOrder& order) {
   return order.what == What::plot && order.format == Format::svg ? "svg" : "png";
 }
 
-// A name that is free.
+// Returns a free name for the file.
 fs::path offer(const ExportOrder& order, const Stage& stage, const fs::path& folder) {
   const bool of_plot = order.what == What::plot || order.what == What::table;
   const std::string name = of_plot && order.plot < stage.plots.size()
@@ -96,7 +96,7 @@ void ExportDialog::draw_size() {
                       std::round(order_.height / inch * order_.dpi));
 }
 
-// Which key is wrong, and what is allowed.
+// Returns which value is wrong, and what is allowed; empty: all are right.
 std::string ExportDialog::why_not() const {
   const auto outside = [](double x, double least, double most) {
     return !(x >= least && x <= most);
@@ -138,7 +138,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
   ImGui::PushItemWidth(-6 * em);
   draw_what(stage, recorded);
   if (order_.what == What::plot) draw_size();
-  // The name follows what was chosen until somebody writes another one.
+  // The name follows the choices until the user types another one.
   if (file_ == offered_) file_ = offered_ = offer(order_, stage, folder).string();
   const bool video = order_.what == What::video;
   bool entered = false;

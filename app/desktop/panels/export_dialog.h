@@ -1,4 +1,4 @@
-// Asks what is to be taken away, where to, how large and in which colours.
+// Dialog that asks what to export, where to, how large and in which colours.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ struct ExportOrder {
   What what = What::plot;
   std::size_t plot = 0;
   Format format = Format::png;
-  double width = 160, height = 80;  // printed [mm]
-  int dpi = 300;                    // of pixels
+  double width = 160, height = 80;  // when printed [mm]
+  int dpi = 300;                    // of the pixels
   Theme theme = Theme::light;
   std::filesystem::path file = {};
 };
 
-// What stands between the sizes that are printed and the layout's, whose text is 9 points high.
+// Factor from printed sizes to those of the layout, whose text is 9 points high.
 inline constexpr double kLayoutPerMillimetre = 96 / 25.4;  // [px/mm]
 
 class ExportDialog {
  public:
-  // While `open`. `plot`: which of the stage's is offered first; `folder`: where files go;
-  // `recorded`: there is a session that can be filmed. The order once it is given.
+  // Draws the dialog while `open`; returns the order once it is given. `plot`: the stage's plot
+  // offered first; `folder`: default folder of files; `recorded`: there is a session to film.
   std::optional<ExportOrder> draw(bool& open, const Stage& stage, std::size_t plot,
                                   const std::filesystem::path& folder, bool recorded);
 
@@ -39,8 +39,8 @@ class ExportDialog {
   std::string why_not() const;
 
   ExportOrder order_;
-  std::string file_;     // as it is typed
-  std::string offered_;  // that stood there, as long as nobody has typed
+  std::string file_;     // as typed
+  std::string offered_;  // name offered last; the user has typed another if file_ differs
   std::filesystem::path replaces_;
   bool was_open_ = false;
 };

@@ -43,7 +43,7 @@ fs::path FileQuestion::draw(bool& open, const std::function<Place()>& place) {
   return dialog_.draw(open, now.first, now.places);
 }
 
-// Whoever does not find the desktop's dialog is not locked out.
+// Draws a note on the desktop's dialog, with a way out for users who do not find it.
 void FileQuestion::draw_waiting(bool& open) {
   if (!begin_modal(dialog_.options().title, open, {30 * ImGui::GetFontSize(), 0})) return;
   ImGui::TextWrapped("The desktop's own dialog asks for the file.");

@@ -1,4 +1,4 @@
-// Asks for a file: in the desktop's own dialog where it has one that answers, else in ours.
+// Question for a file: in the desktop's own dialog if it has one that answers, else in ours.
 #pragma once
 
 #include <filesystem>
@@ -14,17 +14,17 @@ namespace limpid {
 
 class FileQuestion {
  public:
-  // Of the moment at which it is asked.
+  // Places at the moment of the question.
   struct Place {
     std::filesystem::path first;            // a folder with / at its end, or the new file
-    std::vector<PathDialog::Place> places;  // beside our list
+    std::vector<PathDialog::Place> places;  // beside the list of our dialog
     bool own = false;                       // ours in any case
-    std::string parent = {};                // the window, as portals name it
+    std::string parent = {};                // id of the window, as portals name it
   };
   explicit FileQuestion(PathDialog::Options options) : dialog_(std::move(options)) {}
 
-  // While `open`. Returns the file once it is chosen, and clears `open`. `place` is asked while it
-  // is open.
+  // Draws the question while `open`. Returns the file once it is chosen, and clears `open`. Calls
+  // `place` while it is open.
   std::filesystem::path draw(bool& open, const std::function<Place()>& place);
 
  private:
@@ -32,7 +32,7 @@ class FileQuestion {
 
   PathDialog dialog_;
   bool asked_ = false;
-  std::optional<FilePortal> portal_;  // while the desktop's own dialog is to answer
+  std::optional<FilePortal> portal_;  // while the desktop's dialog is open
 };
 
 }  // namespace limpid

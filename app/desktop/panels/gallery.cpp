@@ -22,7 +22,7 @@ fs::path if_there(const fs::path& file) {
   return fs::is_regular_file(file, none) ? file : fs::path();
 }
 
-// Shapes on a table, for scenes without a picture.
+// Draws shapes on a table, for scenes without a picture.
 void draw_placeholder(const ImVec2& at, const ImVec2& size) {
   const Palette& p = current_palette();
   ImDrawList* draw = ImGui::GetWindowDrawList();
@@ -149,12 +149,12 @@ fs::path Gallery::draw_card(const GalleryCard& card, bool own, float width, int 
     if (ImGui::Button("Play its recorded session")) chosen = card.session;
     on_button = ImGui::IsItemHovered();
   }
-  // All the rest of the card opens the scene, and so does Enter.
+  // The rest of the card opens the scene, and so does Enter.
   const bool over = ImGui::IsWindowHovered() && !on_button;
   if (keys_.taken(number)) chosen = card.scene;
   if (over || at) {
     const ImVec2 end(corner.x + size.x, corner.y + size.y);
-    ImGui::PushClipRect(least, most, false);  // the border is outside of the card's own
+    ImGui::PushClipRect(least, most, false);  // the border lies outside of the card
     ImGui::GetWindowDrawList()->AddRect(corner, end, colour(current_palette().accent), 3, 0,
                                         2 * current_scale());
     ImGui::PopClipRect();

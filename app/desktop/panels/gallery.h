@@ -1,4 +1,4 @@
-// The scenes there are, as cards with pictures.
+// Gallery of all scenes, as cards with pictures.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +14,17 @@ struct GalleryCard {
   std::filesystem::path scene;
   std::string title, about;
   std::filesystem::path picture;  // empty: none
-  std::filesystem::path session;  // recorded in it; empty: none
+  std::filesystem::path session;  // session recorded in the scene; empty: none
 };
 
-// The scenes of a folder, by name; what cannot be read is there with its complaint.
+// Returns the scenes of a folder, by name; an unreadable one has its complaint as text.
 std::vector<GalleryCard> gallery_of(const std::filesystem::path& folder,
                                     const std::filesystem::path& sessions);
 
 class Gallery {
  public:
-  // While `open`. The scene or session to open, once it is chosen; that clears `open`.
+  // Draws the gallery while `open`. Returns the scene or session to open once it is chosen, and
+  // clears `open`.
   std::filesystem::path draw(bool& open);
   void drop_pictures();  // before the OpenGL context goes
 

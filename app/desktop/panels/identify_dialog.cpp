@@ -21,7 +21,7 @@ constexpr const char* kWithLoad = "a second time with a load at the tip";
 constexpr const char* kLoad = "load";
 constexpr const char* kGoOn = "Go on (Enter)";
 constexpr const char* kAgain = "Again";
-constexpr float kLabels = 14;  // width of them [text sizes]
+constexpr float kLabels = 14;  // width of the labels [text sizes]
 constexpr std::array kDownLabels{"as the arm's file says", "-z", "+z", "-x", "+x", "-y", "+y"};
 
 void muted(const std::string& text) {
@@ -30,7 +30,7 @@ void muted(const std::string& text) {
   ImGui::PopStyleColor();
 }
 
-// A part of something, in per cent.
+// Draws a slider for a part of something, in per cent.
 void part_slider(const char* label, double& part, float least, float most, const char* help) {
   auto per_cent = static_cast<float>(100 * part);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
@@ -113,7 +113,7 @@ void draw_drift(const std::vector<Drift>& all) {
   ImGui::TextWrapped("%s", with_plus_minus(text).c_str());
 }
 
-// True once it is to be closed.
+// Draws the results; returns true once the dialog is to be closed.
 bool draw_found(IdentifyController& controller) {
   const IdentifyController::Done& done = *controller.done();
   joints_table(done.identification);
@@ -209,7 +209,7 @@ void IdentifyDialog::draw(bool& open, IdentifyController& controller, Down down,
     case Phase::working: ImGui::TextUnformatted("Works out what moved..."); break;
     case Phase::found: open = !draw_found(controller); break;
   }
-  if (!controller.moving()) {  // what moves is stopped first
+  if (!controller.moving()) {  // a motion has to be stopped first
     if (controller.phase() != Phase::working) ImGui::SameLine();
     close_button("Close (Esc)", open);
   }

@@ -1,4 +1,4 @@
-// Leads through the identification of a device: what is asked before, what goes on, what was found.
+// Dialog that leads through the identification of a device: questions, progress, results.
 #pragma once
 
 #include <imgui.h>
@@ -13,11 +13,11 @@ namespace limpid {
 
 class IdentifyDialog {
  public:
-  // While `open`; a motion ends when it is closed. `down`: of the settings, the start of the
-  // choice.
+  // Draws the dialog while `open`; closing it ends a motion. `down`: direction of gravity in the
+  // settings, the first choice.
   void draw(bool& open, IdentifyController& controller, Down down, const ArmDescription& arm);
 
-  // What of it can be clicked, by its label, and where it was drawn in the last frame [px].
+  // Returns the places of its buttons in the last frame, by label [px].
   static std::map<std::string, ImVec2> places();
 
  private:

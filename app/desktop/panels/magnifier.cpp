@@ -12,10 +12,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kTellable = 0.3, kLargest = 40;    // of a gap in the picture [points]
-constexpr double kMoment = 0.7;                     // that a lens stays without need [s]
-constexpr float kShare = 0.42f, kMostWide = 0.36f;  // of the view's height and width
-constexpr float kLeast = 64;                        // edge that is worth it, at scale 1 [points]
+constexpr double kTellable = 0.3, kLargest = 40;    // gaps that are magnified [points]
+constexpr double kMoment = 0.7;                     // time that a lens stays without need [s]
+constexpr float kShare = 0.42f, kMostWide = 0.36f;  // parts of the view's height and width
+constexpr float kLeast = 64;                        // least edge of a lens, at scale 1 [points]
 
 bool seen(const ViewState& state) {
   return !state.device.links.empty() && !state.proxy.links.empty() &&
@@ -82,7 +82,7 @@ void Magnifier::draw_frame(const ViewState& state, const Camera& camera, ImDrawL
     list.AddRect({m.x - half, m.y - half}, {m.x + half, m.y + half}, colour(colours.text, 0.35f), 0,
                  0, scale);
   }
-  // A bar as long as a round number of millimetres.
+  // The bar is a round number of millimetres long.
   const double point = camera.meters_per_pixel(middle(state)) / kMagnified;
   const double most = 0.4 * static_cast<double>(rect_->size().x) * point;
   double bar = 1e-4;

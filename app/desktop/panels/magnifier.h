@@ -1,4 +1,4 @@
-// The gap between device and proxy, as a number and through a lens in a corner of the 3D view.
+// Magnifier of the gap between device and proxy: a number, and a lens in a corner of the 3D view.
 #pragma once
 
 #include <imgui.h>
@@ -14,30 +14,31 @@ namespace limpid {
 
 inline constexpr double kMagnified = 5;
 
-// There is a gap or a contact, and it is small in a picture of this camera.
+// Returns whether there is a gap or a contact that is small in a picture of this camera.
 bool worth_magnifying(const ViewState& state, const Camera& camera);
 
-// What it draws into.
+// Place that the lens is drawn in.
 struct LensPlace {
   ScreenRect view;         // the 3D view
-  double pixel_scale = 1;  // pixels a point
-  int pixel_height = 0;    // of the window [px]
-  float words = 0;         // that words take at the view's top over all of its width [points]
+  double pixel_scale = 1;  // pixels per point
+  int pixel_height = 0;    // height of the window [px]
+  float words = 0;         // height of words at the view's top, over all of its width [points]
 };
 
-// In the lower right corner, or in the upper one where it would hide the tips; where `words`, as in
-// LensPlace, leave it no room there, in the lower left one. Nothing where the view is too small.
+// Returns the lens's place: the lower right corner, or the upper right one if the lens would hide
+// the tips. If `words` (see LensPlace) leave no room there, it is the lower left one. Nothing if
+// the view is too small.
 std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips);
 
 class Magnifier {
  public:
-  // Shows the lens, in OpenGL, while that is worth it and a moment longer.
+  // Draws the lens in OpenGL, while it is worth it and a moment longer.
   void draw(SceneView& picture, const ViewState& state, const Camera& camera,
             const LensPlace& place);
-  // Frame, scale and what part of the picture it is, over that.
+  // Draws frame, scale and magnification over the lens.
   void draw_frame(const ViewState& state, const Camera& camera, ImDrawList& list) const;
   void hide() { rect_.reset(); }
-  const std::optional<ScreenRect>& rect() const { return rect_; }  // where it is, if it is shown
+  const std::optional<ScreenRect>& rect() const { return rect_; }  // nothing if it is not shown
 
  private:
   std::optional<ScreenRect> rect_;

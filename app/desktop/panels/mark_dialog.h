@@ -1,4 +1,4 @@
-// Asks what a mark says, in a line.
+// Dialog that asks for a mark's text.
 #pragma once
 
 #include <optional>
@@ -6,16 +6,16 @@
 
 namespace limpid {
 
-// What came of it in this frame.
+// Answer of a frame.
 struct MarkAnswer {
-  std::optional<std::string> text = {};  // it says this from now on
+  std::optional<std::string> text = {};  // new text of the mark
   bool remove = false;
 };
 
 class MarkDialog {
  public:
-  // While `open`. `when`: for people; `text`: what it says, or would; `there`: the mark is there
-  // already and can be removed.
+  // Draws the dialog while `open`. `when`: for people; `text`: of the mark, or a proposal; `there`:
+  // the mark exists and can be removed.
   MarkAnswer draw(bool& open, const std::string& when, const std::string& text, bool there);
 
  private:

@@ -106,7 +106,7 @@ void NamedDialog::draw_changes(NamedTexts& texts) {
   complaint_ = wrong;
 }
 
-// What is there now, under the name that was written; Enter uses one that is there already.
+// Offers to save the present state under the typed name; Enter uses an existing text of that name.
 NamedDialog::Asked NamedDialog::draw_name(const NamedTexts& texts, bool entered) {
   const bool known = texts.find(name_) != nullptr;
   const bool replaces = known && texts.may_change(name_);

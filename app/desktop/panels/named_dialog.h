@@ -1,4 +1,4 @@
-// What is kept by name: to be used, saved, renamed and removed.
+// Dialog of named texts: use, save, rename and remove them.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ class NamedDialog {
   struct Options {
     const char* title;
     const char* what;  // "layout"
-    const char* help;  // what is kept, in a sentence
+    const char* help;  // sentence on its contents
   };
   explicit NamedDialog(Options options) : options_(options) {}
 
@@ -21,8 +21,8 @@ class NamedDialog {
     Request request = Request::none;
     std::string name;
   };
-  // While `open`. Renames and removes; what is to be used, or to be kept of what is there now, is
-  // up to the caller, who says by complain() what went wrong.
+  // Draws the dialog while `open`. Renames and removes by itself. The caller uses a text, or keeps
+  // the present one, and reports failures by complain().
   Asked draw(bool& open, NamedTexts& texts);
   void complain(const std::string& what) { complaint_ = what; }
 
@@ -36,7 +36,7 @@ class NamedDialog {
   Options options_;
   bool was_open_ = false;
   std::string chosen_, name_, complaint_;
-  bool sure_ = false;  // that the chosen one is to go
+  bool sure_ = false;  // the user has confirmed that the chosen one goes
 };
 
 }  // namespace limpid

@@ -63,7 +63,7 @@ void outline(const Box& box, const Pose& pose, const Camera&, Pen& pen) {
   }
 }
 
-// What cylinder and capsule have in common: two rings and four lines between them.
+// Draws a tube, the common part of cylinder and capsule: two rings and four lines between them.
 void outline_tube(double radius, double length, const Pose& pose, Pen& pen) {
   const Vec3 u = radius * pose.linear().col(0), v = radius * pose.linear().col(1);
   const Vec3 up = length / 2 * pose.linear().col(2), middle = pose.translation();
@@ -89,7 +89,7 @@ void outline(const Capsule& capsule, const Pose& pose, const Camera& camera, Pen
 void outline(const Mesh&, const Pose&, const Camera&, Pen&) {}
 void outline(const JointStop&, const Pose&, const Camera&, Pen&) {}
 
-// A picture in a list, of half a width r around its middle.
+// Picture in a list, of half the width r around its middle.
 struct Icon {
   ImDrawList* draw;
   ImVec2 middle;
@@ -151,15 +151,7 @@ const char* name(const Capsule&) { return "capsule"; }
 const char* name(const Mesh&) { return "mesh"; }
 const char* name(const JointStop&) { return "joint stop"; }
 
-}  // namespace
-
-const char* shape_name(const Shape& shape) {
-  return std::visit([](const auto& s) { return name(s); }, shape);
-}
-
-namespace {
-
-// Of wood, on the whole; hard enough to be pushed.
+// Returns a body that moves, of wood as a rule; hard enough to be pushed.
 Object moving(const char* name, Shape shape, double mass) {
   return {.name = name,
           .shape = std::move(shape),
@@ -168,6 +160,10 @@ Object moving(const char* name, Shape shape, double mass) {
 }
 
 }  // namespace
+
+const char* shape_name(const Shape& shape) {
+  return std::visit([](const auto& s) { return name(s); }, shape);
+}
 
 std::vector<NewObject> new_objects() {
   return {

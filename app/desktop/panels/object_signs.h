@@ -1,4 +1,4 @@
-// How each shape is called, added and drawn: in the list of objects, and in the view.
+// Signs of objects: names and icons of shapes, objects to add, and outlines in the view.
 #pragma once
 
 #include <imgui.h>
@@ -13,7 +13,7 @@ namespace limpid {
 
 const char* shape_name(const Shape& shape);  // for people
 
-// What can be added without a file.
+// Object that can be added without a file.
 struct NewObject {
   const char* label;  // in a menu
   Object object;
@@ -21,11 +21,11 @@ struct NewObject {
 };
 std::vector<NewObject> new_objects();
 
-// A small picture of a shape into the window that is being drawn, of half a width r [px].
+// Draws a small picture of a shape into the present window, of half the width r [px].
 void draw_icon(const Shape& shape, ImVec2 middle, float r, ImU32 ink);
 
-// Where a selected object is, as lines over the view; meshes and stops of joints have a picture
-// that shows it.
+// Draws a selected object's outline over the view; not of meshes and stops of joints, whose picture
+// shows the selection.
 void draw_outline(const Object& object, const Camera& camera, ScreenRect view, ImDrawList& list);
 
 }  // namespace limpid

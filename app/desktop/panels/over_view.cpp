@@ -30,7 +30,7 @@ float buttons_width(const Banner& banner) {
   return width;
 }
 
-// Text and buttons in one line, or the buttons below where there is no room.
+// Draws text and buttons in one line, or the buttons below if there is no room.
 void draw_contents(const Banner& banner, float room, const Act& act) {
   const Palette& colours = current_palette();
   const bool one_line = ImGui::CalcTextSize(banner.text.c_str()).x + buttons_width(banner) <= room;
@@ -49,6 +49,39 @@ void draw_contents(const Banner& banner, float room, const Act& act) {
     if (!std::exchange(first, false)) ImGui::SameLine();
     if (noted_button(button.label.c_str())) act(button.command);
   }
+}
+
+void draw_tick(ImVec2 at, float side, bool done) {
+  const Palette& colours = current_palette();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 rgba = colour(done ? colours.accent : colours.axis);
+  list.AddRect(at, {at.x + side, at.y + side}, rgba, 0.2f * side);
+  if (!done) return;
+  const float thick = std::max(1.5f, 0.16f * side);
+  list.AddLine({at.x + 0.22f * side, at.y + 0.52f * side},
+               {at.x + 0.43f * side, at.y + 0.74f * side}, rgba, thick);
+  list.AddLine({at.x + 0.43f * side, at.y + 0.74f * side},
+               {at.x + 0.8f * side, at.y + 0.26f * side}, rgba, thick);
+}
+
+void draw_next_step(Settings& settings) {
+  const Palette& colours = current_palette();
+  const auto tried = std::ranges::count_if(
+      kFirstSteps, [&](const FirstStepInfo& step) { return done(settings, step.step); });
+  const auto* next = std::ranges::find_if(
+      kFirstSteps, [&](const FirstStepInfo& step) { return !done(settings, step.step); });
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextColored(colour_vector(colours.muted), "Your turn, %d of %zu:",
+                     static_cast<int>(tried) + (next != kFirstSteps.end() ? 1 : 0),
+                     kFirstSteps.size());
+  ImGui::SameLine();
+  ImGui::TextUnformatted(next != kFirstSteps.end() ? next->what : "all of it is done");
+  ImGui::SameLine();
+  if (next != kFirstSteps.end()) {
+    ImGui::TextColored(colour_vector(colours.muted), "%s", next->how);
+    ImGui::SameLine();
+  }
+  if (noted_button("Close")) settings.your_turn = false;
 }
 
 }  // namespace
@@ -70,7 +103,7 @@ ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, Screen
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
-    ImGui::PopStyleColor();  // the theme is told by it
+    ImGui::PopStyleColor();  // current_theme() is read from this colour
     draw_contents(banner, right - left - 2 * ImGui::GetStyle().WindowPadding.x, act);
     y += ImGui::GetWindowHeight() + 0.5f * pad;
     ImGui::End();
@@ -78,7 +111,7 @@ ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, Screen
   return {signs.min, {view.max.x, std::max(y, signs.max.y)}};
 }
 
-// Beside the legend where there is room for a sentence, else below it.
+// Draws notices beside the legend if there is room for a sentence, else below it.
 void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend) {
   const Palette& colours = palette(current_theme());
   ImDrawList* draw = ImGui::GetForegroundDrawList();
@@ -128,7 +161,7 @@ void draw_loading(SceneLoader& loader, ScreenRect view) {
 void draw_video_bar(Playback& playback, ScreenRect view) {
   if (!playback.video().busy()) return;
   const float em = ImGui::GetFontSize();
-  const float below_names = 2.6f * em;  // of a twin's runs
+  const float below_names = 2.6f * em;  // below the names of a twin's runs
   ImGui::SetNextWindowPos({view.max.x - em, view.min.y + below_names}, ImGuiCond_Always, {1, 0});
   ImGui::Begin("video", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
@@ -141,43 +174,6 @@ void draw_video_bar(Playback& playback, ScreenRect view) {
   ImGui::End();
 }
 
-namespace {
-
-void draw_tick(ImVec2 at, float side, bool done) {
-  const Palette& colours = current_palette();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImU32 rgba = colour(done ? colours.accent : colours.axis);
-  list.AddRect(at, {at.x + side, at.y + side}, rgba, 0.2f * side);
-  if (!done) return;
-  const float thick = std::max(1.5f, 0.16f * side);
-  list.AddLine({at.x + 0.22f * side, at.y + 0.52f * side},
-               {at.x + 0.43f * side, at.y + 0.74f * side}, rgba, thick);
-  list.AddLine({at.x + 0.43f * side, at.y + 0.74f * side},
-               {at.x + 0.8f * side, at.y + 0.26f * side}, rgba, thick);
-}
-
-void draw_next_step(Settings& settings) {
-  const Palette& colours = current_palette();
-  const auto tried = std::ranges::count_if(
-      kFirstSteps, [&](const FirstStepInfo& step) { return done(settings, step.step); });
-  const auto* next = std::ranges::find_if(
-      kFirstSteps, [&](const FirstStepInfo& step) { return !done(settings, step.step); });
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextColored(colour_vector(colours.muted), "Your turn, %d of %zu:",
-                     static_cast<int>(tried) + (next != kFirstSteps.end() ? 1 : 0),
-                     kFirstSteps.size());
-  ImGui::SameLine();
-  ImGui::TextUnformatted(next != kFirstSteps.end() ? next->what : "all of it is done");
-  ImGui::SameLine();
-  if (next != kFirstSteps.end()) {
-    ImGui::TextColored(colour_vector(colours.muted), "%s", next->how);
-    ImGui::SameLine();
-  }
-  if (noted_button("Close")) settings.your_turn = false;
-}
-
-}  // namespace
-
 void draw_your_turn(Settings& settings, ScreenRect view) {
   if (!settings.your_turn) return;
   const float em = ImGui::GetFontSize(), side = 0.75f * em;
@@ -187,7 +183,7 @@ void draw_your_turn(Settings& settings, ScreenRect view) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
-  // Where the list would hide the arm: what comes next alone.
+  // If the list would hide the arm, only the next step is shown.
   if (view.height() < 30 * em || view.width() < 50 * em) {
     draw_next_step(settings);
     ImGui::End();
@@ -216,7 +212,7 @@ void draw_your_turn(Settings& settings, ScreenRect view) {
 bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
                      bool hinted) {
   if (settings.hint_seen || playback.on() || playback.loading()) return false;
-  // Above the hint's lines, or the tab that folds the plots.
+  // The button is above the hint's lines, or above the tab that folds the plots.
   const float above = (hinted ? 8 : 1.5f) * font(Face::semibold)->FontSize;
   ImGui::SetNextWindowPos({(view.min.x + view.max.x) / 2, view.max.y - above}, ImGuiCond_Always,
                           {0.5f, 1});

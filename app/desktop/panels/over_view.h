@@ -1,4 +1,4 @@
-// What stands over the picture: what cannot be missed, what was said, and work that goes on.
+// Signs over the picture: banners, notices, and work that goes on.
 #pragma once
 
 #include <span>
@@ -16,37 +16,37 @@ namespace limpid {
 struct Banner {
   struct Button {
     std::string label;
-    const char* command;  // its id
+    const char* command;  // id of the command
   };
-  const char* id;  // of its window
+  const char* id;  // ImGui's id of its window
   std::string text;
   bool bad = false;
   std::vector<Button> buttons = {};
 };
 
-// One below the other from the top of the view on, clear of what it shows at its `signs`. Returns
-// the part of the view that they and the signs take.
+// Draws banners below each other from the top of the view, clear of the view's own `signs`. Returns
+// the part of the view that banners and signs take.
 ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
                         const Act& act);
 
-// Below what banners and the legend take.
+// Draws notices below banners and legend.
 void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend);
 
-// At the foot of the view, while something is loaded.
+// Draws the progress of loading at the foot of the view.
 void draw_loading(SceneLoader& loader, ScreenRect view);
 
-// At the top right of the view, while a video is made.
+// Draws the progress of a video at the top right of the view.
 void draw_video_bar(Playback& playback, ScreenRect view);
 
-// At the lower left of the view: what is worth trying, each with a tick once it was done; closing
+// Draws the list of first steps at the lower left of the view, each ticked once it is done; closing
 // it is enough of it.
 void draw_your_turn(Settings& settings, ScreenRect view);
 
-// The story: a button of a first start, over its hint; true when it is pressed.
-// `hinted`: there is one.
+// Draws the button for the story of a first start, above its hint if `hinted`. Returns true when it
+// is pressed.
 bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
                      bool hinted);
-// Somebody reaches into the picture of a story: the hand is theirs.
+// Returns true when the user reaches into the picture of a story, to take over the hand.
 bool story_taken_over(const Playback& playback, ScreenRect view);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// Parameters below each other.
+// Rows of parameters.
 #pragma once
 
 #include <initializer_list>
@@ -8,8 +8,8 @@
 
 namespace limpid {
 
-// What is left to the arm shows this arm's value, and stays the arm's until it is moved. Parameters
-// that take effect with another loop only are left out.
+// Draws parameters below each other. A value that is left to the arm is shown as the arm's until it
+// is moved. Parameters that need another loop are left out.
 void draw_parameters(Parameters& p, const ArmDescription& arm,
                      std::initializer_list<const char*> keys);
 

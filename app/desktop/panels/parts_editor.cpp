@@ -18,7 +18,7 @@ using namespace scene_limits;
 
 struct PartShape {
   const char* name;
-  Shape shape;  // as it begins
+  Shape shape;  // of a new part
 };
 const std::array<PartShape, 4>& part_shapes() {
   static const std::array<PartShape, 4> all{

@@ -1,4 +1,4 @@
-// The shapes that a body has besides its own.
+// Editor of the shapes that a body has besides its own.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace limpid {
 
 class PartsEditor {
  public:
-  // Says what was changed of which part, "" for nothing.
+  // Edits the parts; returns the name of the change with its part, "" for none.
   std::string edit(Object& object);
 
  private:
-  std::vector<RotationField> rotations_;  // part by part
+  std::vector<RotationField> rotations_;  // one for each part
 };
 
 }  // namespace limpid

@@ -14,8 +14,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kStays = 0.3;  // after an answer [s]
-// Of both, ImGui knows the same window by what is behind ###.
+constexpr double kStays = 0.3;  // time that it stays after an answer [s]
+// Titles of both windows; ImGui knows them as the same window by the text behind ###.
 constexpr const char* kModalTitle = "A question###question";
 constexpr const char* kMessageTitle = "A message###question";
 
@@ -47,7 +47,7 @@ double PersonQuestion::seconds_since(Clock::time_point time) const {
   return std::chrono::duration<double>(Clock::now() - time).count();
 }
 
-// By a key; what was pressed before the question was seen is no answer to it.
+// Returns the choice of a key. Keys pressed before the question was seen do not count.
 std::optional<std::size_t> PersonQuestion::chosen() const {
   if (!shown_ || ImGui::IsWindowAppearing()) return std::nullopt;
   const ImGuiIO& io = ImGui::GetIO();
@@ -55,7 +55,8 @@ std::optional<std::size_t> PersonQuestion::chosen() const {
     const auto digit = static_cast<std::size_t>(c - '1');
     if (c >= '1' && digit < choices_.size()) return digit;
   }
-  // A French keyboard writes a digit with Shift only, a keypad with its lock only.
+  // Modifiers do not count for digits: a French keyboard writes them with Shift, a keypad with its
+  // lock.
   const bool bare = !io.KeyCtrl && !io.KeyShift && !io.KeyAlt;
   for (std::size_t i = 0; bare && i < choices_.size(); ++i) {
     const int digit = static_cast<int>(i);
@@ -64,17 +65,17 @@ std::optional<std::size_t> PersonQuestion::chosen() const {
     }
   }
   if (choices_.size() != 1) return std::nullopt;
-  // Beside the picture, a click into that takes ImGui's focus, not the keys.
+  // A click into the picture takes ImGui's focus from a question beside it, but not the keys.
   const bool enter =
       how_.beside ? key_pressed(GLFW_KEY_ENTER, false) || key_pressed(GLFW_KEY_KP_ENTER, false)
                   : accepted();
   return enter ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// Its cross and Esc are no answer: whoever asks opens it again.
+// Begins its window. Cross and Esc are no answer: the program opens it again.
 bool PersonQuestion::begin(bool& open, ScreenRect view) const {
   if (!how_.beside) return begin_modal(title(), open, {0, 0});
-  // One before it that was not beside the picture has to be closed by ImGui, too.
+  // An earlier modal question has to be closed by ImGui, too.
   bool before = false;
   begin_modal(kModalTitle, before, {0, 0});
   if (!open) return false;
@@ -89,8 +90,7 @@ bool PersonQuestion::begin(bool& open, ScreenRect view) const {
   return true;
 }
 
-// The one that the mouse has chosen. Beside the picture they stand in lines, as its width has
-// `room`.
+// Returns the choice of the mouse. Beside the picture choices stand in lines of the width `room`.
 std::optional<std::size_t> PersonQuestion::draw_choices(float room) const {
   std::optional<std::size_t> chosen;
   const float em = ImGui::GetFontSize();
@@ -118,7 +118,7 @@ std::optional<std::size_t> PersonQuestion::draw_choices(float room) const {
   return chosen;
 }
 
-// What is left of it, as a bar.
+// Draws the time left as a bar.
 void PersonQuestion::draw_time() const {
   if (how_.seconds <= 0) return;
   const double gone = !shown_ ? 0 : asks_ ? seconds_since(*shown_) : how_.seconds;

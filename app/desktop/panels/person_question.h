@@ -1,4 +1,4 @@
-// A question that a program puts to whoever sits at the window, with a choice of answers.
+// Question of a program to the person at the window, with a choice of answers.
 #pragma once
 
 #include <chrono>
@@ -13,34 +13,32 @@ namespace limpid {
 
 class PersonQuestion {
  public:
-  static constexpr std::size_t kMostChoices = 9;  // one a digit key
+  static constexpr std::size_t kMostChoices = 9;  // one for each digit key
   struct How {
     bool beside = false;  // below the picture, which can be used meanwhile
-    double seconds = 0;   // it goes by itself after so long without an answer; 0: it stays [s]
+    double seconds = 0;   // time until it ends without an answer; 0: it stays [s]
   };
   struct Answer {
     std::optional<std::size_t> choice;  // none: the time was over
     double seconds = 0;                 // since the question was first drawn
   };
 
-  // Ends a question that was there before. Without choices there is nothing to answer: its time has
-  // to end it.
+  // Asks a question in place of the present one. Without choices only its time can end it.
   void ask(std::string text, std::vector<std::string> choices, How how);
   void withdraw();
   bool asking() const { return asks_; }
   bool beside() const { return how_.beside; }
-  std::size_t number() const { return number_; }  // of questions so far
+  std::size_t number() const { return number_; }  // number of questions so far
   std::size_t choices() const { return choices_.size(); }
   const std::string& choice(std::size_t i) const { return choices_[i]; }
-  // Of ImGui's window.
+  // Returns the title of ImGui's window.
   const char* title() const;
-  // Once, when it is there.
+  // Returns the answer, once.
   std::optional<Answer> take() { return std::exchange(answer_, std::nullopt); }
 
-  // While `open`, in `view`: keys 1 to 9 and the mouse answer it, Enter where there is one answer
-  // only. An answer clears `open`; one that stands beside the picture stays a moment longer, so
-  // that it does not flicker where another one follows, and keys that are meant for it go nowhere
-  // else.
+  // Draws the question in `view` while `open`. Keys 1 to 9 and the mouse answer it, and Enter a
+  // single choice. An answer clears `open`. A question beside the picture stays a moment longer: it
+  // does not flicker if another follows, and keys for it go nowhere else.
   void draw(bool& open, ScreenRect view);
 
  private:
@@ -59,7 +57,7 @@ class PersonQuestion {
   std::vector<std::string> choices_;
   How how_;
   std::optional<Clock::time_point> shown_, answered_;
-  std::optional<std::size_t> taken_;  // the choice of the answer, while it is shown
+  std::optional<std::size_t> taken_;  // choice of the answer, while it is shown
   std::optional<Answer> answer_;
 };
 

@@ -43,7 +43,7 @@ void muted(const char* text) {
 bool meant_by(const ChannelInfo& channel, const std::string& words) {
   const std::string all = lower(channel.group + " " + channel.name + " " + channel.label + " " +
                                 channel.unit + " " + channel.key);
-  // What people call it as well.
+  // Synonyms that people use.
   constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kSame{
       {{"human", "hand"},
        {"depth", "gap"},
@@ -96,7 +96,7 @@ bool PlotChooser::draw(bool& open, PlotChoice& choice, const TraceChannels& chan
   return remove;
 }
 
-// What stands along the horizontal axis, and the name.
+// Draws the choice of the horizontal axis, and of the name.
 void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) {
   struct Kind {
     PlotKind kind;
@@ -124,8 +124,8 @@ void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) 
   }
 }
 
-// Enter takes the first channel that is listed, and is ready for the next words; without any it is
-// the last one.
+// Draws the filter. Enter takes the first channel listed, and clears the words; without words it
+// closes the chooser.
 void PlotChooser::draw_filter(PlotChoice& choice, const TraceChannels& channels) {
   ImGui::PushItemWidth(-1);
   const bool entered = ImGui::InputTextWithHint(

@@ -1,4 +1,4 @@
-// Asks what a plot shows: channels by a filter and a list, over what, and its name.
+// Chooser of a plot's content: channels by a filter and a list, horizontal axis, and name.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace limpid {
 
-// Whether a channel is meant by these words: each stands in its group, name, label, unit or key.
+// Returns whether each of these words is in the channel's group, name, label, unit or key.
 bool meant_by(const ChannelInfo& channel, const std::string& words);
 
 class PlotChooser {
  public:
-  // While `open`, above the plots; changes `choice` as it is clicked together. `anchor`: where
-  // there is room [px]. Returns true when the plot is to be removed.
   bool is_open() const { return was_open_; }
+  // Draws the chooser while `open`, above the plots; changes `choice` at each click. `anchor`: free
+  // room [px]. Returns true when the plot is to be removed.
   bool draw(bool& open, PlotChoice& choice, const TraceChannels& channels, ScreenRect anchor);
 
  private:

@@ -7,7 +7,7 @@
 namespace limpid {
 namespace {
 
-// Where the last plot was removed.
+// Draws a panel without plots.
 PlotsRequest draw_no_plots() {
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const char* text = "Add a plot (N)";

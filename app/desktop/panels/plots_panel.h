@@ -1,4 +1,4 @@
-// The plots of what is on screen, side by side.
+// Panel of plots side by side.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace limpid {
 
-// What was asked for in the panel, beyond what plots do themselves.
+// Requests made in the panel that the plots do not carry out themselves.
 struct PlotsRequest {
   PlotWish wish = PlotWish::none;  // choose, add, remove
   std::size_t plot = 0;
 };
 
-// `player` of the recording that is shown; null: the loop is.
+// Draws the plots. `player` of the recording that is shown; null: the loop is shown.
 PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect rect);
 
 }  // namespace limpid

@@ -27,7 +27,7 @@ void draw_unsaved_question(bool& open, bool has_file, const Act& act) {
   ImGui::SameLine();
   close_button("Cancel (Esc)", open);
   ImGui::EndPopup();
-  if (answer != nullptr) act(answer);  // which may throw
+  if (answer != nullptr) act(answer);  // may throw
 }
 
 void draw_quit_question(bool& open, const Act& act) {
@@ -46,7 +46,7 @@ void draw_quit_question(bool& open, const Act& act) {
   act("window.end_recording_and_quit");
 }
 
-// Enter does not answer it: what it asks is to be read.
+// Enter is no answer here: the question is to be read.
 bool draw_xacro_question(bool& open, const std::filesystem::path& file) {
   if (!begin_modal("Expand xacro?", open, {0, 0})) return false;
   ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());

@@ -1,4 +1,4 @@
-// What has to be answered before the window goes on with it.
+// Questions that have to be answered before the window goes on.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,21 @@
 
 namespace limpid {
 
-// What to do with changes that are not saved, while `open`; the answer is a command. Staying clears
+// Asks what to do with unsaved changes, while `open`; the answer is a command. Staying clears
 // `open`. `has_file`: saving needs no name.
 void draw_unsaved_question(bool& open, bool has_file, const Act& act);
 
-// Whether a recording that runs may end with the window, while `open`; the answer is a command.
+// Asks whether a running recording may end with the window, while `open`; the answer is a command.
 void draw_quit_question(bool& open, const Act& act);
 
-// Whether a file may be expanded by the program xacro, while `open`. True once it may, which clears
-// `open`.
+// Asks whether the program xacro may expand a file, while `open`. Returns true once it may, which
+// clears `open`.
 bool draw_xacro_question(bool& open, const std::filesystem::path& file);
 
-// Which end of an arm is meant, where it branches.
+// Question for the end of an arm that branches.
 class TipQuestion {
  public:
-  // While `open`. The link, once it is chosen; that clears `open`.
+  // Draws the question while `open`. Returns the link once it is chosen, and clears `open`.
   std::string draw(bool& open, const TipsToChoose& choice);
 
  private:

@@ -27,7 +27,7 @@ void figure_cell(const std::string& text, bool head = false) {
 
 }  // namespace
 
-// Anew where something has changed: a minute of rows is not looked through in every frame.
+// Computes the figures anew only if something has changed: a range may have a minute of rows.
 void RangePanel::reckon(const Plot& plot, const History& history, const PlotRange& range) {
   std::vector<int> channels;
   for (const Curve& curve : plot.spec().curves) {

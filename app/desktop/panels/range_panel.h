@@ -1,4 +1,4 @@
-// What the stretch of time selected in a plot amounts to, and what can be done with it.
+// Panel of the range selected in a plot: its figures, and commands for it.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ namespace limpid {
 
 class RangePanel {
  public:
-  // At the bottom of the view above the plots, while a stretch is selected. `player` as
-  // draw_plots() has it.
+  // Draws at the bottom of the view above the plots, while a range is selected. `player` as in
+  // draw_plots().
   void draw(Stage& stage, Player* player, const PlotSaving& saving, ScreenRect view);
 
  private:
@@ -23,7 +23,7 @@ class RangePanel {
   };
   void reckon(const Plot& plot, const History& history, const PlotRange& range);
 
-  // Of which stretch, and of which rows and curves, the lines are.
+  // Range, rows and curves that lines_ are of.
   PlotRange known_{};
   SampleIndex first_ = 0, end_ = 0;
   std::vector<int> channels_;

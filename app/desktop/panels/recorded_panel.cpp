@@ -26,7 +26,7 @@ bool has_slider(const Parameters& p, const std::string& key) {
                              [&](std::string_view each) { return each == key; });
 }
 
-// Worth a line: the grip, what the law has a slider for, and what is not as usual.
+// Returns whether a setting has a line: the grip, the law's sliders, and unusual values do.
 bool told(const ParameterInfo& info, const Parameters& p) {
   const std::string key = info.key;
   if (key == "coupling.kind" || key == "hand.stiffness" || key == "hand.damping") return true;

@@ -1,4 +1,4 @@
-// What a recording was made with: its own settings, which nobody can move any more.
+// Panel of a recording's own settings, which cannot be changed.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace limpid {
 
-// A setting as it is told of; the second run's beside it where it has another value.
+// Setting as text, with the second run's value if that differs.
 struct RecordedSetting {
   std::string name, value;
   std::string of_twin = {};
   std::string help = {};
 };
-// The law and what its sliders set, the grip, and whatever else is not as usual, of both runs.
+// Returns law and its sliders, the grip, and all unusual settings, of both runs.
 std::vector<RecordedSetting> recorded_settings(const Parameters& first, const Parameters* twin);
 
-// Draws into the ImGui window that is open.
+// Draws into the open ImGui window.
 void draw_recorded(PlayedSession& session);
 
 }  // namespace limpid

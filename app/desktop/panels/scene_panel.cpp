@@ -67,7 +67,7 @@ bool slider(double& value, const ParameterInfo& info, double usual, const char* 
 }
 
 ParameterInfo slider_of(const MaterialKey& each) {
-  constexpr double kAboveZero = 1e-3;  // the least where zero is not allowed
+  constexpr double kAboveZero = 1e-3;  // least value if zero is not allowed
   return {.key = each.key,
           .label = each.label,
           .field = &Parameters::eta,
@@ -95,7 +95,7 @@ bool choose_material(Material& material) {
   return changed;
 }
 
-// What was changed; nothing, as a rule.
+// Returns the name of the change, "" for none.
 std::string_view edit_material(Material& material) {
   std::string_view what;
   if (choose_material(material)) what = "material";
@@ -115,7 +115,7 @@ bool joint_stiffness(double& value) {
   return slider(value, info, JointStop::kUsualStiffness, of_material.meaning);
 }
 
-// How the numbers of the model's file are meant.
+// Edits unit and axes of the model's file.
 bool choose_axes(Mesh& mesh) {
   bool changed = false;
   caption("Unit of the file", "What its coordinates are in. Many formats do not say.");
@@ -135,6 +135,79 @@ bool choose_axes(Mesh& mesh) {
     changed = true;
   }
   return changed;
+}
+
+void draw_title(const SceneDocument& document) {
+  const std::string title = document.title.empty() ? "untitled" : document.title;
+  ImGui::TextUnformatted(title.c_str());
+  tooltip(document.about.c_str());
+}
+
+void draw_why_fixed(const char* why) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", why);
+  ImGui::PopTextWrapPos();
+}
+
+// Draws the list of objects. `editor`: selects them; null: none can be selected. `fresh`: the
+// selection is new.
+void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& act) {
+  const std::vector<Object>& all = scene.objects;
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
+  const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
+  if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a model here.");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Object& object = all[i];
+    ImGui::PushID(static_cast<int>(i));
+    const bool chosen = editor != nullptr && editor->selected() == i;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float em = ImGui::GetFontSize();
+    if (chosen && fresh) ImGui::SetScrollHereY();
+    const bool clicked =
+        ImGui::Selectable("##object", chosen, ImGuiSelectableFlags_AllowDoubleClick);
+    if (clicked && editor != nullptr) {
+      const bool twice = ImGui::IsMouseDoubleClicked(0);
+      editor->select(chosen && !twice ? std::nullopt : std::optional(i));
+      if (twice) act("scene.look");
+    }
+    tooltip(fmt::format("{}, {}{}. Double click to look at it.", object.name,
+                        shape_name(object.shape), object.body ? " that moves" : "")
+                .c_str());
+    draw_icon(object.shape, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
+              colour(current_palette().muted));
+    ImGui::GetWindowDrawList()->AddText({at.x + 1.4f * em, at.y}, colour(current_palette().text),
+                                        object.name.c_str());
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+}
+
+void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject& add) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size((ImGui::GetContentRegionAvail().x - 3 * gap) / 4, 0);
+  if (ImGui::Button("Add", size)) ImGui::OpenPopup("add");
+  tooltip("Something more to touch.");
+  ImGui::BeginDisabled(!any_selected);
+  ImGui::SameLine();
+  if (ImGui::Button("Copy", size)) act("scene.copy");
+  tooltip("Another one beside it (Ctrl+D).");
+  ImGui::SameLine();
+  if (ImGui::Button("Remove", size)) act("scene.remove");
+  tooltip("Delete. Ctrl+Z brings it back.");
+  ImGui::SameLine();
+  if (ImGui::Button("Look", size)) act("scene.look");
+  tooltip("Turns the camera to it (double click).");
+  ImGui::EndDisabled();
+  if (ImGui::BeginPopup("add")) {
+    if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
+    for (const NewObject& each : new_objects()) {
+      if (each.first_that_moves) ImGui::Separator();
+      if (ImGui::MenuItem(each.label)) add(each.object);
+    }
+    ImGui::EndPopup();
+  }
 }
 
 }  // namespace
@@ -204,7 +277,7 @@ std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
   return what;
 }
 
-// Of what stands anywhere and is turned anyhow.
+// Edits an object's material, place and rotation.
 std::string_view ObjectEditor::edit_placed(Object& object) {
   std::string_view what = edit_material(object.material);
   if (position(object.pose)) what = "place";
@@ -275,82 +348,6 @@ std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
   tooltip("Otherwise it stops what goes below the angle.");
   return what;
 }
-
-namespace {
-
-void draw_title(const SceneDocument& document) {
-  const std::string title = document.title.empty() ? "untitled" : document.title;
-  ImGui::TextUnformatted(title.c_str());
-  tooltip(document.about.c_str());
-}
-
-void draw_why_fixed(const char* why) {
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextDisabled("%s", why);
-  ImGui::PopTextWrapPos();
-}
-
-// `editor`: where they can be chosen; null: they cannot. `fresh`: what is chosen was not before.
-void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& act) {
-  const std::vector<Object>& all = scene.objects;
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
-  const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
-  ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
-  if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a model here.");
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Object& object = all[i];
-    ImGui::PushID(static_cast<int>(i));
-    const bool chosen = editor != nullptr && editor->selected() == i;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float em = ImGui::GetFontSize();
-    if (chosen && fresh) ImGui::SetScrollHereY();
-    const bool clicked =
-        ImGui::Selectable("##object", chosen, ImGuiSelectableFlags_AllowDoubleClick);
-    if (clicked && editor != nullptr) {
-      const bool twice = ImGui::IsMouseDoubleClicked(0);
-      editor->select(chosen && !twice ? std::nullopt : std::optional(i));
-      if (twice) act("scene.look");
-    }
-    tooltip(fmt::format("{}, {}{}. Double click to look at it.", object.name,
-                        shape_name(object.shape), object.body ? " that moves" : "")
-                .c_str());
-    draw_icon(object.shape, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
-              colour(current_palette().muted));
-    ImGui::GetWindowDrawList()->AddText({at.x + 1.4f * em, at.y}, colour(current_palette().text),
-                                        object.name.c_str());
-    ImGui::PopID();
-  }
-  ImGui::EndChild();
-}
-
-void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject& add) {
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const ImVec2 size((ImGui::GetContentRegionAvail().x - 3 * gap) / 4, 0);
-  if (ImGui::Button("Add", size)) ImGui::OpenPopup("add");
-  tooltip("Something more to touch.");
-  ImGui::BeginDisabled(!any_selected);
-  ImGui::SameLine();
-  if (ImGui::Button("Copy", size)) act("scene.copy");
-  tooltip("Another one beside it (Ctrl+D).");
-  ImGui::SameLine();
-  if (ImGui::Button("Remove", size)) act("scene.remove");
-  tooltip("Delete. Ctrl+Z brings it back.");
-  ImGui::SameLine();
-  if (ImGui::Button("Look", size)) act("scene.look");
-  tooltip("Turns the camera to it (double click).");
-  ImGui::EndDisabled();
-  if (ImGui::BeginPopup("add")) {
-    if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
-    for (const NewObject& each : new_objects()) {
-      if (each.first_that_moves) ImGui::Separator();
-      if (ImGui::MenuItem(each.label)) add(each.object);
-    }
-    ImGui::EndPopup();
-  }
-}
-
-}  // namespace
 
 void ScenePanel::draw_recorded(const SceneDocument& document) {
   draw_title(document);

@@ -1,4 +1,4 @@
-// What can be changed about one object of the scene.
+// Panel of the scene: its objects, and the editor of one object.
 #pragma once
 
 #include <functional>
@@ -13,14 +13,15 @@
 
 namespace limpid {
 
-// A number with its label before it: dragged, or typed after a double click. True if it changed.
+// Edits a number with its label before it, by dragging, or by typing after a double click. Returns
+// whether it changed.
 bool drag_number(const char* label, double& value, double speed, double least, double most,
                  const char* format, const char* help);
 
-// Three numbers side by side under a label, dragged or typed after a double click.
+// Edits three numbers side by side under a label, as drag_number() does.
 bool drag3(const char* label, Vec3& values, double speed, double least, double most,
            const char* format, const char* help);
-// What stands before a control, on its line.
+// Draws a text before a control, on its line.
 void caption(const char* text, const char* help);
 
 class ObjectEditor {
@@ -29,7 +30,7 @@ class ObjectEditor {
 
  private:
   void draw_name(Document& document, std::size_t place);
-  // Each says what was changed, "" for nothing.
+  // Edits its shape. Returns the name of the change, "" for none, as all edit...() do.
   std::string_view edit(Object& object, Plane& plane);
   std::string_view edit(Object& object, Sphere& sphere);
   std::string_view edit(Object& object, Box& box);
@@ -39,29 +40,29 @@ class ObjectEditor {
   std::string_view edit(Object& object, JointStop& stop);
   std::string_view edit_placed(Object& object);
 
-  std::string name_;     // being typed
-  std::string name_of_;  // the object's it is
+  std::string name_;     // while it is typed
+  std::string name_of_;  // name of the object that name_ is for
   RotationField rotation_;
   PartsEditor parts_;
-  std::shared_ptr<const Model> measured_;  // a large one takes a while
-  double extent_ = 0;                      // its largest [m]
+  std::shared_ptr<const Model> measured_;  // model of extent_, as a large one takes a while
+  double extent_ = 0;                      // largest extent of the model [m]
   const ArmDescription* arm_ = nullptr;    // while drawing
 };
 
-// The scene's objects: which there are, and what can be done with them.
+// List of the scene's objects, with buttons and the editor of the selected one.
 class ScenePanel {
  public:
   using AddObject = std::function<void(Object)>;
 
-  // The scene that is worked on, for this arm; in a recording it is `fixed`.
+  // Draws the scene that is edited, for this arm; during a recording it is `fixed`.
   void draw(Document& document, const ArmDescription& arm, bool fixed, const Act& act,
             const AddObject& add);
-  // A recording's scene, which stays as it was.
+  // Draws a recording's scene, which cannot be edited.
   static void draw_recorded(const SceneDocument& document);
 
  private:
   ObjectEditor object_;
-  std::optional<std::size_t> selected_;  // in the last frame
+  std::optional<std::size_t> selected_;  // as of the last frame
 };
 
 }  // namespace limpid

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-// The recordings of a folder, newest names first; the one that was clicked.
+// Draws the recordings of a folder, newest names first; returns the one that was clicked.
 fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   heading(name);
   std::vector<fs::path> files;

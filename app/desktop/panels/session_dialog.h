@@ -1,4 +1,4 @@
-// Asks for a recording to open.
+// Dialog that asks for a recording to open.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@ namespace limpid {
 
 class SessionDialog {
  public:
-  // While `open`. Returns the file once it is chosen, and clears `open`; so does whoever wants to
-  // look in other folders: `elsewhere` is set then.
+  // Draws the dialog while `open`. Returns the file once it is chosen, and clears `open`. A wish to
+  // look in other folders sets `elsewhere` and clears `open`, too.
   std::filesystem::path draw(bool& open, bool& elsewhere);
   void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
 
@@ -21,7 +21,7 @@ class SessionDialog {
 
   PictureShelf pictures_;
   ListKeys keys_;
-  int listed_ = 0;  // in the frame
+  int listed_ = 0;  // number of items so far in this frame
   bool was_shown_ = false;
   std::string typed_, complaint_;
 };

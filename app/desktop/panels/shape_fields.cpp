@@ -65,7 +65,7 @@ bool edit_color(std::optional<Vec3>& color, const char* otherwise) {
   }
   ImGui::SetNextItemWidth(-1);
   if (ImGui::ColorEdit3("##color", parts.data())) {
-    for (std::size_t i = 0; i < 3; ++i) {  // no more digits than a person would write
+    for (std::size_t i = 0; i < 3; ++i) {  // no more digits than people write
       (*color)[static_cast<int>(i)] = std::round(1e3 * static_cast<double>(parts[i])) / 1e3;
     }
     changed = true;
@@ -78,7 +78,7 @@ bool RotationField::edit(Pose& pose) {
   if (pose.linear() != turned_) {
     turned_ = pose.linear();
     degrees_ =
-        (rpy_of(turned_) * (180 / std::numbers::pi) * 1e6).array().round() / 1e6 + 0.0;  // no -0
+        (rpy_of(turned_) * (180 / std::numbers::pi) * 1e6).array().round() / 1e6 + 0.0;  // not -0
   }
   if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
              "About the fixed axes x, y and z, one after the other.")) {

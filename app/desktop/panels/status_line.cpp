@@ -17,7 +17,7 @@ struct StatusPart {
   std::string text;
   Rgb ink;
   std::string help;
-  int law = -1;  // whose colour stands before the text
+  int law = -1;  // law whose colour stands before the text; -1: none
 };
 
 StatusPart force_part(const Snapshot& now) {
@@ -35,7 +35,7 @@ StatusPart force_part(const Snapshot& now) {
   return {"force off [F]", colours.text, "F arms it"};
 }
 
-// Rate, missed ticks and coupling, the most important last.
+// Returns rate, missed ticks and coupling, the most important last.
 std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
                                      const StatusGoing& going) {
   const Palette& colours = current_palette();
@@ -44,7 +44,7 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   std::vector<StatusPart> parts;
   const auto& [played, pace, led] = going;
   if (!played.empty()) parts.push_back({"playing " + played, colours.text, played});
-  // Its button is in the bar below only where the loop is shown.
+  // The recording's button is in the bar below only while the loop is shown.
   if (!played.empty() && loop.recording()) {
     parts.push_back({"recording [R]", colours.broken, "The loop is recorded meanwhile; R ends it"});
   }

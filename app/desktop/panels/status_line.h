@@ -1,4 +1,4 @@
-// What is going on, at the right-hand end of the menu bar.
+// Status line at the right-hand end of the menu bar.
 #pragma once
 
 #include <string>
@@ -7,22 +7,22 @@
 
 namespace limpid {
 
-// The coupling that is on screen.
+// Coupling on screen.
 struct StatusLaw {
   CouplingKind kind;
   double eta;
 };
 
-// Activity of the window: the name of the recording that is shown, empty for the loop; how a
-// virtual arm's time goes, empty as usual; and whether a program leads the window.
+// Activity of the window: name of the recording shown, empty for the loop; pace of the virtual
+// arm's time, empty as usual; and whether a program leads the window.
 struct StatusGoing {
   std::string played, pace;
   bool led = false;
 };
 
-// As much as there is room for; the force is the last to go.
+// Draws as much as there is room for; the force is left out last.
 void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& going);
-// Of the force alone [px].
+// Returns the width of the force alone [px].
 float least_status_width(const LiveLoop& loop);
 
 }  // namespace limpid

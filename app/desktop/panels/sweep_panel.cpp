@@ -19,21 +19,21 @@ namespace limpid {
 namespace {
 
 struct MapMouse {
-  ScreenRect inside;              // where the map is
-  const MapSpot* spot = nullptr;  // under the mouse
-  double y = 0;                   // of the mouse
+  ScreenRect inside;              // place of the map
+  const MapSpot* spot = nullptr;  // spot under the mouse
+  double y = 0;                   // of the mouse, on the map's axis
   bool clicked = false;
 };
 
-// What a value of the map, or the i-th of its lines, is drawn in.
+// Returns the colour of a value, or of the i-th line.
 ImU32 map_colour(const SweepMap& map, double value);
 Rgb map_line_colour(std::size_t line);
 
 constexpr float kScaleWidth = 74, kBarWidth = 14;  // at scale 1 [px]
-constexpr float kReach = 14;  // how near the mouse has to be to a dot [px at scale 1]
+constexpr float kReach = 14;  // largest distance of the mouse from a dot [px at scale 1]
 constexpr int kScaleSteps = 32;
 
-// An axis of the chart, its numbers divided by a power of ten that keeps them short.
+// Axis of the chart, its numbers divided by a power of ten that keeps them short.
 struct Side {
   ChartAxis axis;
   std::string label;
@@ -93,7 +93,7 @@ class MapPainter {
 
   ImU32 ink_of(const MapSpot& spot) const { return map_colour(map_, spot.cell.value); }
 
-  // In each column what has one colour is one rectangle.
+  // Draws cells of one colour in a column as one rectangle.
   void draw_cells() const {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const std::size_t columns = map_.spots.size() / map_.rows;
@@ -117,7 +117,7 @@ class MapPainter {
     }
   }
 
-  // On a darker band, so that it is seen on every colour.
+  // Draws a line on a darker band, so that it is seen on every colour.
   void stroke(const std::vector<FigurePoint>& points, Rgb rgb, float width, bool dashed) const {
     std::vector<ImVec2> run;
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -165,7 +165,7 @@ class MapPainter {
     }
   }
 
-  // Of dots the nearest one; of curves the one that is nearest sideways.
+  // Returns the distance of the mouse from a spot: from a dot, or sideways from a curve.
   double distance(const MapSpot& spot, ImVec2 at) const {
     const ImVec2 p = place(spot.x, std::isfinite(spot.y) ? spot.y : 0);
     const bool curve = map_.kind == SweepMap::Kind::curve;
@@ -220,7 +220,7 @@ class MapPainter {
   Chart chart_;
 };
 
-// A number of the scale, and what part of it lies below.
+// Number on the colour scale, at the part of the scale that lies below it.
 struct ScaleMark {
   float part;
   std::string text;
@@ -232,7 +232,7 @@ double part_of(const SweepMap& map, double value) {
   return (value - low) / (high - low);
 }
 
-// What the numbers are divided by is added to the label.
+// Returns the numbers of the colour scale, and adds their common divisor to the label.
 std::vector<ScaleMark> scale_marks(const SweepMap& map, int at_most, std::string& label) {
   std::vector<ScaleMark> marks;
   const auto [low, high] = map.value_range;
@@ -253,7 +253,8 @@ std::vector<ScaleMark> scale_marks(const SweepMap& map, int at_most, std::string
   return marks;
 }
 
-// Of the height of `room`, with its numbers at the right and its name above, which ends at `right`.
+// Draws the colour scale, as high as `room`: numbers at its right, its name above, ending at
+// `right`.
 void draw_scale(const SweepMap& map, const SweepColumn& column, ScreenRect room, float right) {
   const Palette& colours = current_palette();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -291,8 +292,8 @@ Rgb map_line_colour(std::size_t line) {
   return line == 0 ? colours.text : ink(colours, kInks[(line - 1) % kInks.size()]);
 }
 
-// Into the ImGui window that is open, at its cursor: axes, map, lines of theory, and the scale of
-// its colours at the right.
+// Draws at the cursor of the open ImGui window: axes, map, lines of theory, and the colour scale at
+// the right.
 MapMouse draw_sweep_map(const SweepMap& map, const OpenedSweep& sweep, ImVec2 size) {
   const bool scale = !map.yes_no && map.kind != SweepMap::Kind::curve;
   const float wide = scale ? kScaleWidth * current_scale() : 0;
@@ -311,12 +312,12 @@ MapMouse draw_sweep_map(const SweepMap& map, const OpenedSweep& sweep, ImVec2 si
 }
 
 constexpr float kChoice = 12;  // width of a list [em]
-constexpr float kSlider = 10;  // [em]
-constexpr float kNumber = 4;   // beside it [em]
+constexpr float kSlider = 10;  // width of a slider [em]
+constexpr float kNumber = 4;   // width of the number beside a slider [em]
 constexpr const char* kClose = "Close (Esc)";
-constexpr float kLeastMap = 120;  // [px at scale 1]
+constexpr float kLeastMap = 120;  // least height of the map [px at scale 1]
 
-// Beside what was drawn last, or below it where there is no room for `width` more.
+// Goes on beside the last item, or below it if there is no room for `width` more.
 void flow(float width) {
   const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
   if (end + ImGui::GetStyle().ItemSpacing.x + width < ImGui::GetWindowContentRegionMax().x) {
@@ -324,7 +325,7 @@ void flow(float width) {
   }
 }
 
-// One of some; returns which.
+// Draws a list of names; returns the index chosen.
 template <class Name>
 std::size_t choose(const char* id, std::size_t chosen, std::size_t count, const Name& name) {
   if (!ImGui::BeginCombo(id, name(chosen).c_str())) return chosen;
@@ -343,7 +344,7 @@ void label(const char* text) {
   ImGui::SameLine();
 }
 
-// Measure and axes.
+// Draws the choice of measure and axes.
 void draw_choosers(const OpenedSweep& sweep, MapChoice& choice) {
   const SweepPlan& plan = *sweep.plan;
   const float width = kChoice * ImGui::GetFontSize();
@@ -369,7 +370,7 @@ void draw_choosers(const OpenedSweep& sweep, MapChoice& choice) {
   choice.y = y;
 }
 
-// Where the map lies on all other axes of a grid.
+// Draws the map's place on all other axes of a grid.
 void draw_places(const SweepPlan& plan, MapChoice& choice) {
   const float em = ImGui::GetFontSize();
   bool first = true;
@@ -436,7 +437,7 @@ void draw_measured(const OpenedSweep& sweep, const SweepMap& map, const MapSpot&
   }
 }
 
-// The point under the mouse.
+// Draws the values of the point under the mouse.
 void draw_values(const OpenedSweep& sweep, const SweepMap& map, const MapMouse& mouse) {
   const SweepPlan& plan = *sweep.plan;
   const SweepPoint point = point_of(plan, mouse.spot->point);
@@ -478,7 +479,7 @@ void swatch(ImU32 fill, const std::string& text, bool dashed, bool line) {
   ImGui::EndGroup();
 }
 
-// How far it is filled, and what the colours and lines mean.
+// Draws how far the table is filled, and the meaning of colours and lines.
 void draw_legend(const SweepMap& map, const OpenedSweep& sweep) {
   const SweepTable& table = sweep.table;
   const std::uint64_t done = table.count();
@@ -496,7 +497,7 @@ void draw_legend(const SweepMap& map, const OpenedSweep& sweep) {
   }
 }
 
-// What a click does, what goes on, or what is in the way.
+// Draws the effect of a click, the progress of loading, or an obstacle; and the closing button.
 void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   const Palette& colours = current_palette();
   const float left = ImGui::GetCursorPosX();

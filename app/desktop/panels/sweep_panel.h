@@ -1,5 +1,4 @@
-// The map of a sweep over the window: what of it is shown, its values under the mouse, and its
-// points, to be run again.
+// Map of a sweep over the window: choice of axes, values under the mouse, and points to run again.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +8,13 @@
 
 namespace limpid {
 
-// While `open`, which closing it clears. What is to be played.
+// Point to be played.
 struct MapRequest {
   std::optional<std::uint64_t> point;
-  std::optional<double> at;  // of a boundary's axis
+  std::optional<double> at;  // value on the boundary's axis
 };
+// Draws the map while `open`, which closing it clears. Returns the point to be played, if one was
+// clicked.
 MapRequest draw_sweep_panel(SweepController& controller, Playback& playback, bool& open);
 
 }  // namespace limpid

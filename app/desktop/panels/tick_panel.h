@@ -1,4 +1,4 @@
-// One tick in numbers: what touches and how hard, how the tick was solved, and its energies.
+// Panel of one tick in numbers: contacts and their forces, solution, and energies.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-// Draws into the ImGui window that is open. `row`: of the stage's arm and scene.
+// Draws into the open ImGui window. `row`: of the stage's arm and scene.
 void draw_tick(const Stage& stage, std::span<const double> row);
 
 }  // namespace limpid

@@ -16,7 +16,7 @@ namespace limpid {
 
 namespace {
 
-// Ticks that did not begin in time, as a number and a share of all.
+// Returns a number of late ticks and its share of all.
 std::string of_all(std::int64_t count, std::int64_t ticks) {
   if (count == 0) return "0";
   const auto all = static_cast<double>(std::max<std::int64_t>(ticks, 1));
@@ -36,6 +36,11 @@ void draw_late_ticks(const LoopStatus& status, bool motors) {
   read_out("slipped", of_all(status.slipped, status.ticks),
            status.slipped > 0 ? words.after_a_slip : "", words.slipped);
 }
+
+constexpr double kReckonAgain = 0.25;  // time between two computations [s]
+constexpr double kSlow = 1.1;  // device is slower than the loop from so many ticks a reading on
+
+std::string milliseconds(double seconds) { return fmt::format("{:.2f} ms", 1e3 * seconds); }
 
 }  // namespace
 
@@ -113,15 +118,6 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
   read_out("frame", fmt::format("{:.1f} ms", 1e3 * frame_time), {},
            "Work for one picture; the loop does not wait for it");
 }
-
-namespace {
-
-constexpr double kReckonAgain = 0.25;  // [s]
-constexpr double kSlow = 1.1;          // readings this many ticks apart are slower than the loop
-
-std::string milliseconds(double seconds) { return fmt::format("{:.2f} ms", 1e3 * seconds); }
-
-}  // namespace
 
 void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const Parameters& p,
                         const Scene& scene, std::span<const double> x) {

@@ -1,5 +1,4 @@
-// How well the loop and its device keep time, what that costs in stiffness, and what a picture
-// costs.
+// Panel of timing: lateness of loop and device, its cost in stiffness, and the cost of a picture.
 #pragma once
 
 #include <span>
@@ -11,8 +10,7 @@
 
 namespace limpid {
 
-// What becomes of late ticks, for people. With motors they are given up at once, else caught up as
-// far as that goes.
+// Words for late ticks. With motors they are dropped at once, else caught up as far as possible.
 struct LateTicks {
   const char* missed;
   const char* slipped;
@@ -20,17 +18,17 @@ struct LateTicks {
 };
 LateTicks late_ticks(bool motors);
 
-// Shares of times on a logarithmic axis from 1 us to 100 ms, both axes logarithmic; above `late`
-// [s] they are red.
+// Draws shares of times, 1 us to 100 ms, both axes logarithmic; red above `late` [s].
 void draw_time_histogram(const LatencyHistogram& histogram, double late, const char* help);
 
-// `quality` of the picture in words; `frame_time`: work for one picture [s].
+// Draws the loop's timing. `quality` of the picture in words; `frame_time`: work for one picture
+// [s].
 void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time);
 
-// Of the device in the loop, and what its pace costs.
+// Timing of the device in the loop, and the cost of its pace.
 class DeviceTiming {
  public:
-  // Draws into the ImGui window that is open. `x`: the arm's pose [rad].
+  // Draws into the open ImGui window. `x`: the arm's pose [rad].
   void draw(const DevicePace& pace, const ArmDescription& arm, const Parameters& p,
             const Scene& scene, std::span<const double> x);
 
@@ -38,8 +36,8 @@ class DeviceTiming {
   void draw_cost(const DevicePace::Figures& pace, const ArmDescription& arm,
                  const Parameters& p) const;
 
-  TipLimits now_, prompt_;  // as it is, and without its delay
-  double due_ = 0;          // when to reckon again [s of ImGui's time]
+  TipLimits now_, prompt_;  // at the device's pace, and without its delay
+  double due_ = 0;          // when they are computed again [s of ImGui's time]
 };
 
 }  // namespace limpid

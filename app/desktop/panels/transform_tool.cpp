@@ -13,12 +13,12 @@
 namespace limpid {
 namespace {
 
-constexpr double kHandleLength = 64;  // of a handle, at the scale 1 [px]
-constexpr float kHandleReach = 9;     // of the mouse around it [px]
+constexpr double kHandleLength = 64;  // length of a handle at scale 1 [px]
+constexpr float kHandleReach = 9;     // largest distance of the mouse from it [px]
 constexpr std::array kAxisInks{Ink::contact, Ink::hand, Ink::proxy};
 constexpr std::array kAxisNames{"x", "y", "z"};
 
-// Of a place from a line on the screen [px].
+// Returns the distance of a place from a line on the screen [px].
 float apart_from(ImVec2 place, ImVec2 a, ImVec2 b) {
   const float x = b.x - a.x, y = b.y - a.y;
   const float part = std::clamp(
@@ -44,7 +44,7 @@ bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const
   if (transform_ && selected != place_) transform_.reset();
   const ImGuiIO& io = ImGui::GetIO();
   if (!selected || !document.why_fixed().empty()) {
-    if (wanted_ && selected) document.may_edit();  // which says why not
+    if (wanted_ && selected) document.may_edit();  // shows a notice with the reason
     wanted_.reset();
     return over_ = false;
   }
@@ -71,7 +71,7 @@ bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const
       start(document, now, mouse);
     }
   }
-  const bool followed = transform_.has_value();  // also by the click that ends it
+  const bool followed = transform_.has_value();  // even if a click ends it in this frame
   if (transform_) follow(document, camera, mouse, list);
   list.PopClipRect();
   return followed || (over_ && !ImGui::IsMouseDown(ImGuiMouseButton_Right));
@@ -86,7 +86,7 @@ void TransformTool::start(Document& document, const Object& now, const Eigen::Ve
 
 void TransformTool::follow(Document& document, const Camera& camera, const Eigen::Vector2d& mouse,
                            ImDrawList& list) {
-  // What ends it changes nothing more: that would be a step of undo of its own.
+  // Ending changes nothing more: that would be another step of undo.
   if (by_key_ && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) return give_up(document);
   const bool done = by_key_ ? ImGui::IsMouseClicked(ImGuiMouseButton_Left)
                             : !ImGui::IsMouseDown(ImGuiMouseButton_Left);
@@ -108,7 +108,7 @@ void TransformTool::follow(Document& document, const Camera& camera, const Eigen
   list.AddText(face, em, corner, colour(colours.text), text.c_str());
 }
 
-// Returns the one that is nearest to the mouse.
+// Returns the handle nearest to the mouse.
 TransformTool::Handle TransformTool::draw_handles(const Transform& shown, const Camera& camera,
                                                   ScreenRect view, ImDrawList& list) const {
   Handle nearest;
@@ -162,7 +162,7 @@ TransformTool::Handle TransformTool::draw_handles(const Transform& shown, const 
                  kAxisNames[static_cast<std::size_t>(i)]);
     note(i, apart_from(mouse, centre, end));
   }
-  // Along no axis: in the middle.
+  // The free handle is in the middle.
   if (kind_ != TransformKind::turn) {
     const float r = 6 * scale;
     list.AddCircleFilled(centre, r, colour(current_palette().accent));

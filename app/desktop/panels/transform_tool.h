@@ -1,4 +1,4 @@
-// Handles on the selected object in the picture, and the keys that do the same.
+// Tool that transforms the selected object in the picture: handles, and keys that do the same.
 #pragma once
 
 #include <imgui.h>
@@ -15,26 +15,26 @@ namespace limpid {
 
 class TransformTool {
  public:
-  // From now on the selected object follows the mouse, until accept() or give_up(); it has handles
+  // Lets the selected object follow the mouse until accept() or give_up(). The object has handles
   // of this kind afterwards.
   void begin(TransformKind kind);
-  // Along this axis alone; asked for again: along none.
+  // Transforms along this axis alone; the same axis again frees it.
   void lock(int axis);
   void accept() { transform_.reset(); }
-  // All as it was before.
+  // Puts all back as it was before.
   void give_up(Document& document);
-  // The object follows the mouse.
+  // Returns whether the object follows the mouse.
   bool follows() const { return transform_ || wanted_; }
 
-  // Once a frame, before the view does anything with the mouse: true if that belongs to a handle.
-  // `bodies`: where the scene's objects that move are, in their order.
+  // Draws the tool; to be called once a frame, before the view uses the mouse. Returns true if the
+  // mouse belongs to a handle. `bodies`: frames of the scene's moving objects, in their order.
   bool draw(Document& document, std::span<const Pose> bodies, const Camera& camera,
             ScreenRect view);
 
  private:
   struct Handle {
     std::optional<int> axis;
-    float apart = 1e9f;  // from the mouse [px]
+    float apart = 1e9f;  // distance from the mouse [px]
   };
   Handle draw_handles(const Transform& shown, const Camera& camera, ScreenRect view,
                       ImDrawList& list) const;
@@ -43,15 +43,15 @@ class TransformTool {
               ImDrawList& list);
 
   TransformKind kind_ = TransformKind::move;
-  std::optional<TransformKind> wanted_;  // by a key, from the next frame on
-  std::optional<Transform> transform_;   // under way
-  std::size_t place_ = 0;                // of the object
+  std::optional<TransformKind> wanted_;  // a key asks for it, from the next frame on
+  std::optional<Transform> transform_;   // transform that goes on
+  std::size_t place_ = 0;                // place of the object in the scene
   SceneEditor::Version before_;
   Eigen::Vector2d begin_ = Eigen::Vector2d::Zero();  // of the mouse [px]
   std::optional<int> axis_;
   bool by_key_ = false;
-  std::optional<int> hot_;  // the handle under the mouse
-  bool over_ = false;       // one is
+  std::optional<int> hot_;  // axis of the handle under the mouse
+  bool over_ = false;       // a handle is under the mouse
 };
 
 }  // namespace limpid

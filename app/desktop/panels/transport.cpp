@@ -22,7 +22,7 @@ float button_width(const char* label) {
   return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
 }
 
-// Left out where there is no room for it; a key does the same.
+// Draws a button, unless there is no room for it; a key does the same.
 bool button(const char* label, const char* help, bool on = false, bool bad = false) {
   if (button_width(label) > ImGui::GetContentRegionAvail().x) return false;
   const Palette& colours = palette(current_theme());
@@ -40,10 +40,10 @@ bool button(const char* label, const char* help, bool on = false, bool bad = fal
 }
 
 constexpr float kTransportChoice = 74;  // width of a list at scale 1 [px]
-constexpr float kTimeline = 60;         // the least of it
+constexpr float kTimeline = 60;         // least width of the time line at scale 1 [px]
 constexpr float kProgress = 110;
 
-// A drop-down list of numbers; returns the one chosen.
+// Draws a drop-down list of numbers; returns the one chosen.
 double choose(const char* name, double value, std::initializer_list<double> choices,
               const char* unit) {
   const float width = kTransportChoice * current_scale();
@@ -59,12 +59,12 @@ double choose(const char* name, double value, std::initializer_list<double> choi
   return value;
 }
 
-// Marks on the time line: which of them is under the mouse.
+// Draws marks on the time line; returns the one under the mouse.
 std::optional<std::size_t> draw_marks(const PlayedSession& session) {
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const Palette& colours = current_palette();
   const float scale = current_scale(), grab = ImGui::GetStyle().GrabMinSize;
-  // As the slider places its grab: half of it stays free at either end.
+  // Marks are placed as the slider's grab: half of it stays free at either end.
   const float pad = 2 + 0.5f * grab;
   const double duration = session.player().duration();
   std::optional<std::size_t> found;
@@ -87,7 +87,7 @@ std::optional<std::size_t> draw_marks(const PlayedSession& session) {
   return found;
 }
 
-// Returns which mark is to be changed.
+// Draws the time line; returns the mark to be changed, if any.
 std::optional<std::size_t> timeline(PlayedSession& session, float right) {
   Player& player = session.player();
   auto time = static_cast<float>(player.time());
@@ -133,7 +133,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
   const float scale = current_scale();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const std::string clock = clock_text(player.time()) + " / " + clock_text(player.duration());
-  // What there is no room for is left out, the least important first.
+  // Controls without room are left out, the least important first.
   float room = ImGui::GetContentRegionAvail().x - button_width("Pause") - kTimeline * scale -
                button_width("Back to live") - 3 * gap;
   const auto fits = [&](float width) {
@@ -202,7 +202,7 @@ void recording_controls(const LiveSession& live, double tick, const Act& act) {
   ImGui::SameLine();
 }
 
-// Of the virtual arm: its speed, or tick by tick.
+// Draws controls of the virtual arm's time: its speed, or single ticks.
 void time_controls(LiveSession& live, const Act& act) {
   if (!live.why_time_is_fixed().empty()) return;
   const bool paused = live.paused();

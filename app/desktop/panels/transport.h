@@ -1,4 +1,4 @@
-// The bar below: recording, playback, and what the plots show.
+// Bar below the view: recording, playback, and the length of the plots.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace limpid {
 
-// `tick` of the loop [s]; `plot_length` of the live plots [s], which can be chosen here. Returns
-// which mark of the recording is to be changed, if one was clicked for that.
+// Draws the bar. `tick` of the loop [s]; `plot_length` of the live plots [s], which can be chosen
+// here. Returns the place of the recording's mark that was clicked for a change, if any.
 std::optional<std::size_t> draw_transport(Playback& playback, LiveSession& live, double tick,
                                           double& plot_length, const Act& act, ScreenRect rect);
 

@@ -44,7 +44,7 @@ void cell(const std::string& text, bool muted = false) {
   ImGui::PopStyleColor();
 }
 
-// The second over the first, where that says something: not of a gain and a loss.
+// Returns the second over the first; empty for a gain and a loss, where it says nothing.
 std::string ratio(double a, double b, double least) {
   return a * b > 0 && std::min(std::abs(a), std::abs(b)) > least ? "\xC3\x97" + three_digits(b / a)
                                                                  : "";

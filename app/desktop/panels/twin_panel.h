@@ -1,4 +1,4 @@
-// Two runs side by side, as numbers, and which of them is edited.
+// Panel of a twin: two runs side by side, as numbers, and which of them is edited.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace limpid {
 
-// Draws into the ImGui window that is open. `edited`: whether the sliders are the second one's, to
-// be chosen; null: there is nothing to choose. `overlaid`: both in one picture, to be chosen, too.
+// Draws into the open ImGui window. `edited`: the sliders are the second run's; null: no choice.
+// `overlaid`: both runs are in one picture. Both can be chosen here.
 void draw_twin(const Stage& stage, std::span<const double> first, std::span<const double> second,
                bool* edited, bool& overlaid);
 

@@ -23,12 +23,12 @@ constexpr std::array kSizes{std::pair{640, 360}, std::pair{854, 480}, std::pair{
                             std::pair{1920, 1080}, std::pair{1080, 1080}};
 constexpr std::array kRates{10, 15, 24, 25, 30, 50, 60};
 constexpr std::array kSpeeds{0.1, 0.2, 0.5, 1.0, 2.0, 5.0};
-constexpr int kOfVideo = 30, kOfGif = 15;  // pictures a second that are usual
+constexpr int kOfVideo = 30, kOfGif = 15;  // usual pictures per second
 constexpr int kMostOfGif = 50;
-constexpr double kShortest = 0.1;  // [s]
-constexpr float kLabels = 10;      // width of them [text sizes]
+constexpr double kShortest = 0.1;  // shortest video [s]
+constexpr float kLabels = 10;      // width of the labels [text sizes]
 
-// A list of these, each as `text` says it; the one chosen.
+// Draws a list of values with their texts; returns the one chosen.
 template <class T, std::size_t n, class Text>
 T choose(const char* label, T value, const std::array<T, n>& among, const Text& text) {
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());

@@ -1,4 +1,4 @@
-// What a video of the session that is played shall be like.
+// Dialog that asks for the properties of a session's video.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@ namespace limpid {
 
 class VideoDialog {
  public:
-  // While `open`. What is to be made, once it is asked for; that clears `open`. `overlaid`: of a
-  // twin both runs are in one picture in the window, too.
+  // Draws the dialog while `open`. Returns the request once it is made, and clears `open`.
+  // `overlaid`: the window has both runs of a twin in one picture.
   std::optional<VideoRequest> draw(bool& open, const Playback& playback, bool overlaid);
 
  private:
@@ -19,7 +19,7 @@ class VideoDialog {
   double length() const { return (to_ - request_.from) / request_.speed; }  // of the video [s]
 
   VideoRequest request_;  // as it was the last time
-  double to_ = 0;         // [s] of the session
+  double to_ = 0;         // end in the session [s]
   bool was_shown_ = false;
 };
 

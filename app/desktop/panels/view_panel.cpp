@@ -21,12 +21,12 @@
 namespace limpid {
 namespace {
 
-constexpr double kDepthStep = 0.004;  // of one wheel notch while dragging [m]
-constexpr double kPullReach = 40;     // of the mouse around the tips, at the scale 1 [px]
-constexpr double kFarthestPull = 5;   // [m]
-constexpr double kClickReach = 4;     // that a click may move [px]
+constexpr double kDepthStep = 0.004;  // depth of one wheel notch while dragging [m]
+constexpr double kPullReach = 40;     // reach of the mouse around the tips, at scale 1 [px]
+constexpr double kFarthestPull = 5;   // largest distance of a target from the origin [m]
+constexpr double kClickReach = 4;     // largest motion of a click [px]
 
-// How far from the arm's links, drawn as lines from joint to joint, a place is at least [px].
+// Returns the least distance of a place from the arm's links, drawn as lines between joints [px].
 float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVec2 place) {
   float nearest = 1e9f;
   std::optional<ImVec2> last;
@@ -46,15 +46,15 @@ float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVe
   return nearest;
 }
 
-// Lengths along the far edge, where they cover nothing and nothing is before them: words stand over
-// the whole picture, and would say that what is behind an object were in front of it.
+// Draws lengths along the far edge, unless something covers them. Words lie over the whole picture,
+// and would seem to be in front of an object that hides them.
 void draw_grid_labels(const Scene& objects, const Bounds& grid, const ViewState& view,
                       const Camera& camera, ScreenRect rect, const std::optional<ScreenRect>& lens,
                       ImDrawList& list) {
   ImFont* small = font(Face::small);
   const float em = small->FontSize;
   const Palette& colours = current_palette();
-  const float edge = rect.max.x - 1.6f * em;  // where a panel's tab may be
+  const float edge = rect.max.x - 1.6f * em;  // a panel's tab may be to the right of it
   ImVec2 last(-1e6f, -1e6f);
   for (int cm = -30; cm <= 30; cm += 10) {
     const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
@@ -84,7 +84,7 @@ void draw_grid_labels(const Scene& objects, const Bounds& grid, const ViewState&
   }
 }
 
-// The friction cone at a contact; one that slips first.
+// Returns the legend with the friction cone at a contact, preferably one that slips.
 PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
   PictureLegend legend{.beside = scene.rerun.empty() ? nullptr : "proxy of the re-run (ghost)"};
   if (view.twin) {
@@ -100,7 +100,7 @@ PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
   return legend;
 }
 
-// Of a first start: what to do, each until it was done once.
+// Draws hints of a first start, each until its step was done once.
 void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect,
                ImDrawList& list) {
   const Palette& colours = current_palette();
@@ -119,7 +119,7 @@ void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect
     if (!done(settings, step)) lines.push_back(line);
   }
   float size = face->FontSize * 1.15f;
-  for (const char* line : lines) {  // as large as the widest one may be
+  for (const char* line : lines) {  // as large as the widest line allows
     const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
     size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
   }
@@ -134,16 +134,7 @@ void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect
   }
 }
 
-}  // namespace
-
-ScreenRect legend_box(ScreenRect view) {
-  const ImVec2 size = picture_legend_size(view.min, view.max);
-  return {view.min, {view.min.x + size.x, view.min.y + size.y}};
-}
-
-namespace {
-
-// As one row has it, whichever run's.
+// Returns the view of a row, of either run.
 ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
                   const Settings& settings) {
   const RowLayout& layout = stage.channels().layout();
@@ -160,6 +151,11 @@ ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
 }
 
 }  // namespace
+
+ScreenRect legend_box(ScreenRect view) {
+  const ImVec2 size = picture_legend_size(view.min, view.max);
+  return {view.min, {view.min.x + size.x, view.min.y + size.y}};
+}
 
 ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
   Stage& stage = scene.stage;
@@ -194,7 +190,7 @@ ViewRequest ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& co
   return asked;
 }
 
-// The picture, or a twin's two with one camera.
+// Draws the picture, or both pictures of a twin, with one camera.
 void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
                             ScreenRect rect) {
   SceneView& picture = scene.stage.picture;
@@ -231,12 +227,12 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   }
   if (scene.blind) return;
   PictureLegend legend = legend_of(view, scene);
-  legend.compact = scene.split();  // each half is narrow: lines would stand over its arm
+  legend.compact = scene.split();  // each half is narrow: full lines would cover its arm
   draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max, legend);
   draw_told(scene.told, rect, list);
 }
 
-// Over the picture: what is selected, words and numbers.
+// Draws over the picture: the selected object's outline, words and numbers.
 void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
                            const Settings& settings, ScreenRect rect) const {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -281,7 +277,7 @@ bool ViewPanel::near_tip(const ViewScene& scene, const Camera& camera,
   return near(Column::device_position) || near(Column::proxy_position);
 }
 
-// The mouse has hold of this point from now on.
+// Lets the mouse hold this point from now on.
 void ViewPanel::hold(const Camera& camera, ScreenRect rect, const Vec3& point,
                      const Eigen::Vector2d& pixel) {
   anchor_ = point;
@@ -348,8 +344,8 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   return asked;
 }
 
-// The target moves in the plane through it that is parallel to the picture; the wheel moves that
-// plane. Where it is looked at otherwise than a frame ago, the target stays in the world.
+// Moves the target in the plane through it that is parallel to the picture; the wheel moves that
+// plane. If the camera has moved since the last frame, the target stays in the world.
 void ViewPanel::drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
                           ScreenRect rect, const Eigen::Vector2d& pixel) {
   stay(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
@@ -371,7 +367,8 @@ Vec3 ViewPanel::dragged_to(const Camera& camera, const Eigen::Vector2d& pixel) {
   return camera.plane_drag(pixel, anchor_ - offset_) + offset_;
 }
 
-// With Ctrl the left button pulls the body under the mouse. True while the mouse is there for that.
+// Pulls the body under the mouse with Ctrl and the left button. Returns whether the mouse is used
+// for that.
 bool ViewPanel::pull_body(const ViewScene& scene, const Camera& camera, Controls& controls,
                           ScreenRect rect, const Eigen::Vector2d& pixel, bool over) {
   if (pulling_) {

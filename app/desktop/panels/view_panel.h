@@ -1,4 +1,4 @@
-// The 3D view: the picture under ImGui, and what the mouse does in it.
+// Panel of the 3D view: the picture under ImGui, and the mouse in it.
 #pragma once
 
 #include <imgui.h>
@@ -18,48 +18,48 @@
 
 namespace limpid {
 
-// What there is to see in one frame.
+// Contents of the view in one frame.
 struct ViewScene {
   Stage& stage;
   std::span<const double> row;
   bool recorded = false;               // the row is a recording's
-  std::span<const double> rerun = {};  // the row of its second run; or none
-  std::span<const double> twin = {};   // of a second run at the same time; or none
-  RunNames names = {};                 // of the two
-  bool overlaid = false;               // both in one picture
-  std::string told = {};               // a story's sentence
-  std::string pad = {};                // the gamepad that leads the hand; or none
+  std::span<const double> rerun = {};  // row of a re-run; or none
+  std::span<const double> twin = {};   // row of a second run at the same time; or none
+  RunNames names = {};                 // of the two runs
+  bool overlaid = false;               // both runs in one picture
+  std::string told = {};               // sentence of a story
+  std::string pad = {};                // name of the gamepad that leads the hand; or none
   std::optional<Object> selected = {};
-  // The body under the mouse, to be pulled by the point that is there; null: none may be.
+  // Returns the body under the mouse, with the point to pull at; null: no body may be pulled.
   std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
-  bool asked = false;      // a question stands over its lower edge, where hints are
-  bool blind = false;      // nothing but the picture: no words, no numbers
+  bool asked = false;      // a question covers its lower edge, where hints are
+  bool blind = false;      // picture only: no words, no numbers
   int quality = 0;         // a level of Quality
-  double pixel_scale = 1;  // pixels a point
-  int pixel_height = 0;    // of the window [px]
-  float words = 0;         // that words take at the top over all of its width [points]
+  double pixel_scale = 1;  // pixels per point
+  int pixel_height = 0;    // height of the window [px]
+  float words = 0;         // height of words at the top, over all of its width [points]
 
   bool split() const { return !twin.empty() && !overlaid; }
 };
 
-// What its legend takes of a view's upper left corner.
+// Returns the part of a view's upper left corner that its legend takes.
 ScreenRect legend_box(ScreenRect view);
 
-// What the mouse did in the picture besides leading the hand.
+// Actions of the mouse in the picture besides leading the hand.
 struct ViewRequest {
-  bool turned = false;           // the camera
+  bool turned = false;           // the camera turned
   std::optional<Ray> clicked{};  // with the left button
-  std::optional<Ray> asked{};    // with the right one
+  std::optional<Ray> asked{};    // with the right button
 };
 
 class ViewPanel {
  public:
-  // The mouse leads the hand, in the controls, from near the tips; with Ctrl it pulls a body;
-  // elsewhere it turns the camera.
-  // `taken`: what it does belongs to somebody else.
+  // Draws the view. The mouse near the tips leads the hand, in the controls; with Ctrl it pulls a
+  // body; elsewhere it turns the camera. `taken`: the mouse belongs to another tool.
   ViewRequest draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
                    ScreenRect rect, bool taken);
-  // Whether anything in the picture has moved since it was drawn. Once a turn, before draw().
+  // Returns whether the picture has changed since it was drawn. To be called once a turn, before
+  // draw().
   bool differs(const ViewScene& scene, const Camera& camera, const Settings& settings);
 
  private:
@@ -81,17 +81,17 @@ class ViewPanel {
                  ScreenRect rect, const Eigen::Vector2d& pixel);
 
   Magnifier magnifier_;
-  std::optional<ScreenRect> drawn_;                          // where the view was
-  bool dragging_ = false;                                    // the hand
-  bool pulls_ = false;                                       // what the left button would do here
-  bool pulling_ = false;                                     // a body
-  std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // left, right: where
-  std::array<bool, 2> moved_{};                              // since then
-  bool pushed_ = false;                                      // the hand, by the wheel
-  bool on_right_ = false;       // the mouse, when it last began something
-  Vec3 anchor_ = Vec3::Zero();  // the point that is dragged, without depth [m]
-  Vec3 offset_ = Vec3::Zero();  // from the mouse's point to it [m]
-  // How the picture was looked at when the hand was dragged last.
+  std::optional<ScreenRect> drawn_;  // place of the view
+  bool dragging_ = false;            // drags the hand
+  bool pulls_ = false;               // the left button would take the hand here
+  bool pulling_ = false;             // pulls a body
+  std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // places: left, right
+  std::array<bool, 2> moved_{};                              // since pressed
+  bool pushed_ = false;                                      // the wheel pushed the hand
+  bool on_right_ = false;                                    // the mouse began in the right half
+  Vec3 anchor_ = Vec3::Zero();  // point that is dragged, without depth [m]
+  Vec3 offset_ = Vec3::Zero();  // from the mouse's point to anchor_ [m]
+  // Camera when the hand was dragged last.
   Eigen::Matrix4d looked_ = Eigen::Matrix4d::Identity();
   ImVec2 corner_{};
 };

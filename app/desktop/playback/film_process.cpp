@@ -50,13 +50,13 @@ fs::path video_of(const fs::path& session, VideoRequest::Kind kind, const fs::pa
 namespace {
 
 constexpr int kNice = 10;
-constexpr int kWait = 100;  // until `stop` is looked at again [ms]
+constexpr int kWait = 100;  // between two looks at `stop` [ms]
 
 [[noreturn]] void fail(int code) {
   throw std::runtime_error(std::string("the video cannot be made: ") + std::strerror(code));
 }
 
-// This program once more; what it writes can be read here.
+// Process that runs this program once more; its output can be read here.
 class Process {
  public:
   explicit Process(std::vector<std::string> words) {
@@ -87,7 +87,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void interrupt() const { ::kill(id_, SIGINT); }
-  // Adds what has come, if anything comes soon; false at the end.
+  // Adds new output, if any comes soon; returns false at its end.
   bool read(std::string& text) const {
     pollfd ready{out_, POLLIN, 0};
     if (::poll(&ready, 1, kWait) <= 0) return true;
@@ -108,7 +108,7 @@ class Process {
   int out_ = -1;
 };
 
-// Takes whole lines away; those that are numbers say how far it is, the last other one stays said.
+// Removes whole lines from `text`: numbers become `part`, the last other line becomes `said`.
 void take_lines(std::string& text, std::atomic<double>& part, std::string& said) {
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
     double number = 0;

@@ -1,4 +1,4 @@
-// A session's video made beside a window, by a process of its own.
+// Process that makes a session's video beside a window.
 #pragma once
 
 #include <atomic>
@@ -10,30 +10,30 @@
 
 namespace limpid {
 
-// A video as it is asked for in the window.
-
+// Settings of a video.
 struct VideoRequest {
-  enum class Kind : std::uint8_t { mp4, gif, png };  // png: a folder of them
+  enum class Kind : std::uint8_t { mp4, gif, png };  // png: a folder of pictures
 
   Kind kind = Kind::mp4;
   int width = 1280, height = 720;  // [px]
-  std::optional<int> fps = {};     // none: what is usual for the kind
-  double speed = 1;                // of the session
+  std::optional<int> fps = {};     // none: the usual rate of the kind
+  double speed = 1;                // times the session's
   bool plots = true, overlaid = false;
-  double from = 0;                // [s] of the session
-  std::optional<double> to = {};  // none: its end
+  double from = 0;                // beginning in the session [s]
+  std::optional<double> to = {};  // end in the session [s]; none: its end
 };
 
-// The options of `limpid play` that say so.
+// Returns the options of `limpid play` for such a video.
 std::vector<std::string> words_of(const VideoRequest& order);
-// A name that is free, beside the session's file or, where nothing can be written, in `otherwise`.
+// Returns a free name beside the session's file or, if that folder cannot be written, in
+// `otherwise`.
 std::filesystem::path video_of(const std::filesystem::path& session, VideoRequest::Kind kind,
                                const std::filesystem::path& otherwise);
 
-// Runs `limpid play SESSION --video OUT` with these `options` at low priority and waits for it:
-// ImGui serves one thread of a program only, and the loop keeps its processor. `part` is set to
-// what is done, 0 to 1. Returns false once `stop` is true and the process has cleared up. Errors:
-// std::runtime_error with what the process said.
+// Runs `limpid play SESSION --video OUT` with these `options` at low priority, and waits for it. It
+// is a process of its own as ImGui serves only one thread of a program, and the loop keeps its
+// processor. Sets `part` to the part that is done, 0 to 1. Returns false once `stop` is true and
+// the process has cleared up. Errors: std::runtime_error with the process's words.
 bool film_beside(const std::filesystem::path& session, const std::filesystem::path& out,
                  const std::vector<std::string>& options, const std::atomic<bool>& stop,
                  std::atomic<double>& part);

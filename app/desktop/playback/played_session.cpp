@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOfStory = 12;  // that the plots show at once: about a step [s]
+constexpr double kOfStory = 12;  // time that the plots of a story show: about a step [s]
 
-// The plots hold the whole recording, and the re-run if there is one; a story marks its steps
-// there, else every setting that changes is marked.
+// Returns the history of the whole recording, and of the re-run if there is one. It marks a story's
+// steps, or else every change of a setting.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
                    std::span<const double> again, const std::vector<StoryStep>& steps) {
   TraceChannels channels(arm, session.layout, session.info.bodies);

@@ -1,4 +1,4 @@
-// A session that is being looked at, with a second run of its hand beside it if one was made.
+// Session that is played, with a second run of its hand beside it if one was made.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,12 @@
 
 namespace limpid {
 
-// A line of what is known of a recording.
+// Fact on a recording.
 struct Fact {
   std::string name, value;
 };
 
-// A session as it comes from its file.
+// Session as loaded from its file.
 struct LoadedSession {
   std::filesystem::path file;
   std::shared_ptr<const Session> session;
@@ -28,17 +28,17 @@ struct LoadedSession {
   SceneDocument document;
   MeshModels models;
   History history;
-  std::vector<StoryStep> steps = {};  // of the story that it tells; none: it is no story
-  std::string said = {};              // to be told once it is shown; empty: nothing
-  bool bad = false;                   // what is said is something wrong
-  std::vector<Fact> facts = {};       // what it is a recording of, beside its settings
-  std::vector<Fact> verdict = {};     // what was measured of it
+  std::vector<StoryStep> steps = {};  // steps of the story; empty: not a story
+  std::string said = {};              // notice to show with it; empty: none
+  bool bad = false;                   // `said` reports a fault
+  std::vector<Fact> facts = {};       // description of the recording beside its settings
+  std::vector<Fact> verdict = {};     // measures of the recording
 };
 
-// The settings of one of a recording's runs, as they were at a row.
+// Settings of one run of a recording, as they were at a row.
 class RecordedSettings {
  public:
-  // Errors: FileError, where the session says something else than settings.
+  // Errors: FileError if the session's settings cannot be read.
   RecordedSettings(const Session& session, const std::string& where);
 
   const Parameters& at(std::size_t row);
@@ -46,27 +46,28 @@ class RecordedSettings {
  private:
   const Session& session_;
   Parameters began_, now_;
-  std::size_t made_ = 0;  // changes in `now_`
+  std::size_t made_ = 0;  // number of changes made in `now_`
 };
 
-// A second run of a recording's hand.
+// Second run of a recording's hand.
 struct Rerun {
   LargeVector<double> rows;  // as many as the session's
-  RunEnd end;                // where it diverged the last row stands for those that are missing
-  History history;           // of both
-  std::string note;          // why it may come out otherwise than recorded; for people
+  RunEnd end;                // after a divergence the last row is repeated
+  History history;           // of both runs
+  std::string note;          // why it may differ from the recording; for people
 };
 
-// Neither is for the window's thread. Errors: FileError and the like.
+// Loads a session; slow, as all below: not for the window's thread. Errors of all: FileError and
+// the like.
 LoadedSession load_session(const std::filesystem::path& file);
-// Runs the story that comes along and leaves it in `out`, which is replaced; nothing if it was
-// cancelled.
+// Runs the shipped story into the file `out`, which is replaced; returns nothing if cancelled.
 std::optional<LoadedSession> load_story(const std::filesystem::path& out, TaskProgress& progress);
-// Runs the path of a hand in this world and leaves it in `out`, which is replaced; nothing if it
-// was cancelled.
+// Runs a hand's path in this world into the file `out`, which is replaced; returns nothing if
+// cancelled.
 std::optional<LoadedSession> load_hand(const std::filesystem::path& hand, RunPlan world,
                                        const std::filesystem::path& out, TaskProgress& progress);
-// Under `chosen`, where these may be changed; without rows if it was cancelled.
+// Runs the session's hand again under `chosen` for all settings that may change. Returns no rows if
+// cancelled.
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
                 TaskProgress& progress);
 
@@ -82,38 +83,39 @@ class PlayedSession {
   Stage& stage() { return *stage_; }
   const Stage& stage() const { return *stage_; }
 
-  // Of the story that is told, at the player's time; null: it is no story.
+  // Returns the story's step at the player's time; null: it is no story.
   const StoryStep* step() const;
   const std::vector<StoryStep>& steps() const { return steps_; }
-  // What the plots call the two runs in a step of it.
+  // Returns the names of the two runs in a step of the story.
   RunNames names_in(const StoryStep& step) const;
 
-  // The same at the player's time, where no story has names of its own; nothing of one run, or
-  // beside a re-run.
+  // Returns the names of a twin's runs at the player's time; nothing for a story, for a single run,
+  // or beside a re-run.
   std::optional<RunNames> names_now();
 
-  // Where it is pressed hardest: what its small picture shows.
+  // Returns the row of the hardest contact, for the session's thumbnail.
   std::size_t row_to_show() const;
 
-  // Which run of a sweep it is, say; or nothing.
+  // Facts on the recording, for example its place in a sweep; may be empty.
   const std::vector<Fact>& facts() const { return facts_; }
   const std::vector<Fact>& verdict() const { return verdict_; }
-  // Its settings at the player's time, and the second run's; null: it has one run.
+  // Settings at the player's time of the first run, and of the second; null: there is one run.
   const Parameters& settings() { return first_.at(player_.index()); }
   const Parameters* twin_settings() { return second_ ? &second_->at(player_.index()) : nullptr; }
 
-  // What people noted, in the order of their ticks; these are shown from now on, nothing is
-  // written.
+  // Returns the users' marks in the order of their ticks; show() replaces them without writing
+  // them.
   const std::vector<Mark>& marks() const { return marks_; }
   void show(std::vector<Mark> marks);
-  double time_of(const Mark& mark) const;  // as the player counts it [s]
+  double time_of(const Mark& mark) const;  // on the player's time axis [s]
 
-  // From now on beside the recording. Errors: as Stage.
+  // Shows a re-run beside the recording. Errors: as Stage.
   void show(Rerun again);
   bool has_rerun() const { return !rerun_.empty(); }
-  // The second run's at the player's time; empty without one.
+  // Returns the re-run's row at the player's time; empty without one.
   std::span<const double> rerun_row() const;
-  // The twin's at the player's time; empty for a session of one run, and while there is a re-run.
+  // Returns the twin's row at the player's time; empty for a single run and while there is a
+  // re-run.
   std::span<const double> twin_row() const;
 
  private:
@@ -129,7 +131,7 @@ class PlayedSession {
   std::vector<Mark> marks_;
   RecordedSettings first_;
   std::optional<RecordedSettings> second_;
-  LargeVector<double> rerun_;  // rows of the second run; or none
+  LargeVector<double> rerun_;  // rows of the re-run; may be empty
   std::unique_ptr<Stage> stage_;
 };
 

@@ -1,4 +1,4 @@
-// Where playback of a recording stands.
+// Player of a recording: its time, speed and loop.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class Player {
   explicit Player(std::shared_ptr<const Session> session) : session_(std::move(session)) {}
 
   const Session& session() const { return *session_; }
-  // For work that goes on beside the window, also when the player is gone.
+  // Session for work beside the window that may outlive the player.
   const std::shared_ptr<const Session>& shared() const { return session_; }
   double duration() const { return static_cast<double>(session_->size()) * session_->info.tick; }
   double time() const { return time_; }  // [s]
@@ -33,8 +33,7 @@ class Player {
     playing_ = true;
   }
   void pause() { playing_ = false; }
-  // From one moment to another, again and again while looping; until it is sought or played
-  // otherwise.
+  // Plays from one moment to another, repeatedly while looping, until another call seeks or plays.
   void play_between(double start, double stop) {
     seek(start);
     stretch_ = {time_, std::clamp(stop, time_, duration())};
@@ -74,7 +73,7 @@ class Player {
   std::shared_ptr<const Session> session_;
   double time_ = 0;
   bool playing_ = false;
-  std::optional<std::pair<double, double>> stretch_;  // that is played [s]
+  std::optional<std::pair<double, double>> stretch_;  // part that is played [s]
 };
 
 }  // namespace limpid

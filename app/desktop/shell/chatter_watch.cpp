@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto kStays = std::chrono::seconds(30);
 
-// Two digits are enough for a slider.
+// Returns a value of two digits, which is enough for a slider.
 double rounded_down(double stiffness) {
   const double step = std::pow(10, std::floor(std::log10(stiffness)) - 1);
   return step * std::floor(stiffness / step + 1e-9);
@@ -24,7 +24,7 @@ double rounded_down(double stiffness) {
 
 }  // namespace
 
-// The hardest contact comes first in a row.
+// Notes the object at the hardest contact, which is the first in a row.
 void ChatterWatch::note_touch() {
   const Stage& stage = live_.stage();
   const RowLayout& layout = stage.channels().layout();
@@ -32,7 +32,7 @@ void ChatterWatch::note_touch() {
   const auto f = layout.in(live_.row(), Column::contact_force);
   const Vec3 point(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
   if (!point.allFinite() || !(force.norm() > 0)) return;
-  constexpr double kOutside = 0.005;  // [m]
+  constexpr double kOutside = 0.005;  // start of the ray outside of the contact [m]
   const Vec3 out = force.normalized();
   const SceneEditor& editor = document_.editor();
   const auto under = object_under({point + kOutside * out, -out}, editor.scene(), editor.models(),
@@ -77,7 +77,7 @@ void ChatterWatch::follow() {
   }
 }
 
-// Another setting, or a wall that was changed, is judged anew.
+// Returns whether the finding is out of date: other settings or another wall are judged anew.
 bool ChatterWatch::is_over() const {
   const Parameters& now = run(found_->of_twin);
   const Scene& scene = document_.scene();

@@ -1,4 +1,4 @@
-// Says that the loop chatters, at which wall, and what mends it.
+// Watch for chatter of the loop, its wall and its remedies.
 #pragma once
 
 #include <array>
@@ -19,27 +19,26 @@ class ChatterWatch {
     std::size_t place;  // among the scene's objects
     std::string name;
     double stiffness;  // [N/m]
-    double softer;     // that the law renders in theory, and no more than half of it [N/m]
+    double softer;     // that the law renders in theory, at most half of `stiffness` [N/m]
   };
   struct Found {
     bool of_twin;
-    Parameters parameters;  // of that run
-    std::optional<Wall>
-        wall;  // that the tip touches; none: nothing of the scene, or a joint's stop
+    Parameters parameters;     // of that run
+    std::optional<Wall> wall;  // none: the tip touches nothing of the scene, or a joint's stop
   };
 
   ChatterWatch(Settings& settings, LiveSession& live, Document& document)
       : settings_(settings), live_(live), document_(document) {}
 
-  // Once a frame, with the rows that the loop has made.
+  // Looks at new rows of the loop; to be called once a frame.
   void follow();
-  // The newest finding, kept for a while after the chatter ended, as a hand that lets go ends it.
-  // A change of law or scene forgets it.
+  // Returns the newest finding. It is kept for a while after the chatter ended, as letting go ends
+  // it. A change of law or scene forgets it.
   const std::optional<Found>& found() const { return found_; }
-  // In words: which wall, which law, by how much.
+  // Returns the finding as text: which wall, which law, by how much.
   std::string text() const;
 
-  // Precondition of these: found().
+  // Switches to the predictive law, or softens the wall. Precondition of both: found().
   void take_predictive();
   void soften_wall();
   void forget() { found_.reset(); }
@@ -58,8 +57,8 @@ class ChatterWatch {
   LiveSession& live_;
   Document& document_;
   std::array<Chatter, 2> chatter_;      // of both runs
-  const Stage* of_ = nullptr;           // whose history it looked at
-  std::optional<std::size_t> touched_;  // the object that was touched last
+  const Stage* of_ = nullptr;           // stage whose history was looked at
+  std::optional<std::size_t> touched_;  // object touched last
   std::optional<Found> found_;
   Clock::time_point seen_{};
 };

@@ -30,7 +30,7 @@ void show_or_hide(Desktop& d) {
   d.settings.*kShown = !(d.settings.*kShown);
 }
 
-// By a step of its slider.
+// Changes a setting by a step of its slider.
 void step_setting(Desktop& d, const char* key, int direction) {
   Parameters& p = d.tuning.edited();
   const ParameterInfo& info = *find_parameter(key);
@@ -74,8 +74,8 @@ Command::Label record_label(const Desktop& d) {
 
 Player& player(Desktop& d) { return d.playback.shown()->player(); }
 
-// Where the scene has no file of the user's own, its name is asked for: those that came with Limpid
-// stay as they are.
+// Saves the scene, or asks for a name if it has no file of the user's own: shipped scenes stay as
+// they are.
 void save_scene_here(Desktop& d) {
   const std::filesystem::path own = d.document.own_file();
   own.empty() ? d.dialog.open("save scene") : void(d.document.save_as(own));
@@ -84,7 +84,7 @@ void save_scene_here(Desktop& d) {
 void save_and_leave(Desktop& d) {
   const std::filesystem::path own = d.document.own_file();
   if (own.empty()) {
-    // Leaving is up to the user then: the dialog may be given up.
+    // Leaving is up to the user then, who may give up the dialog.
     d.document.stay();
     d.dialog.open("save scene");
   } else if (d.document.save_as(own)) {
@@ -220,8 +220,8 @@ constexpr Command row(const char* id, const char* text, const char* menu, const 
   return {id, text, menu, keys, help, run, how};
 }
 
-// Id, text, menu, keys, help. What everybody may need at once comes first; a menu has its commands
-// in the order here.
+// Columns: id, text, menu, keys, help. Commands that may be needed at once come first; a menu has
+// its commands in this order.
 constexpr std::array kCommands{
     row("force.cut", "Force off at once", nullptr, "Space", "force off at once",
         [](Desktop& d) { d.cut_force(); },
@@ -484,7 +484,7 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.dialog.open("about"); }),
 };
 
-// What the mouse and the like do, before and after the keys.
+// Line of the help for mouse and the like, before or after the keys.
 struct Hint {
   const char *with, *what;
 };
@@ -507,7 +507,7 @@ constexpr std::array kAfter{
     Hint{"sliders", "double click to type, right click for the usual value"},
 };
 
-// Of commands by what their ids begin with; what comes first in the help.
+// Group of the help, with the beginnings of its commands' ids; groups have this order in the help.
 struct Group {
   const char* heading;
   std::array<std::string_view, 4> ids;
@@ -536,7 +536,7 @@ struct Key {
   int modifiers, key;
 };
 
-// "Ctrl+Shift+S" as GLFW has it.
+// Returns the key of "Ctrl+Shift+S", by GLFW's numbers.
 Key key_of(std::string_view text) {
   if (text == "?") return {kShift, GLFW_KEY_SLASH};
   Key all{};
@@ -569,7 +569,7 @@ Key key_of(std::string_view text) {
   return all;
 }
 
-// "Ctrl+Y, Ctrl+Shift+Z" -> both.
+// Splits "Ctrl+Y, Ctrl+Shift+Z" into both keys.
 std::vector<std::string_view> keys_of(const Command& command) {
   std::vector<std::string_view> keys;
   std::string_view left = command.keys != nullptr ? command.keys : "";
@@ -581,7 +581,7 @@ std::vector<std::string_view> keys_of(const Command& command) {
   return keys;
 }
 
-// "Ctrl+[" with what stands on the key instead of "[".
+// Returns "Ctrl+[" with the label of that key instead of "[".
 std::string text_on(const KeyLabels& labels, std::string_view text) {
   const std::size_t key = text.size() - 1;
   return std::string(text.substr(0, key)) + labels.text(text.substr(key));
@@ -601,8 +601,8 @@ bool reaches(const Command& command, KeyOwner owner) {
   return false;
 }
 
-// A sign or a digit is meant wherever a keyboard has it, with whatever modifiers: "?" is Shift and
-// another key nearly everywhere.
+// Returns whether the character is among the command's keys. Signs and digits count wherever a
+// keyboard has them, with any modifiers: "?" is Shift and another key nearly everywhere.
 bool is_written_by(const Command& command, unsigned character) {
   if (character <= ' ' || character > '~' || std::isalpha(static_cast<int>(character)) != 0) {
     return false;
@@ -612,7 +612,8 @@ bool is_written_by(const Command& command, unsigned character) {
   return std::ranges::find(keys, written) != keys.end();
 }
 
-// Nobody who wants the force off looks for the right modifiers first.
+// Returns whether the key is among the command's. Modifiers do not matter for cutting the force:
+// nobody looks for them first.
 bool has_key(const Command& command, int key, int modifiers) {
   const bool any = command.how.reach == Reach::all || command.how.reach == Reach::all_but_text;
   return std::ranges::any_of(keys_of(command), [&](std::string_view text) {
@@ -670,7 +671,7 @@ const Command* command_of(KeyOwner owner, const KeyPress& press) {
 
 void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop) {
   for (const KeyPress& press : pressed) {
-    // A key may have opened something for the next one.
+    // The owner is asked for each key, as the key before may have opened something.
     const Command* command = command_of(owner_of(desktop.focus()), press);
     if (command != nullptr) run_or_say(command->id, desktop);
   }
@@ -688,7 +689,7 @@ std::vector<Shortcut> shortcuts(const KeyLabels& labels) {
     groups[at].push_back({kGroups[at].heading, each.with, each.what});
   };
   std::ranges::for_each(kBefore, hint);
-  Shortcut* last = nullptr;  // of the table: who says nothing of its own is beside that
+  Shortcut* last = nullptr;  // line of the last command with a help text of its own
   for (const Command& command : kCommands) {
     if (command.keys == nullptr || command.how.reach == Reach::question) continue;
     std::string keys;

@@ -1,5 +1,5 @@
-// What can be done in the window, in one table: menus, keys and the help are made of it, and
-// whoever else runs a command names it by its id.
+// Commands of the window, in one table. Menus, keys and the help are made of it; all else runs a
+// command by its id.
 #pragma once
 
 #include <cstdint>
@@ -15,64 +15,66 @@ namespace limpid {
 
 class Desktop;
 
-// Where a command's keys act.
+// Place where a command's keys act.
 enum class Reach : std::uint8_t {
-  view,          // in playback, too, and with something selected, unless a command of those has the
-                 // key
-  playback,      //
+  view,          // also in playback and with a selection, unless a command of those has the key
+  playback,      // while a recording is shown
   selection,     // while an object of the scene is selected
-  transform,     // while that follows the mouse
-  question,      // about unsaved changes
-  all_but_text,  // whatever is open, with any modifiers; not while somebody types
-  all,           // the same, also while somebody types
+  transform,     // while the selected object follows the mouse
+  question,      // in the question about unsaved changes
+  all_but_text,  // always, with any modifiers, but not while the user types
+  all,           // always, with any modifiers
 };
 
 struct Command {
   struct Label {
     const char* text;
-    const char* keys;  // null: those of the table
+    const char* keys;  // null: those of the command
   };
   struct How {
     bool apart = false;  // has a line above it in its menu
     Reach reach = Reach::view;
     bool repeats = false;                              // while its key is held
-    Label (*now)(const Desktop&) = nullptr;            // what the menu says instead of its text
+    Label (*now)(const Desktop&) = nullptr;            // its present label in the menu
     std::string (*why_not)(const Desktop&) = nullptr;  // for people; empty or null: it can be run
-    bool (*checked)(const Desktop&) = nullptr;         // its mark in the menu
-    bool blind = false;  // also while a program hides law, settings and plots
+    bool (*checked)(const Desktop&) = nullptr;         // has a mark in the menu
+    bool blind = false;  // can be run while a program hides law, settings and plots
   };
 
   const char* id;    // never changes: "edit.undo"
-  const char* text;  // in its menu, and wherever commands are listed
-  const char* menu;  // "View", "View/Layouts"; null: in none
+  const char* text;  // in its menu and in lists of commands
+  const char* menu;  // "View", "View/Layouts"; null: none
   const char* keys;  // "Ctrl+Y, Ctrl+Shift+Z", the first one for the menu; null: none
-  const char* help;  // in the list of keys; null: its text, "": in the line of the one before it
+  const char* help;  // in the list of keys; null: its text, "": shares the line before
   void (*run)(Desktop&);
   How how = {};
 };
 
-// In the order of menus and help.
+// Returns all commands, in the order of menus and help.
 std::span<const Command> commands();
 const Command* find_command(std::string_view id);  // null: there is none
-// Who runs a command: programs on the control socket are not kept from what they hide.
+// Kind of user who runs a command. Programs on the control socket may run what they hide from
+// people.
 enum class Asker : std::uint8_t { person, program };
-// Why it cannot be run now, for people; empty: it can.
+// Returns why the command cannot be run now, for people; empty: it can.
 std::string why_not(const Command& command, const Desktop& desktop, Asker who = Asker::person);
-// Returns why it was not run, for people: there is none of that id, or it cannot be run now; empty
-// if it was. Errors: as what it does.
+// Runs a command. Returns why it was not run, for people: the id is unknown, or it cannot be run
+// now; empty if it was. Errors: as the command.
 std::string run_command(std::string_view id, Desktop& desktop, Asker who = Asker::person);
-// The same for who looks at the window: a notice says why.
+// Runs a command for the person at the window: a notice says why not.
 void run_or_say(std::string_view id, Desktop& desktop);
 
-// What a key does for its owner, `repeated` while it is held down; null: nothing.
+// Returns the command of a key for its owner; null: none. `repeated` presses count only for
+// commands that repeat.
 const Command* command_of(KeyOwner owner, const KeyPress& press);
-// Runs those of the keys pressed in this frame.
+// Runs the commands of the keys pressed in this frame.
 void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop);
 
-// "Ctrl+Shift+S", of its first key, as it stands on this keyboard; empty without one.
+// Returns "Ctrl+Shift+S", the command's first key, with this keyboard's labels; empty without a
+// key.
 std::string key_text(const Command& command, const KeyLabels& labels);
 
-// What keys and mouse do, for the help: group after group.
+// Line of the help on keys and mouse; shortcuts() returns them group after group.
 struct Shortcut {
   std::string_view group;
   std::string keys, what;

@@ -97,7 +97,7 @@ Banner force_banner(const std::string& text, const std::string& why, bool bad) {
   return {.id = "banner of the force", .text = text + ": " + why + ".", .bad = bad};
 }
 
-// Of a recording, where it is looked at.
+// Returns the banner on a recording's force at the player's time.
 std::optional<Banner> recorded_force(const PlayedSession& session) {
   const Player& player = session.player();
   const double state = player.session().layout.in(player.row(), Column::force_state)[0];
@@ -135,7 +135,7 @@ Banner chatter_banner(const ChatterWatch& chatter) {
   return banner;
 }
 
-// "23 November, 14:32", when the file was written.
+// Returns when the file was written, as "23 November, 14:32".
 std::string when(const fs::path& file) {
   std::error_code none;
   const auto written = fs::last_write_time(file, none);
@@ -145,9 +145,9 @@ std::string when(const fs::path& file) {
   return fmt::format("{:%d %B, %H:%M}", fmt::localtime(at));
 }
 
-// Where it lies on the axes, what was measured of it, and the way back.
+// Returns the banner of a sweep's point: its place, its measures, and the way back.
 Banner point_of_sweep(const PlayedSession& session) {
-  constexpr std::size_t kMost = 3;  // of the measures: all are in the panel
+  constexpr std::size_t kMost = 3;  // measures shown: all are in the panel
   const auto line = [](std::span<const Fact> facts) {
     std::string text;
     for (const Fact& fact : facts) {
@@ -197,8 +197,8 @@ void Desktop::drop_pictures() {
   live.drop_pictures();
 }
 
-// While passivity is broken a hand holds the tip a little aside of where it was, where energy
-// climbs without anybody's doing. Somebody who takes the tip, or lets it go, has it.
+// Puts the hand a little aside while passivity is broken, so that energy grows by itself. If the
+// user takes the tip or lets it go, the hand is the user's.
 void Desktop::follow_break() {
   constexpr double kAside = 0.01;  // [m]
   Controls& controls = live.controls();
@@ -218,7 +218,7 @@ void Desktop::follow_break() {
   }
 }
 
-// What somebody tries for the first time, and a story that has come to its end: the arm is theirs.
+// Notes first steps, and leaves a story that has come to its end to let the user take the arm.
 void Desktop::follow_first_steps() {
   PlayedSession* played = playback.shown();
   if (played != nullptr) {
@@ -227,7 +227,7 @@ void Desktop::follow_first_steps() {
     const bool told = std::exchange(told_, player.playing());
     if (played->step() == nullptr) {
       if (player.playing()) note_done(settings, FirstStep::play);
-    } else if (over && told && !player.playing()) {  // not where somebody looks at its end
+    } else if (over && told && !player.playing()) {  // not while the user looks at its end
       playback.close();
       settings.your_turn = !all_done(settings);
       if (!settings.your_turn) notices.say("That was the story. The arm is yours.");
@@ -235,7 +235,7 @@ void Desktop::follow_first_steps() {
     law_.reset();
     return;
   }
-  // Settings that nobody here chose.
+  // Settings that a program or the break chose do not count as steps.
   if (passivity_broken(settings) || lead.on()) return law_.reset();
   if (settings.twin.on) note_done(settings, FirstStep::twin);
   const Parameters& p = settings.parameters;
@@ -284,7 +284,7 @@ void Desktop::update(double dt) {
   notices.forget_old();
 }
 
-// What has been asked for and is there now: a recording, a point of a sweep, a sweep.
+// Takes over loaded recordings and sweeps, and the session of a sweep's point.
 void Desktop::follow_playback(double dt) {
   if (sweep.update()) remember_recent(settings, sweep.sweep()->file.string());
   const bool another = playback.update(dt);
@@ -293,7 +293,7 @@ void Desktop::follow_playback(double dt) {
     if (const auto names = played->names_now()) played->stage().name_runs(*names);
   }
   if (!another) return;
-  if (live.loop().device_in_place()) live.loop().cut();  // what pushes would not be on the screen
+  if (live.loop().device_in_place()) live.loop().cut();  // the device's world is not on the screen
   tuning.end_break();
   const PlayedSession& opened = *playback.shown();
   const std::size_t k = opened.row_to_show();
@@ -305,7 +305,7 @@ void Desktop::follow_playback(double dt) {
   if (playback.last() != sweep.last_point()) {
     remember_recent(settings, playback.last().string());
   } else if (dialog.name() == "sweep") {
-    dialog.close();  // over what has come of its point
+    dialog.close();  // it would cover the point's session
   }
 }
 
@@ -354,7 +354,7 @@ void Desktop::toggle_force() {
 void Desktop::cut_force() {
   live.loop().cut();
   devices.cancel_check();
-  if (identify.moving()) identify.stop();  // what was found stays
+  if (identify.moving()) identify.stop();  // only a motion stops: results stay
 }
 
 void Desktop::escape() {
@@ -363,14 +363,14 @@ void Desktop::escape() {
   if (!closed || real) cut_force();
 }
 
-// A device that moves by itself stops, and its dialog says so. Else a menu, then typing outside of
-// dialogs (which ImGui ends), the question, a run that goes on beside the window, the dialog.
+// Closes one thing. A moving device stops, and its dialog says so. Then come a menu, typing outside
+// of dialogs (which ImGui ends), the question, a run beside the window, the dialog.
 bool Desktop::close_one() {
   const Focus now = focus();
   if (identify.moving()) {
     identify.stop();
   } else if (now.popup) {
-    // Lists inside of a dialog go, the dialog stays.
+    // Lists inside of a dialog close, the dialog stays.
     const int level = ImGui::GetTopMostPopupModal() != nullptr ? 1 : 0;
     ImGui::ClosePopupToLevel(level, true);
   } else if (now.question) {
@@ -390,7 +390,7 @@ bool Desktop::close_one() {
 }
 
 std::vector<Banner> Desktop::banners() const {
-  if (dialog.name() == "sweep") return {};  // which they would cover
+  if (dialog.name() == "sweep") return {};  // banners would cover the map
   std::vector<Banner> all;
   const auto force = playback.on() ? recorded_force(*playback.shown()) : live_force(live);
   if (force) all.push_back(*force);

@@ -1,5 +1,5 @@
-// What the window's program is made of. Panels, dialogs and commands work on the parts themselves;
-// here is what needs several of them.
+// Parts of the window's program, with the work that needs several of them. Panels, dialogs and
+// commands work on the parts themselves.
 #pragma once
 
 #include <filesystem>
@@ -34,8 +34,7 @@
 
 namespace limpid {
 
-// What is on screen: the recording that is played, or else the loop, and how it is looked at.
-
+// View of the screen's content: the recording that is played, or else the loop.
 class Shown {
  public:
   Shown(const Settings& settings, Playback& playback, LiveSession& live)
@@ -43,22 +42,22 @@ class Shown {
 
   Stage& stage() { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
   const Stage& stage() const { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
-  std::span<const double> row() const;       // empty before the first
+  std::span<const double> row() const;       // empty before the first row
   std::span<const double> twin_row() const;  // empty without a twin
 
-  // The view is chosen for the window's size until somebody chooses one.
+  // Tells whether the view fits itself to the window's size, until the user chooses one.
   bool automatic_view() const { return automatic_; }
   void keep_view() { automatic_ = false; }
   void look(Camera::View view);
   void reset_view();
-  // Once a frame: from where a story's step wants to be looked at, and what it calls the runs.
+  // Takes the camera and the runs' names from a story's step; to be called once a frame.
   void follow_story();
-  void leave_story() { step_ = nullptr; }  // the next step looks anew
+  void leave_story() { step_ = nullptr; }  // the next step sets the camera anew
 
-  int quality_level() const;  // of Quality, as the settings want it
+  int quality_level() const;  // level of Quality that the settings want
 
   Camera camera;
-  ScreenRect picture{};  // where it is in the window, of a twin's the left one
+  ScreenRect picture{};  // place in the window; of a twin the left one
   AutoQuality automatic_quality;
 
  private:
@@ -66,20 +65,20 @@ class Shown {
   Playback& playback_;
   LiveSession& live_;
   bool automatic_ = true;
-  const StoryStep* step_ = nullptr;  // that the camera knows
+  const StoryStep* step_ = nullptr;  // step of the present camera
 };
 
-// Which plots the window shows, one after the other or as a layout that has a name.
+// Plots of the window: single ones, and layouts with names.
 class PlotLayout {
  public:
   PlotLayout(Settings& settings, Notices& notices, OpenDialog& dialog);
 
-  // A new plot, or another one in its place, is chosen in a dialog.
+  // Opens the dialog for a new plot, or for another one in its place.
   void add();
   void choose(std::size_t plot);
   std::size_t chosen() const { return chosen_; }
   void remove(std::size_t plot);
-  void use(const std::string& name);  // a layout
+  void use(const std::string& name);  // name of a layout
 
   NamedTexts layouts;
 
@@ -90,11 +89,11 @@ class PlotLayout {
   std::size_t chosen_ = 0;
 };
 
-// What commands ask of the system's window, for who has it.
+// Requests of commands to the system's window.
 struct WindowRequests {
   bool close = false, toggle_full_screen = false;
-  bool menu = false;              // open, for the keys
-  std::filesystem::path picture;  // to be saved there; empty: none
+  bool menu = false;              // to be opened for the keys
+  std::filesystem::path picture;  // file for a picture of the window; empty: none
 };
 
 class Desktop {
@@ -124,12 +123,12 @@ class Desktop {
   World world;
   Lead lead{*this};
   WindowRequests asked;
-  // Of programs on the control socket: what one asks whoever is here, and that one hides the law,
-  // the settings and the plots, and all commands that show or change them.
+  // Question of a program on the control socket to the person at the window. `blind`: such a
+  // program hides law, settings and plots, and all commands for them.
   PersonQuestion question;
   bool blind = false;
-  bool recording_may_end = false;  // with the window: somebody was asked
-  // Of experiments that go on beside the window, also while their dialog is closed: "3 of 12: ...".
+  bool recording_may_end = false;  // with the window: the user agreed
+  // Progress of experiments beside the window, also while their dialog is closed: "3 of 12: ...".
   std::string experiments_under_way;
   // State of the system's window: its size on the screen, the work of its last frame without
   // waiting [s], and the labels of its keyboard.
@@ -137,26 +136,27 @@ class Desktop {
   double frame_time = 0;
   const KeyLabels* key_labels = &kUsKeyboard;
 
-  // Once a frame, before anything is drawn.
+  // Does the work of a frame before anything is drawn; to be called once a frame.
   void update(double dt);
-  // The gamepads that are there now, `dt` [s] after the last call: the chosen one leads the hand,
-  // where the window has the focus and nothing is open over it.
+  // Takes the present gamepads, `dt` [s] after the last call. The chosen one leads the hand if the
+  // window has the focus and nothing is open over it.
   void follow_pads(std::vector<Pad> plugged, bool focused, double dt);
-  // What a device's first button does: the magnet where something can be picked up, else the next
-  // coupling law.
+  // Does the work of a device's first button: the magnet if something can be picked up, else the
+  // next law.
   void pick_up_or_next_law();
-  // Before the OpenGL context goes.
+  // Drops all pictures; to be called before the OpenGL context goes.
   void drop_pictures();
 
-  // Who has the keys at this moment.
+  // Returns the present focus of the keys.
   Focus focus() const;
-  // A real device is armed only where its world is on the screen.
+  // Arms or cuts the force. A real device is armed only while its world is on the screen.
   void toggle_force();
-  // Of the arm, of a check of its axes, and of a device that is moved by itself.
+  // Cuts the force of the arm, of a check of its axes, and of a device that is moved by itself.
   void cut_force();
-  // Closes what is open first; where nothing is, and on a real device, it cuts the force.
+  // Closes one open thing. Cuts the force, too, if nothing was open or a real device is in the
+  // loop.
   void escape();
-  // What stands over the picture as long as it is so.
+  // Returns the banners over the picture.
   std::vector<Banner> banners() const;
 
  private:
@@ -167,10 +167,10 @@ class Desktop {
   void follow_break();
   void follow_first_steps();
 
-  bool break_holds_ = false;  // the hand was put there when passivity was broken, and is there
+  bool break_holds_ = false;  // the hand was put there by breaking passivity, and still is
   bool was_broken_ = false;
-  bool told_ = false;                                   // a story was, in the frame before
-  std::optional<std::pair<CouplingKind, double>> law_;  // and eta, of the frame before
+  bool told_ = false;                                   // a story was playing in the frame before
+  std::optional<std::pair<CouplingKind, double>> law_;  // law and eta of the frame before
 };
 
 }  // namespace limpid

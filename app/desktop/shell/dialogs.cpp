@@ -36,7 +36,10 @@ namespace limpid {
 
 namespace {
 
-// `width` [em]; `height`: part of the window's, 0: as the text needs. Pairs with ImGui::End().
+namespace fs = std::filesystem;
+
+// Begins a text of `width` [em]; `height`: part of the window's, 0: as the text needs. Pairs with
+// ImGui::End().
 void begin_reading(const char* title, float width, float height, bool& open) {
   const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
@@ -46,60 +49,6 @@ void begin_reading(const char* title, float width, float height, bool& open) {
   begin_dialog(title, open, ImGuiWindowFlags_NoResize);
   if (accepted()) open = false;
 }
-
-}  // namespace
-
-void draw_help(bool& open, const KeyLabels& labels) {
-  if (!open) return;
-  begin_reading("Keys and mouse", 46, 0.9f, open);
-  ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
-  if (ImGui::BeginTable("keys", 2)) {
-    ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
-    std::string_view group;
-    for (const Shortcut& shortcut : shortcuts(labels)) {
-      if (std::exchange(group, shortcut.group) != shortcut.group) {
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        heading(std::string(group).c_str());
-      }
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(shortcut.keys.c_str());
-      ImGui::TableNextColumn();
-      ImGui::TextWrapped("%s", shortcut.what.c_str());
-    }
-    ImGui::EndTable();
-  }
-  ImGui::EndChild();
-  close_button("Close (Esc)", open);
-  ImGui::End();
-}
-
-void draw_about(bool& open) {
-  if (!open) return;
-  begin_reading("About Limpid", 34, 0, open);
-  ImGui::PushFont(font(Face::semibold));
-  ImGui::Text("Limpid %s", program_version());
-  ImGui::PopFont();
-  ImGui::TextWrapped(
-      "Touch a virtual world through a haptic device and see, tick by tick, how transparent the "
-      "coupling between hand and world is.");
-  ImGui::Spacing();
-  ImGui::TextWrapped(
-      "The proposed coupling is that of \"Improving transparency of virtual coupling for haptic "
-      "interaction with human force observer\"; numbers in parentheses are its equations. Please "
-      "cite the paper when you publish what you measured here.");
-  ImGui::Spacing();
-  ImGui::TextWrapped(
-      "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, assimp, Draco, HDF5, urdfdom and fmt. Text "
-      "is set in Inter (SIL Open Font License).");
-  close_button("Close (Esc)", open);
-  ImGui::End();
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 DrawDialog help(Desktop& d) {
   return [&d](bool& open, ScreenRect) { draw_help(open, *d.key_labels); };
@@ -126,7 +75,7 @@ DrawDialog sweep_map(Desktop& d) {
   };
 }
 
-// A plot that shows nothing in the end is not kept.
+// Makes the chooser of a plot. A plot without channels is removed at its end.
 DrawDialog plot_chooser(Desktop& d) {
   return [&d, chooser = std::make_shared<PlotChooser>()](bool& open, ScreenRect view) {
     std::vector<PlotChoice>& plots = d.settings.plot_choices;
@@ -166,7 +115,7 @@ FileQuestion::Place place_of(const Desktop& d, fs::path first) {
           .parent = window_for_portals()};
 }
 
-// A model or an arm, from the folder that the last of them came from.
+// Makes a dialog for a model, a scene or an arm, in the folder of the last one.
 DrawDialog ask_for_file(Desktop& d, PathDialog::Options options,
                         void (*open_file)(Desktop&, const fs::path&)) {
   return [&d, open_file, question = std::make_shared<FileQuestion>(std::move(options))](
@@ -194,7 +143,7 @@ DrawDialog open_scene(Desktop& d) {
       [](Desktop& desktop, const fs::path& file) { desktop.world.open_scene(file); });
 }
 
-// A recording, or the table of a sweep.
+// Makes a dialog for a recording, or a sweep's table.
 DrawDialog find_session(Desktop& d) {
   return [&d,
           question = std::make_shared<FileQuestion>(PathDialog::Options{
@@ -277,7 +226,7 @@ DrawDialog mark(Desktop& d) {
   };
 }
 
-// `use` takes one by its name, `now` is the text of what there is to keep.
+// Makes a dialog of named texts: `use` takes a text by its name, `now` returns the present one.
 DrawDialog named(Desktop& d, NamedTexts& texts, NamedDialog::Options options,
                  void (*use)(Desktop&, const std::string&), std::string (*now)(Desktop&)) {
   return [&d, &texts, use, now, dialog = std::make_shared<NamedDialog>(options)](bool& open,
@@ -357,6 +306,54 @@ constexpr std::array kDialogs{
 
 }  // namespace
 
+void draw_help(bool& open, const KeyLabels& labels) {
+  if (!open) return;
+  begin_reading("Keys and mouse", 46, 0.9f, open);
+  ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
+  if (ImGui::BeginTable("keys", 2)) {
+    ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 13 * ImGui::GetFontSize());
+    std::string_view group;
+    for (const Shortcut& shortcut : shortcuts(labels)) {
+      if (std::exchange(group, shortcut.group) != shortcut.group) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        heading(std::string(group).c_str());
+      }
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(shortcut.keys.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextWrapped("%s", shortcut.what.c_str());
+    }
+    ImGui::EndTable();
+  }
+  ImGui::EndChild();
+  close_button("Close (Esc)", open);
+  ImGui::End();
+}
+
+void draw_about(bool& open) {
+  if (!open) return;
+  begin_reading("About Limpid", 34, 0, open);
+  ImGui::PushFont(font(Face::semibold));
+  ImGui::Text("Limpid %s", program_version());
+  ImGui::PopFont();
+  ImGui::TextWrapped(
+      "Touch a virtual world through a haptic device and see, tick by tick, how transparent the "
+      "coupling between hand and world is.");
+  ImGui::Spacing();
+  ImGui::TextWrapped(
+      "The proposed coupling is that of \"Improving transparency of virtual coupling for haptic "
+      "interaction with human force observer\"; numbers in parentheses are its equations. Please "
+      "cite the paper when you publish what you measured here.");
+  ImGui::Spacing();
+  ImGui::TextWrapped(
+      "Built on GLFW, Dear ImGui, Eigen, GLM, tinygltf, assimp, Draco, HDF5, urdfdom and fmt. Text "
+      "is set in Inter (SIL Open Font License).");
+  close_button("Close (Esc)", open);
+  ImGui::End();
+}
+
 std::span<const DialogKind> dialog_kinds() { return kDialogs; }
 
 const DialogKind* find_dialog(std::string_view name) {
@@ -382,7 +379,7 @@ void Dialogs::draw(bool modal, ScreenRect view) {
   if (modal) guard(desktop_.notices, [this] { draw_question(); });
 }
 
-// Closed even where what it leads to throws; not if that has opened another one.
+// Closes the dialog even if its work throws, but not if that has opened another one.
 void Dialogs::draw(const DialogKind& kind, const DrawDialog& draw_it, ScreenRect view) {
   struct Closing {
     ~Closing() {

@@ -1,4 +1,4 @@
-// The dialogs of the window: one table, and those that there are to read.
+// Dialogs of the window: one table of all, and the texts to read.
 #pragma once
 
 #include <cstdint>
@@ -16,50 +16,49 @@
 
 namespace limpid {
 
-// While `open`; closing it clears that.
+// Draws a text to read while `open`; closing it clears `open`.
 void draw_help(bool& open, const KeyLabels& labels);
 void draw_about(bool& open);
 
-// What opens over the window: one table of dialogs.
 class Desktop;
 
-// What throws becomes a notice, but not the same one in every frame.
+// Does `work`. An exception becomes a notice, but not the same one in every frame.
 template <class Work>
 void guard(Notices& notices, Work&& work) {
   guarded([&](const char* what) { notices.say_once(what, true); }, std::forward<Work>(work));
 }
 
-// Draws a dialog while `open`, and clears that where it was closed; called in every frame. `view`:
-// where the picture of the scene is.
+// Draws a dialog while `open`, and clears that when it is closed; called in every frame. `view`:
+// place of the scene's picture.
 using DrawDialog = std::function<void(bool& open, ScreenRect view)>;
 
-// One is open at a time.
+// Dialog of the table; one is open at a time.
 struct DialogKind {
   enum class Keys : std::uint8_t {
-    view,   // go on to what is behind it
-    typed,  // the same, but Esc closes it also while somebody types in it
-    modal   // are its own: it asks something, and nothing behind it acts meanwhile
+    view,   // go on to the view
+    typed,  // go on to the view, but Esc closes it also while the user types in it
+    modal   // belong to the dialog: it asks something, and nothing behind it acts
   };
 
-  const char* name;  // in the state of the window; commands open it by that
+  const char* name;  // in the state of the window, and for commands that open it
   Keys keys;
-  DrawDialog (*make)(Desktop&);  // with what it remembers; once, after the window is there
+  DrawDialog (*make)(Desktop&);  // with the dialog's own state; once, after the window is there
 
   bool modal() const { return keys == Keys::modal; }
 };
 std::span<const DialogKind> dialog_kinds();
 const DialogKind* find_dialog(std::string_view name);  // null: there is none
 
-// Which one is open.
+// Dialog that is open, if any.
 class OpenDialog {
  public:
   const DialogKind* kind() const { return kind_; }  // null: none
   std::string_view name() const { return kind_ != nullptr ? kind_->name : std::string_view(); }
   bool modal() const { return kind_ != nullptr && kind_->modal(); }
-  void open(std::string_view name);  // of the table
+  void open(std::string_view name);  // one of the table
   void close() { kind_ = nullptr; }
 
-  std::filesystem::path last_folder;  // that a model or an arm came from; empty: none yet
+  std::filesystem::path last_folder;  // of the last model, scene or arm; empty: none yet
 
  private:
   const DialogKind* kind_ = nullptr;
@@ -69,8 +68,8 @@ class Dialogs {
  public:
   explicit Dialogs(Desktop& desktop);
 
-  // Those that are modal, or the others. The modal ones, with the question about unsaved changes
-  // above them, come last in a frame.
+  // Draws the modal dialogs or the others. The modal ones come last in a frame, with the question
+  // about unsaved changes above them.
   void draw(bool modal, ScreenRect view);
   void drop_pictures() { drawn_.clear(); }  // before the OpenGL context goes
 

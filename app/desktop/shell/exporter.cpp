@@ -19,18 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOffered = 30;  // how long what was written can be opened from the window [s]
+constexpr double kOffered = 30;  // time in which the last file can be opened from the window [s]
 
 PlotNotice written_as(const fs::path& file, std::span<const unsigned char> bytes) {
   write_atomically(file, bytes);
-  return {"", false, file};  // a banner says so
+  return {"", false, file};  // a banner shows it
 }
 
 std::span<const unsigned char> bytes_of(const std::string& text) {
   return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
 }
 
-// What fails is said, too.
+// Adds a notice on failure to the work.
 template <class Work>
 std::function<PlotNotice()> said(Work work) {
   return [work = std::move(work)]() -> PlotNotice {

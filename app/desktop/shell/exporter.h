@@ -1,5 +1,5 @@
-// Carries out what the export dialog asks for, beside the window, and remembers what was written
-// last, so that it can be opened.
+// Exporter: carries out orders of the export dialog beside the window, and remembers the last file,
+// so that it can be opened.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,17 @@ class Exporter {
   Exporter(LiveSession& live, OpenDialog& dialog, Notices& notices)
       : live_(live), dialog_(dialog), notices_(notices) {}
 
-  // Asks what, where and how, a plot of the row first.
+  // Opens the dialog, with this plot offered first.
   void begin(std::size_t plot) {
     plot_ = plot;
     dialog_.open("export");
   }
   std::size_t plot() const { return plot_; }
-  // A picture of the window is the window's own work: its file is returned then, else nothing.
+  // Carries out an order. Returns the file if it is a picture of the window, which the window has
+  // to save; else nothing.
   std::filesystem::path carry_out(const ExportOrder& order, const Stage& stage);
 
-  // What was written last, for a while; empty: nothing new.
+  // Remembers the last file written, for a while. written() returns it; empty: none.
   void wrote(const std::filesystem::path& file);
   const std::filesystem::path& written() const { return written_; }
   void forget() { written_.clear(); }

@@ -20,8 +20,7 @@
 namespace limpid {
 namespace {
 
-// Of what the picture shows, what tells how far device and proxy are apart, or which law has
-// friction.
+// Removes signs that show the gap between device and proxy, or which law has friction.
 Settings without_signs(Settings settings) {
   settings.show_ghost = settings.show_lens = settings.show_forces = settings.show_joints = false;
   settings.twin_overlaid = false;
@@ -66,16 +65,16 @@ void Frame::draw() {
   });
   part([&] {
     const std::string_view open = desktop_.dialog.name();
-    if (open == "sweep" || open == "ask") return;  // which it would cover
+    if (open == "sweep" || open == "ask") return;  // it would cover these
     const bool hinted = desktop_.shown.twin_row().empty();
     if (story_asked_for(desktop_.playback, settings, at.view, hinted)) act_("help.story");
   });
-  // What is modal comes last: ImGui fails on windows that appear after it in its first frame.
+  // Modal dialogs come last: ImGui fails on windows that appear after them in their first frame.
   dialogs_.draw(true, at.view);
   draw_notices(desktop_.notices, at.view, below_banners_);
 }
 
-// The picture and what cannot be missed: nothing that tells one coupling from another.
+// Draws only the picture, banners and modal dialogs: nothing that tells couplings apart.
 void Frame::draw_blind() {
   int width = 0, height = 0;
   window_.size(width, height);
@@ -86,7 +85,7 @@ void Frame::draw_blind() {
   dialogs_.draw(true, view);
 }
 
-// What notices leave free: the legend's corner, or all that is at the top of the view.
+// Returns the part of the view that banners leave free: the legend's corner, or all of the top.
 ScreenRect Frame::signs_box(ScreenRect view) {
   const float em = ImGui::GetFontSize();
   if (desktop_.playback.video().busy()) return {view.min, {view.max.x, view.min.y + 7 * em}};
@@ -147,7 +146,7 @@ void Frame::draw_view(ScreenRect rect) {
   ViewScene scene = view_scene();
   if (below_banners_.max.x >= rect.max.x) scene.words = below_banners_.max.y - rect.min.y;
   const float width = scene.split() ? rect.width() / 2 : rect.width();
-  constexpr double kApart = 2;  // between the halves of a twin, and rounding [px]
+  constexpr double kApart = 2;  // tolerance for a twin's gap and for rounding [px]
   const bool resized = std::abs(camera.width() - static_cast<double>(width)) > kApart ||
                        std::abs(camera.height() - static_cast<double>(rect.height())) > kApart;
   if (resized && desktop_.shown.automatic_view() && width >= 8 && rect.height() >= 8) {
@@ -241,7 +240,7 @@ void Frame::draw_coupling(ScreenRect rect) {
   ImGui::End();
 }
 
-// Two things apart: what was recorded, which nobody moves any more, and what a re-run will have.
+// Draws recorded settings, which cannot be changed, apart from those of the next re-run.
 void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
                         const CouplingSituation& now) {
   if (section("In this recording", true)) {
@@ -251,7 +250,7 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
   if (section("For the re-run (E)", true)) draw_coupling_of_rerun(desktop_.tuning.edited(), now);
 }
 
-// As the export dialog has it at first: the picture of the SVG, dense enough for print.
+// Saves a plot as the export dialog's defaults do: the picture of the SVG, dense enough for print.
 void Frame::save_plot(const ScreenRect& box, const std::filesystem::path& file) {
   const Stage& stage = desktop_.shown.stage();
   const auto here = [&](const Plot& plot) { return box.contains(plot.area().min); };
@@ -263,7 +262,8 @@ void Frame::save_plot(const ScreenRect& box, const std::filesystem::path& file) 
   desktop_.exporter.carry_out(order, stage);
 }
 
-// The row of plots, and what is asked for there; over the view the figures of what is selected.
+// Draws the row of plots and carries out its requests; draws the selected range's figures over the
+// view.
 void Frame::draw_plot_row(ScreenRect rect, ScreenRect view) {
   const PlotSaving saving{
       .folder = sessions_dir(),

@@ -1,4 +1,4 @@
-// One frame of the window: all of its parts, each in its place.
+// Frame of the window: all of its parts, each in its place.
 #pragma once
 
 #include <utility>
@@ -17,7 +17,7 @@ namespace limpid {
 
 class Frame {
  public:
-  // `act` carries out what is asked for in the parts.
+  // Runs commands of the parts by `act`.
   Frame(Desktop& desktop, Window& window, Act act)
       : desktop_(desktop),
         window_(window),
@@ -26,7 +26,7 @@ class Frame {
         dialogs_(desktop) {}
 
   void draw();
-  // Whether the picture has changed since then, without anybody having touched the window.
+  // Returns whether the picture has changed since draw(), even if nobody touched the window.
   bool differs();
   void drop_pictures() {  // before the OpenGL context goes
     dialogs_.drop_pictures();
@@ -39,9 +39,9 @@ class Frame {
   ViewScene view_scene();
   ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);
-  // Where the scene's objects that move are.
+  // Returns the frames of the scene's moving objects.
   static std::vector<Pose> bodies_of(const Stage& stage, std::span<const double> row);
-  // On the selected object; true while the mouse is theirs.
+  // Draws handles of the selected object; returns whether the mouse belongs to them.
   bool draw_handles(const ViewScene& scene, ScreenRect rect);
   void select_under(const Ray& ray, const ViewScene& scene);
   void draw_coupling(ScreenRect rect);
@@ -52,7 +52,6 @@ class Frame {
   void draw_splitters(const Layout& at);
   void draw_fold_tabs(const Layout& at);
 
-  // The parts of the window that remember something themselves.
   Desktop& desktop_;
   Window& window_;
   Act act_;
@@ -62,8 +61,8 @@ class Frame {
   RangePanel figures_;
   Sections sections_;
   Dialogs dialogs_;
-  std::uint64_t seen_of_sweep_ = 0;  // its revision
-  ScreenRect below_banners_{};       // what notices leave free
+  std::uint64_t seen_of_sweep_ = 0;  // revision of the sweep drawn last
+  ScreenRect below_banners_{};       // part of the view that is free for notices
 };
 
 }  // namespace limpid

@@ -28,7 +28,7 @@ double distance(Point p, Point a, Point b) {
   return std::hypot(p.x - a.x - along * x, p.y - a.y - along * y);
 }
 
-// The device a little below its proxy, as in a contact.
+// The device is a little below its proxy, as in a contact.
 const std::array kStrokes{
     Stroke{{{{0.22, 0.80}, {0.56, 0.36}, {0.84, 0.88}}}, 0.075, ink(kDarkPalette, Ink::device)},
     Stroke{{{{0.22, 0.80}, {0.48, 0.22}, {0.84, 0.68}}}, 0.09, ink(kDarkPalette, Ink::proxy)},
@@ -46,7 +46,7 @@ std::vector<std::uint8_t> icon(int size) {
       for (const Stroke& stroke : kStrokes) {
         const double away = std::min(distance(p, stroke.points[0], stroke.points[1]),
                                      distance(p, stroke.points[1], stroke.points[2]));
-        // An edge of one pixel.
+        // The edge is one pixel wide.
         const double cover = std::clamp((stroke.radius - away) * size + 0.5, 0.0, 1.0);
         if (cover <= 0) continue;
         rgb = mix(stroke.rgb, rgb, opacity > 0 ? static_cast<float>(1 - cover) : 0);

@@ -1,4 +1,4 @@
-// The picture of the window in the desktop's lists: the ghost of an arm and its proxy.
+// Icon of the window in the desktop's lists: the ghost of an arm and its proxy.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ struct GLFWwindow;
 
 namespace limpid {
 
-// `size` x `size` pixels of RGBA, from the upper left corner, not multiplied by their opacity.
+// Returns `size` x `size` pixels of RGBA, from the upper left corner, not premultiplied.
 std::vector<std::uint8_t> icon(int size);
-// The same as SVG.
+// Returns the icon as SVG.
 std::string icon_svg();
-// Gives it to the window, in several sizes.
+// Gives the icon to the window, in several sizes.
 void set_icon(GLFWwindow* window);
 
 }  // namespace limpid

@@ -17,9 +17,14 @@ using Kind = KeyInput::Event::Kind;
 
 bool is_control(int key) { return key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL; }
 
+constexpr auto kDoubleClick = std::chrono::milliseconds(300);
+// Values of ImGui's time for a second press, as double clicks are found here: all, none, and its
+// wait.
+constexpr float kAnyTime = 1e9f, kNoTime = 1e-6f, kWaits = 0.35f;  // [s]
+
 }  // namespace
 
-// A key is let go as what it was pressed as, whatever keyboard was chosen meanwhile.
+// A key is released as the key it was pressed as, even if the keyboard has changed meanwhile.
 void KeyInput::key(int place, int action, int modifiers) {
   int key = labels_.at(place);
   if (place > 0 && place < HeldKeys::kKeys) {
@@ -42,7 +47,7 @@ void KeyInput::deal(const Focus& focus) {
   in_menu_ = focus.popup && !focus.text;
   lead_menus_by_keys(in_menu_);
   Taken taken = Taken::nothing;
-  int last = GLFW_KEY_UNKNOWN;  // that a character comes from
+  int last = GLFW_KEY_UNKNOWN;  // key that a character comes from
   int modifiers = 0;
   while (!events_.empty() && (urgent(focus) || !ends_frame(taken))) {
     const Event event = events_.front();
@@ -60,15 +65,15 @@ void KeyInput::deal(const Focus& focus) {
   show(modifiers);
 }
 
-// ImGui's code of a key; 0: it has none. In a menu ImGui takes an item by the space bar and closes
-// it by Esc. There Enter takes it, as the space bar cuts the force and Esc is a command.
+// Returns ImGui's code of a key; 0: none. In a menu ImGui takes an item by the space bar and closes
+// it by Esc. Here the space bar cuts the force and Esc is a command, so that Enter takes the item.
 int KeyInput::seen_as(int key) const {
   if (!in_menu_) return key;
   if (key == GLFW_KEY_SPACE || key == GLFW_KEY_ESCAPE) return 0;
   return key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER ? GLFW_KEY_SPACE : key;
 }
 
-// To ImGui: what is down, but for what somebody else had the focus for.
+// Shows ImGui the keys that are down, without stale ones.
 void KeyInput::show(int modifiers) {
   std::bitset<HeldKeys::kKeys> now;
   for (int key = 0; key <= GLFW_KEY_LAST; ++key) {
@@ -92,19 +97,19 @@ void KeyInput::set_down(int key, bool down) {
   if (key >= 0 && key <= GLFW_KEY_LAST) down_[static_cast<std::size_t>(key)] = down;
 }
 
-// ImGui has yet to see that it was let go.
+// Returns whether ImGui has yet to see the key released.
 bool KeyInput::just_released(int key) const {
   return key >= 0 && key <= GLFW_KEY_LAST && !down(key) &&
          shown_[static_cast<std::size_t>(seen_as(key))];
 }
 
-// The next key leaves a character, which comes right behind it.
+// Returns whether the next key writes a character, which comes right behind it.
 bool KeyInput::types() const {
   return events_.front().kind == Kind::press && events_.size() > 1 &&
          events_[1].kind == Kind::character;
 }
 
-// The next event has to wait for the next frame.
+// Returns whether the next event has to wait for the next frame.
 bool KeyInput::ends_frame(Taken taken) const {
   const Event& next = events_.front();
   if (next.kind == Kind::press && just_released(next.key)) return true;
@@ -114,7 +119,7 @@ bool KeyInput::ends_frame(Taken taken) const {
   return next.kind == Kind::press && (is_modifier(next.key) ? is_control(next.key) : !types());
 }
 
-// A key that cuts the force waits for nothing.
+// Returns whether a key that cuts the force is among the events: nothing may delay it.
 bool KeyInput::urgent(const Focus& focus) const {
   return std::ranges::any_of(events_, [&](const Event& event) {
     return event.kind == Kind::press &&
@@ -122,7 +127,8 @@ bool KeyInput::urgent(const Focus& focus) const {
   });
 }
 
-// `event` has left the queue. With AltGr a key is what it writes, and no other.
+// Returns the key press of an event that has left the queue. With AltGr only the character counts,
+// not the key.
 KeyPress KeyInput::press_of(const Event& event) const {
   const bool writes = !events_.empty() && events_.front().kind == Kind::character;
   const bool alt_gr = down(GLFW_KEY_RIGHT_ALT) && (event.modifiers & GLFW_MOD_ALT) == 0;
@@ -151,22 +157,13 @@ void KeyInput::take(const Event& event, int last) {
   }
 }
 
-namespace {
-
-constexpr auto kDoubleClick = std::chrono::milliseconds(300);
-// ImGui's time for a second press, which has been found here already: all of it, none, and what is
-// waited for it.
-constexpr float kAnyTime = 1e9f, kNoTime = 1e-6f, kWaits = 0.35f;  // [s]
-
-}  // namespace
-
 void MouseInput::ask(SteadyClock::time_point now) { asked_before_ = std::exchange(asked_, now); }
 
 void MouseInput::button(int button, bool down, int modifiers) {
   if (button < 0 || button >= ImGuiMouseButton_COUNT) return;
   bool again = false;
   if (down && button == ImGuiMouseButton_Left) {
-    // It was at some time since GLFW was asked before, and may have been right then.
+    // The press came after GLFW was asked before, perhaps right then.
     again = pressed_ != SteadyClock::time_point{} && asked_before_ - pressed_ < kDoubleClick;
     pressed_ = asked_;
   }

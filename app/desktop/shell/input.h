@@ -1,4 +1,4 @@
-// Keys on their way from the window to who has the focus.
+// Input of keys and mouse on its way from the window to the owner of the focus.
 #pragma once
 
 #include <imgui.h>
@@ -19,13 +19,13 @@ namespace limpid {
 struct KeyPress {
   int key;
   int modifiers;
-  bool repeated = false;   // by being held
-  unsigned character = 0;  // that it wrote, in Unicode; 0: none
+  bool repeated = false;   // the key is held
+  unsigned character = 0;  // character that it wrote, in Unicode; 0: none
 };
 
 class KeyInput {
  public:
-  // What a key or an input method did.
+  // Event of a key or an input method.
   struct Event {
     enum class Kind { press, repeat, release, character } kind;
     int key = 0;
@@ -33,22 +33,22 @@ class KeyInput {
     unsigned character = 0;
   };
 
-  // Labels of the keyboard from now on; before the first call those of a US one.
+  // Sets the labels of the keyboard; before the first call they are those of a US one.
   void set_labels(KeyLabels labels) { labels_ = std::move(labels); }
   const KeyLabels& labels() const { return labels_; }
-  // Events of GLFW in the order in which they happened; `place`: its name of a key.
+  // Takes GLFW's events in the order in which they happened; `place`: GLFW's name of a key.
   void key(int place, int action, int modifiers);
   void character(unsigned character);
 
-  // Once a frame, before ImGui's: hands keys out, and to ImGui those that are its own. A frame
-  // takes what was typed in one go, or one other key, as that may have opened something for the
-  // next one; all that is before a key that cuts the force.
+  // Hands keys out before ImGui's frame, and to ImGui its own; to be called once a frame. A frame
+  // takes text typed in one go, or one other key, as a key may open something for the next one. It
+  // takes all keys up to one that cuts the force.
   void deal(const Focus& focus);
-  // Some are left for the next frame.
+  // Returns whether events are left for the next frame.
   bool waiting() const { return !events_.empty(); }
-  // Those pressed in this frame, without those held since somebody else had the focus.
+  // Returns the keys pressed in this frame, without those held since another focus.
   const std::vector<KeyPress>& pressed() const { return pressed_; }
-  // Presses that frames took so far, without those of modifiers.
+  // Returns the number of presses that frames took so far, without modifiers.
   long taken() const { return taken_; }
   void forget_pressed() { pressed_.clear(); }
 
@@ -66,41 +66,41 @@ class KeyInput {
   void show(int modifiers);
 
   KeyLabels labels_;
-  std::array<int, HeldKeys::kKeys> pressed_as_{};  // the key of a place; 0: none yet
+  std::array<int, HeldKeys::kKeys> pressed_as_{};  // key that a place was pressed as; 0: none yet
   std::deque<Event> events_;
   HeldKeys held_;
-  std::bitset<HeldKeys::kKeys> down_, shown_;  // now; as ImGui was told last
+  std::bitset<HeldKeys::kKeys> down_, shown_;  // present keys; as ImGui knows them
   bool in_menu_ = false;
   std::vector<KeyPress> pressed_;
   long taken_ = 0;
 };
 
-// The mouse on its way from the window to ImGui, which looks once a frame: what is pressed and let
-// go between two frames would be lost, and seen elsewhere than it was.
+// The mouse on its way from the window to ImGui, which looks once a frame. ImGui would miss clicks
+// between two frames, and see others at the wrong place.
 class MouseInput {
  public:
-  // Before GLFW is asked what happened since the last time.
+  // Notes the time; to be called before GLFW is asked for new events.
   void ask(SteadyClock::time_point now);
-  // What it says then, in the order it happened; buttons are ImGui's.
+  // Takes GLFW's events in the order in which they happened; buttons are ImGui's.
   void move(float x, float y) { at_ = {x, y}; }
   void enter(bool over) { over_ = over; }
   void button(int button, bool down, int modifiers = 0);
 
-  // Once a frame, after GLFW's part of ImGui's frame and before ImGui's: one press or release,
-  // where it was, a press with the modifiers that were held then; else where the mouse is `now`.
+  // Gives ImGui one press or release, at its place, a press with its modifiers; else the mouse's
+  // place `now`. To be called once a frame, after GLFW's part of ImGui's frame and before ImGui's.
   void deal(const ImVec2& now);
-  // The mouse is over the window.
+  // Returns whether the mouse is over the window.
   bool over() const { return over_; }
-  // Presses and releases that frames took so far.
+  // Returns the number of presses and releases that frames took so far.
   long taken() const { return taken_; }
-  // Some is left for the next frame.
+  // Returns whether events are left for the next frame.
   bool waiting() const { return !events_.empty(); }
 
  private:
   struct Event {
     int button;
-    int modifiers;     // GLFW's, that were held
-    bool down, again;  // the second press of a double click
+    int modifiers;     // of GLFW, at the event
+    bool down, again;  // again: second press of a double click
     ImVec2 at;
   };
 
@@ -110,7 +110,7 @@ class MouseInput {
   bool over_ = false;
   long taken_ = 0;
   SteadyClock::time_point asked_{}, asked_before_{};
-  SteadyClock::time_point pressed_{};  // at the latest, with the left button
+  SteadyClock::time_point pressed_{};  // latest possible time of the left button's last press
 };
 
 }  // namespace limpid

@@ -15,12 +15,12 @@ bool is_of_commands(int key) {
          key == GLFW_KEY_LEFT_BRACKET || key == GLFW_KEY_RIGHT_BRACKET;
 }
 
-// Has a name of its own on a US keyboard, which is its character's.
+// Returns whether a US keyboard has the key, with its character as GLFW's number.
 bool is_us(int key) {
   return is_of_commands(key) || std::ranges::find(kSigns, key) != kSigns.end();
 }
 
-// The key that a US keyboard labels so; 0: it has none.
+// Returns the key with this label on a US keyboard; 0: none.
 int us_key(const std::string& name) {
   if (name.size() != 1) return 0;
   const int key = std::toupper(static_cast<unsigned char>(name[0]));
@@ -50,7 +50,7 @@ KeyLabels::KeyLabels(const NameOf& name_of) {
   const auto has = [](const auto& keys, int key) {
     return std::ranges::find(keys, key) != keys.end();
   };
-  // Another sign that stands on the place of a missing one of these has to give way.
+  // Keys of commands that are missing get their US place; another sign there gives way.
   for (int place = 0; place < kPlaces; ++place) {
     auto& key = keys_[static_cast<std::size_t>(place)];
     if (is_of_commands(place) && !has(named, place)) key = place;

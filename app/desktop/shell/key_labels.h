@@ -1,4 +1,4 @@
-// Keys by what is printed on them: GLFW names a key by its place on a US keyboard.
+// Labels of keys: GLFW names a key by its place on a US keyboard, people by its print.
 #pragma once
 
 #include <GLFW/glfw3.h>
@@ -12,31 +12,31 @@
 
 namespace limpid {
 
-// Which key is at each place of a keyboard, both by GLFW's names. Letters, digits and signs are
-// where this keyboard has them. What it has nowhere is at its place on a US keyboard: all letters
-// of a Russian keyboard, the digits of a French one, "[" on a German one. Letters, digits and
-// brackets, which commands have, come before other signs there.
+// Key at each place of a keyboard, both by GLFW's names. Letters, digits and signs are where this
+// keyboard has them. If it has none, they stay at their US place: all letters of a Russian
+// keyboard, the digits of a French one, "[" on a German one. Letters, digits and brackets, which
+// commands use, come before other signs there.
 class KeyLabels {
  public:
-  // Gives the label of the key at a place, in UTF-8; null: it has none.
+  // Returns the label of the key at a place, in UTF-8; null: none.
   using NameOf = std::function<const char*(int place)>;
 
   KeyLabels();  // of a US keyboard
   explicit KeyLabels(const NameOf& name_of);
 
-  // A number above all of GLFW's for a key that has no name.
+  // Returns the key at a place; for a key without a name a number above all of GLFW's.
   int at(int place) const;
-  // "[" or "]" as they are to be looked for here: "ü"; all else as it is.
+  // Returns the label of "[" or "]" on this keyboard, as "ü"; all else as it is.
   std::string text(std::string_view key) const;
 
  private:
-  static constexpr int kPlaces = GLFW_KEY_WORLD_2 + 1;  // those that write something
+  static constexpr int kPlaces = GLFW_KEY_WORLD_2 + 1;  // places of keys that write something
 
   std::array<int, kPlaces> keys_{};
   std::array<std::string, kPlaces> names_;
 };
 
-// A key that writes something by itself, but a space.
+// Returns whether the key writes something by itself, other than a space.
 bool is_printable(int key);
 
 }  // namespace limpid

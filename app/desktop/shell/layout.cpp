@@ -6,10 +6,10 @@
 namespace limpid {
 namespace {
 
-// At scale 1 [px]: what the view keeps between two panels, and plots that can still be read.
+// Least width of the view between two panels, and least height of plots, at scale 1 [px].
 constexpr float kLeastView = 300, kLeastPlots = 130;
-constexpr float kBothPanels = 1200;  // a window narrower than that shows one side panel
-// Of the window's height: what plots take unless they need more, and what the view keeps then.
+constexpr float kBothPanels = 1200;  // a narrower window shows one side panel
+// Parts of the window's height: most of the plots, unless they need more, and least above them.
 constexpr float kMostPlots = 0.27f, kLeastAbovePlots = 0.4f;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where the parts of the window go.
+// Layout of the window's parts.
 #pragma once
 
 #include "app/desktop/base/settings.h"
@@ -6,27 +6,26 @@
 
 namespace limpid {
 
-inline constexpr const char* kSidePanel = "side";  // the right one, as a window of ImGui
+inline constexpr const char* kSidePanel = "side";  // the right panel, as a window of ImGui
 
 struct WindowSize {
   float width, height;    // [px]
   float scale;            // of text and controls
-  float menu, transport;  // heights of what is always there [px]
+  float menu, transport;  // heights of menu bar and transport bar [px]
 };
 
 struct Layout {
   ScreenRect view, transport;
-  ScreenRect left, right, plots;  // where they are shown
+  ScreenRect left, right, plots;  // if they are shown
   bool show_left = false, show_right = false, show_plots = false;
 };
 
-// Folds what there is no room for: the plots on a low window, one of the side panels on one
-// narrower than 1200 px at scale 1. That is the right one until the user asks for it; the left one
-// then.
+// Folds parts without room: the plots on a low window, and a side panel on one narrower than 1200
+// px at scale 1. The right panel folds first; once the user asks for it, the left one.
 class WindowLayout {
  public:
-  // `settings` say what is wanted; a panel that is switched off while it is folded was asked for,
-  // and is wanted again.
+  // Returns the layout for `settings`. Switching a panel off while it is folded asks for it: it is
+  // switched on again.
   Layout operator()(Settings& settings, const WindowSize& size);
 
  private:

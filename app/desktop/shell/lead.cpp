@@ -9,7 +9,7 @@
 namespace limpid {
 namespace {
 
-// Into `own` what is otherwise `now` than it was `before`.
+// Makes the changes from `before` to `now` in `own`.
 void take_changes(Parameters& own, const Parameters& now, const Parameters& before,
                   bool of_controller_only) {
   if (now == before) return;
@@ -62,7 +62,7 @@ bool Lead::end(bool study) {
   d_.settings.recent = recent_;
   const auto before = std::exchange(elsewhere_, std::nullopt);
   if (before || !(first == d_.settings.parameters) || !same(twin, d_.settings.twin)) {
-    // A hand on the device is not to feel another law without a word.
+    // The law must not change without notice under a hand on the device.
     if (d_.live.loop().device_in_place()) d_.cut_force();
     if (before) go_back(*before);
     d_.notices.say(study ? "The study has ended. Your settings are back."
@@ -72,9 +72,8 @@ bool Lead::end(bool study) {
   return true;
 }
 
-// Changes that somebody made to the program's scene meanwhile are asked about. The world opens with
-// the settings that belong to it, and these are exact then, whatever an arm in between had fitted
-// to itself.
+// Goes back to the person's world, after the user was asked about changes of the program's scene.
+// The person's settings are taken again at the end, as the world on its way may have fitted gains.
 void Lead::go_back(const Elsewhere& before) {
   d_.settings.scene = before.scene;
   d_.settings.device = before.device;

@@ -1,5 +1,5 @@
-// While a program on the control socket leads the window: what the person had before. It comes back
-// when the program is gone, and it is what is kept for the next start meanwhile.
+// Lead of a program on the control socket: keeps the person's settings and scene meanwhile. They
+// come back when the program is gone, and are kept for the next start.
 #pragma once
 
 #include <optional>
@@ -17,20 +17,22 @@ class Lead {
  public:
   explicit Lead(Desktop& desktop) : d_(desktop) {}
 
-  // A program's are the settings from now on.
+  // Returns whether the settings are a program's now.
   bool on() const { return own_.has_value(); }
-  // Before a program changes a setting; before it opens a scene or an arm. Once more changes
-  // nothing.
+  // Keeps the person's settings. To be called before a program changes a setting;
+  // begin_elsewhere(): before it opens a scene or an arm. Further calls change nothing.
   void begin();
   void begin_elsewhere();
-  // After it has changed something: what differs from that later on, the person has changed.
+  // Notes the program's settings. To be called after its changes: later differences are the
+  // person's.
   void note_program();
-  // Once a turn: keeps that with what comes back.
+  // Adds the person's changes to the settings that come back; to be called once a turn.
   void follow_person();
-  // The person's settings and scene are back, without force on a real device where anything
-  // differs. False: not yet, as something is recorded or loaded. `study`: that it was one is said.
+  // Brings back the person's settings and scene, without force on a real device if anything
+  // differs. Returns false if it has to wait for recording or loading. `study`: the notice speaks
+  // of a study.
   bool end(bool study);
-  // For the next start, without anything that a program has set.
+  // Returns the settings for the next start, without a program's changes.
   Settings settings_to_keep() const;
 
  private:
@@ -43,7 +45,7 @@ class Lead {
   Desktop& d_;
   std::optional<Tuning::Choices> own_;
   std::vector<std::string> recent_;
-  Parameters seen_, seen_twin_;  // as the program has left them
+  Parameters seen_, seen_twin_;  // as the program left them
   std::optional<Elsewhere> elsewhere_;
 };
 

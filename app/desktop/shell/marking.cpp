@@ -108,7 +108,7 @@ void Marking::change(Marks marks) {
   known_.insert(known_.end(), before.begin(), before.end());
   done_.push_back(session.marks());
   session.show(std::move(marks));
-  save(session.marks());  // in the order of their ticks
+  save(session.marks());  // show() has put them into the order of their ticks
 }
 
 void Marking::step(std::vector<Marks>& from, std::vector<Marks>& to) {
@@ -121,7 +121,8 @@ void Marking::step(std::vector<Marks>& from, std::vector<Marks>& to) {
   from.pop_back();
 }
 
-// One after the other beside the window; what is not written stays in the plots, and is said.
+// Writes the marks beside the window, after earlier changes. If that fails, they stay in the plots,
+// and a notice says so.
 void Marking::save(Marks marks) {
   then_ = settings_.parameters;
   live_.save_beside([file = playback_.shown()->file(), marks = std::move(marks), known = known_] {

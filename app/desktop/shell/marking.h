@@ -1,5 +1,5 @@
-// Marks that people set: in the plots of the loop and in what it records, or in a recording that is
-// played, whose file is written anew then.
+// Marks that users set: in the plots of the loop and its recording, or in a recording that is
+// played, whose file is then written anew.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +22,19 @@ class Marking {
           Notices& notices)
       : settings_(settings), live_(live), playback_(playback), dialog_(dialog), notices_(notices) {}
 
-  // At the mouse in a plot, else now: what it says is asked in a dialog.
+  // Opens the dialog for a mark at the mouse in a plot, else now.
   void begin();
-  // Of the recording that is played: one of its marks, by its place among them.
+  // Opens the dialog for one of the played recording's marks, by its place among them.
   void edit(std::size_t which);
-  // To the mark before or after the moment that is shown.
+  // Seeks the mark before or after the moment shown.
   void go(int direction);
-  // Of the recording that is played, where its marks were changed last, and not a setting.
+  // Returns whether marks of the played recording were changed last, and not a setting.
   bool can_undo() const { return last() && !done_.empty(); }
   bool can_redo() const { return last() && !undone_.empty(); }
   void undo() { step(done_, undone_); }
   void redo() { step(undone_, done_); }
 
-  // The dialog: when it is, what it says at first, whether it is there already.
+  // Contents of the dialog: the mark's time, its text, and whether it exists already.
   std::string when() const;
   const std::string& text() const { return text_; }
   bool there() const { return which_.has_value(); }
@@ -55,14 +55,14 @@ class Marking {
   Playback& playback_;
   OpenDialog& dialog_;
   Notices& notices_;
-  std::optional<std::size_t> which_;  // that is edited
-  LiveSession::Moment moment_;        // of a new one, in the loop
-  std::uint64_t tick_ = 0;            // or in a recording
+  std::optional<std::size_t> which_;  // the mark that is edited
+  LiveSession::Moment moment_;        // of a new mark, in the loop
+  std::uint64_t tick_ = 0;            // of a mark in a recording
   std::string text_;
-  std::filesystem::path file_;  // whose steps these are
-  Parameters then_;             // the settings at the last of them
+  std::filesystem::path file_;  // of the steps in done_ and undone_
+  Parameters then_;             // settings at the last step
   std::vector<Marks> done_, undone_;
-  Marks known_;  // all that the file had, as far as this window knows
+  Marks known_;  // all marks that the file has had, as far as this window knows
 };
 
 }  // namespace limpid

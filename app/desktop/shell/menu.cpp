@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What is kept by name; the one that was clicked, empty for none.
+// Draws texts by name; returns the one that was clicked, empty for none.
 std::string named_items(const NamedTexts& texts) {
   std::string chosen;
   for (const NamedTexts::Entry& entry : texts.all()) {
@@ -58,7 +58,7 @@ void about_drops(Desktop&, FileMenus&) {
   ImGui::TextDisabled("Drop models, scenes, recordings or sweeps on the window.");
 }
 
-// Who has the hand: the virtual arm, or one of the devices that are there.
+// Draws the choice of who has the hand: the virtual arm, or a device.
 void arms(Desktop& d, FileMenus&) {
   const ArmDescription& arm = d.live.stage().arm();
   const std::string& in_use = d.devices.hub().in_use();
@@ -81,7 +81,7 @@ void arms(Desktop& d, FileMenus&) {
   ImGui::Separator();
 }
 
-// One of the plots, with all that can be done with it.
+// Draws a menu for each plot.
 void plot_menus(Desktop& d, FileMenus&) {
   std::vector<Plot>& plots = d.shown.stage().plots;
   PlotWish wish = PlotWish::none;
@@ -100,7 +100,7 @@ void plot_menus(Desktop& d, FileMenus&) {
   plots[of].ask(wish);
 }
 
-// What is in a menu beside commands.
+// Part of a menu that is no command.
 struct MenuPart {
   const char* menu;
   std::string_view behind;  // the id of a command; empty: at the top
@@ -130,7 +130,7 @@ void draw_item(const Command& command, Desktop& d) {
   }
 }
 
-// A menu inside of `menu` stands where its first command does in the table.
+// Draws a menu. A menu inside of it stands at the place of its first command in the table.
 void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
   const auto draw_parts = [&](std::string_view behind) {
     for (const MenuPart& part : kParts) {
@@ -155,9 +155,10 @@ void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
   }
 }
 
-// Returns the one that is open, if one is.
+// Draws all menus; returns the one that is open, if any.
 std::optional<std::size_t> draw_menus(Desktop& d, FileMenus& files) {
-  // Before the others: they share a window, which belongs to one of them in a frame.
+  // A key's menu opens before the others are drawn: they share a window, which belongs to one a
+  // frame.
   if (files.to_open) ImGui::OpenPopup(kMenus[*files.to_open]);
   files.to_open.reset();
   std::optional<std::size_t> open;
@@ -170,7 +171,7 @@ std::optional<std::size_t> draw_menus(Desktop& d, FileMenus& files) {
   return open;
 }
 
-// Side by side; arrows go from one to the next.
+// Draws menus side by side; arrow keys go from one to the next.
 void draw_bar_of_menus(Desktop& d, FileMenus& files) {
   const int before = menus_open();
   const auto open = draw_menus(d, files);
@@ -180,7 +181,7 @@ void draw_bar_of_menus(Desktop& d, FileMenus& files) {
   if (step != 0) files.to_open = (*open + on) % kMenus.size();
 }
 
-// Of all menus side by side.
+// Returns the width of all menus side by side.
 float menus_width() {
   float width = ImGui::GetStyle().WindowPadding.x;
   for (const char* menu : kMenus) {

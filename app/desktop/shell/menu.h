@@ -1,4 +1,4 @@
-// The menu bar, with what is going on at its end.
+// Menu bar, with the status at its end.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@
 
 namespace limpid {
 
-// Menus of files: those that were open last, with their pictures, and the shipped scenes.
+// Menus of files: recent ones, with their pictures, and the shipped scenes.
 class FileMenus {
  public:
-  // Inside of a menu. The file that is chosen.
+  // Draws the recent files inside of a menu; returns the file that is chosen.
   std::filesystem::path draw(const std::vector<std::string>& recent);
-  // The same of the shipped scenes; `present`: the one that is open.
+  // Draws the shipped scenes likewise; `present`: the one that is open.
   std::filesystem::path draw_scenes(const std::string& present);
   void drop_pictures() { pictures_.clear(); }  // before the OpenGL context goes
 
-  std::optional<std::size_t> to_open;  // of the bar, in the next frame, by a key
-  bool by_keys = false;                // keys lead through the menu that is open, not the mouse
+  std::optional<std::size_t> to_open;  // menu of the bar to open in the next frame, by a key
+  bool by_keys = false;                // keys lead through the open menu, not the mouse
 
  private:
   struct Entry {
@@ -32,7 +32,7 @@ class FileMenus {
   };
   void look(const std::vector<std::string>& recent);
 
-  // As they were when the menu opened.
+  // Contents as of the opening of the menu.
   std::vector<Entry> entries_;
   std::vector<GalleryCard> scenes_;
   PictureShelf pictures_;
@@ -40,8 +40,7 @@ class FileMenus {
 
 void draw_menu_bar(Desktop& desktop, FileMenus& files);
 
-// What can be done with the selected object, or with the scene where nothing is selected; opened by
-// this name.
+// Name and contents of the menu for the selected object, or for the scene without a selection.
 inline constexpr const char* kObjectMenu = "object menu";
 void draw_object_menu(Desktop& desktop);
 

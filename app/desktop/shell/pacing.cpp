@@ -9,8 +9,8 @@ namespace limpid {
 namespace {
 
 constexpr auto kStirs = std::chrono::milliseconds(700);  // after a touch: hints fade, lists open
-constexpr auto kBeat = std::chrono::milliseconds(500);   // read-outs while nothing moves
-constexpr double kNearly = 0.7;                          // of a refresh
+constexpr auto kBeat = std::chrono::milliseconds(500);   // for numbers while nothing moves
+constexpr double kNearly = 0.7;                          // part of a refresh that counts as waiting
 
 }  // namespace
 
@@ -25,7 +25,7 @@ double pacing_refresh(GLFWwindow* window, const std::function<void()>& paint) {
     glfwSwapBuffers(window);
   };
   if (on_wayland()) {
-    // Nothing is torn there, and an exchange would wait for as long as others hide the window.
+    // Wayland tears nothing, and an exchange would wait while the window is hidden.
     glfwSwapInterval(0);
     exchange();
     return 0;
@@ -34,7 +34,7 @@ double pacing_refresh(GLFWwindow* window, const std::function<void()>& paint) {
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
   const double refresh = mode != nullptr && mode->refreshRate > 0 ? 1.0 / mode->refreshRate : 0;
-  exchange();  // the first ones are taken at once
+  exchange();  // the first exchanges do not wait
   exchange();
   std::array<double, 3> exchanges{};
   for (double& took : exchanges) {

@@ -1,4 +1,5 @@
-// When the window draws: with the display where that says when, and seldom where nothing happens.
+// Pacing of the window's frames: with the display if that sets the pace, and seldom if nothing
+// happens.
 #pragma once
 
 #include <chrono>
@@ -11,16 +12,16 @@ namespace limpid {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// Whether exchanging buffers waits for the display: the times of some empty exchanges are about as
-// long as `refresh`, which is 0 where that is not known. [s]
+// Returns whether exchanging buffers waits for the display: empty `exchanges` take about as long as
+// `refresh` [s], which is 0 if unknown.
 bool display_paces(std::span<const double> exchanges, double refresh);
 
-// Lets exchanges wait for the display, where it does that; the refresh then, else 0 [s]. `paint`:
-// what is exchanged meanwhile, and seen until the first frame.
+// Lets exchanges wait for the display, if they can. Returns the refresh then, else 0 [s]. `paint`
+// draws what is shown until the first frame.
 double pacing_refresh(GLFWwindow* window, const std::function<void()>& paint);
 
-// Whether a frame has to be drawn though the 3D picture is the same: since somebody has just
-// touched the window, whose widgets may still be moving, or for numbers that go on.
+// Tells when a frame is needed though the 3D picture is the same: just after a touch, as widgets
+// may still move, and now and then for numbers.
 class Liveliness {
  public:
   void touch(SteadyClock::time_point now) { touched_ = now; }

@@ -31,7 +31,8 @@ std::vector<Pad> plugged_pads() {
   return pads;
 }
 
-// One that comes while the window is open is told of, once; those of the start are in the panel.
+// A gamepad that is plugged in while the window is open has a notice, once; those of the start are
+// in the panel.
 PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Camera& camera,
                             double dt) {
   const std::string& wanted = settings_.gamepad;

@@ -1,4 +1,4 @@
-// The gamepads that are plugged in, as GLFW knows them, and the one that leads the hand.
+// Gamepads that are plugged in, as GLFW knows them, and the one that leads the hand.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace limpid {
 
-// After input was collected; in the order of their slots. Joysticks whose buttons GLFW has no names
-// for are none.
+// Returns the gamepads in the order of their slots; to be called after input was collected.
+// Joysticks without GLFW's names for their buttons do not count.
 std::vector<Pad> plugged_pads();
 
 class Pads {
@@ -20,15 +20,15 @@ class Pads {
   Pads(const Settings& settings, Notices& notices, LiveSession& live)
       : settings_(settings), notices_(notices), live_(live) {}
 
-  // Those that are there now, `dt` [s] after the last call: the chosen one leads the hand as it is
-  // seen through the camera, unless a `device` does, or the window does not listen. What else it
-  // asks for.
+  // Takes the present gamepads, `dt` [s] after the last call. The chosen one leads the hand as seen
+  // through the camera, unless a `device` does, or the window does not listen. Returns its other
+  // requests.
   struct Heard {
     bool device, listens;
   };
   PadHand::Asked follow(std::vector<Pad> pads, const Heard& heard, const Camera& camera, double dt);
   const std::vector<Pad>& all() const { return pads_; }
-  const std::string& leading() const { return leading_; }  // its name; or none
+  const std::string& leading() const { return leading_; }  // name of the gamepad; or none
 
  private:
   const Settings& settings_;
@@ -37,7 +37,7 @@ class Pads {
   std::vector<Pad> pads_;
   PadHand hand_;
   std::string leading_;
-  bool known_ = false;  // asked for once
+  bool known_ = false;  // pads_ has been read once
 };
 
 }  // namespace limpid

@@ -29,7 +29,7 @@ nlohmann::json plots_of(const Stage& stage) {
   return plots;
 }
 
-// What is selected in the plots, and where its buttons are [px]; null: nothing.
+// Returns the range selected in the plots, and the places of its buttons [px]; null: none.
 nlohmann::json range_of(const Stage& stage) {
   const auto& range = stage.group.range();
   if (!range) return nullptr;
@@ -43,7 +43,7 @@ nlohmann::json range_of(const Stage& stage) {
           {"buttons", buttons}};
 }
 
-// What people noted in the plots, when [s on the history's axis] and in which words.
+// Returns the users' marks in the plots, with their times on the history's axis [s].
 nlohmann::json notes_of(const Stage& stage) {
   nlohmann::json notes = nlohmann::json::array();
   for (const PlotMark& mark : stage.history.marks()) {
@@ -52,7 +52,7 @@ nlohmann::json notes_of(const Stage& stage) {
   return notes;
 }
 
-// |x_E| of the twin, 0 without one [rad].
+// Returns |x_E| of the twin, 0 without one [rad].
 double twin_error(const Desktop& d) {
   const TraceChannels& channels = d.shown.stage().channels();
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
@@ -60,7 +60,8 @@ double twin_error(const Desktop& d) {
   return values[static_cast<std::size_t>(Channel::error)];
 }
 
-// Null without one; `map`: left, top, right and bottom on the screen [px], where it is shown.
+// Returns the sweep's state, null without one; `map`: left, top, right and bottom of the map on the
+// screen [px].
 nlohmann::json state_of(const SweepController& controller) {
   if (controller.sweep() == nullptr) return nullptr;
   const OpenedSweep& sweep = *controller.sweep();
@@ -83,7 +84,8 @@ nlohmann::json state_of(const SweepController& controller) {
 
 nlohmann::json place(const ImVec2& at) { return {at.x, at.y}; }
 
-// `plugged`: the device is in the loop; `places`: what of the dialog can be clicked [px].
+// Returns the identification's state. `plugged`: the device is in the loop; `places`: the dialog's
+// buttons [px].
 nlohmann::json state_of(const IdentifyController& controller, bool plugged) {
   nlohmann::json places = nlohmann::json::object();
   for (const auto& [label, at] : IdentifyDialog::places()) places[label] = place(at);
@@ -94,7 +96,7 @@ nlohmann::json state_of(const IdentifyController& controller, bool plugged) {
           {"places", places}};
 }
 
-// What stands over the picture, and where its buttons are [px].
+// Returns the banners, and the places of their buttons [px].
 nlohmann::json banners_of(const Desktop& d) {
   nlohmann::json all = nlohmann::json::array();
   for (const Banner& banner : d.banners()) {
@@ -108,7 +110,7 @@ nlohmann::json banners_of(const Desktop& d) {
   return all;
 }
 
-// Where the topmost dialog is closed; null without one.
+// Returns the places that close the topmost dialog [px]; null without one.
 nlohmann::json closing() {
   const auto places = dialog_places();
   if (!places) return nullptr;
@@ -117,7 +119,7 @@ nlohmann::json closing() {
   return all;
 }
 
-// Of the recording that is played, at the row shown; null without one.
+// Returns the state of the recording that is played, at the row shown; null without one.
 nlohmann::json recorded(Desktop& d) {
   PlayedSession* session = d.playback.shown();
   if (session == nullptr) return nullptr;
@@ -137,8 +139,8 @@ nlohmann::json recorded(Desktop& d) {
           {"at", session->player().time()}};
 }
 
-// `check`: where the button is that begins the check of its axes; `arm`: the one that takes it for
-// the built-in arm; null while they are not there [px].
+// Returns the device's state. `check`: place of the button that begins the check of its axes;
+// `arm`: of the one that makes it the built-in arm; null while they are not there [px].
 nlohmann::json state_of(const DeviceController& controller) {
   const auto check = noted_place(kSidePanel, kCheckAxes);
   const auto arm = noted_place(kSidePanel, kBuiltInArmButton);
@@ -151,7 +153,8 @@ nlohmann::json state_of(const DeviceController& controller) {
           {"explains_force", noted_place(kSidePanel, "force").has_value()}};
 }
 
-// Where the device's tip and the scene's objects are in the window [px]; null behind the eye.
+// Returns the places of the device's tip and the scene's objects in the window [px]; null behind
+// the eye.
 nlohmann::json places_of(Desktop& d) {
   const auto seen = [&](const Vec3& point) -> nlohmann::json {
     const auto pixel = d.shown.camera.project(point);
@@ -173,7 +176,7 @@ nlohmann::json places_of(Desktop& d) {
           {"objects", objects}};
 }
 
-// Of the question that a program asks: where its answers are [px]; null: none.
+// Returns the places of the answers to a program's question [px]; null: none.
 nlohmann::json question_of(const Desktop& d) {
   if (!d.question.asking()) return nullptr;
   nlohmann::json places = nlohmann::json::object();

@@ -1,4 +1,4 @@
-// The state of the window for scripts that drive it.
+// State of the window for scripts that drive it.
 #pragma once
 
 #include "app/desktop/shell/desktop.h"
@@ -6,15 +6,15 @@
 
 namespace limpid {
 
-// What only the window knows.
+// Part of the state that only the window knows.
 struct WindowState {
   int width, height;
-  long frames;       // drawn up to now
-  bool input_waits;  // what was done is not all in them
+  long frames;       // drawn so far
+  bool input_waits;  // some input is not in these frames
   InputTaken taken;
 };
 
-// One line of JSON on stdout.
+// Prints the state as one line of JSON on stdout.
 void print_state(Desktop& desktop, const WindowState& window);
 
 }  // namespace limpid

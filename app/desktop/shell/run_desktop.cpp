@@ -24,12 +24,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kBetweenStates = 0.09;  // [s]; as often as frames come where they are slower
-
-// Whatever has become of the terminal: fmt would throw.
+constexpr double kBetweenStates = 0.09;  // least time between two lines [s]; slow frames: more
 void say(const std::string& line) { std::fputs(fmt::format("limpid: {}\n", line).c_str(), stderr); }
 
-// Changes that the user could not be asked about are kept for the next start.
+// Keeps changes that the user could not be asked about for the next start.
 void keep_changes(const SceneDocument& document, const ArmDescription& arm,
                   const std::string& scene_file) {
   const std::string name = std::filesystem::path(scene_file).stem().string();
@@ -52,8 +50,8 @@ Settings with(Settings settings, const DesktopOptions& options) {
 
 class Application {
  public:
-  // The haptic thread comes first: what its scheduling allows decides how the window behaves, and
-  // OpenGL's own threads inherit that.
+  // Starts the haptic thread first: its scheduling decides how the window behaves, and OpenGL's own
+  // threads inherit that.
   Application(const DesktopOptions& options, const Settings& settings)
       : options_(options),
         kept_(settings),
@@ -72,19 +70,19 @@ class Application {
   Application& operator=(const Application&) = delete;
 
   void open();
-  void run(const std::string& complaint);  // about the settings
-  void note_size();                        // of the window, for the next start
-  void keep();                             // what is for the next start
-  void finish();                           // motors and recording
-  // with_scene: its changes are still nobody's answer.
+  void run(const std::string& complaint);  // on the settings
+  void note_size();                        // notes the window's size for the next start
+  void keep();                             // keeps settings for the next start
+  void finish();                           // stops the motors and completes the recording
+  // Ends the program. with_scene: keeps the scene's changes, which nobody decided on.
   void leave_without_display(bool with_scene);
 
  private:
   Window::Options prepare_window();
   void turn();
   void carry_out(const WindowRequests& asked);
-  bool asked_to_close();  // true: at once
-  void keep_scene();      // with the changes that nobody was asked about
+  bool asked_to_close();  // returns whether it may end at once
+  void keep_scene();      // keeps changes that nobody was asked about
   void say_what_was_saved();
   Settings settings_to_keep() const;
 
@@ -96,7 +94,7 @@ class Application {
   Frame frame_;
   double last_ = 0;
   std::optional<WindowRemote> remote_;
-  double printed_ = 0;  // the state
+  double printed_ = 0;  // when the state was printed last [s]
   long frames_ = 0;
   bool leaving_ = false;
 };
@@ -114,7 +112,7 @@ void Application::open() {
   desktop_.shown.automatic_quality = AutoQuality(Quality::automatic_level(window_.renderer()));
   desktop_.world.open_last(options_.device, options_.tip, options_.scene,
                            options_.parameters != nullptr);
-  // A double click on a file asks for the file and for nothing else.
+  // A double click on a file asks for the file, not for a device.
   if (!options_.session.empty() || !options_.files.empty()) {
     desktop_.devices.wait_for_choice(
         "This window was started with a file, so that it connects to no device by itself.");
@@ -144,8 +142,7 @@ void Application::run(const std::string& complaint) {
   }
 }
 
-// A recording that runs and unsaved changes are asked about, unless somebody interrupts from
-// outside.
+// Asks about a running recording and unsaved changes, unless an interrupt came from outside.
 bool Application::asked_to_close() {
   if (interrupted) {
     keep_scene();
@@ -167,7 +164,7 @@ void Application::keep_scene() {
   keep_changes(document.editor().document(), desktop_.live.stage().arm(), document.file());
 }
 
-// The motors first, then what has to be complete.
+// Stops the motors first, then completes the recording.
 void Application::finish() {
   try {
     desktop_.live.loop().close();
@@ -177,7 +174,7 @@ void Application::finish() {
   }
 }
 
-// Nothing here may ask the display. What is for the next start comes last.
+// Ends without asking the display for anything. Settings come last.
 void Application::leave_without_display(bool with_scene) {
   say("the display is gone");
   finish();
@@ -186,7 +183,7 @@ void Application::leave_without_display(bool with_scene) {
   std::_Exit(1);
 }
 
-// The desktop goes on in every turn; a frame is drawn where there is something new to see.
+// Does the desktop's work of a turn; draws a frame only if there is something new to see.
 void Application::turn() {
   Notices& notices = desktop_.notices;
   if (options_.until_eof && input_has_ended()) interrupted = true;
@@ -220,7 +217,7 @@ void Application::turn() {
   if (drawing) {
     window_.end_frame();
     say_what_was_saved();
-    // A picture that is shown again says nothing of what this computer can draw.
+    // Only a new picture shows how fast this computer draws.
     if (moved) desktop_.shown.automatic_quality.frame(window_.frame_time());
   }
   frames_ += drawing ? 1 : 0;
@@ -267,7 +264,8 @@ void Application::keep() {
   }
 }
 
-// A window that a program has started keeps nothing but its looks: all else is the program's.
+// Returns the settings to keep. Of a window that a program started only the looks are kept: all
+// else is the program's.
 Settings Application::settings_to_keep() const {
   Settings kept = desktop_.lead.settings_to_keep();
   if (!options_.until_eof) return kept;
@@ -293,8 +291,8 @@ void run_desktop(const DesktopOptions& options) {
   application.open();
   application.run(complaint);
   when_display_is_lost([&application] { application.leave_without_display(false); });
-  application.note_size();   // the last question to the display
-  when_display_is_lost({});  // what is kept is kept here now
+  application.note_size();   // asks the display for the last time
+  when_display_is_lost({});  // the lines below do the same
   application.finish();
   application.keep();
 }

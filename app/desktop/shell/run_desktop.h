@@ -1,4 +1,4 @@
-// The desktop app.
+// Desktop application.
 #pragma once
 
 #include <filesystem>
@@ -15,19 +15,19 @@ struct DesktopOptions {
   std::string device, scene;  // files; empty: as last time
   std::string in_use;         // id of a real device; empty: as last time
   std::string tip;            // a link of the device; empty: as its file has it
-  // From those of the last time; none: as they are.
+  // Makes the parameters from those of the last time; none: they stay.
   std::function<Parameters(const Parameters&)> parameters;
   std::filesystem::path session;             // to play at once
   std::vector<std::filesystem::path> files;  // to open at once, as if dropped
   bool print_state = false;                  // one line of JSON ten times a second
-  double ui_scale = 0;                       // 0: the screen's
+  double ui_scale = 0;                       // 0: the screen's scale
   std::filesystem::path listen;              // a socket for programs; empty: none
-  // A program has started the window: it ends with standard input and keeps no settings.
+  // Says that a program started the window: it ends with standard input and keeps no settings.
   bool until_eof = false;
 };
 
 // Runs until the window is closed. Errors: std::runtime_error without a display; FileError and the
-// like for files that cannot be used.
+// like for unusable files.
 void run_desktop(const DesktopOptions& options);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// The sections of the panel at the right: one table.
+// Sections of the panel at the right, in one table.
 #pragma once
 
 #include <functional>
@@ -15,15 +15,15 @@ using DrawSection = std::function<void(const Act&)>;
 
 struct SectionKind {
   const char* title;
-  bool (*open)(const Desktop&);   // when the window begins
-  DrawSection (*make)(Desktop&);  // with what it remembers; once
+  bool (*open)(const Desktop&);   // at the start of the window
+  DrawSection (*make)(Desktop&);  // with the section's own state; once
 };
 
 class Sections {
  public:
   explicit Sections(Desktop& desktop);
 
-  void draw(const Act& act);  // inside of the panel
+  void draw(const Act& act);  // into the open panel
 
  private:
   Desktop& desktop_;

@@ -76,9 +76,8 @@ void Tuning::use_preset(const std::string& name) {
   notices_.say(fmt::format("Settings: {}. Ctrl+Z brings back what was before.", name));
 }
 
-// Gains that suited the arm before may be far too stiff for this one. What a device's motors give
-// for its own weight is the device's, remembered with it: nothing of it is left to an arm that
-// comes after it.
+// Fits the gains, as those for the arm before may be far too stiff. A device's compensation of its
+// own weight is remembered with the device, and no later arm gets it.
 Tuning::Suited Tuning::suited(const ArmDescription& arm, const DeviceTraits* device) const {
   Suited s{settings_.parameters, settings_.twin.parameters, fitted_for_, of_virtual_, device_,
            encoder_of_device_};
@@ -140,7 +139,7 @@ void Tuning::update() {
   analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), p, std::nullopt);
 }
 
-// One hand, one device, one world for both; what the plots call them.
+// Keeps both runs on one hand, one device and one world, and names them in the plots.
 void Tuning::follow_twin() {
   TwinSettings& twin = settings_.twin;
   if (live_.loop().device_in_place()) twin.on = false;
@@ -154,7 +153,7 @@ void Tuning::follow_twin() {
        {static_cast<int>(settings_.parameters.kind), static_cast<int>(twin.parameters.kind)}});
 }
 
-// In the plots. What both runs have in common is marked once.
+// Marks changes in the plots. Parameters that both runs share are marked once.
 void Tuning::mark_changes(const Parameters& now, const Parameters& before,
                           const std::string& whose) {
   for (const ParameterInfo& info : parameter_table()) {
@@ -164,7 +163,7 @@ void Tuning::mark_changes(const Parameters& now, const Parameters& before,
   }
 }
 
-// What is known of the settings at the row that is shown.
+// Analyzes the recorded settings at the row that is shown.
 void Tuning::follow_recorded(bool another) {
   PlayedSession* session = playback_.shown();
   if (session == nullptr || another) recorded_analysed_.reset();

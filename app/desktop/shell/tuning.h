@@ -1,5 +1,4 @@
-// The settings of the two runs as sliders, keys and presets change them, and what follows from
-// them.
+// Settings of the two runs, their changes by sliders, keys and presets, and their analysis.
 #pragma once
 
 #include <optional>
@@ -15,7 +14,7 @@
 namespace limpid {
 
 class Tuning {
-  // While a device is in the arm's place, what is the virtual arm's.
+  // Parameters of the virtual arm, while a device is in its place.
   struct OfVirtualArm {
     OwnForces forces;
     double encoder_step;  // [rad]
@@ -31,25 +30,25 @@ class Tuning {
   Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
          Playback& playback);
 
-  // What sliders and keys act on: the settings of one of two runs.
+  // Returns the settings that sliders and keys act on: those of one of two runs.
   Parameters& edited();
   bool edits_twin() const { return settings_.twin.on && settings_.twin.edited && !playback_.on(); }
-  const Analysis& analysis() const { return analysis_; }  // of these, at the arm's rest pose
-  // The same of what is played, as it was recorded.
+  const Analysis& analysis() const { return analysis_; }  // of edited(), at the arm's rest pose
+  // Returns the analysis of a played recording's settings.
   const Analysis& recorded_analysis() const { return recorded_analysis_; }
 
-  void next_law();     // where passivity is broken, it ends that
+  void next_law();     // if passivity is broken, ends that
   void toggle_twin();  // precondition: LiveSession::why_twin_is_fixed() is empty
-  // Settings under which the loop gives energy without end, to be looked at. All that changes the
-  // coupling, the world or what is shown ends it, and everything is as it was before.
+  // Breaks passivity for a demonstration. All changes of the coupling, the world or the screen end
+  // it, and everything is as it was before.
   void break_passivity();
   void end_break();
-  void reset();  // all to their usual values
+  void reset();  // to the usual values
   void use_preset(const std::string& name);
 
-  // Settings for an arm that comes into the loop, perhaps with a real device in its place: gains
-  // that suit it, the share of its own weight that motors give, and its encoders. `device` null:
-  // the virtual arm. take() makes them the settings.
+  // Settings for an arm that comes into the loop, perhaps in the shape of a real device. They have
+  // gains that suit it, its motors' share of its own weight, and its encoders. `device` null: the
+  // virtual arm. take() makes them the settings.
   struct Suited {
     Parameters first, twin;
     std::optional<ArmDescription> fitted_for;
@@ -60,23 +59,24 @@ class Tuning {
   Suited suited(const ArmDescription& arm, const DeviceTraits* device) const;
   void take(Suited suited);
   void keep_as_they_are_for(const ArmDescription& arm) { fitted_for_ = arm; }
-  // The arm that is there now is the one that analysis() is of.
+  // Makes analysis() for the present arm.
   void analyze_anew();
-  // Once a frame, before and after the loop has had them.
+  // Follows the settings of both runs, before the loop takes them. follow_recorded() follows those
+  // of a recording, after the loop. Both are to be called once a frame.
   void update();
-  void follow_recorded(bool another);  // session
-  // Remembers with the device how much of its own forces its motors take off the hand.
+  void follow_recorded(bool another);  // session is shown
+  // Remembers with the device which part of its own forces its motors compensate.
   void note_compensation();
-  // Settings of both runs, as they are with the virtual arm, and the arm that they suit.
+  // Settings of both runs as with the virtual arm, and the arm that they suit.
   struct Choices {
     Parameters first;
     TwinSettings twin;
     std::optional<ArmDescription> fitted_for;
   };
   Choices choices() const;
-  // Puts them back, for the arm and the device that are there now.
+  // Puts the choices back, for the present arm and device.
   void take(const Choices& of_person);
-  // For the next start, with whichever arm.
+  // Returns the settings for the next start, for any arm.
   Settings settings_to_keep(const Choices& of_person) const;
 
   NamedTexts presets;
@@ -90,15 +90,15 @@ class Tuning {
   LiveSession& live_;
   DeviceController& devices_;
   Playback& playback_;
-  std::optional<ArmDescription> fitted_for_;  // the arm that the gains suit
+  std::optional<ArmDescription> fitted_for_;  // arm that the gains suit
   std::optional<OfVirtualArm> of_virtual_;    // while a device is in the arm's place
-  std::string device_;                        // then: its id
-  double encoder_of_device_ = 0;              // then [rad]
+  std::string device_;                        // id of that device
+  double encoder_of_device_ = 0;              // of that device [rad]
   Analysis analysis_;
-  Parameters analysed_, analysed_twin_;  // that marks and analysis know
+  Parameters analysed_, analysed_twin_;  // as marks and analysis know them
   bool analysed_of_twin_ = false;
   Analysis recorded_analysis_;
-  std::optional<Parameters> recorded_analysed_;  // that it is of
+  std::optional<Parameters> recorded_analysed_;  // parameters of recorded_analysis_
 };
 
 }  // namespace limpid

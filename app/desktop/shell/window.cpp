@@ -28,7 +28,7 @@ namespace limpid {
 
 namespace {
 
-// X11's handler is told of nothing but the display.
+// Returns the action of leave_once(), as X11's handler gets no data but the display.
 std::function<void()>& what_to_do() {
   static std::function<void()> leave;
   return leave;
@@ -39,10 +39,48 @@ int leave_once(void*) {
   return 0;
 }
 
+constexpr auto kFrame = std::chrono::microseconds(16667);
+
+KeyLabels labels_now() {
+  return KeyLabels([](int place) -> const char* {
+    return glfwGetKeyScancode(place) > 0 ? glfwGetKeyName(place, 0) : nullptr;
+  });
+}
+
+// Creates the window. Errors: std::runtime_error if there is none to be had.
+GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) {
+  hint_window();
+  const auto fitting = [&](int asked, int least, int most) {
+    const double scaled = static_cast<double>(area.scale) * asked;
+    return static_cast<int>(std::clamp<double>(scaled, std::min(least, most), most));
+  };
+  GLFWwindow* window = glfwCreateWindow(fitting(options.width, kLeastWidth, area.width),
+                                        fitting(options.height, kLeastHeight, area.height),
+                                        "Limpid", nullptr, nullptr);
+  if (window == nullptr) {
+    glfwTerminate();
+    throw std::runtime_error("the display gives no OpenGL 3.3; `limpid run` works without");
+  }
+  glfwMakeContextCurrent(window);
+  glfwSetWindowSizeLimits(window, std::min(kLeastWidth, area.width),
+                          std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
+  move_into(area, window);
+  if (!on_wayland()) set_icon(window);
+  return window;
+}
+
+// Watches touches; ImGui calls these callbacks from its own.
+void watch_touches(GLFWwindow* window) {
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Window::touched(w); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { Window::touched(w); });
+}
+
 }  // namespace
 
 void when_display_is_lost(std::function<void()> leave) {
-  // Looked up in what GLFW has loaded: Wayland's has none of it.
+  // The function is looked up in GLFW's libraries: Wayland has none.
   using Handler = int (*)(void*);
   using Set = Handler (*)(Handler);
   const auto set = reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, "XSetIOErrorHandler"));
@@ -54,7 +92,7 @@ void when_display_is_lost(std::function<void()> leave) {
 std::string window_for_portals() {
   GLFWwindow* window = glfwGetCurrentContext();
   if (window == nullptr || on_wayland()) return {};
-  // GLFW for Wayland alone has none of it.
+  // GLFW for Wayland alone does not have this function.
   using Number = unsigned long (*)(GLFWwindow*);
   const auto number = reinterpret_cast<Number>(dlsym(RTLD_DEFAULT, "glfwGetX11Window"));
   return number != nullptr ? fmt::format("x11:{:x}", number(window)) : "";
@@ -88,18 +126,6 @@ void move_into(const WorkArea& area, GLFWwindow* window) {
   if (fit_x != x || fit_y != y) glfwSetWindowPos(window, fit_x, fit_y);
 }
 
-namespace {
-
-constexpr auto kFrame = std::chrono::microseconds(16667);
-
-KeyLabels labels_now() {
-  return KeyLabels([](int place) -> const char* {
-    return glfwGetKeyScancode(place) > 0 ? glfwGetKeyName(place, 0) : nullptr;
-  });
-}
-
-}  // namespace
-
 struct Window::Impl {
   GLFWwindow* glfw = nullptr;
   std::optional<ImGuiGl> imgui;
@@ -111,11 +137,11 @@ struct Window::Impl {
   SteadyClock::time_point began = due;
   double frame_time = 0;
   Liveliness liveliness;
-  double refresh = 0;      // of the display, where exchanging buffers waits for it; else 0 [s]
-  bool exchanged = false;  // buffers, in the last turn
+  double refresh = 0;      // of the display, if exchanging buffers waits for it; else 0 [s]
+  bool exchanged = false;  // buffers were exchanged in the last turn
   struct Picture {
     std::filesystem::path file;
-    double left, top, right, bottom;  // nothing: all
+    double left, top, right, bottom;  // all 0: the whole window
   };
   std::vector<Picture> pictures;  // to be saved
   std::vector<SavedPicture> saved;
@@ -126,8 +152,8 @@ struct Window::Impl {
     return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
   }
 
-  // In place of ImGui's own: keys and characters go to their owner, and nothing between two frames
-  // is lost.
+  // Replaces ImGui's callbacks: keys and characters go to their owner, and nothing between two
+  // frames is lost.
   void listen() const {
     glfwSetCursorPosCallback(glfw, [](GLFWwindow* w, double right, double down) {
       Window::touched(w);
@@ -144,7 +170,7 @@ struct Window::Impl {
     glfwSetKeyCallback(glfw, [](GLFWwindow* w, int place, int, int action, int modifiers) {
       Window::touched(w);
       KeyInput& input = Impl::of(w).keys;
-      if (action == GLFW_PRESS) input.set_labels(labels_now());  // may be another keyboard's by now
+      if (action == GLFW_PRESS) input.set_labels(labels_now());  // the keyboard may have changed
       input.key(place, action, modifiers);
     });
     glfwSetCharCallback(glfw, [](GLFWwindow* w, unsigned character) {
@@ -153,7 +179,8 @@ struct Window::Impl {
     });
   }
 
-  // Where the mouse is; nowhere while it is not over the window and the window not in front.
+  // Returns the place of the mouse; nowhere if it is not over the window, and the window not in
+  // front.
   ImVec2 mouse_place() const {
     constexpr float kNowhere = -std::numeric_limits<float>::max();
     if (!mouse.over() && glfwGetWindowAttrib(glfw, GLFW_FOCUSED) == GLFW_FALSE)
@@ -186,40 +213,6 @@ struct Window::Impl {
 };
 
 void Window::touched(GLFWwindow* window) { Impl::of(window).liveliness.touch(SteadyClock::now()); }
-
-namespace {
-
-// Throws std::runtime_error where there is none to be had.
-GLFWwindow* create_window(const Window::Options& options, const WorkArea& area) {
-  hint_window();
-  const auto fitting = [&](int asked, int least, int most) {
-    const double scaled = static_cast<double>(area.scale) * asked;
-    return static_cast<int>(std::clamp<double>(scaled, std::min(least, most), most));
-  };
-  GLFWwindow* window = glfwCreateWindow(fitting(options.width, kLeastWidth, area.width),
-                                        fitting(options.height, kLeastHeight, area.height),
-                                        "Limpid", nullptr, nullptr);
-  if (window == nullptr) {
-    glfwTerminate();
-    throw std::runtime_error("the display gives no OpenGL 3.3; `limpid run` works without");
-  }
-  glfwMakeContextCurrent(window);
-  glfwSetWindowSizeLimits(window, std::min(kLeastWidth, area.width),
-                          std::min(kLeastHeight, area.height), GLFW_DONT_CARE, GLFW_DONT_CARE);
-  move_into(area, window);
-  if (!on_wayland()) set_icon(window);
-  return window;
-}
-
-// ImGui calls what is there before it.
-void watch_touches(GLFWwindow* window) {
-  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double) { Window::touched(w); });
-  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { Window::touched(w); });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { Window::touched(w); });
-  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { Window::touched(w); });
-}
-
-}  // namespace
 
 Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   if (!start_glfw()) {
@@ -270,7 +263,7 @@ bool Window::wait() {
   const std::chrono::duration<double> least(0.5 * w.refresh);
   std::this_thread::sleep_until(
       paced ? w.began + std::chrono::duration_cast<SteadyClock::duration>(least) : w.due);
-  // A frame that took too long does not hurry the next ones.
+  // Frames after a slow one are not hurried.
   w.due = std::max(w.due + kFrame, SteadyClock::now());
   w.began = SteadyClock::now();
   w.keys.forget_pressed();

@@ -1,4 +1,4 @@
-// The window of the operating system with OpenGL and ImGui in it.
+// Window of the operating system with OpenGL and ImGui in it.
 #pragma once
 
 #include <filesystem>
@@ -14,42 +14,37 @@ struct GLFWwindow;
 
 namespace limpid {
 
-// The display that goes while the program runs.
-
-// X11's library ends the program when its display is gone, where `leave` is called first, once, on
-// the thread that used the display: what is to be kept is kept there, without drawing anything.
-// Does nothing where the window is not X11's. After the window is there.
+// Calls `leave` when the display is lost, once, on the thread that used the display. X11's library
+// then ends the program: `leave` has to keep unsaved work, without drawing. Does nothing if the
+// window is not X11's. Precondition: the window is there.
 void when_display_is_lost(std::function<void()> leave);
 
-// The program's window as it is named to the desktop's portals; empty where it has no name for
-// them, as on Wayland.
+// Returns the window's name for the desktop's portals; empty if it has none, as on Wayland.
 std::string window_for_portals();
-
-// Where windows may be on the screen.
 
 inline constexpr int kLeastWidth = 900, kLeastHeight = 560;  // of a window
 
-// The screen without the desktop's bars.
+// Area of the screen without the desktop's bars, where windows may be.
 struct WorkArea {
   int x = 0, y = 0, width = kLeastWidth, height = kLeastHeight;
   float scale = 1;    // of the screen
-  float density = 1;  // pixels for each of the window's units
+  float density = 1;  // pixels per unit of the window
 };
 
-// Of the first screen.
+// Returns the area of the primary screen.
 WorkArea work_area();
 
-// Inside of the area with the frame that the desktop drew round the window.
+// Moves the window into the area, with the frame that the desktop drew round it.
 void move_into(const WorkArea& area, GLFWwindow* window);
 
-// What became of a picture that was to be saved.
+// Outcome of saving a picture.
 struct SavedPicture {
   std::filesystem::path file;
-  std::string error;  // empty: it is there
+  std::string error;  // empty: it was saved
 };
 
-// How much of what was done to the window frames took so far: presses of keys without modifiers,
-// presses and releases of the mouse's buttons.
+// Input that frames took so far: presses of keys without modifiers, presses and releases of the
+// mouse's buttons.
 struct InputTaken {
   long keys = 0, buttons = 0;
 };
@@ -58,54 +53,55 @@ class Window {
  public:
   struct Options {
     int width = 1440, height = 900;
-    double ui_scale = 0;  // 0: the screen's
+    double ui_scale = 0;  // 0: the screen's scale
     Theme theme = Theme::dark;
   };
 
-  // As large as asked for, but no larger than the screen has room for. Throws std::runtime_error
-  // where there is no display or no OpenGL 3.3.
+  // Opens a window of this size, but no larger than the screen has room for. Errors:
+  // std::runtime_error without a display or OpenGL 3.3.
   explicit Window(const Options& options);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  // A turn of the program: waits until the display, or else the next sixtieth of a second, is there
-  // and collects input. False once the user closes the window.
+  // Begins a turn of the program: waits for the display, or for the next sixtieth of a second, and
+  // collects input. Returns false once the user closes the window.
   bool wait();
-  // Somebody touched the window, or its numbers are old: a frame has to be drawn in this turn.
+  // Returns whether a frame has to be drawn in this turn: after a touch, or because numbers are
+  // old.
   bool due() const;
-  // Of what was done there is more than the frames up to now took.
+  // Returns whether some input was not taken by a frame yet.
   bool input_waits() const;
   InputTaken input_taken() const;
-  // Deals the input to who has the `focus` and begins ImGui's frame.
+  // Gives the input to the owner of the `focus`, and begins ImGui's frame.
   void begin_frame(const Focus& focus);
   // Draws ImGui over the picture and shows the frame.
   void end_frame();
 
   void close();
-  void keep_open();  // after begin_frame() returned false
+  void keep_open();  // after wait() returned false
   void toggle_full_screen();
   bool full_screen() const;
   bool focused() const;
-  // Keys pressed in this frame, without those held since somebody else had the focus.
+  // Returns the keys pressed in this frame, without those held since another focus.
   const std::vector<KeyPress>& keys() const;
-  // Labels of the keyboard that is chosen now.
+  // Returns the labels of the present keyboard.
   const KeyLabels& key_labels() const;
-  // Files dropped on the window in this frame.
+  // Returns the files dropped on the window in this frame.
   const std::vector<std::filesystem::path>& dropped() const;
   void size(int& width, int& height) const;              // in ImGui's coordinates
   void asked_size(int& width, int& height) const;        // Options that would give this size
   void framebuffer_size(int& width, int& height) const;  // in pixels
-  const std::string& renderer() const;                   // what OpenGL calls itself
+  const std::string& renderer() const;                   // OpenGL's name of itself
   double frame_time() const;  // work of the last frame, without waiting [s]
-  // Saves what is between two corners [ImGui's coordinates] once the frame is drawn; without
-  // corners all of it. What became of it is in saved() after end_frame().
+  // Saves the part between two corners [ImGui's coordinates] once the frame is drawn, or all
+  // without corners. saved() has the outcome after end_frame().
   void save_picture(const std::filesystem::path& png);
   void save_picture(const std::filesystem::path& png, double left, double top, double right,
                     double bottom);
-  // For the system's calls: somebody did something to it.
+  // Notes a touch; for the system's callbacks.
   static void touched(GLFWwindow* window);
-  // Pictures that the last end_frame() wrote, or could not write.
+  // Returns the pictures that the last end_frame() wrote, or could not write.
   const std::vector<SavedPicture>& saved() const;
 
  private:

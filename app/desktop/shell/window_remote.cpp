@@ -54,20 +54,20 @@ WindowRemote::WindowRemote(const fs::path& socket, Desktop& desktop)
 
 bool WindowRemote::turn() {
   follow_limits();
-  // Gains that were fitted to a new arm are no choice of a person.
+  // Gains that were fitted to a new arm are no choice of the person.
   if (const Stage* now = &d_.live.stage(); std::exchange(stage_, now) != now) {
     remote_.reopened();
     if (d_.lead.on()) d_.lead.note_program();
   }
   follow_lead();
   const bool any = remote_.turn();
-  // Esc and other dialogs leave the question open.
+  // The question stays open after Esc and other dialogs.
   if (d_.question.asking() && d_.dialog.kind() == nullptr && !d_.document.asking())
     d_.dialog.open("ask");
   return any;
 }
 
-// What a person has set with a slider or a preset is what may be set from here.
+// Takes limits that the person sets with a slider or a preset as the highest for programs.
 void WindowRemote::follow_limits() {
   const Parameters& now = d_.settings.parameters;
   if (std::string limits = limits_of(now); limits != limits_) {
@@ -78,7 +78,7 @@ void WindowRemote::follow_limits() {
 
 void WindowRemote::saved(std::span<const SavedPicture> pictures) {
   saved_.insert(saved_.end(), pictures.begin(), pictures.end());
-  constexpr std::size_t kKept = 32;  // some are saved by the window's own key
+  constexpr std::size_t kKept = 32;  // the window's own key saves pictures, too
   if (saved_.size() > kKept) saved_.erase(saved_.begin(), saved_.end() - kKept);
 }
 
@@ -125,14 +125,14 @@ void WindowRemote::add_actions(RemoteHost& host) {
   };
 }
 
-// As its key does it, also where keys do nothing while a program hides the settings.
+// Runs a command as its key does, even if a program hides the settings.
 void WindowRemote::run(const char* command) {
   if (const std::string why = run_command(command, d_, Asker::program); !why.empty()) {
     throw RemoteError(why);
   }
 }
 
-// What the window says of work beside it that has failed.
+// Returns the window's last notice of a failure.
 std::string WindowRemote::last_complaint(const char* otherwise) const {
   const auto& all = d_.notices.all();
   const auto bad = std::find_if(all.rbegin(), all.rend(), [](const Notice& n) { return n.bad; });
@@ -161,14 +161,14 @@ void WindowRemote::set(const Parameters& p, bool of_twin) {
   d_.lead.note_program();
 }
 
-// From now on the settings are this client's, until it is gone.
+// Gives the settings to this client until it is gone.
 void WindowRemote::lead(LineServer::Client client) {
   d_.tuning.end_break();
   d_.lead.begin();
   leaders_.insert(client);
 }
 
-// When all that led are gone, what they recorded ends, and the person's settings come back.
+// Ends the leaders' recording and brings the person's settings back, once all leaders are gone.
 void WindowRemote::follow_lead() {
   d_.lead.follow_person();
   if (!leaders_.empty() || !d_.lead.on()) return;
@@ -267,10 +267,10 @@ Answer WindowRemote::record(const Keys& keys) {
 Answer WindowRemote::stop() {
   const bool began = std::exchange(records_, false);
   if (!d_.live.recording() && !began) throw RemoteError("stop: nothing is being recorded");
-  // One that ended by itself, as on a disk that is full, says why.
+  // A recording that ended by itself, as on a full disk, says why.
   return Answer::Later([this]() -> std::optional<json> {
     if (d_.live.recording()) {
-      if (d_.live.loop().recording()) run("session.record");  // which stops it
+      if (d_.live.loop().recording()) run("session.record");  // ends the recording
       return std::nullopt;
     }
     if (d_.live.closing()) return std::nullopt;
@@ -280,7 +280,7 @@ Answer WindowRemote::stop() {
   });
 }
 
-// The key of both is the same.
+// Starts over, or goes back to live: both have the same key.
 Answer WindowRemote::start_over() {
   if (d_.live.recording()) throw RemoteError("start_over: stop the recording before");
   run(d_.playback.on() ? "session.back_to_live" : "device.start_over");
@@ -363,7 +363,7 @@ Answer WindowRemote::picture(const Keys& keys) {
   });
 }
 
-// What it has hidden or asked for ends with it.
+// Ends the client's hiding and its question.
 void WindowRemote::gone(LineServer::Client client) {
   if (hides_ == client) {
     d_.blind = false;

@@ -1,5 +1,4 @@
-// The window, led by programs on the control socket: what they ask for is done as menus and keys
-// do it.
+// Window led by programs on the control socket: it carries out their requests as menus and keys do.
 #pragma once
 
 #include <filesystem>
@@ -16,15 +15,15 @@ namespace limpid {
 
 class WindowRemote {
  public:
-  // Listens at `socket` from now on. Errors: ListenError.
+  // Listens at `socket`. Errors: ListenError.
   WindowRemote(const std::filesystem::path& socket, Desktop& desktop);
   ~WindowRemote() { d_.live.on_row = nullptr; }
   WindowRemote(const WindowRemote&) = delete;
   WindowRemote& operator=(const WindowRemote&) = delete;
 
-  // Once a turn of the window. True if anything was asked for.
+  // Carries out requests; to be called once a turn of the window. Returns whether there were any.
   bool turn();
-  // Pictures that the window has written, or could not write.
+  // Takes the pictures that the window has written, or could not write.
   void saved(std::span<const SavedPicture> pictures);
 
  private:
@@ -53,18 +52,18 @@ class WindowRemote {
   void gone(LineServer::Client client);
 
   Desktop& d_;
-  Parameters highest_;  // of the settings whose limits a person has chosen
-  std::string limits_;  // as they were last seen, or set from here
+  Parameters highest_;  // settings with the limits that the user chose
+  std::string limits_;  // as last seen, or set from here
   const Stage* stage_ = nullptr;
   std::uint64_t tick_ = 0;                   // of the newest row
-  std::optional<LineServer::Client> hides_;  // the client that asked for it
-  std::optional<LineServer::Client> asks_;   // the same of the question
-  std::set<LineServer::Client> leaders_;     // that have changed settings or scene
-  bool study_ = false;                       // one of them has hidden the settings
+  std::optional<LineServer::Client> hides_;  // client that hides the settings
+  std::optional<LineServer::Client> asks_;   // client whose question is open
+  std::set<LineServer::Client> leaders_;     // clients that have changed settings or scene
+  bool study_ = false;                       // a leader has hidden the settings
   std::filesystem::path recorded_;           // by a client
-  bool records_ = false;                     // a client has begun what nobody has stopped
-  std::vector<SavedPicture> saved_;          // that somebody waits for
-  Remote remote_;                            // last: it goes first
+  bool records_ = false;                     // a client's recording that nobody has stopped
+  std::vector<SavedPicture> saved_;          // that a client waits for
+  Remote remote_;                            // last member: is destroyed first
 };
 
 }  // namespace limpid

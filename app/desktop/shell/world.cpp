@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kSaid = 3;  // warnings that fit beside the picture
 constexpr auto kBetweenWorlds = std::chrono::milliseconds(33);
 
-// What the loop takes from an arm once, when it is opened.
+// Returns whether two arms have the same limits, which the loop takes only when it opens.
 bool same_limits(const ArmDescription& one, const ArmDescription& other) {
   const auto same = [](const Joint& a, const Joint& b) {
     return a.effort == b.effort && a.lower == b.lower && a.upper == b.upper;
@@ -38,7 +38,7 @@ bool same_limits(const ArmDescription& one, const ArmDescription& other) {
   return one.delay == other.delay && std::ranges::equal(one.joints, other.joints, same);
 }
 
-// Earlier ones change what later ones go into.
+// Kinds of files in the order of opening: earlier ones change the world that later ones go into.
 enum class DropKind : std::uint8_t { arm, scene, model, session, sweep, hand, unknown };
 
 DropKind drop_kind(const fs::path& file) {
@@ -83,8 +83,8 @@ void World::open_given(const std::string& device, const std::string& tip,
     d_.document.set_file(file.string());
     return open(std::move(arm), std::move(whole), {});
   }
-  // Models may be large: they come in while the window is there already. Saving what is there
-  // without them must not write over the scene's own file.
+  // Large models come in while the window is there already. Saving the scene without them must not
+  // write over its own file.
   std::erase_if(whole.scene.objects, has_shape<Mesh>);
   whole.models.clear();
   whole.toml.clear();
@@ -94,7 +94,7 @@ void World::open_given(const std::string& device, const std::string& tip,
   load_scene(file);
 }
 
-// For the arm that is there when its turn comes.
+// Loads the scene for the arm that is there at its turn.
 void World::load_scene(const fs::path& file) {
   d_.document.loader().open_scene(file, [this] { return d_.live.stage().arm(); });
 }
@@ -102,7 +102,7 @@ void World::load_scene(const fs::path& file) {
 void World::open_last(const std::string& device, const std::string& tip, const std::string& scene,
                       bool fixed) {
   std::string arm = device, end = tip, world = scene;
-  expanded_ = device;  // who names a file on the command line means it
+  expanded_ = device;  // a file on the command line may be expanded
   if (device.empty()) std::tie(arm, end) = last_arm();
   const ArmDescription first =
       read_urdf(arm.empty() ? default_device().string() : arm, end, consent(arm));
@@ -128,7 +128,7 @@ void World::open(ArmDescription arm, SceneDocument document, MeshModels models,
   take_stage(std::move(models), saved);
 }
 
-// The stage's scene is the one that is edited from now on.
+// Takes the stage's scene as the one to edit.
 void World::take_stage(MeshModels models, bool saved) {
   const Stage& stage = d_.live.stage();
   if (!d_.playback.on()) {
@@ -164,13 +164,13 @@ void World::ask_about(const XacroToExpand& arm) {
 
 void World::expand_xacro() {
   expanded_ = xacro_->file.string();
-  const bool known = expanded_ == d_.settings.device;  // that of the last time, with its tip
+  const bool known = expanded_ == d_.settings.device;  // file of the last time, with its tip
   open_arm(expanded_, known ? d_.settings.device_tip : std::string());
 }
 
 bool World::built_in_arm() const { return device_file_ == default_device(); }
 
-// Of the last time; the built-in one if its file is gone or spoilt.
+// Returns the arm of the last time; the built-in one if its file is gone or spoilt.
 std::pair<std::string, std::string> World::last_arm() {
   try {
     if (!d_.settings.device.empty()) read_urdf(d_.settings.device, d_.settings.device_tip);
@@ -192,7 +192,7 @@ void World::accept(LoadedArm& loaded) {
   d_.document.leave(take);
 }
 
-// The present one, as far as it is of the arm's size.
+// Returns the present scene for the arm, if both arms are of like size.
 std::optional<SceneEditor::World> World::scene_for(const ArmDescription& arm) const {
   const double now = reach(arm), before = reach(d_.live.stage().arm());
   constexpr double kAlike = 1.5;
@@ -274,8 +274,8 @@ void World::close_device(const std::function<void()>& then) {
   leave();
 }
 
-// The virtual arm as its file has it by now, else as it was, else the one that the scene which
-// waits was last in; the first that is taken. False, and the device stays, where none is.
+// Puts the virtual arm back: as its file has it, else as it was, else as the waiting scene had it.
+// Returns false, and the device stays, if none of these can be opened.
 bool World::virtual_arm_again() {
   std::vector<ArmDescription> arms;
   try {
@@ -302,7 +302,7 @@ bool World::virtual_arm_again() {
   return false;
 }
 
-// An arm or scene that is refused leaves everything as it is.
+// Changes the arm. If arm or scene are refused, everything stays as it is.
 void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device) {
   if (auto scene = d_.document.scene_for(arm)) {
     return open(arm, std::move(scene->document), std::move(scene->models), std::move(device),
@@ -315,8 +315,8 @@ void World::change_arm(const ArmDescription& arm, std::unique_ptr<Device> device
   d_.document.set_file(file.string());
 }
 
-// Brings back the scene that was open before a device brought its own, with its changes. It goes on
-// waiting where this arm cannot have it.
+// Brings back the scene that a device's own scene has replaced, with its changes. The scene goes on
+// waiting if this arm cannot have it.
 void World::take_up_set_aside(const ArmDescription& arm) {
   const SetAside& waiting = *d_.document.waiting();
   auto scene = Document::scene_for(arm, waiting);
@@ -366,7 +366,7 @@ std::string World::why_fixed() const {
              : "";
 }
 
-// After the user has been asked what to do with unsaved changes.
+// Leaves the scene, after the user was asked about unsaved changes.
 void World::leave_for_scene(std::function<void()> then) {
   if (d_.live.recording()) {
     d_.notices.say("Stop the recording (R) before opening another scene.", true);
@@ -396,7 +396,7 @@ void World::new_scene() {
         {.name = "table top", .pose = pose_at({0.2, 0, -0.04}), .shape = Plane{}});
     fresh.models.resize(1);
     fresh.urdf = d_.live.stage().arm().urdf;
-    first_scene_ = fresh.file.string();  // not one to open at the next start, as long as it is none
+    first_scene_ = fresh.file.string();  // not opened at the next start while no file has it
     accept(fresh);
   });
 }
@@ -406,7 +406,7 @@ void World::add_model(const fs::path& file) {
 }
 
 void World::take_loaded() {
-  if (d_.live.recording()) return;  // it waits
+  if (d_.live.recording()) return;  // loaded files wait
   try {
     if (auto loaded = d_.document.loader().take()) {
       std::visit([this](auto& what) { accept(what); }, *loaded);
@@ -422,7 +422,7 @@ void World::take_loaded() {
 }
 
 void World::accept(LoadedScene& loaded) {
-  // A device has brought its arm meanwhile: joints and links are that one's from now on.
+  // A device has brought its arm meanwhile: the scene's joints and links have to be that arm's.
   if (loaded.urdf != d_.live.stage().arm().urdf) return load_scene(loaded.file);
   d_.tuning.end_break();
   if (d_.live.loop().device_in_place()) {
@@ -447,7 +447,7 @@ void World::accept(LoadedScene& loaded) {
 
 void World::accept(LoadedModel& loaded) { d_.document.add_model(std::move(loaded), workplace()); }
 
-// Where the arm, its tips and other objects are now.
+// Returns the present places of the arm, its tips and other objects.
 Workplace World::workplace() const {
   const Stage& stage = d_.live.stage();
   const ArmDescription& arm = stage.arm();
@@ -480,7 +480,7 @@ void World::show_scene() {
   shown_ = now;
 }
 
-// The loop takes in what can be touched now, seldom enough not to be kept busy by a drag.
+// Gives changes of the scene to the loop, seldom enough for a drag not to keep it busy.
 void World::hand_scene_over(bool at_once) {
   const auto now = std::chrono::steady_clock::now();
   if (d_.document.editor().version().world == touched_ || d_.live.recording()) return;
@@ -490,7 +490,8 @@ void World::hand_scene_over(bool at_once) {
   touched_since_ = now;
 }
 
-// Rows have room for so many bodies: with more or fewer another loop begins, at rest.
+// Takes up another number of bodies by opening another loop, at rest, as rows have room for so many
+// only.
 void World::take_up(const SceneEditor& editor) {
   const int bodies = count_bodies(editor.scene());
   if (bodies == d_.live.loop().layout().bodies()) return d_.live.touch(editor.scene());
@@ -504,7 +505,7 @@ void World::take_up(const SceneEditor& editor) {
   } catch (const std::exception& e) {
     d_.notices.say(e.what(), true);
   }
-  shown_ = {};  // the new stage does not know what is selected
+  shown_ = {};  // the new stage does not know the selection
 }
 
 void World::toggle_recording() {
@@ -569,7 +570,7 @@ void World::open_sweep(const fs::path& table) {
   d_.dialog.open("sweep");
 }
 
-// Along the path as fast as it goes, in the present world; the window plays what came of it.
+// Runs a hand's path as fast as possible in the present world, and plays the result.
 void World::run_hand(const fs::path& file) {
   RunPlan plan;
   plan.arm = d_.live.stage().arm();

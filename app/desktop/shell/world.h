@@ -1,5 +1,5 @@
-// Which arm, scene and device are open: how they come from files and ports into the loop and the
-// document, and what goes along with them.
+// World: the arm, scene and device that are open, and their way from files and ports into loop and
+// document.
 #pragma once
 
 #include <chrono>
@@ -24,56 +24,60 @@ class World {
  public:
   explicit World(Desktop& desktop) : d_(desktop) {}
 
-  // After the window is there. Errors: FileError and the like, for a device or scene given by hand.
+  // Opens files named by the user, once the window is there; empty: the default. Errors: FileError
+  // and the like.
   void open_given(const std::string& device, const std::string& tip, const std::string& scene);
-  // The same, empty for what was open last time; a scene that is gone by now only says so.
-  // `fixed`: settings that were given by hand stay as they are, whatever the arm.
+  // Opens files named by the user; empty: those of last time. A missing scene of last time only
+  // shows a notice. `fixed`: settings named by the user stay as they are, whatever the arm.
   void open_last(const std::string& device, const std::string& tip, const std::string& scene,
                  bool fixed);
 
-  // Loading goes on beside the window; what is there stays until it is done.
+  // Load files beside the window; the present world stays until they are ready.
   void open_files(const std::vector<std::filesystem::path>& files);  // by their extensions
   void open_scene(const std::filesystem::path& file);
-  // A table with nothing on it, which no file has yet.
+  // Opens an empty table, which no file has yet.
   void new_scene();
   void add_model(const std::filesystem::path& file);
-  // Another arm in place of the virtual one, with its pictures and the gains that suit it.
+  // Loads another virtual arm, with its pictures and the gains that suit it.
   void open_arm(const std::filesystem::path& file, const std::string& tip = {});
   bool built_in_arm() const;
-  // The virtual arm's, whatever device is in its place.
+  // Returns the virtual arm's file, whatever device is in its place.
   NamedArm arm_file() const { return {device_file_, device_tip_}; }
-  // The arm that the dialog "expand xacro" asks about, and the answer that it may be expanded.
+  // Returns the arm that the dialog "expand xacro" asks about; expand_xacro() is the answer that it
+  // may be expanded.
   const std::optional<XacroToExpand>& xacro() const { return xacro_; }
   void expand_xacro();
-  // The arm whose tip is to be chosen, in the dialog "arm tip".
+  // Returns the arm whose tip is to be chosen, in the dialog "arm tip".
   const std::optional<TipsToChoose>& tips() const { return tips_; }
   void add_object(Object object);
 
-  // A real device takes the arm's place, or leads the virtual one's hand; and back. The scene comes
-  // along with all its changes, or, if it cannot, the user is asked first.
+  // Puts a real device in the arm's place, or lets it lead the virtual arm's hand; and back. The
+  // scene comes along with all its changes, or else waits until the device is gone. The user is
+  // then asked about changes of the device's own scene.
   void open_device(std::unique_ptr<Device> device);
   void close_device(const std::function<void()>& then = [] {});
 
-  // Arm, device and scene that are open now, to come back to.
+  // Arm, device and scene that are open, to come back to.
   struct Place {
     ArmDescription arm;
     std::string device_file, device_tip;
-    bool with_device = false;  // a real one is in the arm's place
+    bool with_device = false;  // a real device is in the arm's place
     std::string file;          // of the scene
     std::shared_ptr<const SceneEditor::World> world;
   };
   Place place() const;
-  // Opens it again; where a real device has come or gone meanwhile, its scene for the arm that is
-  // there now. Errors: as LiveSession::open().
+  // Opens a place again. If a real device has come or gone meanwhile, opens its scene for the
+  // present arm. Errors: as LiveSession::open().
   void go_to(const Place& place);
 
-  void toggle_recording();  // of all that is there now, in a new file of the user's sessions
-  // The same in this one; empty: a new one. `replaces`: also where there is one, which stays until
+  void toggle_recording();  // into a new file among the user's sessions
+  // Records into this file; empty: a new one. `replaces`: also an existing one, which stays until
   // the recording is complete.
   void record(const std::filesystem::path& file, bool replaces = false);
   std::string why_fixed() const;
 
-  // Once a frame: what is ready goes into loop and document, what was changed to picture and loop.
+  // Takes loaded files into loop and document; hand_over(): gives the scene's changes to picture
+  // and loop. Both are to be called once a frame.
   void take_loaded();
   void hand_over(bool at_once);
 
@@ -93,7 +97,7 @@ class World {
   bool virtual_arm_again();
   void change_arm(const ArmDescription& arm, std::unique_ptr<Device> device);
   void take_up_set_aside(const ArmDescription& arm);
-  void open_sweep(const std::filesystem::path& table);  // in its map
+  void open_sweep(const std::filesystem::path& table);  // shows its map
   void run_hand(const std::filesystem::path& file);
   void start_recording(std::filesystem::path file, bool replaces);
   Workplace workplace() const;
@@ -105,13 +109,13 @@ class World {
 
   Desktop& d_;
   std::string device_file_, device_tip_;
-  std::optional<ArmDescription> virtual_arm_;  // that a device has the place of
-  std::string first_scene_;                    // the start's, while its models come in
+  std::optional<ArmDescription> virtual_arm_;  // the one that a device has replaced
+  std::string first_scene_;  // file of the scene at the start, while its models load
   std::optional<TipsToChoose> tips_;
   std::optional<XacroToExpand> xacro_;
-  std::string expanded_;  // the xacro file that may be expanded
+  std::string expanded_;  // xacro file that may be expanded
   SceneEditor::Version shown_;
-  std::shared_ptr<const SceneEditor::World> touched_;  // by the loop
+  std::shared_ptr<const SceneEditor::World> touched_;  // taken by the loop
   std::chrono::steady_clock::time_point touched_since_;
 };
 

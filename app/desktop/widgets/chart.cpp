@@ -12,7 +12,7 @@
 namespace limpid {
 namespace {
 
-constexpr float kGap = 4;  // beside numbers [px]
+constexpr float kGap = 4;  // between numbers and frame [px]
 
 double share(const ChartAxis& axis, double value) {
   if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
@@ -39,7 +39,7 @@ std::vector<Tick> ticks(const ChartAxis& axis, int at_most) {
     }
     return all;
   }
-  // 1, 2 and 5 of every decade, or 1 alone where there are many.
+  // Ticks are at 1, 2 and 5 of every decade, or only at 1 if there are many decades.
   const bool few = axis.high / axis.low < 300;
   for (double decade = std::pow(10, std::floor(std::log10(axis.low))); decade <= axis.high;
        decade *= 10) {

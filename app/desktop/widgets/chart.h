@@ -1,4 +1,4 @@
-// A small picture of curves over two axes, for panels.
+// Chart: a small picture of curves over two axes, for panels.
 #pragma once
 
 #include <imgui.h>
@@ -17,25 +17,27 @@ struct ChartPoint {
 struct ChartAxis {
   double low = 0, high = 1;  // low < high; above 0 if logarithmic
   bool logarithmic = false;
-  bool labelled = true;                                    // with numbers
-  std::vector<std::pair<double, std::string>> words = {};  // in their place
+  bool labelled = true;                                    // has numbers
+  std::vector<std::pair<double, std::string>> words = {};  // at places of their own
 };
 
-// Draws into the ImGui window that is open, at its cursor and as wide as there is room.
+// Draws into the open ImGui window, at its cursor and as wide as there is room.
 class Chart {
  public:
-  // `title` stands above it, and says quantity and unit. `height` of all of it [px at scale 1].
+  // Draws the axes. `title` stands above the chart, and says quantity and unit. `height` is that of
+  // all [px at scale 1].
   Chart(const std::string& title, const ChartAxis& x, const ChartAxis& y, float height);
   ~Chart();
   Chart(const Chart&) = delete;
   Chart& operator=(const Chart&) = delete;
 
-  ImVec2 place(ChartPoint p) const;   // on the screen [px]
-  ChartPoint at(ImVec2 place) const;  // the other way round
+  ImVec2 place(ChartPoint p) const;   // [px] on the screen
+  ChartPoint at(ImVec2 place) const;  // inverse of place()
   const ScreenRect& inside() const { return inside_; }
   void line(const std::vector<ChartPoint>& points, ImU32 colour, float width = 1.8f) const;
   void dashes(const std::vector<ChartPoint>& points, ImU32 colour) const;
-  // In small letters, kept inside the frame. `right`: ends there instead of beginning there.
+  // Writes in small letters, kept inside the frame. `right`: `at` is the end instead of the
+  // beginning.
   void text(ImVec2 at, const std::string& words, ImU32 colour, bool right = false) const;
 
  private:

@@ -1,5 +1,6 @@
 #include "app/desktop/widgets/modal.h"
 
+#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -17,16 +18,11 @@ void UiStack::unwind() const {
   ImGui::ErrorCheckEndFrameRecover(nullptr);
 }
 
-}  // namespace limpid
-
-#define GLFW_INCLUDE_NONE
-
-namespace limpid {
 namespace {
 
-constexpr const char* kClosing = "the closing button";  // among a dialog's noted ones
+constexpr const char* kClosing = "the closing button";  // label of the noted closing button
 
-// What is noted is in the storage that ImGui keeps for each window.
+// Returns the key of a note in the storage that ImGui keeps for each window.
 ImGuiID key(const char* label, const char* what) {
   return ImHashStr((std::string("noted ") + what + " of " + label).c_str());
 }
@@ -55,7 +51,7 @@ bool begin_modal(const char* title, bool& open, const ImVec2& size) {
       ImGui::BeginPopupModal(title, &wanted,
                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | fit);
-  if (!wanted) open = false;  // by its cross; ImGui has closed it itself then
+  if (!wanted) open = false;  // closed by its cross, and ImGui has done so
   if (!drawn) return false;
   if (open) {
     note_dialog();
@@ -79,7 +75,7 @@ void close_button(const char* label, bool& open) {
 }
 
 bool accepted() {
-  // The Enter that opened the dialog is not its own.
+  // The Enter that opened the dialog does not count.
   if (ImGui::IsWindowAppearing() || ImGui::GetIO().WantTextInput) return false;
   return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) &&
          (key_pressed(GLFW_KEY_ENTER, false) || key_pressed(GLFW_KEY_KP_ENTER, false));

@@ -1,4 +1,4 @@
-// Dialogs: how they open and close, and where that is clicked.
+// Dialogs: how they open and close, and the places where programs may click them.
 #pragma once
 
 #include <imgui.h>
@@ -8,8 +8,6 @@
 #include <utility>
 
 namespace limpid {
-
-// What throws in a frame becomes a notice, and the next frame comes.
 
 // Closes whatever ImGui windows, groups and styles an exception left open.
 class UiStack {
@@ -21,8 +19,8 @@ class UiStack {
   int fonts_;
 };
 
-// Does `work`; `complain(what)` hears of an exception. Drawing may be left in the middle, if it
-// began outside of other ImGui windows.
+// Does `work`, and calls `complain(message)` on an exception, so that the next frame comes. Ends
+// unfinished drawing, if that began outside of other ImGui windows.
 template <class Work, class Complain>
 void guarded(Complain&& complain, Work&& work) {
   const UiStack before;
@@ -34,28 +32,28 @@ void guarded(Complain&& complain, Work&& work) {
   }
 }
 
-// One that asks something: what is behind it is dimmed and waits. To be called in every frame,
-// outside of other windows. True while the dialog is to be drawn; it pairs with ImGui::EndPopup()
-// then. Its cross clears `open`. `size` [px]; 0: as the content needs.
+// Begins a modal dialog: all behind it is dimmed and waits. To be called in every frame, outside of
+// other windows. Returns true while the dialog is to be drawn; then pairs with ImGui::EndPopup().
+// Its cross clears `open`. `size` [px]; 0: as the content needs.
 bool begin_modal(const char* title, bool& open, const ImVec2& size);
 
-// A window beside the others; pairs with ImGui::End() whatever it returns. Its cross clears `open`.
+// Begins a window beside the others; pairs with ImGui::End() in any case. Its cross clears `open`.
 bool begin_dialog(const char* title, bool& open, ImGuiWindowFlags flags);
 
-// The button that closes the dialog being drawn, as its cross and Esc do.
+// Draws the button that closes the present dialog, as its cross and Esc do.
 void close_button(const char* label, bool& open);
 
-// Enter was pressed in the dialog being drawn, and not in a text field, which takes it itself.
+// Returns whether Enter was pressed in the present dialog. A text field takes Enter itself.
 bool accepted();
 
-// Says where the item just drawn is to who drives the window from outside.
+// Notes the place of the item just drawn for programs that drive the window.
 void note_place(const char* label);
-void note_at(const char* label, ImVec2 place);  // the same of what is no item
-bool noted_button(const char* label);           // a button that does so
-// The middle of one that was drawn in the last frame, in a window [px]; nothing: it was not.
+void note_at(const char* label, ImVec2 place);  // notes a place that is no item's
+bool noted_button(const char* label);           // draws a button and notes its place
+// Returns the middle of a noted item in a window of the last frame [px], or nothing.
 std::optional<ImVec2> noted_place(const char* window, const char* label);
 
-// Where the topmost dialog is closed [px].
+// Places that close the topmost dialog [px].
 struct DialogPlaces {
   ImVec2 cross;
   std::optional<ImVec2> button;

@@ -26,21 +26,9 @@ std::string small_letters(std::string text) {
   return text;
 }
 
-}  // namespace
-
-fs::path expanded(const std::string& text) {
-  const char* home = std::getenv("HOME");
-  if (home != nullptr && (text == "~" || text.starts_with("~/"))) {
-    return fs::path(home) / (text.size() > 2 ? text.substr(2) : "");
-  }
-  return text;
-}
-
-namespace {
-
 constexpr std::size_t kMostPlaces = 10;
 
-// As xdg-user-dirs has it, which the desktop writes.
+// Returns the documents folder of xdg-user-dirs, whose file the desktop writes.
 fs::path documents() {
   const char* config = std::getenv("XDG_CONFIG_HOME");
   const fs::path file =
@@ -59,6 +47,13 @@ fs::path documents() {
 
 }  // namespace
 
+fs::path expanded(const std::string& text) {
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && (text == "~" || text.starts_with("~/"))) {
+    return fs::path(home) / (text.size() > 2 ? text.substr(2) : "");
+  }
+  return text;
+}
 std::vector<PathDialog::Place> PathDialog::places(const std::vector<Place>& own,
                                                   const std::vector<std::string>& recent) {
   std::vector<Place> all;
@@ -144,7 +139,7 @@ void PathDialog::draw_places(const std::vector<Place>& places) {
   }
 }
 
-// In the folder that is listed; it is shown then.
+// Makes a folder in the listed one, and shows it.
 void PathDialog::draw_new_folder() {
   ImGui::SameLine();
   if (!names_folder_) {

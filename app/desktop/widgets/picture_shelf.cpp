@@ -17,7 +17,7 @@ void onto_dark(std::span<unsigned char> rgba, Rgb sheet) {
     const auto pixel = rgba.subspan(i, 3);
     const auto [least, most] = std::ranges::minmax(pixel);
     for (std::size_t c = 0; c < 3; ++c) {
-      const int turned = pixel[c] + 255 - least - most;  // lightness, as HSL has it
+      const int turned = pixel[c] + 255 - least - most;  // turned lightness, as HSL defines it
       pixel[c] = static_cast<unsigned char>(paper[c] + turned * (255 - paper[c]) / 255);
     }
   }
@@ -47,7 +47,7 @@ ImTextureID PictureTexture::id() const {
 
 namespace {
 
-constexpr float kHeight = 2.7f;         // of an item [text sizes]
+constexpr float kHeight = 2.7f;         // height of an item [text sizes]
 constexpr float kAspect = 256 / 144.f;  // of a picture
 
 float picture_width() { return std::round(kAspect * kHeight * ImGui::GetFontSize()); }
@@ -61,7 +61,7 @@ const PictureTexture* PictureShelf::get(const std::filesystem::path& picture) {
     try {
       known->second.emplace(picture);
     } catch (const std::exception&) {
-      // There is none then.
+      // A picture that cannot be read stays empty.
     }
   }
   return known->second ? &*known->second : nullptr;

@@ -1,4 +1,4 @@
-// A picture from a file, as ImGui shows it.
+// Pictures from files, as ImGui shows them.
 #pragma once
 
 #include <imgui.h>
@@ -13,14 +13,14 @@
 
 namespace limpid {
 
-// Pixels of four bytes: what was white becomes `sheet`, a dark colour, what was black white; hues
+// Turns the lightness of RGBA pixels: white becomes `sheet`, a dark colour, and black white. Hues
 // and saturation stay.
 void onto_dark(std::span<unsigned char> rgba, Rgb sheet);
 
-// Needs a current OpenGL context from construction to destruction.
+// Texture of a picture. Needs a current OpenGL context from construction to destruction.
 class PictureTexture {
  public:
-  // On `sheet` a figure that was drawn on white paper lies on paper of that colour. Errors:
+  // Reads a picture. `sheet` is the colour of paper for a figure drawn on white. Errors:
   // std::runtime_error naming a file that is missing or no picture.
   explicit PictureTexture(const std::filesystem::path& file, std::optional<Rgb> sheet = {});
   ~PictureTexture();
@@ -36,12 +36,12 @@ class PictureTexture {
   int width_ = 0, height_ = 0;
 };
 
-// Pictures of files that are shown in a list, loaded when they are first asked for.
+// Pictures of files in a list, each loaded when it is first asked for.
 class PictureShelf {
  public:
-  // Null where there is none that can be read. Needs a current OpenGL context.
+  // Returns a picture, or null if it cannot be read. Needs a current OpenGL context.
   const PictureTexture* get(const std::filesystem::path& picture);
-  // Before the OpenGL context goes, and to have them read anew.
+  // Drops all pictures: before the OpenGL context goes, or to read them anew.
   void clear() { pictures_.clear(); }
 
  private:
@@ -49,15 +49,15 @@ class PictureShelf {
 };
 
 struct PictureItem {
-  const PictureTexture* picture;  // or null
-  std::string name, about;        // two lines
-  bool there = true;              // else greyed, and not to be chosen
+  const PictureTexture* picture;  // may be null
+  std::string name, about;        // the two lines of text
+  bool there = true;              // otherwise grey, and cannot be chosen
 };
 
-// A line of a list with its picture at the left; true when it is chosen. `width` [px]; 0: all there
-// is. `marked`: the keys are at it.
+// Draws a line of a list with its picture at the left; returns true when it is chosen. `width`
+// [px]; 0: all there is. `marked`: the arrow keys are at it.
 bool picture_item(const PictureItem& item, float width = 0, bool marked = false);
-// What it takes [px].
+// Returns the width that the item needs [px].
 float picture_item_width(const PictureItem& item);
 
 }  // namespace limpid

@@ -64,7 +64,7 @@ void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* hel
 }
 
 void begin_panel(const char* name, ScreenRect rect) {
-  // Behind its round corners.
+  // The backdrop shows behind the panel's round corners.
   ImGui::GetBackgroundDrawList()->AddRectFilled(rect.min, rect.max,
                                                 colour(current_palette().backdrop));
   ImGui::SetNextWindowPos(rect.min);
