@@ -13,7 +13,7 @@ struct AxisPhysics {
   double inertia = 2e-3;   // [kg m^2]
   double friction = 5e-3;  // viscous, of the bearing [N m s/rad]
   double coulomb = 0;      // dry, of the bearing [N m]
-  double weight = 0;       // weight: pulls by weight sin x [N m]
+  double weight = 0;       // pulls by weight sin x [N m]
   double stiffness = 2;    // of the hand [N m/rad]
   double damping = 0.05;   // of the hand [N m s/rad]
   double lower = -0.35;    // stop [rad]
