@@ -74,9 +74,8 @@ struct CheckedStick : testing::Test {
   std::unique_ptr<Model> model;
   std::unique_ptr<SimulatedLink> link;
   std::optional<AxisCheck> check;
-  std::function<void(Two&)> wire = [](Two&) {
-  };                 // changes the check's torque on its way to the motors
-  double asked = 0;  // largest torque that the check asked for [N m]
+  std::function<void(Two&)> wire = [](Two&) {};  // from the check's torque to the motors'
+  double asked = 0;                              // largest torque of the check [N m]
 };
 using Models = testing::Types<PidJoystickModel, ArduinoJoystick, FinoJoystick, OpenFfboardJoystick,
                               AdaptJoystick>;

@@ -120,7 +120,7 @@ void print(const char* device, const char* what, Time takes, Time zero, Time lim
               what, in_ms(zero), in_ms(limit));
 }
 
-// One report is on its way, and zero takes another one for each of two axes.
+// A report is on its way, and zero takes another one for each of two axes.
 constexpr Time kTurn = 1ms;
 
 TYPED_TEST(SlowEndpoint, HasNoForceSoonAfterTheLoopStandsStillHoweverLongItsReportsTake) {

@@ -101,8 +101,7 @@ std::vector<Report> RawDeviceModel::next_input(Time now) {
 }
 
 void RawDeviceModel::on_output(ReportView report, Time now) {
-  const ReportView message =
-      report.empty() ? report : report.subspan(1);  // the protocol's message follows the id, 0
+  const ReportView message = report.empty() ? report : report.subspan(1);  // without the id, 0
   if (report.empty() || report[0] != 0 || !well_formed(message) || !follows(message)) {
     ++rejected_;
     return;
