@@ -108,8 +108,7 @@ class FreeMotion {
       const AxisPhysics& axis = stick.axes[static_cast<std::size_t>(i)];
       const double v = axes.velocity(i), a = (v - before_[i]) / 1e-3, x = axes.position(i);
       const double torque = hand.torque(i, t);
-      const double mean =
-          0.5 * (torque + torque_[i]);  // mean over the tick, as for the acceleration
+      const double mean = 0.5 * (torque + torque_[i]);  // as the acceleration's, over the tick
       before_[i] = v, torque_[i] = torque;
       if (t < 3 || std::abs(v) < 0.05) continue;
       const double inertia = axis.inertia * a, damping = (axis.friction + b_v) * v;
