@@ -666,7 +666,7 @@ TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
   fs::create_directories(sessions);
   const RunPlan plan = test::plan("table.toml", "touch.csv", 5);
   {
-    // An unfinished recording.
+    // The recording is never finished.
     Recorder cut(sessions / "cut.h5", session_info(plan), Parameters{}, false);
     simulate(plan, {},
              [&](std::span<const double> row, LaneChanges) { return cut.push_waiting(row); });
@@ -683,7 +683,7 @@ TEST_F(ADesktop, SaysThatALeftoverHasNothingToRecover) {
   RunPlan plan;
   plan.arm = test::omni();
   plan.hand.source = "mouse";
-  // An unfinished recording.
+  // The recording is never finished.
   Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);
   desktop->playback.recover_leftovers(sessions);
   EXPECT_TRUE(said("nothing was recorded"));
