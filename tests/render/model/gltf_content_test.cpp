@@ -193,7 +193,7 @@ TEST(GltfContent, MovesTextureCoordinates) {
                R"("KHR_texture_transform":{"offset":[0.5,0.25],"scale":[2,4],)"
                R"("rotation":1.57079632679}}}}}])";
   const Model model = parse_gltf(file.binary(), "part.glb");
-  // (1, 1), scaled to (2, 4), turned clockwise, as v points down, then moved.
+  // (1, 1), scaled to (2, 4), turned counterclockwise with v pointing down, then moved.
   EXPECT_TRUE(model.vertices[1].uv.isApprox(Eigen::Vector2f(4.5f, -1.75f), 1e-5f));
 }
 

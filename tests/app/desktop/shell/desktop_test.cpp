@@ -407,7 +407,7 @@ TEST_F(ADesktop, SaysThatItCannotRecordAndGoesOn) {
   EXPECT_TRUE(until([&] { return loop().status().ticks > ticks + 50; }));
 }
 
-// The recording's device is in the loop.
+// The recording is made with the device in the loop.
 TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
   desktop->devices.hub().use("device");
   desktop->devices.hub().notes("device").limits.tip_force = 1.25;
