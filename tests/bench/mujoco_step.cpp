@@ -24,7 +24,7 @@ std::string text(const Pose& pose) {
                      text(pose.translation()), q.w(), q.x(), q.y(), q.z());
 }
 
-// The arm and the plane as MuJoCo spells them; only tip and plane can touch, without friction.
+// The arm and the plane in MuJoCo's format; only tip and plane can touch, without friction.
 std::string mjcf(const ArmDescription& arm, const Object& plane) {
   std::string xml = fmt::format(
       "<mujoco><compiler angle=\"radian\" boundmass=\"1e-9\"/>"

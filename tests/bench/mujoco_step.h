@@ -1,4 +1,4 @@
-// MuJoCo's step of the same arm on the same plane, as a yardstick.
+// MuJoCo's step of the same arm on the same plane, for comparison.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace limpid::bench {
 
-// `steps` steps of 1 ms from posture x, the tip pulled down with 1 N; nothing where the benchmark
-// was built without MuJoCo.
+// Times `steps` steps of 1 ms from posture x, the tip pulled down with 1 N. Returns nothing if the
+// benchmark was built without MuJoCo.
 std::optional<Samples> mujoco_steps(const ArmDescription& arm, const Scene& scene,
                                     const Eigen::VectorXd& x, int steps);
 

@@ -1,5 +1,5 @@
-// How long a frame of 1280 x 720 takes with a model of so many triangles in sight, at each level
-// of quality: render_bench [FOLDER] also writes what was drawn.
+// Time of a frame of 1280 x 720 with models of many sizes, at each level of quality. render_bench
+// [FOLDER] also writes the pictures.
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kWidth = 1280, kHeight = 720, kFrames = 15;
 
-// A ball of 6 cm with dimples, of about so many triangles.
+// A ball of 6 cm with dimples, of about `triangles` triangles.
 std::shared_ptr<const Model> dimpled_ball(std::size_t triangles) {
   const auto rows = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(triangles) / 4));
   const std::uint32_t columns = 2 * rows;
@@ -56,7 +56,7 @@ ArmDescription two_links() {
 }
 
 struct FrameTime {
-  double wall, processor;  // [ms], the second over all threads
+  double wall, processor;  // [ms], `processor` over all threads
 };
 
 double median(std::vector<double> times) {
@@ -65,7 +65,7 @@ double median(std::vector<double> times) {
   return *middle;
 }
 
-// Every frame is another picture: the second link moves.
+// Moves the second link, so that every frame is another picture.
 FrameTime median_frame(SceneView& view, ViewState state, const Camera& camera) {
   std::vector<double> wall, processor;
   const Pose straight = state.proxy.links[1];
@@ -78,7 +78,7 @@ FrameTime median_frame(SceneView& view, ViewState state, const Camera& camera) {
     const std::clock_t begin = std::clock();
     view.draw(state, camera, 0, 0, kWidth, kHeight);
     glFinish();
-    if (i == 0) continue;  // the first one also prepares
+    if (i == 0) continue;  // the first frame also prepares
     wall.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());

@@ -1,5 +1,5 @@
-// The controller and the virtual arm beside MuJoCo's step of the same arm, as `limpid bench` times
-// them; or only their ticks, for counting instructions.
+// The controller and the virtual arm beside MuJoCo's step of the same arm, timed as in `limpid
+// bench`; or only their ticks, for counting instructions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ constexpr const char* kHelp =
     "\n"
     "and divide what it collected by TICKS.\n";
 
-// What `limpid bench` says of the same, over MuJoCo's step.
+// Prints the times of `limpid bench` for a chain, over MuJoCo's step.
 void print_chain(int joints) {
   const ArmDescription arm = chain(joints);
   const Eigen::VectorXd x = bent(arm);

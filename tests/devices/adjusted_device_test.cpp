@@ -7,7 +7,7 @@
 namespace limpid {
 namespace {
 
-// Two joints: the first turned round, twice as far and with its zero moved; the second as it is.
+// Two joints: the first turned round, twice as far and with its zero moved; the second unchanged.
 struct Adjusted : testing::Test {
   Adjusted() {
     auto inner = std::make_unique<test::FakeDevice>(2);
@@ -36,7 +36,7 @@ TEST_F(Adjusted, SaysAnglesAsItsUserWantsThem) {
 
 TEST_F(Adjusted, TurnsItsRangeRoundWithIt) {
   const DeviceTraits& traits = device->traits();
-  EXPECT_DOUBLE_EQ(traits.lower.at(0), -1.5);  // at the device's upper end, 1
+  EXPECT_DOUBLE_EQ(traits.lower.at(0), -1.5);  // this is the device's upper end, 1
   EXPECT_DOUBLE_EQ(traits.upper.at(0), 2.5);
   EXPECT_DOUBLE_EQ(traits.resolution.at(0), 2e-4);
   EXPECT_DOUBLE_EQ(traits.effort.at(0), 0.25);
@@ -60,8 +60,8 @@ TEST_F(Adjusted, PushesWithTheSamePowerAsItIsTold) {
   EXPECT_DOUBLE_EQ(fake->told[1], -0.2);
 }
 
-// Motors that give twice what they are told: the torque at the joint is the one that is asked for,
-// and what the joint can be asked for is the most that the device takes.
+// The motors give twice the commanded torque. The joint's torque is the wanted one, and its limit
+// is the most that the device accepts.
 TEST(AdjustedTorque, IsWhatTheMotorsGive) {
   constexpr double kScale = 2;
   auto inner = std::make_unique<test::FakeDevice>(2);
@@ -80,7 +80,7 @@ TEST_F(Adjusted, Stops) {
   EXPECT_TRUE(fake->stopped);
 }
 
-// Told the opposite, it does what it is told; what is read of it stays.
+// The command is reversed, so the device does what is asked; its readings stay.
 TEST(AdjustedDevice, TurnsTheTorqueOfAReversedMotorRoundAndNothingElse) {
   auto inner = std::make_unique<test::FakeDevice>(3);
   test::FakeDevice& fake = *inner;

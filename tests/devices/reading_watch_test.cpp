@@ -1,4 +1,4 @@
-// Which readings are believed, against the numbers of safety_limits.h written out.
+// Belief in readings, against the numbers of safety_limits.h written out.
 #include "devices/reading_watch.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 // A device of two joints, each between -1 and 1 rad, or without an end, read every millisecond.
 struct Watched : testing::Test {
-  // Another reading, with the first joint here [rad], after so long [s].
+  // Gives another reading, with the first joint at x [rad], after so long [s]; whether it is
+  // believed.
   bool says(double x, double after = 1e-3) {
     ++reading.count;
     reading.x[0] = x;
@@ -56,7 +57,7 @@ TEST_F(Watched, IsSomewhere) {
   }
 }
 
-// 100 rad/s for the millisecond, and for the 5 ms that the reading before may have been old.
+// 100 rad/s for the millisecond, and for the 5 ms that the previous reading may have been old.
 TEST_F(Watched, MovesByNoMoreThanTheFastestJointDoesBetweenTwoReadings) {
   endless();
   for (const double way : {0.59, -0.59}) {
@@ -74,7 +75,7 @@ TEST_F(Watched, MovesByNoMoreThanTheFastestJointDoesBetweenTwoReadings) {
 TEST_F(Watched, MayHaveGoneFurtherSinceAReadingThatIsLate) {
   endless();
   EXPECT_TRUE(says(0, 1));
-  for (int i = 0; i < 4; ++i) EXPECT_TRUE(again());  // ticks without a new one
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(again());  // ticks without a new reading
   EXPECT_TRUE(says(0.99));
   EXPECT_TRUE(says(0, 1));
   EXPECT_TRUE(says(0.99, 0.005)) << "in one tick that was as long";
@@ -82,7 +83,7 @@ TEST_F(Watched, MayHaveGoneFurtherSinceAReadingThatIsLate) {
   EXPECT_FALSE(says(0.99 + kTurn, 0.04)) << "a turn is none for 57 ms";
 }
 
-// An encoder that has lost a turn for good: nobody can tell it from a device that was turned.
+// An encoder that has lost a turn for good looks like a device that was turned.
 TEST_F(Watched, IsBelievedToBeElsewhereOnceItCanHaveGoneThere) {
   endless();
   EXPECT_TRUE(says(0, 1));

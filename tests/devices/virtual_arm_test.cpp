@@ -1,4 +1,4 @@
-// The virtual device against motions known otherwise.
+// The virtual device against motions known by other means.
 #include "devices/simulated/virtual_arm.h"
 
 #include <gtest/gtest.h>
@@ -155,7 +155,7 @@ class ReferenceArm {
 };
 
 TEST(VirtualArm, MovesAsAFineIntegrationDoesToAThousandthOfAnEncodersStep) {
-  constexpr double kStep = 4e-4;  // of the paper's arm [rad]
+  constexpr double kStep = 4e-4;  // encoder step of the paper's arm [rad]
   for (const int n : {2, 3, 7}) {
     for (const double grip : {0.0, 300.0, 1500.0}) {
       const ArmDescription description = random_arm(n, 137);
@@ -173,7 +173,7 @@ TEST(VirtualArm, MovesAsAFineIntegrationDoesToAThousandthOfAnEncodersStep) {
       double fastest = 0, furthest = 0;
       for (int k = 0; k < 300; ++k) {
         const double t = 1e-3 * k;
-        Vector torque(n);  // another one every 20 ms, as from contacts
+        Vector torque(n);  // changes every 20 ms, like contacts
         for (int i = 0; i < n; ++i) torque[i] = 0.02 * std::sin(11.0 * (k / 20) + i);
         const Vec3 target = start + 0.01 * Vec3(std::sin(12 * t), std::sin(17 * t), 0);
         arm.live(p, torque, {target, 1});
@@ -188,7 +188,7 @@ TEST(VirtualArm, MovesAsAFineIntegrationDoesToAThousandthOfAnEncodersStep) {
 }
 
 TEST(VirtualArm, SpeaksOfTheHandsMeanTorqueAsItsMomentumDoes) {
-  // One joint: m dv = T (motor + hand - b vbar).
+  // For one joint, m dv = T (motor + hand - b vbar).
   constexpr double m = 3e-4, b = 0.012;
   AnyArm arm(wheel(m));
   Parameters p;
@@ -246,7 +246,8 @@ TEST(VirtualArm, ComesToRestByFrictionWithoutSwingingBack) {
     last = v;
   }
   EXPECT_LT(last, 1e-3);
-  EXPECT_NEAR(arm.read(0).x[0], 0.5 * m * 4 / kFriction, 1e-3);  // its energy over the friction
+  // The way is the kinetic energy over the friction.
+  EXPECT_NEAR(arm.read(0).x[0], 0.5 * m * 4 / kFriction, 1e-3);
 }
 
 TEST(VirtualArm, IsHeldByItsStops) {
@@ -298,8 +299,8 @@ TEST(VirtualArm, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   }
 }
 
-// Two joints that know nothing of each other: crossed axes through one point, a ball at the end.
-// Inertias 5e-4 and 3e-4 kg m^2.
+// Two independent joints: crossed axes through one point, a ball at the end. Inertias 5e-4 and 3e-4
+// kg m^2.
 ArmDescription two_wheels() {
   ArmDescription arm;
   arm.joints.resize(2);
@@ -444,7 +445,7 @@ TEST(VirtualDevice, IsReadAnewEachTimeAndLivesThroughATickAWrite) {
   device.write(torque);
   EXPECT_NEAR(device.arm.read(0).v[0], 0.1 / 5e-4 * 0.002, 1e-12);
   EXPECT_NEAR(device.arm.read(0).v[1], -0.06 / 3e-4 * 0.002, 1e-12);
-  device.stop();  // without torque it goes on as it was
+  device.stop();  // without torque it moves on unchanged
   EXPECT_NEAR(device.arm.read(0).v[0], 0.4, 1e-12);
 }
 

@@ -1,5 +1,5 @@
-// Any bytes at all as a report descriptor: fields that lie inside their reports, or one line for
-// people. What the devices make of the fields must not fail either.
+// Fuzzes report descriptors: any bytes give fields that lie inside their reports, or an error of
+// one line. The devices must also cope with the fields.
 #include <array>
 #include <cstdlib>
 #include <memory>

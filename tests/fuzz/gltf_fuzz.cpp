@@ -1,4 +1,4 @@
-// Any bytes at all: a model whose numbers hold together, or one line for people.
+// Fuzzes glTF: any bytes give a model whose numbers are consistent, or an error of one line.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -36,7 +36,7 @@ void put_word(unsigned char* to, std::size_t word) {
 
 extern "C" std::size_t LLVMFuzzerMutate(unsigned char* data, std::size_t size, std::size_t most);
 
-// Mostly the lengths in a binary file are made right again, or nothing would get past them.
+// Corrects the lengths in a binary file most of the time; otherwise no input would get past them.
 extern "C" std::size_t LLVMFuzzerCustomMutator(unsigned char* data, std::size_t size,
                                                std::size_t most, unsigned seed) {
   size = LLVMFuzzerMutate(data, size, most);

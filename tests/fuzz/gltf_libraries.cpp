@@ -1,4 +1,4 @@
-// The libraries that see the input, built here so that they are instrumented as well.
+// Libraries that see the input, built here to be instrumented as well.
 #pragma clang diagnostic ignored "-Wconversion"
 #pragma clang diagnostic ignored "-Wshadow"
 #pragma clang diagnostic ignored "-Wunused-function"

@@ -1,5 +1,5 @@
-// Any bytes at all as STL, OBJ, PLY or Collada: a model whose numbers hold together, or one line
-// for people; never the end of this program. The first byte says which kind.
+// Fuzzes STL, OBJ, PLY and Collada: any bytes give a model whose numbers are consistent, or an
+// error of one line; never the end of this program. The first byte chooses the format.
 #include <array>
 #include <cmath>
 #include <cstdlib>

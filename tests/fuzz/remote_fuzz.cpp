@@ -1,5 +1,6 @@
-// Any line at all of a client: a request with a verb of the table and keys of that, or one line for
-// people. What it sets is a setting that a loop can have, within the limits, or nothing.
+// Fuzzes requests on the control socket: any line gives a request with a verb of the table and its
+// keys, or an error of one line. A setting that it changes is one that a loop can have, within the
+// limits.
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -18,7 +19,7 @@ void check_message(const std::string& text) {
   demand(!text.empty() && text.find('\n') == std::string::npos);
 }
 
-// As Remote does: all that a request can ask of keys.
+// Reads the keys as Remote does, in every way that a request can ask for.
 void read_keys(const limpid::Request& request) {
   const limpid::Keys keys(request);
   for (const char* key : request.verb->keys) {

@@ -42,7 +42,7 @@ void seal_every_other(Reports& reports) {
   }
 }
 
-// The features come from the first report.
+// A device whose features come from the first report.
 std::shared_ptr<test::FakeHid> device_with(const Reports& reports) {
   auto device = std::make_shared<test::FakeHid>();
   device->features[6] = {6, 1, 1, 0, 0};

@@ -1,5 +1,5 @@
-// Any text at all: a scene whose numbers a loop can touch, or one line for people. What is written
-// of a scene is read again as the same.
+// Fuzzes scenes: any text gives a scene whose numbers a loop can touch, or an error of one line. A
+// scene that is written is read again as the same.
 #include <cmath>
 #include <cstdlib>
 

@@ -1,6 +1,6 @@
-// Any bytes at all as what limpid-session answers, if a file took it over: rows that hold together
-// and texts that are read as they are in a replay, or one line for people. The first byte says
-// whether a session was asked for or a table.
+// Fuzzes the answers of limpid-session, as if a file had taken it over: any bytes give consistent
+// rows and texts readable in a replay, or an error of one line. The first byte chooses a session or
+// a table.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ void demand(bool holds) {
   if (!holds) std::abort();
 }
 
-// What `work` refuses is one line.
+// Runs `work`; an error must be one line.
 template <class Work>
 void attempt(Work work) {
   try {

@@ -1,4 +1,5 @@
-// Any text at all: an arm whose numbers a loop can compute with, or one line for people.
+// Fuzzes URDF: any text gives an arm whose numbers a loop can compute with, or an error of one
+// line.
 #include <cmath>
 #include <cstdlib>
 
@@ -37,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   try {
     const limpid::ArmDescription arm = limpid::parse_urdf(text, "fuzz.urdf", "");
     check(arm);
-    // What is recorded gives the same arm again.
+    // The recorded URDF gives the same arm again.
     const limpid::ArmDescription again = limpid::parse_urdf(arm.urdf, "fuzz.urdf", "");
     demand(again.dof() == arm.dof() && again.tip_link == arm.tip_link);
   } catch (const limpid::FileError& error) {

@@ -26,11 +26,16 @@ ROW_MAKERS = (
 NO_ROW = ("core/coupling/felt.cpp", "core/coupling/walls.cpp", "core/dynamics/farthest_tip.cpp",
           "devices/files/rpy.cpp")
 
+# First words that leave a comment without a subject of its own.
+_NO_SUBJECT = set("What Where Who Of That It One As Those And But Which Its They Them".split())
+_COMMENT = re.compile(r"(?<!\S)//+ *([^\s,.:;]*)")
+_NAMESPACE = re.compile(r"^(namespace (?:limpid )?\{)", re.M)
+
 _FUNCTION_END = re.compile(r"(\)|\}|\bconst|\bnoexcept|\boverride|\bfinal|\bmutable|-> [^()]*)$")
 
 
-def sources(root: Path) -> list[Path]:
-    found = [path for room in ROOMS for path in (root / room).rglob("*")]
+def sources(root: Path, rooms: tuple[str, ...] = ROOMS) -> list[Path]:
+    found = [path for room in rooms for path in (root / room).rglob("*")]
     return sorted(path for path in found if path.suffix in (".h", ".cpp"))
 
 
@@ -120,8 +125,7 @@ def functions(text: str) -> Iterator[tuple[int, int]]:
     """First line (from 1) and number of lines of each function, in code as clang-format leaves it:
     a body's last line starts with a brace, as far in as the line that opens it or its first line.
     """
-    text = _RAW_STRING.sub(lambda match: "\n" * match[0].count("\n"), text)
-    lines = [line.partition("//")[0].rstrip() for line in text.splitlines()]
+    lines = [line.partition("//")[0].rstrip() for line in _without_raw_strings(text).splitlines()]
     at = 0
     while at < len(lines):
         first = _header_start(lines, at)
@@ -134,6 +138,10 @@ def functions(text: str) -> Iterator[tuple[int, int]]:
         last = next((i for i in range(at + 1, len(lines)) if lines[i].startswith(end)), at)
         yield first + 1, last - first + 1
         at = last + 1
+
+
+def _without_raw_strings(text: str) -> str:
+    return _RAW_STRING.sub(lambda match: "\n" * match[0].count("\n"), text)
 
 
 def _header_start(lines: list[str], at: int) -> int:
@@ -155,6 +163,49 @@ def headers_without_guard(root: Path) -> list[str]:
         for path in sources(root)
         if path.suffix == ".h" and "#pragma once\n" not in path.read_text()
     ]
+
+
+def careless_comments(root: Path) -> list[str]:
+    """Titles, comments and namespaces of all sources, those of tests as well."""
+    return [
+        f"{path.relative_to(root)}:{number}: {what}"
+        for path in sources(root, (*ROOMS, "tests"))
+        for number, what in _careless(path.read_text(), is_header=path.suffix == ".h")
+    ]
+
+
+def _careless(text: str, *, is_header: bool) -> Iterator[tuple[int, str]]:
+    """Lines (from 1), and what to do there."""
+    text = _without_raw_strings(text)
+    if is_header and not text.startswith("// "):
+        yield 1, "the header has no title: begin it with a comment, its subject in a few words"
+    opened: set[str] = set()
+    for found in _NAMESPACE.finditer(text):
+        if found[1] in opened:
+            number = text.count("\n", 0, found.start()) + 1
+            yield number, f"a second `{found[1]}`: join it with the file's first"
+        opened.add(found[1])
+    lines = text.splitlines()
+    for first, last, word in _comments(lines):
+        below = lines[last + 1].strip() if last + 1 < len(lines) else ""
+        if first > 0 and lines[first].lstrip().startswith("//") and not below:
+            yield first + 1, "no code follows the comment: put it directly above what it is about"
+        if word in _NO_SUBJECT:
+            yield first + 1, f'the comment begins with "{word}": begin it with its subject'
+
+
+def _comments(lines: list[str]) -> Iterator[tuple[int, int, str]]:
+    """First and last line (from 0) of each comment, and its first word. A comment goes on as long
+    as the lines below it begin with one in its column; it may have begun beside code."""
+    at = 0
+    while at < len(lines):
+        first, found = at, _COMMENT.search(lines[at])
+        at += 1
+        if found:
+            start = " " * found.start() + "//"
+            while at < len(lines) and lines[at].startswith(start):
+                at += 1
+            yield first, at - 1, found[1]
 
 
 def inexact_functions(root: Path) -> list[str]:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tree keeps its rules: arrows one way, small files, short functions, guarded headers."""
+"""The tree keeps its rules: arrows one way, small files, short functions, headers, comments."""
 
 from __future__ import annotations
 
@@ -37,6 +37,9 @@ class TheHouse(unittest.TestCase):
     def test_headers_are_guarded(self) -> None:
         self.assert_kept(house.headers_without_guard(ROOT))
 
+    def test_files_have_titles_and_comments_have_subjects(self) -> None:
+        self.assert_kept(house.careless_comments(ROOT))
+
     def test_rows_come_from_functions_that_are_the_same_everywhere(self) -> None:
         self.assert_kept(house.inexact_functions(ROOT))
 
@@ -58,7 +61,7 @@ class ARuleIsSeenBroken(unittest.TestCase):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
         self.root = Path(place.name)
-        self.write("core/tick.h", "#pragma once\n")
+        self.write("core/tick.h", "// The tick.\n#pragma once\n")
         self.write("app/run.cpp", '#include "core/tick.h"\n')
         self.allowed = house.read_arrows("core:\napp: core  # the loop\n")
 
@@ -77,6 +80,7 @@ class ARuleIsSeenBroken(unittest.TestCase):
             *house.long_files(self.root),
             *house.long_functions(self.root),
             *house.headers_without_guard(self.root),
+            *house.careless_comments(self.root),
             *house.inexact_functions(self.root),
         ]
 
@@ -146,6 +150,47 @@ class ARuleIsSeenBroken(unittest.TestCase):
     def test_a_header_without_guard(self) -> None:
         self.write("core/none.h", "// #pragma twice\n")
         self.assert_broken_once("core/none.h")
+
+    def test_a_header_without_title(self) -> None:
+        self.write("core/none.h", "#pragma once\n// The tick.\nint x;\n")
+        self.assert_broken_once("core/none.h:1: the header has no title")
+        self.write("core/none.h", "// The tick.\n\n#pragma once\nint x;\n")
+        self.assertEqual(self.broken(), [])
+
+    def test_a_comment_that_no_code_follows(self) -> None:
+        for blank in ("\n  \nint y;\n", "\n", ""):
+            self.write("core/f.cpp", f"// The title.\n\nint x;\n\n  // A scar\n  // of two.{blank}")
+            self.assert_broken_once("core/f.cpp:5: no code follows the comment")
+        for kept in (
+            "int x;\n// The number.\nint y;\n",
+            "int x;  // of lines,\n        // and no more\n\nint y;\n",
+            'auto s = R"(\n// In a text.\n\n)";\n',
+        ):
+            self.write("core/f.cpp", kept)
+            self.assertEqual(self.broken(), [])
+
+    def test_a_second_namespace_of_a_kind(self) -> None:
+        for opening in ("namespace {", "namespace limpid {"):
+            block = f"{opening}\nint x;\n}}\n"
+            self.write("core/f.cpp", 2 * block)
+            self.assert_broken_once(f"core/f.cpp:4: a second `{opening}`")
+        other = "namespace limpid::a {\n}\n"
+        self.write("core/f.cpp", "namespace limpid {\nnamespace {\n}\n}\n" + 2 * other)
+        self.assertEqual(self.broken(), [])
+
+    def test_a_comment_without_a_subject(self) -> None:
+        for words in ("// What it is.\nint x;", "int x;\n  // As, there.\nint y;"):
+            self.write("core/f.cpp", words)
+            self.assert_broken_once("the comment begins with")
+        self.write("core/f.cpp", "int x;\nint y;  // Of x.\n")
+        self.assert_broken_once('core/f.cpp:2: the comment begins with "Of"')
+        for kept in (
+            "// Says\n// What it is.\n",
+            "int x;  // Says\n        // What.\n",
+            "// One-way.\n",
+        ):
+            self.write("core/f.cpp", kept + "int y;\n")
+            self.assertEqual(self.broken(), [])
 
     def test_functions_of_81_lines(self) -> None:
         heads = (

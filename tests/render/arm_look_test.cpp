@@ -42,7 +42,7 @@ Model drawn(const Visual& visual) {
   return items.moving.at(0).model;
 }
 
-// Which way the triangle faces, by the order of its corners.
+// Normal of the triangle by the order of its corners.
 Eigen::Vector3f facing(const Model& m) {
   const auto at = [&](std::size_t i) { return m.vertices[m.indices[i]].position; };
   return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
@@ -64,7 +64,7 @@ TEST(ArmLook, MakesSmallWithoutTurningInsideOut) {
 TEST(ArmLook, PaintsWhatHasNoColourOfItsOwn) {
   Visual visual = mesh(Vec3::Ones());
   visual.color = Eigen::Vector4f(1, 0, 0.5f, 1);
-  const Eigen::Vector3f linear(1, 0, 0.2140f);  // as IEC 61966-2-1 has it
+  const Eigen::Vector3f linear(1, 0, 0.2140f);  // by IEC 61966-2-1
   EXPECT_LT((drawn(visual).vertices[0].color - linear).norm(), 1e-3f);
   Model own = triangle();
   for (Vertex& v : own.vertices) v.color = {0, 1, 0};
@@ -112,7 +112,7 @@ TEST(ArmLook, PutsACapsuleInThePlaceOfALinkThatCannotBeShown) {
 // A link that is not drawn would leave a gap in the arm.
 TEST(ArmLook, DrawsLinksWithoutAPictureWhereOthersHaveOne) {
   ArmDescription arm = test::random_arm(4, 1);
-  arm.joints[2].origin.translation().setZero();  // link 1 ends where it begins: a wrist's frame
+  arm.joints[2].origin.translation().setZero();  // link 1 has no length, like a wrist's frame
   arm.visuals = {mesh(Vec3::Ones())};
   SceneItems items;
   items.reach = 0.4;

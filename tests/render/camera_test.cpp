@@ -124,7 +124,7 @@ TEST(Camera, HasOrthonormalAxesAndAMatchingViewMatrix) {
               1e-12);
 }
 
-// However often it was turned round, it does not turn back through all of that.
+// After any number of turns the camera takes the short way, without undoing them.
 TEST(Camera, GoesToAViewTheShortWay) {
   using std::numbers::pi;
   for (const double begin : {0.7, 2.8, 3.5, 6.0, 15.0, -2.9, -9.0}) {

@@ -1,4 +1,4 @@
-// What of a picture has to be drawn anew.
+// Damage: the area of a picture that has to be drawn anew.
 #include "render/damage.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ constexpr int kWidth = 200, kHeight = 100;
 
 std::span<const std::byte> bytes(const int& look) { return std::as_bytes(std::span(&look, 1)); }
 
-// World and clip space are one here: -1 to 1 over the picture.
+// World and clip space are the same here: -1 to 1 over the picture.
 class ADamage : public testing::Test {
  protected:
   ADamage() { frame({{1, {0, 0, 0}}}); }
@@ -64,7 +64,8 @@ TEST_F(ADamage, IsAllOfItOnceItIsSpoilt) {
   EXPECT_TRUE(frame({{1, {0, 0, 0}}}).isEmpty());
 }
 
-// A point stands for a pixel and its margin: from 3 before it to 3 behind, the next one is outside.
+// A point stands for a pixel and its margin: from 3 pixels before it to 3 behind; the next one is
+// outside.
 TEST_F(ADamage, IsWhereAThingLooksDifferentAndWhereItWas) {
   expect_area(frame({{2, {0, 0, 0}}}), 97, 47, 104, 54);
   expect_area(frame({{3, {0.5f, -0.5f, 0}}}), 97, 22, 154, 54);
@@ -82,7 +83,7 @@ TEST_F(ADamage, EndsAtThePicturesEdges) {
   EXPECT_TRUE(frame({{1, {0, 0, 0}}, {8, {3, 3, 0}}}).isEmpty() == false);
 }
 
-// What is behind the eye may be anywhere in the picture.
+// A thing behind the eye may be anywhere in the picture.
 TEST_F(ADamage, IsAllOfItForWhatIsBehindTheEye) {
   const glm::mat4 eye = glm::perspective(1.0f, 2.0f, 0.1f, 10.0f);
   frame({{1, {0, 0, -1}}}, eye);
@@ -94,7 +95,7 @@ TEST(Cropped, FillsTheViewWithAnArea) {
   const PixelArea whole(Eigen::Vector2i(0, 0), Eigen::Vector2i(kWidth, kHeight));
   const PixelArea area(Eigen::Vector2i(50, 20), Eigen::Vector2i(150, 45));
   const glm::mat4 to_clip = cropped(glm::mat4(1), area, whole);
-  const auto shown = [&](float x, float y) -> Eigen::Vector3f {  // of a pixel's corner
+  const auto shown = [&](float x, float y) -> Eigen::Vector3f {  // clip space of a pixel's corner
     const glm::vec4 p = to_clip * glm::vec4(2 * x / kWidth - 1, 2 * y / kHeight - 1, 0.25f, 1);
     return Eigen::Vector3f(p.x, p.y, p.z) / p.w;
   };

@@ -17,7 +17,7 @@ void fill(int x, int y, int width, int height, float grey) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-// What becomes of a picture of one sample a pixel, which `draw` fills.
+// Pixels of a picture of one sample a pixel, filled by `draw`, after the finish.
 template <class Draw>
 std::vector<unsigned char> finished(Draw&& draw) {
   const OffscreenContext context(kSize, kSize);
@@ -31,7 +31,7 @@ std::vector<unsigned char> finished(Draw&& draw) {
   return read_rgba(kSize, kSize);
 }
 
-// Rows count from the top in pictures that are read.
+// Green of a pixel; rows count from the top, unlike those of the read picture.
 int green(const std::vector<unsigned char>& picture, int x, int y) {
   return picture[static_cast<std::size_t>(4 * ((kSize - 1 - y) * kSize + x) + 1)];
 }

@@ -1,4 +1,4 @@
-// Joints are told apart by people with normal and with colour-blind eyes.
+// Colours of joints, which people with normal and colour-blind eyes must tell apart.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -31,8 +31,8 @@ Vector3d lab(const Vector3d& rgb) {
   return {116 * f.y() - 16, 500 * (f.x() - f.y()), 200 * (f.y() - f.z())};
 }
 
-// Eyes as they are, and without their red or green cones, as Machado, Oliveira and Fernandes (2009)
-// model them.
+// Responses of normal eyes, and of eyes without red or green cones, by Machado, Oliveira and
+// Fernandes (2009).
 std::array<Matrix3d, 3> eyes() {
   Matrix3d protan, deutan;
   protan << 0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116,
@@ -60,7 +60,7 @@ double contrast(unsigned a, unsigned b) {
 }
 
 TEST(JointColours, OfAnArmAreToldApartByEveryEye) {
-  constexpr double kPlain = 20, kStill = 9;  // a difference of 2.3 can just be seen
+  constexpr double kPlain = 20, kStill = 9;  // a difference of 2.3 is just visible
   for (const Theme theme : {Theme::dark, Theme::light}) {
     const auto colours = joint_colours(theme);
     for (std::size_t i = 0; i < colours.size(); ++i) {

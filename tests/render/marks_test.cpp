@@ -1,4 +1,4 @@
-// The signs of a picture: what is there, where it is and what it points at.
+// Signs of a picture: their presence, places and directions.
 #include "render/marks.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using Shape = SolidMark::Shape;
 
 Vec3 vec(const glm::vec4& v) { return {v.x, v.y, v.z}; }
 Vec3 at(const glm::mat4& place) { return vec(place[3]); }
-// The z of a unit shape: how long it is, and where it points.
+// Length and direction of a unit shape's z.
 Vec3 along(const glm::mat4& place) { return vec(place[2]); }
 double across(const glm::mat4& place) { return vec(place[0]).norm(); }
 
@@ -25,7 +25,7 @@ void expect_near(const Vec3& a, const Vec3& b) {
   EXPECT_LT((a - b).norm(), 1e-6) << a.transpose() << " and " << b.transpose();
 }
 
-// An arrow is a tube and a cone, one behind the other, from the point on along the force: 2 cm/N.
+// Expects an arrow: a tube and a cone in line, from the point on along the force, 2 cm/N.
 void expect_arrow(const SolidMark& tube, const SolidMark& cone, const Vec3& from,
                   const Vec3& force) {
   EXPECT_EQ(tube.shape, Shape::tube);
@@ -37,7 +37,7 @@ void expect_arrow(const SolidMark& tube, const SolidMark& cone, const Vec3& from
   EXPECT_GT(across(cone.place), 2 * across(tube.place)) << "a head";
 }
 
-const Vec3 kPoint(0.1, -0.2, 0.3), kForce(1, 2, -2);  // of 3 N
+const Vec3 kPoint(0.1, -0.2, 0.3), kForce(1, 2, -2);  // 3 N
 
 TEST(Marks, AreAnArrowAPatchAndAConeForEachContact) {
   ViewState state;
@@ -50,7 +50,7 @@ TEST(Marks, AreAnArrowAPatchAndAConeForEachContact) {
   EXPECT_EQ(marks.solids[0].color, palette::kContact);
   ASSERT_EQ(marks.glass.size(), 1u) << "without friction there is no cone";
   EXPECT_EQ(marks.glass[0].color, palette::kSlips);
-  // Its tip is at the point: it opens along the normal as far as the force reaches that way.
+  // The cone's tip is at the point: it opens along the normal, as long as the force along it.
   const double reach = 0.02 * kForce.dot(normal);
   expect_near(at(marks.glass[0].place), kPoint + reach * normal);
   expect_near(at(marks.glass[0].place) + along(marks.glass[0].place), kPoint);
@@ -113,7 +113,7 @@ TEST(Marks, LeaveOutWhatIsNoForceOrNoPlace) {
   ViewState state;
   const Vec3 none = Vec3::Constant(std::nan(""));
   state.contacts = {{none, kForce}, {kPoint, Vec3::Zero()}, {kPoint, none}};
-  state.hand_force = Vec3(0.019, 0, 0);  // from 0.02 N on there is an arrow
+  state.hand_force = Vec3(0.019, 0, 0);  // arrows begin at 0.02 N
   state.show_hand = true;
   state.hand_target = none;
   Marks marks = collect_marks(state, Camera(), 1);
@@ -128,8 +128,8 @@ TEST(Marks, LeaveOutWhatIsNoForceOrNoPlace) {
   expect_near(at(marks.solids[0].place), kPoint);
 }
 
-// Balls, heads and patches are as many pixels large from near and from afar; arrows' lengths are
-// the world's.
+// Balls, heads and patches have the same size in pixels at any distance; arrows' lengths are the
+// world's.
 TEST(Marks, StayAsLargeInPixels) {
   ViewState state;
   state.show_hand = true;
@@ -150,7 +150,7 @@ TEST(Marks, StayAsLargeInPixels) {
   }
 }
 
-// Fully dark on the surface, nothing from 6 cm above it on.
+// The shade is dark on the surface, and nothing from 6 cm above it on.
 TEST(Marks, ShadeASurfaceUnderATipThatIsNear) {
   ViewState state;
   const auto shades = [&](double height) {
@@ -177,7 +177,7 @@ ArmPose arm_at(double x) {
   return arm;
 }
 
-// Each arm that is not the proxy, from the one behind to the one in front, in its own colour.
+// Each arm other than the proxy, from back to front, in its own colour.
 TEST(Ghosts, AreReRunTwinAndDevice) {
   ViewState state;
   state.proxy = arm_at(0);
@@ -200,7 +200,8 @@ TEST(Ghosts, AreReRunTwinAndDevice) {
   EXPECT_EQ(ghosts_of(state, 1e-3).size(), 2u) << "the devices are the ghosts that can be hidden";
 }
 
-// From one pixel off to four the outline comes; the twin's is that to the first run's.
+// The outline appears between one and four pixels of distance. A twin's arm is compared with the
+// first run's.
 TEST(Ghosts, HaveAnOutlineWhereTheyAreBesideTheirLikes) {
   ViewState state;
   state.proxy = arm_at(0);
@@ -212,7 +213,7 @@ TEST(Ghosts, HaveAnOutlineWhereTheyAreBesideTheirLikes) {
   EXPECT_THAT(ghosts[1].outline, testing::ElementsAre(0, 0)) << "twin's device";
   EXPECT_THAT(ghosts[2].outline, testing::Each(testing::FloatNear(0.5f, 1e-4f)));
   state.device = state.proxy;
-  state.device.tip += Vec3(0, 0, 0.01);  // the last link alone, at its end
+  state.device.tip += Vec3(0, 0, 0.01);  // only the last link, at its end
   EXPECT_THAT(ghosts_of(state, 1e-3)[2].outline, testing::ElementsAre(0, 1));
 }
 
@@ -226,8 +227,8 @@ TEST(Ghosts, OfAPoseThatIsNoNumberAreNotDrawn) {
   EXPECT_TRUE(ghosts[0].links.empty());
 }
 
-// From nothing at its old end to strong at its new one, without a gap; a place that is not known
-// leaves one.
+// A trail grows from nothing at its old end to strong at its new one, without a gap; only an
+// unknown place leaves one.
 TEST(Trails, FadeTowardsWhereTheTipWas) {
   ViewState state;
   state.show_ghost = false;

@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-// Feeds frames for `seconds`, each as long as the level then in force takes; how often it changed.
+// Feeds frames for `seconds`, each as long as its level takes; returns the number of changes.
 int play(AutoQuality& quality, double seconds, const std::function<double(int level)>& frame) {
   int changes = 0;
   for (double t = 0; t < seconds;) {
@@ -83,7 +83,7 @@ TEST(AutoQuality, LeavesWhatIsNeitherFastNorSlow) {
   EXPECT_EQ(play(quality, 600, [](int) { return 0.021; }), 0);
 }
 
-// One level is fast, the next too slow: it may look again, but ever more rarely.
+// A level is fast and the next one too slow: it may try again, but ever more rarely.
 TEST(AutoQuality, SettlesBetweenTwoLevels) {
   AutoQuality quality(2);
   const auto frame = [](int level) { return level < 2 ? 0.040 : 0.008; };

@@ -1,4 +1,4 @@
-// What alone makes a picture another one, and what does not.
+// Changes that alone make a picture another one, and changes that do not.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ TEST(SamePicture, IsAnotherWhereAnythingAloneIsFurtherOffThanTheTolerance) {
   }
 }
 
-// Arrows have 2 cm a newton.
+// Arrows have 2 cm per newton.
 TEST(SamePicture, IsAnotherWhereAnArrowIsLonger) {
   const std::pair<const char*, std::function<Vec3&(ViewState&)>> forces[] = {
       {"contact", [](ViewState& s) -> Vec3& { return s.contacts[0].force; }},
@@ -118,7 +118,7 @@ TEST(SamePicture, IsAnotherWhereASwitchIs) {
   expect_another("theme", [](ViewState& s) { s.theme = Theme::light; });
 }
 
-// A trail has a point a frame: one of a tip at rest may have any number of them.
+// A trail has a point for each frame: that of a tip at rest may have any number.
 TEST(SamePicture, IsTheSameWhateverTheTrailOfATipAtRest) {
   ViewState before = everything();
   before.proxy.trail = {before.proxy.tip, before.proxy.tip};
@@ -129,7 +129,7 @@ TEST(SamePicture, IsTheSameWhateverTheTrailOfATipAtRest) {
   EXPECT_FALSE(same_picture(before, after, kTolerance));
 }
 
-// Where no hand is shown it is nowhere.
+// A hidden hand's place has no effect.
 TEST(SamePicture, IsTheSameWhereverAHandIsThatNobodySees) {
   ViewState before = everything();
   before.show_hand = false;

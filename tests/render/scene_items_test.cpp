@@ -1,4 +1,4 @@
-// What is drawn of a scene.
+// Drawn items of a scene.
 #include "render/scene_items.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-// As the standard of screens (IEC 61966-2-1) has it.
+// Value by IEC 61966-2-1, the standard of screens.
 constexpr float kLightOfHalf = 0.2140f;
 
 TEST(SceneItems, HaveTheColourThatTheSceneSaysElseTheThemes) {

@@ -1,4 +1,4 @@
-// What the picture shows, read back from its pixels. Skipped where EGL gives no context.
+// The picture of a scene, read back from its pixels. Skipped where EGL gives no context.
 #include "render/scene_view.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What is drawn anew from frame to frame, and that nothing is missing then. Skipped where EGL gives
-// no context.
+// Partial drawing from frame to frame, compared with complete pictures. Skipped where EGL gives no
+// context.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ class SteadyPicture : public testing::Test {
     move(0);
   }
 
-  // A moment of a motion in which everything shows up by turns.
+  // A moment of a motion in which all parts of the picture appear in turn.
   void move(int step) {
     const double t = 0.9 * step;
     state_.proxy = pose_of(arm_, 0.9 * std::sin(t), 0.5 * std::cos(2 * t));
@@ -72,11 +72,11 @@ class SteadyPicture : public testing::Test {
 
   bool draw() { return view_->draw(state_, camera_, 0, 0, kWidth, kHeight); }
   std::vector<unsigned char> pixels() { return read_rgba(kWidth, kHeight); }
-  // Bytes of the next picture, drawn in parts, that a fresh view does not draw.
+  // Number of bytes of the next picture, drawn in parts, that differ from a fresh view's.
   int wrong_in_parts(int level) {
     draw();
     const auto in_parts = pixels();
-    view_->set_quality(Quality::level(level));  // forgets what was there
+    view_->set_quality(Quality::level(level));  // forgets the picture
     draw();
     const auto at_once = pixels();
     int wrong = 0;
@@ -98,7 +98,7 @@ TEST_F(SteadyPicture, IsNotDrawnAgainWhereNothingHasChanged) {
   EXPECT_FALSE(draw());
   EXPECT_EQ(pixels(), before);
   EXPECT_FALSE(view_->differs(state_, camera_));
-  state_.proxy.links[1].translation().x() += 1e-7;  // far below a pixel
+  state_.proxy.links[1].translation().x() += 1e-7;  // much less than a pixel
   EXPECT_FALSE(draw());
   state_.proxy.links[1].translation().x() += 0.01;
   EXPECT_TRUE(view_->differs(state_, camera_));
@@ -132,7 +132,7 @@ TEST_F(SteadyPicture, IsDrawnAgainForCameraThemeQualityAndScene) {
   EXPECT_FALSE(draw());
 }
 
-// Frame by frame only parts are drawn: the whole must be what a fresh view draws at once.
+// Each frame draws only parts: the whole must equal a fresh view's picture.
 TEST_F(SteadyPicture, IsTheSameDrawnInPartsOrAtOnce) {
   for (const int level : {0, 2, 3, 4, 5}) {
     view_->set_quality(Quality::level(level));
@@ -140,12 +140,12 @@ TEST_F(SteadyPicture, IsTheSameDrawnInPartsOrAtOnce) {
       move(step);
       ASSERT_LT(wrong_in_parts(level), 12) << "level " << level << ", step " << step;
       move(step + 1);
-      draw();  // the next one begins from a picture drawn in parts
+      draw();  // the next picture begins from one drawn in parts
     }
   }
 }
 
-// A cube and a bar of two parts that move over the table, and a model that does.
+// A cube and a bar of two parts that move over the table, and a moving model.
 class MovingObjects : public SteadyPicture {
  protected:
   void SetUp() override {
@@ -190,7 +190,7 @@ TEST_F(MovingObjects, AreNotDrawnAgainWhileTheySleep) {
   EXPECT_EQ(pixels(), before);
 }
 
-// With their shadows, and a second run's beside them.
+// Objects have shadows, and a second run's objects are beside them.
 TEST_F(MovingObjects, AreTheSameDrawnInPartsOrAtOnce) {
   for (const int level : {0, 2, 4}) {
     view_->set_quality(Quality::level(level));
@@ -203,7 +203,7 @@ TEST_F(MovingObjects, AreTheSameDrawnInPartsOrAtOnce) {
       }
       ASSERT_LT(wrong_in_parts(level), 12) << "level " << level << ", step " << step;
       move_bodies(step + 1);
-      draw();  // the next one begins from a picture drawn in parts
+      draw();  // the next picture begins from one drawn in parts
     }
   }
 }
@@ -216,7 +216,8 @@ TEST_F(MovingObjects, TakeTheirShadowsWithThem) {
   camera_.look(Camera::View::top);
   camera_.frame(view_->bounds());
   camera_.finish();
-  // The light comes from (-0.30, -0.55, 1): a decimetre above the table, this far off.
+  // The light comes from (-0.30, -0.55, 1): the shadow of a cube a decimetre above the table is
+  // moved so far.
   const Vec3 cube(0.2, -0.15, -0.02), shadow = cube + Vec3(0.03, 0.055, -0.1);
   const Vec3 away(0.1, 0, 0);
   const auto light = [&](const Vec3& place) {
@@ -233,7 +234,8 @@ TEST_F(MovingObjects, TakeTheirShadowsWithThem) {
   EXPECT_LT(light(shadow + away) + 10, open);
 }
 
-// Where the row says nothing, or no number, an object is where the scene has it.
+// Without a pose in the row, or with one that is not a number, an object is at its place in the
+// scene.
 TEST_F(MovingObjects, AreWhereTheSceneHasThemUntilARowSaysMore) {
   state_.bodies.clear();
   draw();
@@ -246,19 +248,19 @@ TEST_F(MovingObjects, AreWhereTheSceneHasThemUntilARowSaysMore) {
   EXPECT_EQ(pixels(), as_in_scene);
 }
 
-// Lines and marks as wide as on the finest screens: what they leave is wiped off as well.
+// Lines and marks are as wide as on the finest screens: their remains are wiped off as well.
 TEST_F(SteadyPicture, IsTheSameInPartsHoweverWideItsLines) {
   view_->set_quality(Quality::level(2));
   view_->set_pixel_scale(6);
   state_.show_joints = true;
   for (int step = 0; step < 8; ++step) {
     move(step);
-    state_.proxy = pose_of(arm_, -0.6, 0.4);  // rests: the lines alone move
+    state_.proxy = pose_of(arm_, -0.6, 0.4);  // at rest: only the lines move
     state_.contacts.clear();
     state_.shade.reset();
     draw();
     const auto in_parts = pixels();
-    view_->set_quality(Quality::level(2));  // forgets what was there
+    view_->set_quality(Quality::level(2));  // forgets the picture
     draw();
     const auto at_once = pixels();
     int wrong = 0;
@@ -274,7 +276,7 @@ TEST(FrictionCone, HasTheHalfAngleOfItsCoefficient) {
   state.contacts = {{Vec3(0.1, 0.2, 0.3), 3 * normal, 1, normal, 0.7}};
   const Marks marks = collect_marks(state, Camera(), 1);
   ASSERT_EQ(marks.glass.size(), 1u);
-  const glm::mat4& cone = marks.glass[0].place;  // of radius and height 1, its tip at z = 1
+  const glm::mat4& cone = marks.glass[0].place;  // radius and height 1, tip at z = 1
   const glm::vec3 tip = cone * glm::vec4(0, 0, 1, 1), base = cone * glm::vec4(0, 0, 0, 1);
   const glm::vec3 rim = cone * glm::vec4(1, 0, 0, 1);
   EXPECT_NEAR(glm::length(tip - glm::vec3(0.1f, 0.2f, 0.3f)), 0, 1e-6);

@@ -1,5 +1,4 @@
-// Pictures of links in glTF, written with y up as the format has it, and with z up as some makers
-// write them.
+// Pictures of links in glTF, with y up as the format says, or with z up as some makers write them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,13 +18,14 @@ using Box = Eigen::AlignedBox3d;
 
 enum class Up { y, z };
 
-// A box as eight corners and two of its faces, in the axes of the link; written into a file whose
-// up axis is as given.
+// Writes a box, as eight corners and two of its faces, in the link's axes; `up` is the file's up
+// axis.
 void write_box(const std::filesystem::path& file, const Box& box, Up up) {
   std::vector<float> xyz;
   for (int i = 0; i < 8; ++i) {
     const Vec3 p = box.corner(static_cast<Box::CornerType>(i));
-    const Vec3 in_file = up == Up::z ? p : Vec3(p.x(), p.z(), -p.y());  // y up: z of the link is y
+    // With y up the link's z is y.
+    const Vec3 in_file = up == Up::z ? p : Vec3(p.x(), p.z(), -p.y());
     for (const double x : in_file) xyz.push_back(static_cast<float>(x));
   }
   GltfBuilder gltf;
@@ -46,7 +46,7 @@ Visual picture(int link, const std::filesystem::path& file) {
   return visual;
 }
 
-// A collision shape that is not quite the picture's box.
+// A collision shape that differs a little from the picture's box.
 Visual shape(int link, const Box& box) {
   Visual visual;
   visual.link = link;
@@ -56,7 +56,7 @@ Visual shape(int link, const Box& box) {
   return visual;
 }
 
-// Links that lie along x, then z, then x ...; tips at their ends.
+// An arm whose links lie along x, then z, then x ...; tips at their ends.
 ArmDescription bent_arm(int joints) {
   ArmDescription arm;
   for (int i = 0; i < joints; ++i) {
@@ -71,7 +71,7 @@ ArmDescription bent_arm(int joints) {
   return arm;
 }
 
-// Around what link i is from its origin to its end.
+// A box around link i from its origin to its end.
 Box body(const ArmDescription& arm, int i) {
   Box box(Vec3(Vec3::Zero()));
   box.extend(end_of(arm, static_cast<std::size_t>(i)));
@@ -121,7 +121,7 @@ TEST(Upright, LeavesPicturesWithZUpWhereTheyAreAndSaysSo) {
   }
 }
 
-// One link alone, whose ends are on its axis: only its collision shape tells.
+// A single link with its ends on its axis: only the collision shape decides.
 TEST(Upright, GoesByTheCollisionShapeWhereThereIsOne) {
   for (const Up up : {Up::y, Up::z}) {
     const test::TempDir dir;
@@ -145,7 +145,7 @@ TEST(Upright, TakesEachFileByItselfWhereItsShapeIsBeyondDoubt) {
   EXPECT_THAT(w.arm.warnings[0], HasSubstr("link2.glb has z up"));
 }
 
-// A cube around the axis fits both ways: its neighbours say which.
+// A cube around the axis fits both ways: its neighbours decide.
 TEST(Upright, TurnsAsItsFolderDoesWhatFitsBothWays) {
   Written w({Up::z, Up::z, Up::z, Up::z});
   const Box cube(Vec3(-0.05, -0.05, -0.05), Vec3(0.05, 0.05, 0.05));
@@ -157,7 +157,7 @@ TEST(Upright, TurnsAsItsFolderDoesWhatFitsBothWays) {
   EXPECT_THAT(w.arm.warnings, testing::ElementsAre(HasSubstr("and 2 more")));
 }
 
-// Shapes that are placed, turned and scaled count as they are placed.
+// Shapes that are placed, turned and scaled count at their places.
 TEST(Upright, SeesPicturesWhereTheFilePutsThem) {
   Written w({Up::z, Up::z, Up::z});
   const Pose moved = Eigen::Translation3d(0.2, -0.1, 0.3) *

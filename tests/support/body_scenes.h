@@ -1,4 +1,4 @@
-// Scenes in which the tip of the built-in arm moves bodies, and what comes of a run in one.
+// Scenes in which the tip of the built-in arm moves bodies, and runs of them.
 #pragma once
 
 #include <Eigen/LU>
@@ -20,18 +20,18 @@ namespace limpid::test {
 struct BodyBench {
   std::string name;
   Scene scene{};
-  double grip = 300;   // of its hand [N/m]
-  double seconds = 2;  // of its run
-  double held = 2;     // from when on the hand stands still and nothing is to move [s]
+  double grip = 300;   // stiffness of the hand [N/m]
+  double seconds = 2;  // length of the run
+  double held = 2;     // time from which the hand stands still and nothing is to move [s]
   std::function<HandInput(double t)> hand{};
 };
 
-// What bodies are like in them.
+// Material and mass of the bodies in a scene.
 struct BodyKind {
   double mass = 0.05;       // [kg]
-  double stiffness = 2000;  // for the tip [N/m]
+  double stiffness = 2000;  // against the tip [N/m]
   double friction = 0.5;    // [-]
-  double between = 20000;   // K_o [N/m]
+  double between = 20000;   // K_o, against other bodies [N/m]
 };
 
 inline Object cube(const std::string& name, const Vec3& size, const Vec3& at,
@@ -65,7 +65,7 @@ inline Object floor_below(double z) {
   return o;
 }
 
-// The hand goes along y, from -1 cm on, by so much within so long, and holds.
+// Leads the hand along y from -1 cm, by `way` [m] within `seconds`, then holds it.
 inline std::function<HandInput(double)> going_along(double way, double seconds, double z) {
   return
       [=](double t) { return HandInput{Vec3(0.18, -0.01 + way * std::min(t / seconds, 1.0), z)}; };
@@ -102,7 +102,7 @@ inline BodyBench row_of_two(const BodyKind& kind) {
   return b;
 }
 
-// A force over travel that pushes back all the way, or one that holds it down beyond half of it.
+// A button whose spring pushes back all the way, or holds it down beyond half of its travel.
 inline BodyBench button(BodyKind kind, bool stays_down) {
   BodyBench b{.name = stays_down ? "bistable button" : "button", .grip = 3000, .seconds = 3};
   b.scene.gravity.setZero();
@@ -114,7 +114,7 @@ inline BodyBench button(BodyKind kind, bool stays_down) {
   joint.high = 0.0096;
   joint.force.travel = {{0, 0.5}, {0.002, 0.9}, {0.006, stays_down ? -0.3 : 0.1}, {0.0096, 0.9}};
   b.scene.add(o);
-  // Twice, and then it is held down.
+  // The hand presses the button twice, then holds it down.
   b.hand = [](double t) {
     const double in = t < 2 ? 0.5 - 0.5 * std::cos(2 * M_PI * t)
                             : 0.5 - 0.5 * std::cos(M_PI * std::min(t - 2, 0.5) / 0.5);
@@ -137,7 +137,7 @@ inline BodyBench door(BodyKind kind) {
   return b;
 }
 
-// Picked up, moved about, held, and let go.
+// A body that the magnet picks up, moves about, holds and lets go.
 inline BodyBench magnet(const BodyKind& kind) {
   BodyBench b{.name = "magnet"};
   b.scene.gravity.setZero();
@@ -160,7 +160,7 @@ inline BodyBench drop(const BodyKind& kind) {
   return b;
 }
 
-// A lever on a hinge with twelve detents a turn, that the magnet holds at its end.
+// A lever on a hinge with twelve detents a turn; the magnet holds its end.
 inline BodyBench knob(BodyKind kind) {
   BodyBench b{.name = "knob", .seconds = 3, .held = 2.6};
   b.scene.gravity.setZero();
@@ -182,13 +182,12 @@ inline BodyBench knob(BodyKind kind) {
   return b;
 }
 
-// With a ball for a tip.
+// The same bench with a ball for a tip.
 inline BodyBench with_tip(BodyBench bench) {
   bench.scene.tip_radius = 0.004;
   return bench;
 }
 
-// All of them.
 inline std::vector<BodyBench> body_benches(const BodyKind& kind) {
   std::vector<BodyBench> all{free_push(kind),     push_with_friction(kind),
                              squeeze(kind),       row_of_two(kind),
@@ -201,18 +200,18 @@ inline std::vector<BodyBench> body_benches(const BodyKind& kind) {
 
 struct BodyRun {
   double energy = 0;    // highest E_c [J]
-  double beyond = 0;    // most that the hand was given beyond what bodies gave [J]
-  double given = 0;     // most that the hand was given, beyond what bodies gave if they did [J]
-  double gain = 0;      // most that the bodies' world made [J]
-  double reserve = 0;   // the ledger's least, less what it began with [J]
-  double governor = 1;  // least
-  double chatter = 0;   // of the tip above 20 Hz while the hand holds still, rms [m/s]
-  double moved = 0;     // furthest that a body got [m]
-  double hardest = 0;   // force on the tip [N]
+  double beyond = 0;    // most energy that the hand was given beyond what bodies gave [J]
+  double given = 0;     // likewise, beyond what bodies gave only where they gave any [J]
+  double gain = 0;      // most energy that the bodies' world made [J]
+  double reserve = 0;   // lowest ledger, less its initial value [J]
+  double governor = 1;  // lowest
+  double chatter = 0;   // rms speed of the tip above 20 Hz while the hand holds still [m/s]
+  double moved = 0;     // furthest motion of a body [m]
+  double hardest = 0;   // largest force on the tip [N]
   int stood_still = 0;  // ticks without a solution
-  int limited = 0;      // and with a motor at its limit
+  int limited = 0;      // ticks with a motor at its limit
   bool diverged = false;
-  std::vector<Vec3> hand;  // its mean force at the tip over each tick [N]
+  std::vector<Vec3> hand;  // mean force of the hand at the tip over each tick [N]
 };
 
 inline BodyRun run(const BodyBench& bench, Parameters p) {
@@ -233,7 +232,7 @@ inline BodyRun run(const BodyBench& bench, Parameters p) {
   int held = 0;
   Vec3 before = rig.tip();
   for (int k = 0; k * p.tick < bench.seconds; ++k) {
-    // Over the tick the hand goes on to where it wants to be at its end.
+    // The hand moves over the tick to its target at the tick's end.
     rig.step(p, {bench.hand((k + 1) * p.tick)}, row);
     if (k == 0) reserve = at(Column::energy_ledger)[0];
     const auto pose = at(Column::body_pose);

@@ -36,7 +36,7 @@ inline Mat3 turned(double angle, const Vec3& about) {
   return Eigen::AngleAxisd(angle, about.normalized()).matrix();
 }
 
-// Runs it and returns the most that its energy ever grew.
+// Runs the world and returns the largest growth of its energy.
 inline double run(BodyWorld& world, int ticks) {
   double most = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < ticks; ++k) {
@@ -54,8 +54,7 @@ inline std::vector<double> state(const BodyWorld& world) {
   return all;
 }
 
-// Of all of a body's numbers in the state of a world; velocity first [m/s], then angular velocity
-// in its frame [rad/s].
+// Sets a body's velocity [m/s] and its angular velocity in its own frame [rad/s].
 inline void set_moving(BodyWorld& world, int body, const Vec3& speed, const Vec3& spin) {
   std::vector<double> numbers = state(world);
   const auto at = numbers.begin() + 10 + 23 * body + 12;

@@ -1,5 +1,5 @@
-// What this computer can do, asked without the program's own code: whoever left a test out because
-// the program says that something is not there would leave out its faults.
+// Abilities of this computer, asked without the program's own code: a test that skips because the
+// program denies an ability would hide the program's fault.
 #pragma once
 
 #include <dlfcn.h>
@@ -33,8 +33,8 @@ inline bool has_offscreen_pictures() {
   return here != nullptr && start(here, nullptr, nullptr) != 0;
 }
 
-// All memory of a process, whatever it comes to need: it has no limit, or may lock beyond it. Asked
-// without a child, after whose fork() the pages of this process would fault once more.
+// Whether a process may lock all the memory it will need: no limit, or the right to lock beyond it.
+// Asked without a child process, as fork() would make this one's pages fault once more.
 inline bool may_lock_memory() {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
@@ -48,7 +48,7 @@ inline bool may_lock_memory() {
   return may;
 }
 
-// The font that Debian's package fonts-inter brings.
+// Whether the font of Debian's package fonts-inter is installed.
 inline bool has_inter() {
   return std::filesystem::exists("/usr/share/fonts/opentype/inter/Inter-Regular.otf");
 }

@@ -1,10 +1,11 @@
+// Traits of devices that tests make up.
 #pragma once
 
 #include "devices/device.h"
 
 namespace limpid::test {
 
-// Of a device with motors in every joint.
+// Traits of a device with a motor in every joint.
 inline DeviceTraits pushing(int dof, double range = 1, double effort = 0.5) {
   const auto joints = static_cast<std::size_t>(dof);
   DeviceTraits traits;

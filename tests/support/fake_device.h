@@ -1,4 +1,4 @@
-// A device that says what the test tells it to, and keeps what it was told.
+// A device whose readings the test sets, and which keeps its last torque.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A HID device inside the test: what it sends and what it got are two queues.
+// A HID device inside the test: two queues of reports, sent and received.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace limpid::test {
 
-// Shared by the test (or a thread that plays the device) and the transport.
+// Shared by the transport and the test (or a thread that plays the device).
 class FakeHid {
  public:
   // The device's side.
@@ -43,7 +43,7 @@ class FakeHid {
     const std::lock_guard lock(mutex_);
     output_.clear();
   }
-  // The first report it gets, received before or to come, for which this is true.
+  // Returns the first report, received before or to come, for which `wanted` is true.
   Report wait_for(const std::function<bool(const Report&)>& wanted) {
     std::unique_lock lock(mutex_);
     for (std::size_t i = 0;; ++i) {
@@ -52,9 +52,9 @@ class FakeHid {
     }
   }
 
-  // Answers to get_feature and ask by id, and what set_feature was told; not for threads.
+  // Answers to get_feature and ask by id, and reports given to set_feature; not for threads.
   std::map<std::uint8_t, Report> features, inputs;
-  int questions = 0;  // by ask
+  int questions = 0;  // calls of ask
   std::vector<Report> features_set;
   std::vector<std::uint8_t> descriptor;  // empty unless the test sets it
   std::string id;                        // likewise
@@ -71,7 +71,7 @@ class FakeHid {
   bool refuse_writes_ = false;
 };
 
-// Waits really, if `waits`; else an empty queue is an empty queue.
+// Waits for reports if `waits`; otherwise an empty queue is read as empty.
 class FakeTransport final : public HidTransport {
  public:
   explicit FakeTransport(std::shared_ptr<FakeHid> device, bool waits = false)

@@ -1,12 +1,11 @@
-// The virtual arm as a device that a hand has to be guarded from, and that lies when told to.
+// The virtual arm as a real device: guarded, and with readings that a test can falsify.
 #pragma once
 
 #include "devices/simulated/virtual_arm.h"
 
 namespace limpid::test {
 
-// Its motors, its range and its hand are those of the arm; what only a simulated device knows, the
-// rig does not get to hear.
+// Has the arm's motors, range and hand, but hides from the rig what only a simulated device knows.
 class GuardedArm final : public Device {
  public:
   explicit GuardedArm(const ArmDescription& arm) : own(arm), traits_(own.traits()) {
@@ -35,9 +34,9 @@ class GuardedArm final : public Device {
   }
 
   VirtualDevice<3> own;
-  std::array<double, 3> off{};   // of its readings [rad]
+  std::array<double, 3> off{};   // error of its readings [rad]
   std::array<double, 3> told{};  // torque [N m]
-  double age = 0;                // of its readings [s]
+  double age = 0;                // age of its readings [s]
   bool here = true, hand = true;
   std::uint32_t lapses = 0;
 

@@ -36,7 +36,7 @@ inline Bytes space_navigator() {
   };
 }
 
-// A newer one: all six axes in report 1.
+// A newer SpaceMouse: all six axes in report 1.
 inline Bytes joined_space_mouse() {
   return {
       0x05, 0x01, 0x09, 0x08, 0xA1, 0x01, 0xA1, 0x00, 0x85, 0x01, 0x16, 0xA2, 0xFE, 0x26, 0x5E,
@@ -46,8 +46,8 @@ inline Bytes joined_space_mouse() {
   };
 }
 
-// The parts of a PID joystick, after the example in the PID 1.0 specification and the Sidewinder
-// Force Feedback 2, whose report ids begin anew for input, output and feature reports.
+// Parts of a PID joystick's descriptor, after the example in the PID 1.0 specification and the
+// Sidewinder Force Feedback 2. Report ids begin anew for input, output and feature reports.
 namespace pid_joystick {
 
 // 10-bit X and Y, padded to 16; 8 buttons. Report 1.

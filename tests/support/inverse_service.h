@@ -1,4 +1,4 @@
-// The stand-in of the Haply Inverse Service (inverse_service.py) as a process of the test's.
+// The stand-in of the Haply Inverse Service (inverse_service.py) as a child process of the test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace limpid::test {
 
 class InverseService {
  public:
-  // On this port; a free one if there is none.
+  // Serves on this port; "0" takes a free one.
   explicit InverseService(const std::string& port = "0") {
     int in[2] = {-1, -1}, out[2] = {-1, -1};
     EXPECT_EQ(pipe(in), 0);
@@ -61,7 +61,7 @@ class InverseService {
     const std::string line = order + "\n";
     EXPECT_EQ(write(orders_, line.data(), line.size()), static_cast<ssize_t>(line.size()));
   }
-  // The process ends without a word.
+  // Kills the process without a message.
   void end() {
     if (process_ <= 0) return;
     kill(process_, SIGKILL);
@@ -69,8 +69,8 @@ class InverseService {
     process_ = 0;
   }
 
-  // The first of the lines that it has said, or will say, that is wanted. What came before is
-  // forgotten with it. Fails after a minute.
+  // Waits for the first line that is `wanted`, said already or to come; forgets it and all earlier
+  // ones. Fails after a minute.
   std::string wait_for(const std::function<bool(const std::string&)>& wanted) {
     std::unique_lock lock(mutex_);
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
@@ -87,7 +87,7 @@ class InverseService {
       }
     }
   }
-  // Whether it has said such a line since; none is forgotten.
+  // Whether a line not yet forgotten is `wanted`; forgets none.
   bool heard(const std::function<bool(const std::string&)>& wanted) {
     const std::lock_guard lock(mutex_);
     return std::ranges::any_of(said_, wanted);

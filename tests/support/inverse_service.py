@@ -93,7 +93,7 @@ class Service:
         return json.dumps(everything)
 
     def take(self, text: str) -> bool:
-        """Whether the message had a force on a device that there is."""
+        """Takes a message; whether it had a force on an existing device."""
         self.messages += 1
         try:
             for entry in json.loads(text)["inverse3"]:
@@ -116,7 +116,7 @@ class Session:
     def __init__(self, service: Service, connection: socket.socket) -> None:
         self.service, self.connection = service, connection
         self.bytes, self.open, self.spoke = b"", False, False
-        self.answers: list[float] = []  # when they are due
+        self.answers: list[float] = []  # answers with their due times
         self.busy_until = 0.0
 
     def send(self, kind: int, payload: bytes) -> None:
@@ -178,7 +178,7 @@ class Session:
                     say("session")
                 self.spoke = True
                 self.service.take(payload.decode())
-                # One after the other: a queue before a slow service grows.
+                # Answers come one after the other: a queue before a slow service grows.
                 self.busy_until = max(self.busy_until, time.monotonic()) + self.service.delay
                 self.answers.append(self.busy_until)
 

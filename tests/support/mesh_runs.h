@@ -15,9 +15,9 @@
 namespace limpid::test {
 
 inline const Vec3 kHome(0.19, 0, 0);
-inline constexpr double kTop = -0.04;      // of what lies on the table [m]
+inline constexpr double kTop = -0.04;      // top of what lies on the table [m]
 inline constexpr double kTip = 0.004;      // radius [m]
-using Path = std::function<Vec3(double)>;  // where the hand wants the tip at a time
+using Path = std::function<Vec3(double)>;  // the hand's target for the tip at a time
 
 inline Scene with_mesh(const Triangles& triangles, const Vec3& at, double stiffness = 600) {
   Scene scene;
@@ -39,7 +39,7 @@ inline Rows run(const Scene& scene, const Parameters& p, const Path& path, doubl
   return rows;
 }
 
-// Down from kHome to `height` in half a second, then on a figure of `width` there.
+// Path down from kHome to `height` in half a second, then along a figure of `width` there.
 inline Path stroke(double height, double width) {
   return [=](double t) {
     const double s = std::min(1.0, 2 * t), smooth = s * s * (3 - 2 * s);

@@ -112,7 +112,7 @@ inline Triangles icosphere(int times) {
   return out.mapped([](const Vec3& p) { return p.normalized(); });
 }
 
-// A star-shaped body: radius as a function of the direction, 1 with waves of height `bump`.
+// Radius of a star-shaped body in a direction: 1 with waves of height `bump`.
 inline double bumpy_radius(const Vec3& direction, double bump) {
   return 1 + bump * std::sin(5 * direction.x() + 1) * std::sin(6 * direction.y() + 2) *
                  std::sin(7 * direction.z() + 3);
@@ -149,7 +149,7 @@ inline Triangles box(const Vec3& size, int cells = 1) {
   return out;
 }
 
-// Triangles with nothing in common.
+// Random triangles that share no vertices.
 inline Triangles soup(std::size_t count, double size, Random& random) {
   Triangles out;
   for (std::uint32_t i = 0; i < count; ++i) {

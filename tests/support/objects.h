@@ -9,7 +9,7 @@
 
 namespace limpid::test {
 
-// Where the i-th object of a shape is among all.
+// Index among all objects of the i-th one of a shape.
 template <class S>
 std::size_t place(const Scene& scene, std::size_t i = 0) {
   for (std::size_t at = 0; at < scene.objects.size(); ++at) {
@@ -34,7 +34,7 @@ S& shape(Scene& scene, std::size_t i = 0) {
   return std::get<S>(object<S>(scene, i).shape);
 }
 
-// Bit for bit.
+// Compares bit for bit.
 inline void expect_same(const Object& a, const Object& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.pose.matrix(), b.pose.matrix()) << a.name;

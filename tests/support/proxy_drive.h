@@ -5,7 +5,7 @@
 
 namespace limpid::test {
 
-// No torque and no damping on any of n joints.
+// A drive without torque and damping on any of n joints.
 inline ProxyDrive<kAnyDof> no_drive(int n) { return {Vec<kAnyDof>::Zero(n), 0}; }
 
 }  // namespace limpid::test

@@ -1,4 +1,4 @@
-// Arms that nobody chose, and matrices.
+// Random arms and matrices.
 #pragma once
 
 #include "core/dynamics/random.h"
@@ -14,7 +14,7 @@ class Random : public limpid::Random {
   using limpid::Random::Random;
 
   Eigen::MatrixXd matrix(int n, double size);
-  // Symmetric, with eigenvalues between low and high.
+  // A symmetric matrix with eigenvalues between low and high.
   Eigen::MatrixXd positive_definite(int n, double low, double high);
 };
 

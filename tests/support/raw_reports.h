@@ -12,7 +12,7 @@ namespace limpid::test {
 
 using RawReport = std::array<std::uint8_t, RawProtocol::kReportSize>;
 
-// Where byte `at` of the protocol's tables lies.
+// Index in a report of byte `at` of the protocol's tables.
 constexpr std::size_t byte(std::size_t at) { return 1 + at; }
 
 inline Report sealed(RawReport report) {
@@ -40,7 +40,7 @@ inline RawReport raw_reading(std::uint32_t sequence, const std::vector<float>& x
   return report;
 }
 
-// +-1 rad, 0.4 N m and more for each further joint, 1 kHz, watchdog 5 ms.
+// A feature report: +-1 rad, 0.4 N m and more for each further joint, 1 kHz, watchdog 5 ms.
 inline RawReport raw_feature(std::uint8_t joints, bool pushes = true) {
   RawReport report = raw_header(joints, pushes ? 1 : 0);
   store_le<std::uint16_t>(report, byte(4), 1000);

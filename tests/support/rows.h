@@ -1,4 +1,4 @@
-// Rows of the trace as vectors, and many of them.
+// Rows of the trace, kept together and read as vectors.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class Rows {
  public:
   explicit Rows(const RowLayout& layout) : layout_(layout) {}
 
-  // A new row at the end, to be filled.
+  // Adds a row at the end, to be filled.
   std::span<double> add() {
     all_.resize(all_.size() + stride());
     return std::span(all_).last(stride());
@@ -33,7 +33,7 @@ class Rows {
   struct Touch {
     Vec3 point, force;
   };
-  // Where the proxy was touched.
+  // Places and forces of the proxy's contacts.
   std::vector<Touch> touches(std::size_t k) const {
     const Eigen::VectorXd points = vec(k, Column::contact_point);
     const Eigen::VectorXd forces = vec(k, Column::contact_force);
@@ -53,8 +53,8 @@ class Rows {
   std::vector<double> all_;
 };
 
-// How many doubles of the two rows differ in their bits, timing aside: what the clock says of a
-// tick is no part of the motion.
+// Number of doubles whose bits differ in two rows; timing is left out, as it is no part of the
+// motion.
 inline int differences(const RowLayout& layout, std::span<const double> a,
                        std::span<const double> b) {
   int count = 0;
@@ -65,7 +65,7 @@ inline int differences(const RowLayout& layout, std::span<const double> a,
   return count;
 }
 
-// The first row in which the two differ, or -1.
+// Index of the first row that differs between the two, or -1.
 inline long first_difference(const Rows& a, const Rows& b) {
   if (a.size() != b.size()) return static_cast<long>(std::min(a.size(), b.size()));
   for (std::size_t k = 0; k < a.size(); ++k) {

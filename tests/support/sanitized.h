@@ -1,8 +1,9 @@
+// Differences of a build with sanitizers.
 #pragma once
 
 namespace limpid::test {
 
-// Sanitizers let no memory be locked and say that it was.
+// Sanitizers do not lock memory but report success.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kOnlyPretendsToLock = true;
 #else

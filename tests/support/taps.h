@@ -1,4 +1,4 @@
-// A hand that taps something and holds it there, and what it felt.
+// A hand that taps an object and holds the tip against it, and the measured result.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 
 namespace limpid::test {
 
-// Where the tip's centre meets it, which way is out of it there, and how deep a centre is in [m].
+// Place where the tip's centre meets the object, the outward direction there, and the depth of a
+// centre [m].
 struct Spot {
   Vec3 place, out;
   std::function<double(const Vec3&)> depth;
@@ -24,25 +25,25 @@ inline Spot flat_spot(const Vec3& place, const Vec3& out) {
 
 struct Felt {
   double energy = 0;     // highest E_c [J]
-  double port = 0;       // most that the hand was given [J]
+  double port = 0;       // most energy that the hand was given [J]
   double chatter = 0;    // rms speed of the tip above 20 Hz while it is held [m/s]
-  double stiffness = 0;  // of the wall as the device meets it, by what it is set to [-]
-  double torque = 0;     // largest of the contact on a joint [N m]
+  double stiffness = 0;  // wall's stiffness as the device meets it, over its setting [-]
+  double torque = 0;     // largest contact torque on a joint [N m]
 };
 
 class Taps {
  public:
-  double wall = 600;    // what the surface is set to [N/m]
-  double press = 4;     // of the hand while it holds [N]
-  double above = 0.02;  // where the hand starts, over the surface [m]
+  double wall = 600;    // stiffness setting of the surface [N/m]
+  double press = 4;     // force of the hand while it holds [N]
+  double above = 0.02;  // start of the hand over the surface [m]
   int taps = 2;
 
-  // p: grip, mass and law. Infinite, with no stiffness, if it diverged.
+  // Taps with the grip, mass and law of `p`. A run that diverged gives infinity, with no stiffness.
   Felt felt(const ArmDescription& arm, const Scene& scene, const Spot& spot,
             const Parameters& p) const {
     return felt(arm, scene, spot, p, rest_at(arm, spot.place + above * spot.out));
   }
-  // The same from this start, with the tip above the surface.
+  // The same from `start`, with the tip above the surface.
   Felt felt(const ArmDescription& arm, const Scene& scene, const Spot& spot, const Parameters& p,
             const RigStart& start) const {
     Rig rig(arm, scene);
@@ -56,17 +57,17 @@ class Taps {
       rig.step(p, {{start.target - std::clamp(way, 0.0, down) * spot.out, 1}}, rows.add());
       if (rig.diverged()) return lost();
     }
-    const double held = kRest + down / kSpeed + kSettle;  // from here on it is judged
+    const double held = kRest + down / kSpeed + kSettle;  // start of the judged time
     return judge(arm, rows, spot, p.tick, [&](std::size_t k) {
       const double in = std::fmod(static_cast<double>(k) * p.tick, period) - held;
-      return in >= 0 && in < kHold - kSettle - 0.5 / kFast;  // a mean that sees no end
+      return in >= 0 && in < kHold - kSettle - 0.5 / kFast;  // the mean must not reach the end
     });
   }
 
  private:
   static constexpr double kSpeed = 0.15;                            // [m/s]
   static constexpr double kRest = 0.1, kHold = 0.5, kSettle = 0.3;  // [s]
-  static constexpr double kFast = 20;                               // chatter is above it [Hz]
+  static constexpr double kFast = 20;  // chatter is motion above it [Hz]
 
   static Felt lost() {
     constexpr double kLost = std::numeric_limits<double>::infinity();
@@ -81,7 +82,7 @@ class Taps {
     for (std::size_t k = 0; k < rows.size(); ++k) {
       tips.push_back(arm.tip_at(rows.vec(k, Column::device_position)));
     }
-    // The mean over a period of 20 Hz is what is slow.
+    // The slow motion is the mean over a period of 20 Hz.
     const auto half = static_cast<std::size_t>(std::lround(0.5 / (kFast * T)));
     Felt felt;
     double fast2 = 0, force = 0, depth = 0, ticks = 0;

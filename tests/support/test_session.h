@@ -10,7 +10,7 @@
 
 namespace limpid::test {
 
-// The arm of the program, a scene of it and the first seconds of a hand of it.
+// A plan of a run: the program's arm, one of its scenes and the first seconds of one of its hands.
 inline RunPlan plan(const char* scene, const char* hand_file, double seconds) {
   RunPlan plan;
   plan.arm = omni();

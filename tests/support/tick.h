@@ -1,4 +1,4 @@
-// How long a tick of most tests is.
+// Length of a tick in most tests.
 #pragma once
 
 namespace limpid::test {

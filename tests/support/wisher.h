@@ -1,4 +1,4 @@
-// From "armed or not" at each tick to what is asked for at it.
+// Turns a wanted state, armed or not, into the force request of each tick.
 #pragma once
 
 #include "core/tick/arming.h"

@@ -24,8 +24,8 @@ from limpid_check.urdf import Array, Chain, parse_chain
 DEFAULT_JOINTS = (1, 2, 3, 6, 7, 15, 30)
 
 _REACH = 0.3  # sum of the links' lengths [m]
-_MASS = 0.03  # of all links [kg]
-_EXCURSION = 0.03  # of the tip, along the stroke [m]
+_MASS = 0.03  # mass of all links [kg]
+_EXCURSION = 0.03  # excursion of the tip along the stroke [m]
 _DEPTH = 0.008  # how far the hand's path goes below the plane [m]
 _DURATION = 4.0  # [s]
 _RATE = 200  # rows per second
@@ -43,8 +43,8 @@ def _triple(values: Array) -> str:
 
 
 def _inertial(rng: np.random.Generator, mass: float, length: float, weight: float) -> str:
-    """A body whose inertia has no symmetry: unequal moments, turned axes, products; all of it
-    `weight` times."""
+    """A body with an asymmetric inertia: unequal moments, turned axes, products; all times
+    `weight`."""
     moments = weight * (2e-4 + mass * length**2 * np.array([0.3, 0.9, 1.0]))
     mass *= weight
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))

@@ -20,7 +20,7 @@ def free_port() -> int:
 
 
 class Slurm:
-    """slurmctld and slurmd, running until stop(); skips the test where they cannot."""
+    """Runs slurmctld and slurmd until stop(); skips the test where they cannot run."""
 
     def __init__(self, directory: Path) -> None:
         missing = [name for name in PROGRAMS if shutil.which(name) is None]

@@ -89,7 +89,7 @@ class Portal:
         ends = {"choose": 0, "give up": 1, "fail": 2}
         if how in ends:
             results = {"uris": GLib.Variant("as", [order["uri"]])} if how == "choose" else {}
-            # After a moment, as a person needs one.
+            # The answer takes a moment, as a person's does.
             GLib.timeout_add(300, self.respond, sender, handle, ends[how], results)
         return False
 

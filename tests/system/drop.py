@@ -33,7 +33,7 @@ class Drag:
         self.display.flush()
 
     def wait_for(self, kind: str, seconds: float = 20) -> tuple[int, ...]:
-        """The target's answer; meanwhile it may ask for what is dragged."""
+        """Waits for the target's answer; meanwhile it may ask for the dragged files."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if not self.display.pending_events():
@@ -56,7 +56,8 @@ class Drag:
         self.display.flush()
 
     def drop(self) -> None:
-        """Enters the window, is asked where it is, lets go, and is told that all was taken."""
+        """Enters the window, answers its position, drops, and waits until the window has taken all.
+        """
         aware = self.target.get_full_property(self.atom("XdndAware"), Xatom.ATOM)
         if aware is None:
             raise RuntimeError("the window takes no drops")

@@ -1,4 +1,4 @@
-// Loaded before the program (LD_PRELOAD): Embree as it is on a processor that has SSE2 and no more.
+// Embree as on a processor with SSE2 only; loaded before the program (LD_PRELOAD).
 #include <dlfcn.h>
 
 #include <string>

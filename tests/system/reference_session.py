@@ -31,12 +31,12 @@ class Setup:
     k_vc: float = 10.0
     b_vc: float = 0.001
     b_v: float = 0.012
-    inertia_ratio: float = 5e-4  # heavy enough for its energy to show above round-off
+    inertia_ratio: float = 5e-4  # so large that its energy is above round-off
     torque_limit: float = 20.0
     tick: float = 1e-3
     rows: int = 500
     stroke: Array = field(default_factory=lambda: np.array([0.0, -0.03, 0.0]))  # of the hand [m]
-    depth: float = 0.02  # of the stroke's end below the plane [m]
+    depth: float = 0.02  # depth of the stroke's end below the plane [m]
     plane_stiffness: float = 600.0
     hand_stiffness: float = 300.0
     hand_damping: float = 2.0
@@ -87,7 +87,7 @@ class _Proxy:
         k, t = self.setup.plane_stiffness, self.setup.tick
         jacobian = tip_jacobian(self.chain, self.x[None])[0]
         tip = tip_position(self.chain, self.x[None])[0]
-        gradient = -jacobian.T @ self.normal  # of the depth
+        gradient = -jacobian.T @ self.normal  # gradient of the depth
         depth = -self.normal @ (tip - self.point)
         vbar = self._mean_velocity(pull, springs)
         f2 = np.zeros_like(pull)

@@ -23,7 +23,7 @@ import limpid  # noqa: E402
 
 
 class RemoteTest(unittest.TestCase):
-    """One `limpid serve` for each test, in folders of its own."""
+    """Runs one `limpid serve` for each test, in folders of its own."""
 
     WORDS: list[str] = []
 
@@ -71,7 +71,7 @@ class RemoteTest(unittest.TestCase):
         return client
 
     def raw(self) -> socket.socket:
-        """A connection without the client's manners."""
+        """A bare connection, which skips the client's checks."""
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         connection.connect(str(self.socket))
         connection.settimeout(20)
@@ -79,7 +79,7 @@ class RemoteTest(unittest.TestCase):
         return connection
 
     def say(self, connection: socket.socket, text: str) -> dict:
-        """Sends a line and returns what comes back."""
+        """Sends a line and returns the answer."""
         connection.sendall(text.encode() + b"\n")
         return json.loads(self.line(connection))
 

@@ -14,13 +14,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "assets" / "python"
 from limpid_device import LimpidDevice  # noqa: E402
 
 
-STALE = 0.005  # the age at which a reading takes the force away [s]
+STALE = 0.005  # age at which a reading takes the force away [s]
 
 
 def main(name: str, session: str, late: str = "/dev/null") -> None:
     with h5py.File(session) as file:
         path = file["device/position"][...].tolist()
-    path += path[::-1]  # without a jump, for ever
+    path += path[::-1]  # back and forth for ever, without a jump
     n = len(path[0])  # the first joints of the built-in arm
     device = LimpidDevice(name, [-1, -1.735, 0.15][:n], [1, 0.165, 2.9916][:n], [0.64, 0.64, 0.45][:n])
     begun = before = time.monotonic()

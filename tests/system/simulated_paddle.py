@@ -1,7 +1,4 @@
-"""A one-joint device on a socket that is another one than its file says.
-
-usage: simulated_paddle.py NAME
-"""
+"""A one-joint device on a socket that differs from its file. usage: simulated_paddle.py NAME"""
 import sys
 import time
 from pathlib import Path
@@ -19,7 +16,7 @@ def main(name: str) -> None:
     begun, done = time.monotonic(), 0
     torque = 0.0
     while True:
-        # As time passed, in steps of 0.1 ms; at rest friction holds.
+        # Simulates the time that has passed, in steps of 0.1 ms; at rest friction holds.
         due = int(1e4 * (time.monotonic() - begun))
         for _ in range(min(due - done, 200)):
             push = torque - VISCOUS * v

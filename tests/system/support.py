@@ -64,7 +64,7 @@ def limpid(*words: str | Path, timeout: float = 120, cwd: Path | None = None) ->
 
 
 def shared_hand(name: str) -> Path:
-    """A recorded hand of the shared folder; skips the test where the folder is absent."""
+    """A recorded hand of the shared folder; skips the test if the folder is absent."""
     path = SHARED / "data" / "hand" / name
     if not path.exists():
         raise unittest.SkipTest(f"{path} is not there; set LIMPID_SHARED to the folder with data/")
@@ -96,7 +96,8 @@ class Started:
 
 
 def is_of_rows(name: str) -> bool:
-    """What people noted is of one recording, and scales at the root name joints and axes."""
+    """Whether a dataset has rows. Marks and notes belong to the whole recording, and scales at the
+    root name joints and axes."""
     return name == "time" or ("/" in name and not name.startswith("marks/"))
 
 
@@ -113,7 +114,7 @@ class SystemTest(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.directory, ignore_errors=True)
 
     def out(self, end: str = ".h5") -> Path:
-        """A file name of this test's own."""
+        """A path in this test's own folder."""
         name = re.sub(r"\W+", "_", self.id().split(".")[-1])
         count = sum(1 for _ in self.directory.glob(f"{name}-*"))
         return self.directory / f"{name}-{count}{end}"
@@ -131,7 +132,7 @@ class SystemTest(unittest.TestCase):
         return read_session(self.record(*options))
 
     def assert_same_rows(self, first: Path, second: Path) -> None:
-        """To the last bit of every dataset, but how long the ticks took and when they began."""
+        """Asserts that all datasets agree to the last bit, except durations and starts of ticks."""
         with h5py.File(first, "r") as a, h5py.File(second, "r") as b:
             names, others = ([name for name in datasets(file) if is_of_rows(name)] for file in (a, b))
             self.assertEqual(names, others)
@@ -146,7 +147,7 @@ class SystemTest(unittest.TestCase):
                               f"first in row {rows[0] if len(rows) else 'of another 0 or nan'}")
 
     def assert_verified(self, session: Session) -> None:
-        """Every recomputation of the session agrees."""
+        """Asserts that every recomputation of the session agrees."""
         checks = verify(session)
         self.assertTrue(all(check.passed for check in checks), "\n" + table(checks))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every experiment, carried out; what each promises is pinned here."""
+"""All experiments, carried out; their promises are pinned here."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ PROMISES = {
         ("predictive: stiffest wall, encoders to 1e-4 rad [N/m]", AT_LEAST, 5000),
         ("predictive: stiffest wall, encoders of 5e-4 rad [N/m]", AT_LEAST, 1000),
         ("predictive: stiffest wall, the arm's own motors, eta 0.3 to 2 [N/m]", AT_LEAST, 10000),
-        # The search is not finer than a part of this.
+        # Bound: the search is not finer than this part.
         *((f"predictive, {which}: {NAMED}", AT_LEAST, (100 / 20000) ** (1 / 64))
           for which in ("eta 0.2 to 4", "eta 0.2 to 4, encoders of 1e-4 rad",
                         "ticks of 0.25 to 2 ms", "ticks of 0.25 to 2 ms, encoders of 1e-4 rad",
@@ -253,7 +253,7 @@ PROMISES = {
             ("force at the end off that of all springs in a row, of it", 0.02))
     ],
 }  # fmt: skip
-# Of every one of them.
+# Promises of every experiment.
 for promises in PROMISES.values():
     promises.append(("trials that diverged, of those that may not", AT_MOST, 0))
 
@@ -306,7 +306,7 @@ class AllExperiments(SystemTest):
 
 
 class AFailingCheck(SystemTest):
-    """The program beside other assets: an arm whose joints rub. Then the human torque is not
+    """The program with other assets: the arm's joints have friction, so the human torque is not
     proportional to eta."""
 
     def installed(self) -> Path:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Arms as their makers describe them: `limpid check`, and a run without a hand of their own."""
+"""Arms from their makers' files: `limpid check`, and a run without a hand made for them."""
 
 from __future__ import annotations
 
@@ -104,7 +104,8 @@ class AnyArm(SystemTest):
         self.assertIn("<inertial>", refused.err)
 
     def refused(self, file: Path | str, *words: str) -> None:
-        """`limpid check` ends with 2 and one line that names the file, and says nothing else."""
+        """Asserts that `limpid check` ends with 2 and one line that names the file, and nothing
+        else."""
         found = limpid("check", file)
         self.assertEqual(found.status, 2, f"{file}: {found.out}{found.err}")
         self.assertEqual(found.out, "")
@@ -119,7 +120,7 @@ class AnyArm(SystemTest):
                 folder = self.directory / f"folder.{suffix}"
                 folder.mkdir()
                 self.refused(folder)
-                if suffix != "toml":  # which would be a scene of nothing
+                if suffix != "toml":  # which would be an empty scene
                     self.refused(self.write(f"empty.{suffix}", ""))
                 self.refused(self.write(f"nonsense.{suffix}", "\x01\x02 nothing"))
         self.refused(self.directory, "needed: an arm")

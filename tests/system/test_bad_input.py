@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Bad input is refused before anything is written, in one line that names what is wrong."""
+"""Bad input is refused before anything is written, in one line that names the fault."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from bad_input import TABLES, Good
 from limpid_check.session import read_session
 from support import LIMPID, Result, SystemTest, limpid
 
-# what a person should never see
+# Texts that a person should never see.
 _MACHINE_TALK = (
     "terminate called", "what():", "Traceback", "HDF5-DIAG", "std::", "assert", "core dumped",
 )  # fmt: skip
@@ -81,12 +81,12 @@ class Refusals(SystemTest):
 
 
 class FullDisk(SystemTest):
-    """The run fails, in one line, and what fitted on the disk is kept and readable."""
+    """The run fails with one line; the part that fitted on the disk is kept and readable."""
 
     SIZE = 512 * 1024
 
     def mounted(self) -> Path | None:
-        """A file system of SIZE bytes, where we may mount one."""
+        """A new file system of SIZE bytes; None if mounting is not allowed."""
         place = self.directory / "small"
         place.mkdir()
         mount = ["mount", "-t", "tmpfs", "-o", f"size={self.SIZE}", "limpid-test", str(place)]

@@ -1,5 +1,5 @@
-"""Scenes in which things move, led by the mouse in the window as a person does: the stack falls, the
-dominoes go one after the other, marbles roll, pucks slide."""
+"""Scenes with moving objects, led by the mouse in the window as a person does: the stack falls, the
+dominoes fall one after the other, marbles roll, pucks slide."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Bodies(WindowTest):
     LAW = "predictive"
 
     def open(self, scene: str) -> None:
-        """And take the tip, and learn where the target goes as the mouse does."""
+        """Opens the scene, takes the tip, and measures how the target follows the mouse."""
         self.app.terminate()
         self.app.wait(20)
         self.words = [str(ASSETS / "scenes" / f"{scene}.toml")]
@@ -33,7 +33,7 @@ class Bodies(WindowTest):
         self.wheel(1)
         ways.append(self.target() - here)
         self.wheel(-1)
-        self.ways = np.array(ways).T  # of a pixel right, a pixel down and a notch
+        self.ways = np.array(ways).T  # target's way [m] for a pixel right, a pixel down and a notch
 
     def pointer(self, at: np.ndarray) -> None:
         self.at = np.array(at, dtype=float)
@@ -46,11 +46,11 @@ class Bodies(WindowTest):
         self.settled()
 
     def target(self) -> np.ndarray:
-        """Of the hand [m]."""
+        """Target of the hand [m]."""
         return np.array(self.state()["places"]["target"])
 
     def lead(self, to: tuple[float, float, float], seconds: float) -> None:
-        """By drags and the wheel; a second look mends what perspective leaves."""
+        """Leads the hand to a place by drags and wheel; a second pass corrects for perspective."""
         for took in (seconds, 0.2):
             right, down, notches = np.linalg.solve(self.ways, np.array(to) - self.target())
             begin, steps = self.at.copy(), max(2, round(took / 0.04))
@@ -67,7 +67,7 @@ class Bodies(WindowTest):
         self.xdotool("mouseup", "1")
 
     def places(self) -> dict[str, np.ndarray]:
-        """Where the objects are in the window [px]."""
+        """Places of the objects in the window [px]."""
         return {name: np.array(at) for name, at in self.state()["places"]["objects"].items()}
 
     def moved(self, name: str, before: dict[str, np.ndarray]) -> float:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands, as the contract promises them to users and scripts."""
+"""Commands, as the contract promises them to users and scripts."""
 
 from __future__ import annotations
 
@@ -237,7 +237,7 @@ class Run(WithAnArm):
         self.assertEqual(list(folder.iterdir()), [])
 
     def on_a_terminal(self, columns: int, *words: str | Path) -> bytes:
-        """What it writes on a terminal of this width."""
+        """Output of a command on a terminal of this width."""
         master, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         shown = b""
@@ -281,7 +281,7 @@ class Run(WithAnArm):
 
 
 class Warnings(SystemTest):
-    """What gives energy or flies off is said, and kept."""
+    """Runs that give energy or diverge are reported, and kept."""
 
     WILD = ("--coupling", "proposed", "--eta", "0.05", "--set", "hand.stiffness=3000",
             "--set", "hand.damping=0")  # fmt: skip
@@ -412,7 +412,7 @@ class Info(WithAnArm):
 
 
 class Inertias(SystemTest):
-    """Of links: what no body has is said, and what bodies have is not."""
+    """Inertias of links: impossible ones are reported, others are not."""
 
     def checked(self, mass: float, moments: tuple[float, float, float]) -> str:
         file = self.out(".urdf")

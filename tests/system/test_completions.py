@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What Tab gives in bash, zsh and fish."""
+"""Completions offered by Tab in bash, zsh and fish."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Bash(Tab):
 
     def test_values_behind_an_equals_sign(self) -> None:
         self.assertEqual(self.offered("limpid run --coupling=s"), {"standard"})
-        # bash completes what stands behind the '='.
+        # bash completes the part after the '='.
         self.assertEqual(self.offered("limpid run --set coupling.kind=s"), {"standard"})
 
     def test_names_with_spaces_and_folders(self) -> None:
@@ -137,7 +137,7 @@ class Protocol(SystemTest):
                     self.assertIn(word, offered | {"--help"}, command)
 
 
-del Tab  # a plan for the three, and no test itself
+del Tab  # a base for the three shells' tests, not a test itself
 
 if __name__ == "__main__":
     unittest.main()

@@ -13,19 +13,19 @@ from window import WindowTest
 
 TABLE = ROOT / "app/desktop/shell/dialogs.cpp"
 SESSION = sorted((ASSETS / "sessions").glob("*.h5"))[0]
-# No key opens them, and their frames are those of the others; "ask" is a program's, and stays open
-# until it is answered; "quit" asks about a recording, which test_window_keys makes.
+# Dialogs that no key opens; their frames are those of the others. "ask" is a program's, and stays
+# open until it is answered; "quit" asks about a recording, which test_window_keys makes.
 WITHOUT_KEY = {"about", "open arm", "device arm", "find session", "ask", "quit"}
 
 
 def dialogs() -> set[str]:
-    """All there are, by the program's own list."""
+    """Names of all dialogs, from the program's own list."""
     return set(re.findall(r'DialogKind{"([^"]+)"', TABLE.read_text()))
 
 
 @unittest.skipUnless(drop, "needs python3-xlib")
 class EachDialog(WindowTest):
-    """One window for all of them; what some need is there from the start."""
+    """One window for all dialogs; the files that some need exist from the start."""
 
     def prepare(self) -> None:
         plan = self.home / "plan.toml"

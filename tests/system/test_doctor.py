@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`limpid doctor` on computers that lack something."""
+"""`limpid doctor` on computers with something missing."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Doctor(SystemTest):
         self.assertEqual((gnuplot["state"], gnuplot["mend"]), ("better", "sudo apt install gnuplot-nox"))
 
     def limited(self, priority: int) -> tuple[str, ...]:
-        """Words before a command that take real-time rights away but for this priority."""
+        """Words before a command that limit its real-time priority to this one."""
         words = ["prlimit", f"--rtprio={priority}:{priority}", "--memlock=65536:65536"]
         if os.geteuid() == 0:
             words += ["setpriv", "--bounding-set=-sys_nice,-ipc_lock", "--inh-caps=-all"]

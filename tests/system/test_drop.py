@@ -16,7 +16,7 @@ except ImportError:
 
 
 def write_stl(path: Path) -> None:
-    """The pyramid in millimetres, as CAD programs save it."""
+    """Writes the pyramid in millimetres, as CAD programs do."""
     facets = b"".join(
         struct.pack("<3f", 0, 0, 0) + b"".join(struct.pack("<3f", *CORNERS[i]) for i in face)
         + b"\0\0" for face in FACES)
@@ -29,7 +29,7 @@ def write_obj(path: Path) -> None:
 
 
 def two_arms() -> str:
-    """On one body; the right one has a joint more."""
+    """Writes a URDF of two arms on one body; the right one has a joint more."""
     body = ("<inertial><mass value='0.1'/><inertia ixx='1e-4' ixy='0' ixz='0' iyy='1e-4' iyz='0'"
             " izz='1e-4'/></inertial>")
     ways = {"left": ("left upper", "left hand"), "right": ("right upper", "right lower",

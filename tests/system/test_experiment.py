@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`limpid experiment`: what it leaves, how it goes on, what it refuses."""
+"""`limpid experiment`: files it leaves, continuing, refusals."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from support import Started, SystemTest, limpid
 
 
 class Inertia(SystemTest):
-    """One experiment, run once for all the tests of this class."""
+    """One experiment, run once for all tests of this class."""
 
     out_dir: Path
 
@@ -102,7 +102,7 @@ class Inertia(SystemTest):
 
 class Stopping(SystemTest):
     def stopped(self, out: Path, how: signal.Signals) -> dict[Path, int]:
-        """The recordings it leaves, with their times."""
+        """Recordings that an experiment leaves when stopped, with their times."""
         keys = (out / "passivity").glob
         before = len(list(keys("*.key")))
         with Started("experiment", "passivity", "--out", out) as started:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""File dialogs of the window: the desktop's own where its portal answers, Limpid's own else."""
+"""File dialogs of the window: the desktop's own if its portal answers, otherwise Limpid's."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from window import WindowTest
 
 PYTHON = "/usr/bin/python3"  # has the distribution's modules
 STAND_IN = Path(__file__).with_name("desktop_portal.py")
-# No service is started by it, whatever is installed here.
+# The bus starts no service, whatever is installed here.
 BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration 1.0//EN"
  "http://www.freedesktop.org/standards/dbus/1.0/busconfig.dtd">
 <busconfig><type>session</type><listen>unix:path={}</listen><policy context="default">
@@ -54,7 +54,7 @@ class WithABus(WindowTest):
         self.files.mkdir()
 
     def portal(self, **order) -> None:
-        """Begins to serve."""
+        """Starts the portal."""
         self.log.write_text("")
         self.order(**order)
         self.server = subprocess.Popen([PYTHON, STAND_IN, self.order_file, self.log],
@@ -130,7 +130,7 @@ class Answers(WithABus):
         self.assertRegex(call["options"]["current_name"], r"^[^/]+\.toml$")
         self.assertTrue(call["options"]["current_folder"].endswith("/limpid/scenes\0"))
 
-        # The desktop has asked about "new one", which is not there, and not about "new one.toml".
+        # The desktop has asked about "new one", which is absent, and not about "new one.toml".
         before = file.stat().st_mtime_ns
         self.key("ctrl+shift+s")
         self.own_dialog("save scene")
@@ -140,7 +140,7 @@ class Answers(WithABus):
         self.wait_until("it to be replaced", lambda: file.stat().st_mtime_ns != before)
         self.closed()
 
-        # This one the desktop has asked about.
+        # The desktop has asked about this file.
         before = file.stat().st_mtime_ns
         self.order(how="choose", uri=f"file://{quote(str(file))}")
         self.key("ctrl+shift+s")
@@ -180,7 +180,7 @@ class Answers(WithABus):
         self.portal(how="choose", uri=f"file://{quote(str(self.files / 'gone.toml'))}")
         self.key("ctrl+shift+o")
         self.own_dialog("open scene")
-        file = self.files / "gone.toml"  # it comes back, under the name that stands there
+        file = self.files / "gone.toml"  # the file comes back, under the name in the dialog
         file.write_text(SCENE)
         self.key("Return")
         self.wait("the scene", lambda s: s["scene"] == str(file))
@@ -207,7 +207,7 @@ class ShowsInItsFolder(WithABus):
 
 class DoesNotAnswer(WithABus):
     def test_limpids_own_opens_where_the_desktops_fails(self) -> None:
-        self.key("ctrl+shift+o")  # a bus, and nobody on it
+        self.key("ctrl+shift+o")  # there is a bus, but no portal on it
         self.own_dialog("open scene")
         self.key("Escape")
         self.closed()

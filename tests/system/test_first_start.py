@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What ./run says before there is a program, with stand-ins for the tools that it calls."""
+"""Messages of ./run before the program is built, with stand-ins for the tools that it calls."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# Installed is what is named in the file `installed`.
+# Packages named in the file `installed` are installed.
 DPKG_QUERY = """
 while read -r name; do echo; echo "$name installed"; done < "$HERE/installed"
 exit 1
 """
-# Builds three files of a hundred; with a `broken` one beside it the third fails.
+# Builds three files of a hundred; if `broken` exists beside it, the third fails.
 CMAKE = """
 [ "$1" = --build ] || exit 0
 echo '[0/100] Re-running CMake'
@@ -59,7 +59,7 @@ class FirstStart(unittest.TestCase):
         return done.read_text() if done.exists() else ""
 
     def install_all_but(self, *words: str) -> None:
-        """As the program itself names them."""
+        """Installs all packages but one, by the names that ./run itself gives."""
         self.run_script(".ci/install")
         names = self.asked_of_apt().splitlines()[-1].split("--no-install-recommends ")[1].split()
         (self.bin / "installed").write_text("".join(f"{n}\n" for n in names if n not in words))

@@ -23,7 +23,7 @@ class Identify(WindowTest):
         return sorted((self.home / "data/limpid/identified").glob("*/report.html"))
 
     def found(self, seconds: float) -> dict:
-        """What a new report says."""
+        """Contents of a new report."""
         before = len(self.reports())
         for _ in range(int(10 * seconds)):
             if len(self.reports()) > before:
@@ -42,7 +42,7 @@ class Identify(WindowTest):
             self.assertTrue(self.reports()[0].with_name(name).exists(), name)
         self.assertFalse((self.home / "data/limpid/devices").exists(), "nothing is remembered of it")
         self.wait("the findings", lambda s: s["identify"]["phase"] == "found")
-        self.key("space")  # no force, and nothing is lost by it
+        self.key("space")  # there is no force; the cut loses nothing
         self.settled()
         self.assertEqual(self.state()["identify"]["phase"], "found")
         for way in ("Escape", "cross", "button"):
@@ -56,13 +56,13 @@ class Identify(WindowTest):
 
 
 class IdentifyWithLoad(WindowTest):
-    GRAMS = 80  # another load than the one that stands there
+    GRAMS = 80  # differs from the preset load
 
     def reports(self) -> list[Path]:
         return sorted((self.home / "data/limpid/identified").glob("*/identified.json"))
 
     def place(self, label: str) -> list[float]:
-        """Once the dialog has found its size."""
+        """Place of a label in the dialog, once the dialog has its size."""
         self.wait(label, lambda s: label in s["identify"]["places"])
         return self.settled()["identify"]["places"][label]
 
@@ -85,7 +85,7 @@ class IdentifyWithLoad(WindowTest):
         self.assertEqual(self.settled()["identify"]["phase"], "asking", "that Enter was the field's")
 
     def drawn_scale(self) -> float:
-        """What the motors of the simulated device give of what they are told, as the command says."""
+        """Scale of the simulated device's motor torques, as the command reports it."""
         done = limpid("identify", "simulated", "--load", "0.05", "--out", self.home / "out")
         return float(re.search(r"([\d.]+) was drawn", done.out)[1])
 
@@ -127,7 +127,7 @@ class IdentifyWithLoad(WindowTest):
 
 
 class PaddleWindow(WindowTest):
-    BOOK = ""  # of the device
+    BOOK = ""  # entry of the device
 
     def prepare(self) -> None:
         runtime = self.home / "runtime"
@@ -147,12 +147,12 @@ class PaddleWindow(WindowTest):
 
 
 class AxesOfADevice(PaddleWindow):
-    SIZE = (1600, 880)  # all of the panel
+    SIZE = (1600, 880)  # all of the panel fits
 
     def begin_check(self) -> None:
         self.wait("the check's button", lambda s: s["device"]["check"])
         place = self.settled()["device"]["check"]
-        if place:  # not in the loop by now
+        if place:  # the device has left the loop
             self.click(*place)
 
     def test_are_checked_before_it_may_push_and_again_after_a_check_that_was_stopped(self) -> None:
@@ -182,7 +182,7 @@ class ArmOfADevice(PaddleWindow):
         self.wait("the question", lambda s: s["device"]["arm"])
         place = self.settled()["device"]["arm"]
         self.move(place[0], place[1] - 100)
-        for _ in range(3):  # the wheel: from the lower edge of the panel into view
+        for _ in range(3):  # the wheel scrolls the panel's lower edge into view
             self.xdotool("click", "5")
         self.wait("the question in view", lambda s: s["device"]["arm"][1] < place[1])
         self.click(*self.settled()["device"]["arm"])
@@ -199,7 +199,8 @@ class IdentifyDevice(PaddleWindow):
     BOOK = "checked = true\n"
 
     def test_leaves_the_loop_and_comes_back(self) -> None:
-        """To the end a device that is a program seldom comes: a stall of 5 ms ends it."""
+        """Leaves the loop and comes back. A device that is a program seldom reaches the end: a
+        stall of 5 ms ends it."""
         self.wait("the device", lambda s: s["identify"]["plugged"])
         self.key("F7")
         self.wait("the dialog", lambda s: s["dialog"] == "identify")

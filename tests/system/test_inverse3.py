@@ -1,4 +1,4 @@
-"""The Inverse3 by way of a stand-in of its maker's service: listed, named, and pushed in the window."""
+"""The Inverse3 through a stand-in of its service: listed, named, and pushed in the window."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ON_TABLE = "move 0 -0.12 0.115"  # half a centimetre below the table top of the 
 
 
 class Service:
-    """The stand-in, and what it has said."""
+    """The stand-in and its lines."""
 
     def __init__(self, port: str = "0") -> None:
         self.process = subprocess.Popen(["/usr/bin/python3", PROGRAM, port], text=True, bufsize=1,
@@ -39,7 +39,7 @@ class Service:
         self.process.stdin.write(order + "\n")
 
     def wait(self, wanted, seconds: float = 60) -> str:
-        """The first line that is wanted; what came before it is forgotten."""
+        """Waits for the first wanted line; forgets all lines before it."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             for i, line in enumerate(list(self.lines)):
@@ -50,7 +50,7 @@ class Service:
         raise AssertionError(f"the service has not said it, but {self.lines[-5:]}")
 
     def wait_for_all_so_far(self) -> None:
-        """What was said up to now is forgotten."""
+        """Forgets all lines up to now."""
         self.tell("count")
         self.wait(lambda line: line.startswith("messages"))
 
@@ -107,7 +107,7 @@ class InTheWindow(WindowTest):
     def prepare(self) -> None:
         self.service = Service()
         self.addCleanup(self.service.end)
-        self.service.tell("spring 2000")  # as in a hand; what never moves gets no force
+        self.service.tell("spring 2000")  # moves as in a hand; constant readings get no force
         book = self.home / "config/limpid/devices.toml"
         book.write_text(f'[device."inverse3:049D@127.0.0.1:{self.service.port}"]\nchecked = true\n')
         self.words = ["--device", self.service.name,
@@ -118,12 +118,13 @@ class InTheWindow(WindowTest):
         self.service.wait(lambda line: line == "session")
 
     def arm_until_it_lifts(self) -> None:
-        """More than once where the machine is busy: 5 ms without a reading take the force away."""
+        """Arms until a force lifts, repeatedly on a busy machine: 5 ms without a reading take the
+        force away."""
         end = time.monotonic() + 60
         while not any(lifts(line) for line in self.service.lines) and time.monotonic() < end:
             if not self.state()["force"]:
                 self.key("f")
-            time.sleep(1)  # a state is not older
+            time.sleep(1)  # the age of a state is at most this
         self.service.wait(lifts)
 
     def check_without_force(self, why: str) -> None:
@@ -160,7 +161,8 @@ class InTheWindow(WindowTest):
         self.service.wait(lambda line: line == "end")
 
     def another_window(self, *words: str) -> dict:
-        """What a second window says of the device once it knows it; the first one's force goes on."""
+        """Text of a second window about the device once it knows it; the first window's force goes
+        on."""
         first, states = self.app, self.states
         try:
             self.states = (self.home / "others").open("w")
@@ -169,7 +171,7 @@ class InTheWindow(WindowTest):
             self.start()
             self.wait("the second window's device", lambda s: s["device"]["problem"] not in
                       ("", "not connected"), 60)
-            self.go_on(4)  # it would have tried again by now
+            self.go_on(4)  # enough time for another try
             return self.state()
         finally:
             second = self.app
@@ -190,7 +192,7 @@ class InTheWindow(WindowTest):
                 self.assertIn(why, device["problem"])
                 self.assertIn("in use by " + holder, device["problem"])
                 self.assertTrue(device["waits_for_choice"])
-        # A busy machine may lose the first window's stream, which that window begins anew then.
+        # On a busy machine the first window may lose its stream, which it begins anew then.
         streams = 1
         for line in list(self.service.lines):
             streams += {"session": 1, "end": -1}.get(line, 0)

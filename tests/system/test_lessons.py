@@ -1,4 +1,4 @@
-"""The lessons run without a window, and what they say is so."""
+"""The lessons run without a window, and their statements are true."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LESSONS = ASSETS / "python" / "lessons"
 
 class TestLessons(SystemTest):
     def lesson(self, name: str, *figures: str) -> list[list[float]]:
-        """The numbers of its lines, without those of its words."""
+        """Numbers in the lesson's output, without those in its sentences."""
         environment = {**os.environ, "LIMPID": str(LIMPID), "LESSONS": str(self.directory)}
         done = subprocess.run([sys.executable, LESSONS / f"{name}.py"], env=environment, text=True,
                               capture_output=True, timeout=250)
@@ -32,7 +32,8 @@ class TestLessons(SystemTest):
                 for line in text.splitlines()]
 
     def test_only_the_standard_coupling_drifts(self) -> None:
-        """By force over stiffness: what the hand's spring of 300 N/m leaves of 10 mm."""
+        """The drift is force over stiffness: the part of 10 mm that the hand's spring of 300 N/m
+        leaves."""
         standard, proposed, predictive = self.lesson("drift", "drift")
         self.assertGreater(standard[0], 3)
         self.assertLess(max(proposed[0], predictive[0]), 0.01)
@@ -57,7 +58,7 @@ class TestLessons(SystemTest):
         self.assertEqual(len(energies), 3)
 
     def test_the_standard_coupling_is_in_series_with_walls(self) -> None:
-        """1 / felt less 1 / wall is the same for all."""
+        """1 / felt less 1 / wall is the same for all walls."""
         standard, proposed, predictive = self.lesson("walls", "walls")
         walls = (100, 200, 400, 800)
         springs = [1 / (1 / felt - 1 / wall) for felt, wall in zip(standard, walls)]

@@ -1,4 +1,4 @@
-"""A real device, here a program that plays one, in commands that lead a hand."""
+"""Commands that lead a hand on a real device, played by a program here."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from unittest import mock
 from support import ASSETS, LIMPID, Result, limpid
 
 DEVICE = Path(__file__).with_name("replaying_device.py")
-COMES_BACK = 5  # force after a device that is on time again, at the latest [s]
+COMES_BACK = 5  # longest time until force comes back after a device is on time again [s]
 
 
 class Live(unittest.TestCase):
@@ -27,7 +27,8 @@ class Live(unittest.TestCase):
                                           XDG_CONFIG_HOME=str(self.folder / "config")))
 
     def plug(self, *words: str | Path) -> subprocess.Popen:
-        """Moves as a run with these words did; without any, as one that pressed onto the table."""
+        """Plugs in a device that moves as in a run with these words; without words, as in one that
+        pressed onto the table."""
         book = self.folder / "config/limpid/devices.toml"
         book.parent.mkdir(parents=True, exist_ok=True)
         book.write_text('[device."socket:replay"]\nchecked = true\n')
@@ -45,8 +46,8 @@ class Live(unittest.TestCase):
         self.fail("the device is not listed")
 
     def on_time(self, *words: str | Path) -> Result:
-        """Runs this. The device is a Python program, which may be late: it has no force then, and
-        again once it is on time. It says when it was late; without that no force is a fault."""
+        """Runs a command. The device is a Python program, which may be late: it has no force then,
+        and again when it is on time. It reports delays; a loss of force without one is a fault."""
         begun = time.monotonic()
         result = limpid(*words)
         no_force, too_long = "gets no force" in result.err, "too long to say" in result.err
@@ -85,7 +86,7 @@ class Live(unittest.TestCase):
         self.assertIn("device", limpid("info", out).out)
 
     def refused(self, *words: str | Path) -> str:
-        """What it says; nothing was written."""
+        """Message of the refused command, which has written nothing."""
         out = self.folder / "refused"
         options = {"identify": ["--out", out, "--yes"],
                    "run": ["--live", "--yes", "--record", out / "live.h5"],
@@ -255,7 +256,8 @@ class Live(unittest.TestCase):
 
         self.plug("--device", ASSETS / "devices/joystick.urdf")
         with mock.patch.dict("os.environ", LIMPID=str(LIMPID)), package.serve(live="socket:replay") as loop:
-            # Its stop is at the shoulder of the built-in arm; a joystick has none, but a second joint.
+            # The stop is at the shoulder of the built-in arm; a joystick has none, but a second
+            # joint.
             with self.assertRaisesRegex(package.RequestError, "proximal.toml:.*shoulder"):
                 loop.open(scene="proximal.toml")
             loop.open(scene="free.toml")

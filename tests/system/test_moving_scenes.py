@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Every shipped scene in which something moves does in its recorded session what its sentence says,
-and the energies are as they should be."""
+"""Every shipped scene with moving objects does in its recorded session what its sentence says, and
+its energies are right."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ import numpy as np
 
 from support import ASSETS
 
-MOST_CONTROLLER = 5e-5  # E_c [J]
-MOST_GAIN = 1e-6        # of what the bodies' world makes [J]
+MOST_CONTROLLER = 5e-5  # highest E_c [J]
+MOST_GAIN = 1e-6  # most energy that the bodies' world makes [J]
 
 
 class Recorded:
@@ -36,27 +36,27 @@ class Recorded:
         self.unsettled = file["coupling/unsettled"][()]
 
     def moved(self, name: str) -> np.ndarray:
-        """From where it was at first [m]."""
+        """Way from the first place [m]."""
         return self.center[name] - self.center[name][0]
 
     def turned(self, name: str) -> np.ndarray:
-        """From how it stood at first [rad]."""
+        """Angle from the first orientation [rad]."""
         turn = self.turn[name]
         return 2 * np.arccos(np.clip(np.abs((turn * turn[0]).sum(axis=1)), 0, 1))
 
     def upright(self, name: str) -> np.ndarray:
-        """Between its z axis and the vertical [rad]."""
+        """Angle between the body's z axis and the vertical [rad]."""
         _, x, y, _ = self.turn[name].T
         return np.arccos(np.clip(1 - 2 * (x**2 + y**2), -1, 1))
 
     @property
     def pushes(self) -> np.ndarray:
-        """On the tip [N]."""
+        """Force on the tip [N]."""
         return np.linalg.norm(self.force, axis=1)
 
 
 def peaks(values: np.ndarray, least: float) -> int:
-    """How often the values rise by so much and fall by so much again."""
+    """Number of times that the values rise by so much and fall by so much again."""
     count, low, high, rising = 0, values[0], values[0], True
     for value in values:
         low, high = min(low, value), max(high, value)
@@ -69,7 +69,7 @@ def peaks(values: np.ndarray, least: float) -> int:
 
 class MovingScenes(unittest.TestCase):
     def keys(self, r: Recorded, scene: dict) -> None:
-        """All the way down and up again; the one that clicks gives way where its table falls."""
+        """Keys go all the way down and up; the one that clicks yields where its table falls."""
         for body in scene["body"]:
             depth = -r.moved(body["name"])[:, 2]
             self.assertGreater(depth.max(), 0.0058, body["name"])
@@ -83,10 +83,10 @@ class MovingScenes(unittest.TestCase):
                            0.5 * (top[1] - bottom[1]))  # fmt: skip
 
     def switch(self, r: Recorded, scene: dict) -> None:
-        """Over and back; beyond the middle it leaves the finger behind, and it stays where it is
+        """The switch goes over and back: beyond the middle it runs ahead of the finger, and stays
         without one."""
         turned, free = r.turned("rocker"), r.pushes == 0
-        stop = scene["body"][0]["joint"]["limits"][1]  # it presses itself against it
+        stop = scene["body"][0]["joint"]["limits"][1]  # the switch presses against its stop
         self.assertGreater(np.median(turned[free & (turned > 0.3)]), stop + 1e-4)
         self.assertLess(turned[-1], 0.02)
         speed = np.abs(np.diff(turned)) / np.diff(r.time)
@@ -100,7 +100,7 @@ class MovingScenes(unittest.TestCase):
         self.assertLess(r.turned("door")[-1], 0.03)
 
     def dial(self, r: Recorded, scene: dict) -> None:
-        """As many clicks in the torque as numbers went by."""
+        """The torque clicks as many times as numbers went by."""
         turn = np.unwrap(2 * np.arctan2(r.turn["dial"][:, 3], r.turn["dial"][:, 0]))
         body = scene["body"][0]
         period = body["joint"]["detent"]["period"]
@@ -116,7 +116,7 @@ class MovingScenes(unittest.TestCase):
         self.assertGreater(r.pushes.max(), 0.4, "too weak to be felt")
 
     def dominoes(self, r: Recorded, scene: dict) -> None:
-        """All fall, one after the other, though the tip is near the first one alone."""
+        """All dominoes fall, one after the other, though the tip is near the first one only."""
         self.assertGreaterEqual(len(r.names), 10)
         fell = []
         for name in r.names:
@@ -152,7 +152,7 @@ class MovingScenes(unittest.TestCase):
         self.assertGreater(r.moved("cup")[-1, 1], 0.05)
 
     def pucks(self, r: Recorded, scene: dict) -> None:
-        """The same motion takes a hundred times the force, all but what rubs."""
+        """The same motion takes a hundred times the force, apart from friction."""
         most = []
         for name in r.names:
             self.assertGreater(r.moved(name)[:, 0].max(), 0.05, name)
@@ -162,7 +162,7 @@ class MovingScenes(unittest.TestCase):
         self.assertGreater(most[1], 10 * most[0])
 
     def seesaw(self, r: Recorded, scene: dict) -> None:
-        """Slowly the block stays on the plank; fast it leaves it."""
+        """In slow motion the block stays on the plank; in fast motion it leaves it."""
         self.assertGreater(r.moved("block")[:, 2].max(), 0.02)
         self.assertGreater(r.turned("plank").max(), 0.3)
         lever = r.center["block"] - r.center["plank"]
@@ -172,7 +172,7 @@ class MovingScenes(unittest.TestCase):
         self.assertGreater(np.abs(away - away[0]).max(), 0.004)
 
     def cradle(self, r: Recorded, scene: dict) -> None:
-        """The last one swings nearly as far as the first was pulled, the others stay."""
+        """The last ball swings nearly as far as the first was pulled, the others stay."""
         released = np.flatnonzero(np.diff(r.held) < 0)[-1]
         pulled = -r.moved("ball 1")[released, 0]
         self.assertGreater(pulled, 0.02)
@@ -182,7 +182,7 @@ class MovingScenes(unittest.TestCase):
             self.assertLess(far[name], 0.25 * pulled, name)
 
     def pendulum(self, r: Recorded, scene: dict) -> None:
-        """It goes, comes back, and hits the tip, which has not moved meanwhile."""
+        """The pendulum goes, comes back, and hits the tip, which has not moved meanwhile."""
         out = r.moved("pendulum")[:, 0].argmax()
         self.assertGreater(r.moved("pendulum")[out, 0], 0.02)
         apart = np.flatnonzero(r.pushes[:out] > 0)[-1]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the paper claims, on sessions of the built program, and the recomputation of their rows."""
+"""Claims of the paper, on sessions of the built program, and recomputations of their rows."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Contact(SystemTest):
 
 
 class InertiaScaling(SystemTest):
-    """What the hand feels of a slow free motion, which is mostly damping, goes with eta."""
+    """The hand's torque in slow free motion, which is mostly damping, is proportional to eta."""
 
     def test_the_human_torque_of_the_same_free_motion_is_proportional_to_eta(self) -> None:
         hand = free_motion(self.out(".csv"))
@@ -105,7 +105,7 @@ class InertiaScaling(SystemTest):
 
 
 class AnyArm(SystemTest):
-    """Every recomputation for arms of other sizes and with other settings."""
+    """Recomputations for arms of other sizes and with other settings."""
 
     def arm(self, dof: int) -> list[str | Path]:
         files = arms.write_arm(self.directory, dof)
@@ -179,7 +179,7 @@ class Replay(SystemTest):
     """A session fed back in with its own settings gives the same rows, bit for bit."""
 
     def replay_of_its_parts(self, recorded: Path) -> Path:
-        """With every part of the input taken out of the session and given as a file."""
+        """A replay whose input parts are taken out of the session and given as files."""
         options: list[str | Path] = ["--hand", recorded]
         attributes = read_session(recorded).attributes
         for option, attribute, end in (

@@ -1,4 +1,4 @@
-"""What the mouse and the keys do in the picture: select, move, turn, scale, pull, look."""
+"""Actions of mouse and keys in the picture: select, move, turn, scale, pull, look."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Picture(WindowTest):
 
     def setUp(self) -> None:
         super().setUp()
-        self.hold_tip()  # which ends the hint that covers things
+        self.hold_tip()  # ends the hint that covers things
         self.xdotool("mouseup", "1")
         self.wait("the hand to let go", lambda s: s["grip"] == 0)
 
@@ -57,7 +57,7 @@ class Picture(WindowTest):
         self.xdotool("mouseup", "1")
 
     def text(self) -> str:
-        """The scene as it is saved."""
+        """Text of the scene as saved."""
         self.key("ctrl+s")
         self.wait("the scene to be saved", lambda s: not s["dirty"])
         return self.scene.read_text()
@@ -79,7 +79,7 @@ class Picture(WindowTest):
         self.settled()
         self.key("g")
         self.key("z")
-        self.settled()  # it begins where the mouse is then
+        self.settled()  # the motion begins at the mouse
         self.move(x, y - 60)
         self.settled()
         self.key("Return")
@@ -92,14 +92,14 @@ class Picture(WindowTest):
         self.move(x + 60, y)
         self.settled()
         self.key("s")
-        self.settled()  # it begins where the mouse is then
+        self.settled()  # the motion begins at the mouse
         self.move(x + 120, y)
         self.settled()
         self.click(x + 120, y)
         self.assertNotIn("size = [0.03, 0.03, 0.03]", self.text())
 
         self.key("r")
-        self.settled()  # it begins where the mouse is then
+        self.settled()  # the motion begins at the mouse
         self.move(x + 60, y + 80)
         self.settled()
         self.assertTrue(self.state()["dirty"])
@@ -137,7 +137,7 @@ class Picture(WindowTest):
         self.move(x, y + 40)
         self.go_on(0.5)
         before = self.state()
-        self.key("F2")  # the panel goes: the picture is wider
+        self.key("F2")  # hides the panel: the picture is wider
         self.go_on(0.5)
         after = self.state()
         self.assertEqual(after["grip"], 1)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the package does when it is installed, with other programs in place of those that change the computer."""
+"""Actions of the package on installation, with stand-ins for programs that change the computer."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ POSTINST = ROOT / "assets/package/postinst"
 
 
 class Postinst(SystemTest):
-    """A computer that has this group already or not; its programs say what they were asked for."""
+    """A computer with or without the group; its programs note their arguments."""
 
     def setUp(self) -> None:
         self.place = self.out("")
@@ -26,9 +26,9 @@ class Postinst(SystemTest):
         path.chmod(0o755)
 
     def install(self, group: str) -> tuple[int, list[str]]:
-        """`group`: none, system or ordinary."""
+        """Installs; `group` is none, system or ordinary."""
         self.program("getent", f'[ "{group}" != none ] || exit 2; echo realtime:x:1234:somebody')
-        # As adduser 3.134 of Debian 12: a system group that is there is fine, another one is refused.
+        # adduser 3.134 of Debian 12 accepts an existing system group, and refuses another one.
         self.program("addgroup", f'[ "{group}" != ordinary ] || exit 1')
         self.program("udevadm", "exit 0")
         done = subprocess.run(["/bin/sh", POSTINST, "configure", ""], capture_output=True, text=True,

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Sessions of the predictive coupling, recomputed from the file, and what the recomputation catches."""
+"""Sessions of the predictive coupling, recomputed from the file, and breaches that the
+recomputation finds."""
 
 from __future__ import annotations
 
@@ -21,12 +22,12 @@ from support import ASSETS, SystemTest, Words
 
 _FINE = ["--set", "device.encoder_step=1e-4"]
 _HEAVY = ["--set", "hand.mass=0.2", "--set", "device.torque_limit=5"]
-# An undamped hand that holds hard: with a late damper it swings up until the reserve is used up.
+# An undamped, firm hand: with a late damper it swings up until the reserve is used up.
 _GRIP = ["hand.damping=0", "hand.stiffness=3000", "device.delay=3"]
 
 
 class WallForce(unittest.TestCase):
-    """F D is the change of K d^2 / 2 and what the damper took while inside."""
+    """F D is the change of K d^2 / 2 and the damper's work while inside."""
 
     def test_a_wall_neither_gains_nor_loses_energy_whether_it_is_made_kept_or_broken(self) -> None:
         rng = np.random.default_rng(3)
@@ -36,7 +37,7 @@ class WallForce(unittest.TestCase):
         force = wall_force(k, b, d, a, c)
         change = a - c * force
         after = np.maximum(d + change, 0)
-        inside = after - np.maximum(d, 0)  # what of the way lay inside
+        inside = after - np.maximum(d, 0)  # part of the way that is inside
         stored = k / 2 * (after**2 - np.maximum(d, 0) ** 2)
         pushes = force > 0
         self.assertTrue(np.all(force >= 0))
@@ -57,7 +58,7 @@ def _set(*settings: str) -> list[str]:
 
 
 def _nudged(path: str, amount: float, row: float = 0.3) -> Callable[[dict[str, Array]], None]:
-    """Adds `amount` to one entry that far into the session."""
+    """Adds `amount` to one entry, at this part of the session."""
 
     def change(data: dict[str, Array]) -> None:
         data[path] = data[path].copy()
@@ -66,7 +67,7 @@ def _nudged(path: str, amount: float, row: float = 0.3) -> Callable[[dict[str, A
     return change
 
 
-# what is changed, by how little, and the check that must notice
+# the changed dataset, a small change, and the check that must notice
 _BREACHES: list[tuple[str, Callable[[dict[str, Array]], None]]] = [
     ("tau1 predictive", _nudged("/device/commanded_torque", 1e-8)),
     ("tau2 predictive", _nudged("/proxy/torque", 1e-8)),
@@ -83,7 +84,7 @@ _BREACHES: list[tuple[str, Callable[[dict[str, Array]], None]]] = [
     ("tau1 predictive", _nudged("/device/motor_torque", 1e-4)),
     ("tau1 predictive", _nudged("/hand/torque_estimate", 1e-2)),
 ]
-# The same with encoder steps, where a tick is recomputed from the row before.
+# The same with encoder steps, for ticks that are recomputed from the row before.
 _COARSE_BREACHES = [
     ("tau1 predictive", _nudged("/device/commanded_torque", 1e-8)),
     ("tau2 predictive", _nudged("/proxy/torque", 1e-8)),
@@ -91,7 +92,7 @@ _COARSE_BREACHES = [
     ("motion predictive", _nudged("/device/measured_position", 1e-4)),
     ("motion predictive", _nudged("/device/motor_torque", 1e-5)),
 ]
-# The same with a delay that is not known and a reserve that runs low.
+# The same with an unknown delay and a reserve that runs low.
 _LATE_BREACHES = [
     ("tau1 predictive", _nudged("/device/commanded_torque", 1e-8)),
     ("tau2 predictive", _nudged("/proxy/torque", 1e-8)),
@@ -102,7 +103,7 @@ _LATE_BREACHES = [
     ("damping governor", _nudged("/coupling/damping_governor", 1e-6)),
     ("tau1 predictive", _nudged("/device/measured_position", 1e-8)),
 ]
-# Settings that are not those of the run, and the check that must notice.
+# Settings that differ from the run's, and the check that must notice.
 _WRONG_SETTINGS = {
     "coupling.band": ("5.3", "5.31", "ledger"),
     "predictor.hand_mass": ("0.2", "0.201", "motion predictive"),
@@ -135,7 +136,7 @@ class Predictive(SystemTest):
 
     @property
     def tap_smooth(self) -> Words:
-        """On what can be recomputed from its material."""
+        """Taps on a material whose force can be recomputed."""
         return [*self.tap, "--scene", self.smooth]
 
     def recorded(self, *options: str | Path) -> Session:
@@ -147,7 +148,7 @@ class Predictive(SystemTest):
         return done
 
     def assert_recomputed(self, s: Session, *names: str) -> list[Check]:
-        """A run of its own, which begins with the whole reserve."""
+        """Asserts the recomputation of a new run, which begins with the whole reserve."""
         self.assertEqual(s["/energy/ledger"][0], s.number("ledger.energy")[0, 0])
         checks = verify(s)
         self.assertTrue(all(check.passed for check in checks), "\n" + table(checks))
@@ -213,8 +214,8 @@ class Predictive(SystemTest):
                             ("0.3", ["device.delay=2", "model.delay=1"]),
                             ("2", ["device.delay=1", "model.delay_most=3.5"]),
                             ("20", ["model.delay_most=20"]), ("8", [])):  # fmt: skip
-            # An added mass in a delay that is known feeds what round-off did to the encoder's steps back
-            # faster than it fades: such a run cannot be run again from outside.
+            # An added mass with a known delay amplifies round-off in the encoder's steps faster
+            # than it fades: such a run cannot be recomputed.
             again = eta != "3" or "model.delay=2" not in delays
             for encoder in ([], _FINE) if again else ([],):
                 with self.subTest(eta=eta, delays=delays, encoder=encoder):
@@ -223,8 +224,9 @@ class Predictive(SystemTest):
                     self.assert_recomputed(s, "wall force", "tau1 predictive")
 
     def test_heavy_arms_with_encoder_steps_are_recomputed(self) -> None:
-        """Their predictors remember for as long as the steps ask for, but no longer than the wall
-        leaves or 0.85; and a step pushes less with the wall's damper."""
+        """Heavy arms with encoder steps are recomputed. Their predictors remember for as long as
+        the steps ask for, but no longer than the wall allows or 0.85; and a step pushes less with
+        the wall's damper."""
         for weight, stiffness, step, memory in (
             (8, 600, "2e-5", (0.69, 0.7)), (8, 600, "1e-4", (0.85, 0.85)),
             (8, 2000, "5e-4", (0.85, 0.85)), (2.5, 2000, "1e-4", (0.7, 0.8)),

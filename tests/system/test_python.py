@@ -1,4 +1,4 @@
-"""The Python package without a loop: what it makes of what callers give it, and what it reads."""
+"""The Python package without a loop: its use of callers' values, and its reading."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ PATH = [(0, 0.19, 0, 0), (1, 0.19, 0, -0.05)]
 
 
 class OfNumpy2(float):
-    """Prints as numpy's numbers do from its version 2 on."""
+    """A number that prints as numpy's do from version 2 on."""
 
     def __repr__(self) -> str:
         return f"np.float64({float(self)!r})"
@@ -65,7 +65,7 @@ def write_lane(group: h5py.Group, law: int, eta: float, rows: int, changes: list
 
 
 def write_session(file: Path, rows: int = ROWS, twin: bool = True) -> Path:
-    """As devices/files/README.md has the format."""
+    """Writes a session in the format of devices/files/README.md."""
     with h5py.File(file, "w") as out:
         out.attrs.update({"format": "limpid-session", "tick": 0.001, "source": "mouse"})
         write_lane(out, 2, 1.0, rows, [(3, "coupling.eta = 0.5")])
@@ -127,7 +127,7 @@ class TestSessions(InAFolder):
         write_session(self.folder / "b.h5", 9).rename(file)
         with self.assertRaisesRegex(limpid.LimpidError, "open it again"):
             session.channel("device/position")
-        self.assertEqual(len(session["coupling/eta"]), ROWS)  # what was read stays
+        self.assertEqual(len(session["coupling/eta"]), ROWS)  # values that were read stay
 
     def test_a_recording_that_became_complete_meanwhile_is_read_on(self) -> None:
         part = write_session(self.folder / "a.h5.part")
@@ -144,11 +144,11 @@ class TestSessions(InAFolder):
 
 
 class TestNumbers(InAFolder):
-    """Whatever package they are of."""
+    """Numbers of any package are accepted."""
 
     def setUp(self) -> None:
         super().setUp()
-        program = self.folder / "program"  # which notes its words, and records nothing new
+        program = self.folder / "program"  # notes its words, and records nothing new
         recorded = write_session(self.folder / "recorded.h5")
         program.write_text(f'#!/bin/sh\nfor word in "$@"; do echo "$word"; done >"{self.folder}/words"\n'
                            f'while [ "$1" != --record ]; do shift; done\ncp "{recorded}" "$2"\n')
@@ -229,7 +229,7 @@ class TestNumbers(InAFolder):
         self.assertEqual([point for point, _ in found], [{"eta": 0.5}, {"eta": 1}])
 
     def test_any_part_of_the_likelihood_has_an_interval(self) -> None:
-        """That of 68 % is within that of 95 %, which chi-square's 3.84 gives."""
+        """The interval of 68 % lies within that of 95 %, which follows from chi-square's 3.84."""
         answers = [(1.0, k % 4 > 0) for k in range(40)]
         near, far = study.fit(answers, part=0.68), study.fit(answers)
         self.assertLess(far.low, near.low)
@@ -246,7 +246,7 @@ HOLDS = ("import sys, time\nfrom limpid import study\n"
 
 
 class TestAnswers(InAFolder):
-    """One study at a time writes to a participant's answers, and they are what they were given under."""
+    """Only one study at a time writes to a participant's answers; these keep their conditions."""
 
     def study(self, **more) -> study.Study:
         return study.Study("held", self.folder, 0, more.pop("who", study.Simulated(1.0)), **more)
@@ -341,7 +341,7 @@ class TestAnswers(InAFolder):
         self.assertEqual([row["block"] for row in run.rows], ["1", "2"])
 
     def test_what_a_stimulus_cannot_be_is_the_studys_mistake(self) -> None:
-        """It would end there again; that a program has ended is another thing."""
+        """The study would end there again, so this is its mistake, unlike the end of a program."""
 
         def asks_too_much(stimulus: study.Stimulus) -> float:
             raise limpid.ProgramError("friction_static: 1.1 is not allowed; allowed: 0 to 1")

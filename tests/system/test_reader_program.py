@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Recordings are read by a program of their own: whatever becomes of it, limpid says so and goes on."""
+"""Recordings are read by a program of their own: whatever happens to it, limpid reports it and goes
+on."""
 
 from __future__ import annotations
 
@@ -54,7 +55,7 @@ class ReaderProgramTest(SystemTest):
         self.assertIn("limpid-session, which reads it, cannot be started", self.read_with(None))
 
     def test_files_that_crash_hdf5_crash_nothing_else(self) -> None:
-        """Bytes of a recording of HDF5's first edition, which has no checksums, one by one."""
+        """A recording of HDF5's first edition, which has no checksums, is changed byte by byte."""
         if not Path("/usr/bin/h5repack").exists():
             raise unittest.SkipTest("h5repack is missing")
         old = self.directory / "old.h5"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What is left of a recording, however it ends, and what can be seen of it before."""
+"""Remains of a recording, however it ends, and its visible part before."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from support import ASSETS, LIMPID, Started, SystemTest, WithAnArm, limpid
 
 
 def live_rows(part: Path) -> int:
-    """Rows of a recording that is being written, as h5py sees them; 0 while there are none."""
+    """Number of rows of an unfinished recording, as h5py sees it; 0 while there are none."""
     try:
         with h5py.File(part, "r", libver="latest", swmr=True) as file:
             return len(file["/time"])
@@ -39,7 +39,7 @@ def wait_for_rows(started: Started, part: Path, rows: int) -> int:
 
 
 class Recording(WithAnArm):
-    """What is left of a recording, however it ends."""
+    """Remains of a recording, however it ends."""
 
     def test_it_can_be_read_while_it_is_written(self) -> None:
         out = self.out()
@@ -109,7 +109,7 @@ class Recording(WithAnArm):
                 )
                 self.assertIsNotNone(said, result.err)
                 self.assertFalse(self.part(out).exists())
-                # the summary is of what went before, in numbers of this world
+                # the summary covers the rows before, in credible numbers
                 self.assertNotRegex(result.out, r"(?i)nan|inf\b|e\+")
                 for number in re.findall(r"\d+\.\d+", result.out):
                     self.assertLess(float(number), 1e6, result.out)
@@ -131,7 +131,7 @@ class Recording(WithAnArm):
         self.assertRegex(result.err, "warning: E_c rose to .* J.*: this run is not passive")
 
     def test_a_change_comes_at_its_time_whatever_the_tick(self) -> None:
-        """Recorded changes are at rows; of another tick other rows have the same time."""
+        """Recorded changes belong to rows; with another tick other rows have the same time."""
         first = self.record("--hand", ASSETS / "hands/touch.csv", "--duration", "0.6")
         with h5py.File(first, "r+") as file:
             for name, value in (("row", 300), ("setting", b"coupling.eta = 0.7")):
@@ -151,7 +151,7 @@ class Recording(WithAnArm):
         out = self.out()
         words = ["run", *self.arm, "--realtime", "--duration", "60", "--record", out]
         with Started(*words) as started:
-            began = math.inf  # latest time the first row can have been written at
+            began = math.inf  # latest possible time of the first row
             for rows in (1, 1000, 2000, 2400):
                 seen = wait_for_rows(started, self.part(out), rows)
                 began = min(began, time.monotonic() - seen * 1e-3)
@@ -185,7 +185,7 @@ class Recording(WithAnArm):
 
 
 class Places(WithAnArm):
-    """Where a recording may lie."""
+    """Places of recordings."""
 
     NO_LOCKS = """#include <errno.h>
         #include <fcntl.h>
@@ -262,7 +262,7 @@ class Places(WithAnArm):
 
 
 class ShippedSessions(SystemTest):
-    """The recordings that come with the program; of one that is rounded its re-run is verified."""
+    """The shipped recordings; of a rounded one the re-run is verified."""
 
     def test_they_verify_and_can_be_run_again(self) -> None:
         sessions = sorted((ASSETS / "sessions").glob("*.h5"))

@@ -51,7 +51,7 @@ class TestServe(RemoteTest):
             with self.assertRaisesRegex(limpid.RequestError, "only a person|Only a person"):
                 loop.set(values)
         loop.set({"device.torque_limit": 0.1})
-        loop.set({"device.torque_limit": 0.2})  # which is less than a person has chosen
+        loop.set({"device.torque_limit": 0.2})  # below a person's limit
         with self.assertRaisesRegex(limpid.RequestError, "Only a person"):
             loop.twin({"ledger.energy": 0.02})
 
@@ -97,7 +97,7 @@ class TestServe(RemoteTest):
         self.assertEqual([text for _, text in session.changes], ["coupling.eta = 0.7"])
         self.assertEqual(session.channel("coupling/eta")[-1], 0.7)
         with self.assertRaisesRegex(limpid.RequestError, "a.h5"):
-            loop.record(file)  # which is there
+            loop.record(file)  # the file exists
 
     def test_a_mark_is_kept_at_its_tick_while_something_is_recorded(self) -> None:
         loop = self.connect()
@@ -121,7 +121,7 @@ class TestServe(RemoteTest):
         writes, listens = self.connect(), self.connect()
         out = self.home / "full.h5"
         self.assertIsNone(writes.state()["trouble"])
-        # As on a full disk: files may not grow beyond this.
+        # A limit of file size stands for a full disk.
         resource.prlimit(self.process.pid, resource.RLIMIT_FSIZE, (1 << 20, resource.RLIM_INFINITY))
         writes.record(out)
         for client in (writes, listens):
@@ -304,11 +304,11 @@ class TestServe(RemoteTest):
 
 
 class TestBadClients(RemoteTest):
-    """Whatever clients do, the loop's ticks stay as they were, and others are served."""
+    """Whatever clients do, the loop's ticks go on, and others are served."""
 
     def ticks_go_on(self, what: str, good) -> None:
-        """The loop makes ticks as punctually as it can, and a good client is answered. How punctual
-        that is depends on the computer; that none is left out does not."""
+        """The loop's ticks go on and a good client is answered. Punctuality depends on the
+        computer; completeness does not."""
         before = good.state()
         good.follow(["coupling/eta"], rate=1000)
         rows = good.rows(seconds=1)

@@ -1,4 +1,4 @@
-"""The window, led by a program: what it asks a person, and what it hides from one."""
+"""The window, led by a program: questions to a person, and things hidden from one."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class TestRemoteWindow(WindowTest):
         self.addCleanup(self.loop.close)
 
     def beside(self, work):
-        """Does it on a thread; its result or what it raises is in the list that comes back."""
+        """Runs work on a thread; the returned list gets its result or its error."""
         result: list = []
 
         def carry_out() -> None:
@@ -41,7 +41,7 @@ class TestRemoteWindow(WindowTest):
             except limpid.LimpidError as error:
                 result.append(error)
 
-        thread = threading.Thread(target=carry_out, daemon=True)  # which may wait for an answer
+        thread = threading.Thread(target=carry_out, daemon=True)  # it may wait for an answer
         thread.start()
         return result, thread
 
@@ -52,7 +52,7 @@ class TestRemoteWindow(WindowTest):
         return result, thread
 
     def keep_picture(self, name: str) -> None:
-        """For whoever looks at them: in the folder LIMPID_PICTURES, if that is set."""
+        """Keeps a picture for people in the folder LIMPID_PICTURES, if that is set."""
         folder = os.environ.get("LIMPID_PICTURES")
         if folder:  # beside the client that may wait for an answer
             with limpid.Client(self.path) as other:
@@ -69,7 +69,7 @@ class TestRemoteWindow(WindowTest):
     def test_settings_move_the_sliders_and_the_loop(self) -> None:
         self.loop.set({"coupling.kind": "predictive", "coupling.eta": 0.5})
         self.wait("the setting", lambda s: s["kind"] == 2 and s["eta"] == 0.5)
-        self.key("ctrl+z")  # as a slider, it is undone
+        self.key("ctrl+z")  # undone like a slider's change
         self.wait("undone", lambda s: s["kind"] == 0)
         self.key("c")
         self.wait("the next law", lambda s: s["kind"] == 1)
@@ -131,7 +131,7 @@ class TestRemoteWindow(WindowTest):
         state = self.settled()
         self.assertEqual((state["kind"], state["eta"], state["dialog"], state["twin"]),
                          (2, 1, "", False))
-        self.key("space")  # the force is the person's all the same
+        self.key("space")  # the force is still the person's
         self.wait("no force", lambda s: not s["force"])
         self.keep_picture("blind_force_off")
         self.key("f")
@@ -179,7 +179,7 @@ class TestRemoteWindow(WindowTest):
         self.assertEqual((done["file"], done["dropped"]), (file, 0))
         self.assertEqual(len(limpid.session(file)), done["rows"])
         self.check_rerun_is_the_same(Path(file))
-        # One that a person begins is ended from here, and the other way round.
+        # A recording begun by a person is ended by the program, and the other way round.
         self.key("r")
         self.wait("recording", lambda s: s["recording"])
         self.assertIn("sessions/session-", self.loop.stop()["file"])
@@ -218,7 +218,7 @@ class TestRemoteWindow(WindowTest):
         self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
         self.hold_tip()
         self.keep_picture("ask_beside")
-        self.key("9")  # is no answer
+        self.key("9")  # 9 is no answer
         self.key("Escape")
         self.assertEqual(self.settled()["dialog"], "ask")
         self.assertEqual((result, self.state()["grip"], self.state()["force"]), ([], 1, True))
@@ -240,7 +240,7 @@ class TestRemoteWindow(WindowTest):
         self.wait("it to go", lambda s: not s["asking"])
         with self.assertRaisesRegex(limpid.RequestError, "ask: seconds: 0 is not allowed"):
             self.loop.ask("?", seconds=0)
-        # One before it, which is answered, leaves the arm to the mouse.
+        # An earlier, answered question leaves the arm to the mouse.
         result, thread = self.asked()
         self.key("Return")
         thread.join(20)
@@ -249,7 +249,7 @@ class TestRemoteWindow(WindowTest):
         self.hold_tip()
 
     def answer(self, key: str) -> None:
-        """The question that is there, or comes."""
+        """Answers the present question, or the next one."""
         self.wait("the question", lambda s: s["dialog"] == "ask" and s["question"])
         self.settled()
         asked = self.state()["question"]
@@ -257,7 +257,8 @@ class TestRemoteWindow(WindowTest):
         self.wait("an answer", lambda s: s["question"] != asked or not s["question"])
 
     def test_a_person_adjusts_until_it_feels_like_the_reference(self) -> None:
-        """By keys, wrong ones among them; each is a row, the trial a session that has all values."""
+        """A person adjusts by keys, wrong ones among them; each is a row, the trial a session with
+        all values."""
         from limpid import study
 
         run = study.Study("adjust", self.home / "answers", 0, study.Person(self.loop))
@@ -297,7 +298,7 @@ class TestRemoteWindow(WindowTest):
                                  lambda eta: study.Stimulus(eta, {"coupling.eta": eta}), "Which one is heavier?")
 
     def check_goes_on(self, cut_off) -> None:
-        """A study that is cut off in the second trial's recording goes on with that trial."""
+        """Checks that a study cut off in the second trial's recording goes on with that trial."""
         from limpid import study
 
         answers = self.home / "answers"
@@ -372,7 +373,7 @@ class TestRemoteWindow(WindowTest):
         self.assertEqual(list(answers.glob("*.part")), [])
 
     def test_a_study_that_was_killed_in_a_trial_goes_on_at_the_same_window(self) -> None:
-        """What it had recorded is ended by the next one."""
+        """The next study ends the killed one's recording."""
         from limpid import study
 
         answers = self.home / "answers"
@@ -391,14 +392,14 @@ class TestRemoteWindow(WindowTest):
         thread.join(20)
         self.assertEqual(len(result[0]), 2)
 
-    # What a program sets is the program's.
+    # A program's settings are not kept.
 
     def kept(self) -> dict:
-        """Settings for the next start, as they are on the disk."""
+        """Settings on the disk for the next start."""
         return tomllib.loads((self.home / "config/limpid/settings.toml").read_text())
 
     def another_leads(self) -> limpid.Client:
-        """With settings, a scene and a twin of its own."""
+        """Another program leads, with settings, a scene and a twin of its own."""
         other = limpid.Client(self.path)
         self.addCleanup(other.close)
         other.open(scene="spheres.toml")
@@ -448,7 +449,7 @@ class TestRemoteWindow(WindowTest):
     def test_nothing_that_a_program_set_is_kept_where_the_window_ends_first(self) -> None:
         for end in (self.app.terminate, self.app.kill):
             with self.subTest(end=end.__name__):
-                self.key("bracketright")  # of the person, who has another eta now
+                self.key("bracketright")  # the person's eta
                 eta = self.wait("another eta", lambda s: s["eta"] != 1)["eta"]
                 self.wait_until("it to be kept", lambda eta=eta: abs(
                     self.kept().get("parameters", {}).get("coupling", {}).get("eta", 1) - eta) < 1e-9)
@@ -490,7 +491,7 @@ class TestRemoteWindow(WindowTest):
                           values["coupling.kind"]), (300, 0, 1, "predictive"))
         self.assertFalse(self.loop.state()["twin"])
         self.assertEqual(run.sheet.has["settings"], values)
-        # Each interval begins from them again.
+        # Each interval begins again from these settings.
         run.who.use({"coupling.eta": 0.7})
         run.who.use({"hand.damping": 3})
         values = self.loop.get()

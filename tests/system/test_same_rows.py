@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The same input gives the same rows bit for bit: on every processor, and of what is shipped."""
+"""The same input gives the same rows bit for bit, on every processor and for shipped sessions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def digest_of_sines(environment: dict[str, str]) -> str:
 
 class SameRows(SystemTest):
     def record_under(self, environment: dict[str, str], *options: str | Path) -> tuple[Path, str]:
-        """What `limpid run` recorded, and what it printed."""
+        """Recording and output of a `limpid run`."""
         out = self.out()
         done = subprocess.run([LIMPID, "run", *map(str, options), "--record", out], timeout=240,
                               env=os.environ | environment, capture_output=True, text=True)  # fmt: skip
@@ -44,7 +44,7 @@ class SameRows(SystemTest):
 
 
 class OnEveryProcessor(SameRows):
-    """Run once as this processor would have it, and once as one that can do less."""
+    """Runs once as on this processor, and once as on one that can do less."""
 
     def runs(self) -> list[list[str | Path]]:
         """Meshes under the predictive law; arms of skew axes, of 3, 7 and 15 joints, under all laws;
@@ -83,9 +83,8 @@ class OnEveryProcessor(SameRows):
 
 
 class Shipped(SameRows):
-    """Each session that comes along, fed back in; one whose numbers were rounded to be small gives
-    numbers that are rounded to these. Where this fails the program has changed: run
-    assets/sessions/make_sessions.py."""
+    """Each shipped session, run again; one with rounded numbers gives numbers that round to these.
+    If this fails, the program has changed: run assets/sessions/make_sessions.py."""
 
     def test_sessions_come_again(self) -> None:
         self.assertTrue(SESSIONS)

@@ -14,7 +14,7 @@ FACES = [(0, 1, 2), (0, 2, 3), (0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0)]
 
 
 def write_pyramid(path: Path) -> None:
-    """A model as somebody's CAD program would save it: large, in whatever unit."""
+    """Writes a model as a CAD program would: large, in any unit."""
     points = b"".join(struct.pack("<3f", *corner) for corner in CORNERS)
     indices = b"".join(struct.pack("<3H", *face) for face in FACES)
     low = [min(c[k] for c in CORNERS) for k in range(3)]
@@ -41,7 +41,7 @@ def write_pyramid(path: Path) -> None:
 
 class SceneWindow(WindowTest):
     def answer(self, text: str = "") -> None:
-        """Types into the dialog that opens, over what stands there, and enters it."""
+        """Types over the text in the dialog that opens, and enters it."""
         self.wait("the dialog", lambda s: s["asking"] and s["typing"])
         if text:
             self.key("ctrl+a")

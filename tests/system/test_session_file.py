@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What a session file says of itself, read as anybody would who knows HDF5 and nothing of the program:
-units, tips, forces, names. Arms move here by a forward kinematics in SI that is this file's own."""
+"""Contents of a session file, read as by a person who knows HDF5 and nothing of the program: units,
+tips, forces, names. Arms move here by a forward kinematics in SI that is this file's own."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MOTIONS = ("device/position", "device/velocity", "device/measured_position",
 
 
 def tip(chain: Chain, q: Array) -> Array:
-    """Of one configuration in rad and m."""
+    """Tip of a configuration in rad and m."""
     rotation, at = np.eye(3), np.zeros(3)
     for joint, value in zip(chain.joints, q):
         at = at + rotation @ joint.origin.translation
@@ -46,7 +46,7 @@ def tip(chain: Chain, q: Array) -> Array:
 
 
 def tip_velocity(chain: Chain, q: Array, rate: Array) -> Array:
-    """Along q + s rate, by Richardson's difference."""
+    """Velocity of the tip along q + s rate, by Richardson's difference."""
     def slope(s: float) -> Array:
         return (tip(chain, q + s * rate) - tip(chain, q - s * rate)) / (2 * s)
 
@@ -90,7 +90,7 @@ class SessionFile(SystemTest):
                 self.assertGreater(moved, 1e-2, "nothing moved, and nothing was shown")
 
     def test_forces_of_slides_are_newtons(self) -> None:
-        """Slides along x, y, z: what pushes at the proxy's tip is what its joints feel."""
+        """Slides along x, y, z: a force at the proxy's tip is the force of its joints."""
         with h5py.File(self.recorded(SLIDES)) as file:
             chain = parse_chain(text(file.attrs["device_urdf"]))
             axes = np.array([tip(chain, e) - tip(chain, np.zeros(3)) for e in np.eye(3)])  # per metre
@@ -202,7 +202,7 @@ class SessionFile(SystemTest):
             self.assertGreater((~touched).sum(), 100)
             np.testing.assert_array_equal(np.isnan(places), np.repeat(~touched[..., None], 3, axis=2))
             np.testing.assert_allclose(total, forces.sum(axis=1), rtol=1e-15, atol=1e-15)
-            # the tip is a sphere: where it is touched is near it
+            # the tip is a sphere, so the contact is near it
             apart = np.linalg.norm(places[:, 0] - file["proxy/tip"][:], axis=1)[touched[:, 0]]
             self.assertLess(apart.max(), 0.05)
 
@@ -225,8 +225,8 @@ class SessionFile(SystemTest):
             np.testing.assert_array_equal(file["hand/target"][()], values.astype("float64"))
 
     def test_a_recording_of_version_1_opens_and_runs_again_as_it_always_did(self) -> None:
-        """Made by the program as it was before slides were in SI, which rendered no friction under
-        its law: so the table is smooth."""
+        """An older program made this recording before slides were in SI. It rendered no friction
+        under its law: so the table is smooth."""
         again, table, smooth = self.out(), self.out(".csv"), self.directory / "smooth.h5"
         shutil.copy(OLD, smooth)
         with h5py.File(smooth, "a") as old:
@@ -241,7 +241,7 @@ class SessionFile(SystemTest):
         with h5py.File(OLD) as old, h5py.File(again) as new:
             self.assertEqual((old.attrs["version"], new.attrs["version"]), (1, 2))
             self.assertGreater(np.abs(old["proxy/contact_torque"][:]).max(), 0.01)
-            # By another build: what it reckons is the same but for round-off.
+            # The recording comes from another build: its numbers agree up to round-off.
             def same(name: str, factor: float) -> None:
                 was = old[name][:] * factor
                 largest = float(np.abs(was).max())

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What is installed, and the package of it, made of the tree as it was built."""
+"""Installed files, and the package of them, made from the tree as it was built."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Package(Run):
 
     def test_lintian_accepts_it(self) -> None:
         said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", self.deb)
-        # That there is no home page, which appstream 1.0 asks for.
+        # The known warning: appstream 1.0 asks for a home page, and there is none.
         known = "W: limpid: appstream-metadata-validation-failed "
         self.assertEqual([line for line in said.splitlines() if not line.startswith(known)], [])
 
@@ -77,7 +77,7 @@ class Package(Run):
         self.assertEqual(f"limpid {version}".split("-")[0], limpid("--version").out.strip())
 
     def test_the_same_tree_gives_the_same_bytes(self) -> None:
-        # Packed loosely, which is most of the work saved, by somebody who keeps files to himself.
+        # Packed with little compression, which saves most of the work, under a strict umask.
         again = self.pack("again", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=none", umask=0o077)
         for part in ("--fsys-tarfile", "--ctrl-tarfile"):
             first, second = (subprocess.check_output(["dpkg-deb", part, deb]) for deb in (self.deb, again))
@@ -170,7 +170,7 @@ class WithoutAPackage(Run):
         self.assertTrue((figures / "drift.svg").exists())
 
     def test_a_tree_that_was_moved_runs_where_it_is(self) -> None:
-        """Its assets are found from where the program is, and not from where it was built."""
+        """Assets are found from the program's place, not from the place of the build."""
         link = BUILD / "share/limpid"
         if ROOT.resolve() not in BUILD.resolve().parents:
             self.skipTest("was built elsewhere")
@@ -179,7 +179,7 @@ class WithoutAPackage(Run):
 
 
 class Sessions(Run):
-    """What the desktop takes a file for."""
+    """Type of a file by the desktop."""
 
     def setUp(self) -> None:
         tool("gio")
@@ -217,7 +217,7 @@ class Sessions(Run):
 
 
 class Version(Run):
-    """In repositories of their own."""
+    """Versions, in repositories of the test's own."""
 
     def setUp(self) -> None:
         tool("git")

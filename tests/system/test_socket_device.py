@@ -1,4 +1,4 @@
-"""A program that plays a device is listed as one is that is plugged in."""
+"""A program that plays a device is listed like one that is plugged in."""
 
 from __future__ import annotations
 

@@ -1,16 +1,16 @@
-"""The story in the window: it plays, somebody takes over, gives back, and ends it."""
+"""The story in the window: it plays, a person takes over, gives back, and ends it."""
 
 import unittest
 
 from window import WindowTest
 
-SHOW_ME = (645, 333)  # the button that a first start has over the picture
+SHOW_ME = (645, 333)  # a first start's button over the picture
 IN_VIEW = (500, 200)
-NEAR_THE_END = (1030, 698)  # of the time line
+NEAR_THE_END = (1030, 698)  # place on the time line
 
 
 class Story(WindowTest):
-    LAW = None  # a first start's
+    LAW = None  # a first start's law
 
     def play(self) -> dict:
         self.click(*SHOW_ME)
@@ -18,7 +18,7 @@ class Story(WindowTest):
         return self.first_sentence()
 
     def first_sentence(self) -> dict:
-        """Again, however late this computer is."""
+        """Shows the story's first sentence again, on slow computers, too."""
         self.key("p")
         self.key("Home")
         state = self.wait("the first sentence", lambda s: "One hand" in s["told"])

@@ -28,7 +28,7 @@ from limpid.study.report import binned, nice_ticks  # noqa: E402
 
 
 def answers_of(method, who: study.Simulated, chance: random.Random) -> list[tuple[float, bool]]:
-    """As of a participant whose errors are normal, drawn independently of the package's own one."""
+    """Answers of a participant with normal errors, drawn independently of the package's own one."""
     found = []
     while not method.done:
         level = method.level
@@ -42,7 +42,7 @@ def answers_of(method, who: study.Simulated, chance: random.Random) -> list[tupl
 
 
 def binomial_ends(count: int, chance: float, part: float) -> tuple[int, int]:
-    """Numbers of successes beyond which less than this part lies, on either side."""
+    """Numbers of successes with less than this probability beyond them, on either side."""
     mass = [math.comb(count, k) * chance**k * (1 - chance) ** (count - k) for k in range(count + 1)]
     low = next(k for k in range(count + 1) if sum(mass[: k + 1]) > part)
     high = next(k for k in range(count, -1, -1) if sum(mass[k:]) > part)
@@ -50,8 +50,9 @@ def binomial_ends(count: int, chance: float, part: float) -> tuple[int, int]:
 
 
 class TestThresholds(unittest.TestCase):
-    """Of 300 simulated participants with a threshold of 1, the interval has it for 95 %. Were it less
-    or more often, as many hits as are found would come in less than one of a thousand tries."""
+    """Thresholds of 300 simulated participants with a threshold of 1: the interval contains it for
+    95 %. If the true share differed, such a number of hits would come in less than one of a
+    thousand tries."""
 
     RUNS = 300
 
@@ -106,7 +107,7 @@ class TestThresholds(unittest.TestCase):
 
 
 class TestAdjustments(unittest.TestCase):
-    """Of participants for whom a quantity feels like the reference at a value that is known."""
+    """Adjustments of participants for whom a quantity feels like the reference at a known value."""
 
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="limpid-study-"))
@@ -120,17 +121,17 @@ class TestAdjustments(unittest.TestCase):
 
     @staticmethod
     def who(equal: float, seed: int, threshold: float = 45.0, **more) -> study.Simulated:
-        """Feels what it adjusts as more, so that `equal` is like the reference of 300."""
+        """A participant for whom `equal` feels like the reference of 300."""
         return study.Simulated(threshold, seed=seed, percept=lambda s: s.level * (
             300 / equal if s.settings else 1), **more)
 
     def test_the_interval_has_the_point_of_equality(self) -> None:
-        """For 95 of 100; were it less or more often, as many hits would come in less than one of a
-        thousand tries."""
+        """The interval contains the point of equality in 95 of 100 studies. If the true share
+        differed, such a number of hits would come in less than one of a thousand tries."""
 
         class Unwritten(study.Study):
             def _append(self, cells):
-                """Nothing: thousands of rows are not wanted."""
+                """Does nothing: thousands of rows are not wanted."""
 
         self.Kind = Unwritten
         for equal, trials in ((300.0, 10), (430.0, 10), (200.0, 12)):
@@ -163,7 +164,7 @@ class TestAdjustments(unittest.TestCase):
         above = [float(row["level"]) > 200 for trial, row in starts.items() if trial != "0"]
         self.assertEqual(len(above), 12)
         self.assertTrue(all(a != b for a, b in zip(above[::2], above[1::2])), above)
-        self.assertEqual(len(set(above[::2])), 2)  # either comes first
+        self.assertEqual(len(set(above[::2])), 2)  # either may come first
         for row in starts.values():
             factor = max(float(row["level"]) / 200, 200 / float(row["level"]))
             self.assertTrue(3**0.5 <= factor <= 3, row)
@@ -194,7 +195,7 @@ class TestAdjustments(unittest.TestCase):
         self.assertEqual({row["sessions"] for row in rows}, {"t-000-a-000.h5", "t-000-a-001.h5"})
 
     def test_goes_on_within_a_trial_after_a_crash(self) -> None:
-        """Cut off behind every key once, each is asked for once, and all is as without a crash."""
+        """A study cut off once behind every key asks for each once; all is as without a crash."""
         asked: list[tuple] = []
 
         class Failing(study.Simulated):
@@ -267,7 +268,7 @@ class TestMethods(unittest.TestCase):
         self.assertEqual(stairs.turned, [4, 8, 4])
 
     def test_a_staircase_rests_where_it_should(self) -> None:
-        """Its reversals are about where 79.4 % are right (Levitt 1971)."""
+        """The staircase's reversals are about where 79.4 % are right (Levitt 1971)."""
         found = []
         for k in range(60):
             who = study.Simulated(1.0, lapse=0, seed=k)
@@ -315,13 +316,13 @@ class TestMethods(unittest.TestCase):
             self.assertEqual(len(set(pairs)), count * (count - 1))
 
     def test_intervals_of_a_mean_are_students(self) -> None:
-        """Tables: 97.5 % at 4, 9 and 30 degrees of freedom."""
+        """Values of tables: 97.5 % at 4, 9 and 30 degrees of freedom."""
         for freedom, table in ((1, 12.706), (2, 4.303), (4, 2.776), (9, 2.262), (30, 2.042)):
             self.assertAlmostEqual(fits._student(freedom), table, delta=0.01 * table)
         self.assertEqual(study.mean_interval([1.0, 1.0, 1.0]), (1, 1, 1))
 
     def test_intervals_of_a_proportion_are_wilsons(self) -> None:
-        """Newcombe (1998), table I: 81 of 263 and 0 of 20."""
+        """Values of Newcombe (1998), table I: 81 of 263 and 0 of 20."""
         for right, of, low, high in ((81, 263, 0.2553, 0.3662), (0, 20, 0, 0.1611)):
             found = study.proportion_interval(right, of)
             self.assertAlmostEqual(found[0], low, places=4)
@@ -329,7 +330,7 @@ class TestMethods(unittest.TestCase):
 
 
 class Crash(Exception):
-    """Of the program that runs the study."""
+    """A crash of the program that runs the study."""
 
 
 class TestTrials(unittest.TestCase):
@@ -346,8 +347,8 @@ class TestTrials(unittest.TestCase):
         return run
 
     def test_goes_on_after_a_crash_without_losing_an_answer(self) -> None:
-        """Cut off behind every answer once, it asks for each of them once, and all is as it is without
-        a crash."""
+        """A study cut off once behind every answer asks for each of them once, and all is as
+        without a crash."""
         asked: list[str] = []
 
         class Failing(study.Simulated):
@@ -442,14 +443,15 @@ class TestStudies(unittest.TestCase):
             self.assertNotIn("nan", figure.read_text())
 
     def test_stiffness_is_told_apart_worse_under_the_standard_coupling(self) -> None:
-        """Its spring is in series with the wall: a wall of 300 N/m feels like one of 132."""
+        """The coupling's spring is in series with the wall: a wall of 300 N/m feels like one of
+        132."""
         printed = self.run_study("stiffness", "--trials", "40")
         found = {line.split(":")[0].strip(): float(line.split(":")[1].split()[0])
                  for line in printed.splitlines()}
         self.assertGreater(found["standard"], 2 * found["predictive"])
         self.assertGreater(found["standard"], 2 * found["proposed"])
         self.check_report("stiffness")
-        self.assertEqual(self.run_study("stiffness", "--trials", "40"), printed)  # of the same answers
+        self.assertEqual(self.run_study("stiffness", "--trials", "40"), printed)  # the same answers
 
     def test_a_difference_of_inertia_is_found(self) -> None:
         self.assertIn("eta: 0.", self.run_study("inertia", "--trials", "20"))
@@ -465,7 +467,7 @@ class TestStudies(unittest.TestCase):
         self.assertEqual(len(list(self.folder.glob("*.h5"))), 36)
 
     def test_an_arm_as_heavy_as_under_another_law_is_found(self) -> None:
-        """Its eta is that at which runs of the loop have the same inertia."""
+        """The found eta is that of runs of the loop with the same inertia."""
         from limpid.studies.inertia import felt
 
         printed = self.run_study("weight", "--pairs", "6")
@@ -477,10 +479,11 @@ class TestStudies(unittest.TestCase):
             self.assertLess(felt("predictive", low, scene), wanted, line)
             self.assertGreater(felt("predictive", high, scene), wanted, line)
         self.check_report("weight")
-        self.assertEqual(self.run_study("weight", "--pairs", "6"), printed)  # of the same answers
+        self.assertEqual(self.run_study("weight", "--pairs", "6"), printed)  # the same answers
 
     def test_a_person_places_from_the_first_ball_to_the_place_or_once_more(self) -> None:
-        """With a window's part played: each recording is a run, of which only the last one is right."""
+        """A person places again; the test plays the window's part. Each recording is a run, of
+        which only the last one counts."""
         import limpid
         from limpid.studies import placing
 
@@ -501,7 +504,7 @@ class TestStudies(unittest.TestCase):
                     (0, x, 0, z), (1, x, 0, z), (2, to_x, 0, to_z), (3, to_x, 0, to_z)])
 
             def stop(self):
-                """The run is complete."""
+                """Ends the run, which is complete."""
 
         self.assertEqual(placing.person(Loop(), 0.02, out), 1.5)
         wrong = [text for text in Loop.texts if "Once more" in text]
@@ -516,7 +519,7 @@ class TestStudies(unittest.TestCase):
 
 
 class TestTrouble(unittest.TestCase):
-    """What goes wrong is said in a sentence that names the file, and nothing that was answered is lost."""
+    """Faults are reported in a sentence that names the file, and no answer is lost."""
 
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="limpid-study-"))
@@ -528,7 +531,7 @@ class TestTrouble(unittest.TestCase):
                               env=self.environment, timeout=120)
 
     def start(self, *words: str) -> str:
-        """Of a study that ends at once; what it says."""
+        """Output of a study that ends at once."""
         done = subprocess.run([sys.executable, "-m", "limpid.studies.stiffness", *words], text=True,
                               capture_output=True, env=self.environment, timeout=120)
         self.assertNotEqual(done.returncode, 0)
@@ -545,7 +548,7 @@ class TestTrouble(unittest.TestCase):
              "study.carry_out(main)\n")
 
     def test_a_disk_that_is_full_loses_no_answer(self) -> None:
-        """A file that may get no longer stands for it: a row's beginning is written, not its end."""
+        """A limit of file size stands for a full disk: only a row's beginning is written."""
         full = self.run_code(self.STUDY.format(before="resource.setrlimit(resource.RLIMIT_FSIZE, (900, 900))"))
         self.assertEqual(full.returncode, 1)
         self.assertNotIn("Traceback", full.stderr)
@@ -592,7 +595,8 @@ class TestPackage(unittest.TestCase):
             ast.parse(file.read_text(), str(file), feature_version=(3, 9))
 
     def test_leads_a_program_with_the_standard_library_alone(self) -> None:
-        """Without numpy, h5py and scipy it is imported, and says what reading a session needs."""
+        """Without numpy, h5py and scipy the package is imported, and names what reading a session
+        needs."""
         code = ("import sys\n"
                 "for name in ('numpy', 'h5py', 'scipy'): sys.modules[name] = None\n"
                 "import limpid, limpid.study\n"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`limpid sweep`: one table, whatever ran it and whatever was killed meanwhile."""
+"""`limpid sweep`: the same table from any programs, with any of them killed meanwhile."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def processes(*words: str) -> list[int]:
 
 
 def kill_one(*words: str) -> bool:
-    """Kills one of them at once, as a machine that goes down would."""
+    """Kills one of the programs at once, like a machine that goes down."""
     there = processes(*words)
     if not there:
         return False
@@ -143,7 +143,7 @@ class Tiny(SystemTest):
         self.assertFalse((out / "blocks").exists())
 
 
-# A map of 65 x 65 for each of two laws, of which it needs a part.
+# A map of 65 x 65 for each of two laws; only a part of it is needed.
 REFINED = """title = "Refined"
 hand = { at = [0.19, 0, -0.035], jump = [0, 0, -0.015] }
 seconds = 0.3
@@ -164,8 +164,8 @@ above = 0.02
 class Survival(SystemTest):
     TEXT = LARGE
     plan: Path
-    table: bytes  # that all must come to
-    points: int   # of it
+    table: bytes  # the result of every way
+    points: int  # number of points in the table
 
     @classmethod
     def setUpClass(cls) -> None:
@@ -336,10 +336,10 @@ class Survival(SystemTest):
 
 
 class RefinedSurvival(Survival):
-    """The same of rounds, each of which follows from the one before."""
+    """The same with rounds, each of which follows from the one before."""
 
     TEXT = REFINED
-    # Its table is smaller than what is tried before the work begins.
+    # The table is smaller than the test file written before the work begins.
     test_past_a_limit_of_the_shell_it_says_so_and_loses_nothing = None
 
     def test_shards_and_their_gatherers_come_to_the_same_table(self) -> None:
@@ -370,12 +370,13 @@ class RefinedSurvival(Survival):
                 h5py.File(self.directory / "reference" / "table.h5") as table:
             everything = grid["/measure/chatter"][:]
             number = table["/point"][:]
-            # A point is the same run, to where the axes' values differ in their last bits.
+            # A point is the same run, except where the axes' values differ in their last bits.
             np.testing.assert_allclose(table["/measure/chatter"][:], everything[number], rtol=1e-3,
                                        atol=1e-6)
             self.assertLess(len(number), 0.25 * len(everything))
             self.assertTrue(np.all(np.diff(table["/round"][:].astype(int)) >= 0))
-            # Where it was not refined, all points of the full grid are on the side of those around.
+            # Where the map was not refined, all points of the full grid are on the side of their
+            # neighbours.
             side = (everything > 0.02).reshape(2, 65, 65)
             there = np.zeros(len(everything), bool)
             there[number] = True
@@ -383,7 +384,7 @@ class RefinedSurvival(Survival):
             wrong = 0
             for kind in range(2):
                 for x, y in np.argwhere(~there[kind]):
-                    for step in (2, 4, 8):  # the smallest cell whose corners are all there
+                    for step in (2, 4, 8):  # the smallest complete cell
                         a, b = x - x % step, y - y % step
                         c, d = min(a + step, 64), min(b + step, 64)
                         if there[kind][[a, a, c, c], [b, d, b, d]].all():

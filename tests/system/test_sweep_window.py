@@ -1,4 +1,4 @@
-"""A sweep's table in the window: its map, its points in playback, and what cannot be opened."""
+"""A sweep's table in the window: its map, its points in playback, tables that cannot be opened."""
 
 import shutil
 import subprocess
@@ -29,7 +29,7 @@ theory = ["pr", "routh"]
 
 
 def point(kind: int, wall: int, eta: int) -> int:
-    """The number of the point at these places."""
+    """Number of the point at these places."""
     return (kind * len(WALLS) + wall) * len(ETAS) + eta
 
 
@@ -55,7 +55,7 @@ class SweepWindow(WindowTest):
                          and "map" in s["sweep"] and s["dialog"] == "sweep")
 
     def point_at(self, wall: int, eta: int) -> tuple[float, float]:
-        """The middle of a cell of the map on the screen; all are of one size."""
+        """Middle of a cell of the map on the screen; all cells have one size."""
         left, top, right, bottom = self.state()["sweep"]["map"]
         return (left + (right - left) * (wall + 0.5) / len(WALLS),
                 bottom - (bottom - top) * (eta + 0.5) / len(ETAS))
@@ -76,7 +76,7 @@ class Points(SweepWindow):
         for wall, eta in ((0, 3), (2, 1)):
             self.play_point(wall, eta)
             self.key("F6")
-        # What stands over the picture says where it lies and what was measured, and leads back.
+        # The line over the picture names the point and its measures, and leads back.
         self.play_point(3, 0)
         back = "Back to map (F6)"
         self.wait("the way back", lambda s: any(back in b["buttons"] for b in s["banners"]))
@@ -85,7 +85,7 @@ class Points(SweepWindow):
         self.assertRegex(banner["text"], r": \w+ \S+.*\.$")
         self.click(*banner["buttons"][back])
         self.wait_for_map()
-        # The very run: the same rows as the command makes of it.
+        # The run is the command's: the same rows.
         number = point(0, 2, 1)
         other = self.home / "other"
         environment = {k: v for k, v in self.environment.items() if "DISPLAY" not in k}
@@ -110,7 +110,7 @@ class LongPoints(SweepWindow):
 
     def prepare(self) -> None:
         super().prepare()
-        # The same table as if its runs were an hour long, from a program that knew no keys.
+        # The table is as if its runs were an hour long, from a program that knew no keys.
         with h5py.File(self.table(), "a") as table:
             table.attrs["plan"] = PLAN % 3600
             del table.attrs["key"]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Who may read which device: the udev rules that come along, read as they stand."""
+"""Access to devices: the shipped udev rules, taken literally."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _KEY = re.compile(r'([A-Z]+)(?:\{(\w+)\})?(==|!=|\+=|=)"([^"]*)"')
 
 
 def rules() -> list[list[tuple[str, str, str, str]]]:
-    """Of each rule its keys: name, attribute, operator, value."""
+    """Keys of each rule: name, attribute, operator, value."""
     found = []
     for line in RULES.read_text().splitlines():
         text = line.split("#")[0].strip()
@@ -52,7 +52,8 @@ class Rules(unittest.TestCase):
             named = {attribute: value for _, attribute, operator, value in rule if operator == "=="}
             with self.subTest(rule=rule):
                 self.assertRegex(named.get("idVendor", ""), r"^[0-9a-f]{4}$")
-                # Digits, or a few of them in one place: no star, no question mark, no range.
+                # Products are digits, or a few of them in one place: no star, no question mark, no
+                # range.
                 self.assertRegex(named.get("idProduct", ""), r"^([0-9a-f]|\[[0-9a-f]+\]){4}$")
 
     def test_every_line_is_understood(self) -> None:
@@ -62,7 +63,7 @@ class Rules(unittest.TestCase):
             self.assertEqual(left, "", line)
 
     def test_space_mice_can_be_read(self) -> None:
-        # As spacenavd lists them, and the two with Bluetooth.
+        # Products as spacenavd lists them, and the two with Bluetooth.
         own = "c62e c62f c631 c632 c633 c635 c636 c638 c63a c652"
         older = "c603 c605 c606 c621 c623 c625 c626 c627 c628 c629 c62b"
         for vendor, products in (("256f", own), ("046d", older)):

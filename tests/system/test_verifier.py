@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The verification itself: it passes what obeys the contract and catches each single breach."""
+"""The verification itself: it passes good sessions and finds each single breach."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _nudged(path: str, amount: float) -> Callable[[dict[str, Array]], None]:
     return change
 
 
-# what is changed, by how little, and the check that must notice
+# the changed dataset, a small change, and the check that must notice
 _BREACHES: list[tuple[str, Callable[[dict[str, Array]], None]]] = [
     ("energy total", _scaled("/energy/controller_total", 1 + 1e-8)),
     ("energy commanded", _nudged("/energy/controller_commanded", 1e-9)),

@@ -38,7 +38,7 @@ camera = { view = "side", target = [0.17, 0, -0.02], size = 0.1 }
 
 
 def boxes(file: Path) -> list[tuple[bytes, bytes]]:
-    """The top level of an MP4 file."""
+    """Boxes at the top level of an MP4 file."""
     data, at, found = file.read_bytes(), 0, []
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at : at + 8])

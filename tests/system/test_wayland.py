@@ -65,7 +65,7 @@ class OnWayland(unittest.TestCase):
         subprocess.run(["xdotool", *words], env=self.environment | {"DISPLAY": self.display}, check=True)
 
     def window(self) -> str:
-        """Opened, and its help by a key: what the program said to the desktop."""
+        """Opens the window and its help by a key; returns the program's messages to the desktop."""
         with (self.home / "states").open("w") as states, (self.home / "said").open("w") as said:
             app = subprocess.Popen([LIMPID, "--print-state"], stdout=states, stderr=said,
                                    env=self.environment | {"WAYLAND_DEBUG": "client"})  # fmt: skip

@@ -75,7 +75,7 @@ class Window(WindowTest):
         self.start()
         self.assertEqual(len(list(sessions.glob("*.part"))), 0)
         self.assertEqual(len(list(sessions.glob("*.h5"))), 1)
-        self.key("p")  # it is what there was last
+        self.key("p")  # the law of the last start
         self.wait("its playback", lambda s: s["playing"] and s["time"] > 0)
 
 

@@ -1,4 +1,4 @@
-"""Keys by their labels on other keyboards, menus by keys, and leaving while something is recorded."""
+"""Keys by their labels on other keyboards, menus by keys, and leaving during a recording."""
 
 import os
 import shutil
@@ -15,8 +15,8 @@ os.environ["LIMPID"] = str(LIMPID)
 
 import limpid  # noqa: E402
 
-ETA = (250, 128)  # on its slider, right of its value
-# Of the letters' places, from Q, A and Z on, as X has them for every keyboard.
+ETA = (250, 128)  # place on its slider, right of its value
+# Key codes of the letters' places, from Q, A and Z on, as X has them for every keyboard.
 PLACES = {letter: str(code) for row, first in (("qwertyuiop", 24), ("asdfghjkl", 38), ("zxcvbnm", 52))
           for code, letter in enumerate(row, first)}
 
@@ -29,8 +29,8 @@ class OtherKeyboard(WindowTest):
         self.layout = layout
 
     def label(self, keys: str) -> str:
-        """A key by what is printed on it; on a Russian keyboard Latin letters are beside their own,
-        and X has no names for them."""
+        """Presses a key by its label. On a Russian keyboard Latin letters are beside the Cyrillic
+        ones, and X has no names for them."""
         *modifiers, key = keys.split("+")
         return "+".join([*modifiers, PLACES.get(key, key) if "ru" in self.layout else key])
 
@@ -60,7 +60,7 @@ class Labels(OtherKeyboard):
         self.wait("a larger eta", lambda s: s["eta"] > less)
 
     def check_all_is_selected(self) -> None:
-        """In a text field, by Ctrl+A, which quits nothing."""
+        """Checks that Ctrl+A selects all in a text field and quits nothing."""
         self.click(*ETA, times=2)
         self.wait("typing", lambda s: s["typing"])
         self.type("9")
@@ -72,7 +72,7 @@ class Labels(OtherKeyboard):
         self.wait("the value of before", lambda s: s["eta"] > 0.5)
 
     def test_keys_are_what_stands_on_them(self) -> None:
-        # What is where there are no brackets: right of P.
+        # Keys at the brackets' place, right of P, on keyboards without them.
         for layout, brackets in ((("us",), ("bracketleft", "bracketright")),
                                  (("fr",), ("34", "35")),
                                  (("de",), ("udiaeresis", "plus")),

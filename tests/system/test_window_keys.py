@@ -1,4 +1,4 @@
-"""Keys, dialogs and what may go wrong in the window, under Xvfb with xdotool."""
+"""Keys, dialogs and possible faults of the window, under Xvfb with xdotool."""
 
 import re
 import shutil
@@ -11,10 +11,10 @@ from support import ASSETS
 from window import WindowTest
 
 LETTERS = "rcfpgxle1 2[]?d"
-# What typing must leave alone.
+# State that typing must leave alone.
 LASTING = ("force", "recording", "playing", "kind", "eta", "alpha", "objects", "selected", "dirty")
-ETA = (250, 128)  # on its slider, right of its value
-NAME = (1100, 176)  # of the selected object
+ETA = (250, 128)  # place on its slider, right of its value
+NAME = (1100, 176)  # field of the selected object
 
 
 def lasting(state: dict) -> dict:
@@ -30,7 +30,7 @@ def make_a_change(test: WindowTest) -> None:
 
 class Keys(WindowTest):
     def escape_from(self, dialog: str) -> None:
-        """On the virtual arm that closes it, and no more."""
+        """On the virtual arm Escape closes the dialog, and no more."""
         self.key("Escape")
         self.wait(f"{dialog} to close", lambda s: s["dialog"] == "")
         self.assertTrue(self.settled()["force"], dialog)
@@ -67,7 +67,7 @@ class Keys(WindowTest):
         self.key("ctrl+z")
         self.wait_for_notice("Nothing to undo")
 
-        # Escape gives typing up; once more, it cuts the force.
+        # Escape ends typing; pressed once more, it cuts the force.
         self.click(*ETA, times=2)
         self.wait("typing", lambda s: s["typing"])
         self.type("7")
@@ -85,7 +85,7 @@ class Keys(WindowTest):
         before = self.state()
         self.click(*NAME)
         self.wait("typing", lambda s: s["typing"])
-        # Ctrl is let go in the frame of the A, as on a computer that draws slowly.
+        # Ctrl is released in the frame of the A, as on a computer that draws slowly.
         self.xdotool("keydown", "ctrl")
         self.settled()
         self.app.send_signal(signal.SIGSTOP)
@@ -213,7 +213,7 @@ class WhatGoesWrong(WindowTest):
         import numpy
 
         make_a_change(self)
-        self.key("ctrl+r")  # R turns what is selected
+        self.key("ctrl+r")  # R turns the selected object
         self.wait("recording", lambda s: s["recording"])
         self.go_on(2)
         self.app.send_signal(signal.SIGTERM)
@@ -256,7 +256,7 @@ class WhatGoesWrong(WindowTest):
         make_a_change(self)
         self.key("bracketleft")
         eta = self.wait("a smaller eta", lambda s: s["eta"] < 1)["eta"]
-        self.key("ctrl+r")  # R turns what is selected
+        self.key("ctrl+r")  # R turns the selected object
         self.wait("recording", lambda s: s["recording"])
         self.go_on(1)
         self.xvfb.kill()

@@ -1,4 +1,4 @@
-"""Marks, stretches of time, exports and what somebody new is asked to try, in the window."""
+"""Marks, stretches of time, exports and tasks for new users, in the window."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ class Recorded(WindowTest):
         self.wait_for_notice("Recorded")
         self.key("p")
         self.wait("playback", lambda s: s["playing"])
-        self.key("p")  # which stops it
+        self.key("p")  # p stops the playback
         return next(self.sessions().glob("session-*.h5"))
 
     def mark(self, text: str | None) -> None:
-        """With this text, or as it is offered."""
+        """Sets a mark with this text, or with the offered one."""
         self.key("t")
         self.wait("the dialog", lambda s: s["dialog"] == "mark" and s["typing"])
         if text is not None:
@@ -90,7 +90,7 @@ class Marks(Recorded):
         self.key("ctrl+Right")
         self.wait_for_notice("no mark after")
 
-        # A second mark, and by the mouse on the time line: right click, another name.
+        # A second mark, renamed by a right click on the time line.
         self.key("Home")
         self.mark("start")
         self.wait_until("both", lambda: self.kept(file) == ["start", "here"])
@@ -110,10 +110,10 @@ class Marks(Recorded):
             with h5py.File(file) as opened:
                 return [bytes(t).decode() for t in opened["marks/text"]]
         except OSError:
-            return []  # it is being replaced
+            return []  # the file is being replaced
 
     def rename_the_first(self, name: str) -> None:
-        """By a right click on the time line."""
+        """Renames the first mark by a right click on the time line."""
         self.click(*self.settled()["recorded"]["marks"][0]["place"], button=3)
         self.wait("the dialog", lambda s: s["dialog"] == "mark" and s["typing"])
         self.key("ctrl+a")
@@ -125,7 +125,7 @@ class Marks(Recorded):
         self.go_on(3)
         self.key("x")  # the plots stand still
         left, top, right, bottom = self.state()["plots"][0]["area"]
-        for beside in (1, 0):  # the first move may come with the frame that takes the key
+        for beside in (1, 0):  # the frame that takes the key may take the first move, too
             self.move(left + 0.5 * (right - left) + beside, 0.5 * (top + bottom))
             self.settled()
         start, stop = self.state()["shown"]
@@ -137,7 +137,7 @@ class Marks(Recorded):
 
 class Ranges(Recorded):
     def select(self, begin: float, end: float) -> dict:
-        """Of the first plot's width."""
+        """Selects a stretch, given in parts of the first plot's width."""
         left, top, right, bottom = self.state()["plots"][0]["area"]
         y = 0.5 * (top + bottom)
         self.move(left + begin * (right - left), y)
@@ -182,10 +182,10 @@ class Ranges(Recorded):
 
 
 class Exports(Recorded):
-    SAVE_PNG = (250, 650)  # in the menu of the first plot, opened at (200, 560)
+    SAVE_PNG = (250, 650)  # place in the menu of the first plot, opened at (200, 560)
 
     def prepare(self) -> None:
-        """Stand-ins for the desktop's programs: they say what they were asked for."""
+        """Installs stand-ins for the desktop's programs, which note their arguments."""
         tools = self.home / "bin"
         tools.mkdir()
         self.opened = self.home / "opened"
@@ -197,7 +197,7 @@ class Exports(Recorded):
     def press(self, banner: str, button: str) -> None:
         self.wait("the banner", lambda s: any(
             button in b["buttons"] for b in s["banners"] if banner in b["text"]))
-        state = self.settled()  # in its first frame it does not know yet how wide it is
+        state = self.settled()  # the first frame does not know its width yet
         self.click(*next(b["buttons"][button] for b in state["banners"] if button in b["buttons"]))
 
     def test_a_plot_is_a_picture_of_the_size_and_density_that_were_asked_for(self) -> None:
@@ -243,7 +243,7 @@ class Exports(Recorded):
 
 
 class YourTurn(WindowTest):
-    LAW = None  # a first start's
+    LAW = None  # a first start's law
 
     def test_what_is_tried_is_ticked_off_and_stays_so(self) -> None:
         self.assertEqual(self.state()["tried"], "")
@@ -278,8 +278,8 @@ class BrokenPassivity(WindowTest):
 
 
 class Places(WindowTest):
-    NEW_FOLDER = (418, 529)  # in the dialog that saves a scene
-    HOME = (246, 251)        # the first of its places
+    NEW_FOLDER = (418, 529)  # place in the dialog that saves a scene
+    HOME = (246, 251)  # first of the dialog's places
 
     def prepare(self) -> None:
         self.environment["HOME"] = str(self.home)
@@ -300,7 +300,7 @@ class Places(WindowTest):
 
 
 class Experiments(WindowTest):
-    RUN_ALL = (575, 600)  # in the dialog, and Stop in its place while they run
+    RUN_ALL = (575, 600)  # button in the dialog; Stop has its place during runs
 
     def test_they_go_on_beside_the_window_which_says_so_and_are_stopped(self) -> None:
         self.key("F5")

@@ -1,4 +1,4 @@
-"""The window's options before a command and behind it."""
+"""Options of the window before a command and behind it."""
 
 import signal
 import subprocess
@@ -29,7 +29,7 @@ class BeforeTheCommand(WindowTest):
 
 
 class OneSetting(WindowTest):
-    """Over those of the last time."""
+    """Options take precedence over the last start's settings."""
 
     LAW = None
 

@@ -1,17 +1,17 @@
-"""What the window says of energy: whose fault it is, and that it can be had and mended."""
+"""Statements of the window about energy: its cause, and how to provoke and repair it."""
 
 import time
 import unittest
 
 from window import WindowTest
 
-BREAK = (150, 266)  # the button, which says Repair once it was pressed
-FAULT = 1e-3  # from here on the panel says so [J]
+BREAK = (150, 266)  # the button, which says Repair when pressed
+FAULT = 1e-3  # energy from which the panel reports it [J]
 
 
 class Energy(WindowTest):
     def hold(self) -> None:
-        """Takes the tip and keeps it where it is, a little aside."""
+        """Takes the tip and holds it, a little aside."""
         x, y = self.hold_tip()
         for step in range(10):
             self.move(x - step, y + step)
@@ -63,7 +63,7 @@ class Energy(WindowTest):
             self.key("c")
             self.wait("the next law", lambda s: s["kind"] == kind)
             after = self.go_on(1)
-            if kind != 2:  # the predictive law promises another thing, in its ledger
+            if kind != 2:  # the predictive law's promise is about its ledger
                 self.assertLess(after["energy_own"], FAULT, f"law {kind}")
         self.xdotool("mouseup", "1")
 

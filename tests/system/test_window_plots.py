@@ -7,10 +7,10 @@ from window import HEIGHT, WIDTH, WindowTest
 
 FOUR = ["coordination error", "controller energy", "human and contact torque",
         "error against torque"]
-PLOTS = HEIGHT - 130   # a height at which the plots are
-RENAME = (492, 449)    # buttons of the dialog of layouts
+PLOTS = HEIGHT - 130  # a height within the plots
+RENAME = (492, 449)  # buttons of the dialog of layouts
 REMOVE = (567, 449)
-SAVE_CSV = (1060, 499)  # in the menu of the last plot
+SAVE_CSV = (1060, 499)  # place in the menu of the last plot
 
 
 def titles(state: dict) -> list[str]:
@@ -36,14 +36,14 @@ class Plots(WindowTest):
         def is_there() -> bool:
             try:
                 return file.exists() and name in self.kept("layouts.toml")
-            except tomllib.TOMLDecodeError:  # the broken one of before stands there still
+            except tomllib.TOMLDecodeError:  # the former, broken file is still there
                 return False
 
         self.wait_until(name, is_there)
         return self.kept("layouts.toml")
 
     def use(self, key: str, dialog: str, name: str) -> None:
-        """Of what is kept by name, as the keyboard does it."""
+        """Uses an entry kept by name, by the keyboard."""
         self.open(key, dialog)
         self.type_and_enter(name)
         self.wait("it to be used", lambda s: s["dialog"] == "")
@@ -73,7 +73,7 @@ class Plots(WindowTest):
         self.close()
         self.assertEqual(five["plots"][4]["kind"], "time")
 
-        self.open("n", "plot")  # nothing is chosen: nothing stays
+        self.open("n", "plot")  # nothing is chosen, so nothing is deleted
         self.close()
         self.assertEqual(len(self.settled()["plots"]), 5)
 
@@ -107,7 +107,7 @@ class Plots(WindowTest):
         self.wait("the other one", lambda s: len(s["plots"]) == 5)
         self.open("ctrl+l", "layouts")
         self.type("mine")
-        self.settled()  # a frame in which it stands there, which chooses it
+        self.settled()  # a frame with the entry, which chooses it
         self.key("ctrl+a")
         self.type("yours")
         self.click(*RENAME)

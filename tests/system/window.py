@@ -19,8 +19,8 @@ WHEEL = {"4", "5"}  # as buttons
 
 
 def counted(words: tuple[str, ...]) -> dict[str, int]:
-    """What a window is to take of these words of xdotool: presses of keys, presses and releases of
-    buttons."""
+    """Number of events that a window takes of these words of xdotool: presses of keys, presses and
+    releases of buttons."""
     counts = {"keys": 0, "buttons": 0}
     verb, options, left = "", {}, list(words)
     while left:
@@ -44,9 +44,9 @@ def counted(words: tuple[str, ...]) -> dict[str, int]:
 class WindowTest(unittest.TestCase):
     """One window for all of a test; its state comes as a line of JSON ten times a second."""
 
-    SIZE = (WIDTH, HEIGHT)  # of the window, as it was left the last time
-    LAW = "standard"        # the coupling, likewise; none: a first start's
-    REPEATS = False         # keys that are held; a key of a test may be held long on a slow machine
+    SIZE = (WIDTH, HEIGHT)  # size of the window, as the last time left it
+    LAW = "standard"  # coupling of the last time; none: a first start's
+    REPEATS = False  # whether held keys repeat; a slow machine may hold a test's key for long
 
     def setUp(self) -> None:
         self.home = Path(tempfile.mkdtemp(prefix="limpid-window-"))
@@ -70,7 +70,7 @@ class WindowTest(unittest.TestCase):
                             "XDG_CACHE_HOME": str(self.home / "cache"),
                             "XDG_RUNTIME_DIR": str(self.home / "run")}
         (self.home / "run").mkdir(mode=0o700)
-        # No test asks the desktop of whoever runs it.
+        # No test asks the desktop of the person who runs it.
         self.environment.pop("DBUS_SESSION_BUS_ADDRESS", None)
         self.states = (self.home / "states").open("w")
         self.addCleanup(self.states.close)
@@ -79,10 +79,10 @@ class WindowTest(unittest.TestCase):
         self.start()
 
     def prepare(self) -> None:
-        """What a test wants to be there before the first start."""
+        """Prepares files before the first start."""
 
     def start(self) -> None:
-        """The program; what it said of its state before is forgotten."""
+        """Starts the program; forgets its former states."""
         self.states.truncate(0)
         self.states.seek(0)
         self.app = subprocess.Popen([LIMPID, "--print-state", *self.words], env=self.environment,
@@ -101,15 +101,15 @@ class WindowTest(unittest.TestCase):
             process.kill()
 
     def xdotool(self, *words: str, check: bool = True) -> str:
-        """Does it, and counts what the window has to take of it."""
+        """Runs xdotool, and counts the events that the window has to take."""
         for what, count in counted(words).items():
             self.sent[what] += count
         return subprocess.run(["xdotool", *words], env=self.environment, check=check,
                               capture_output=True, text=True).stdout
 
     def taken(self) -> dict:
-        """The first state in which frames have taken all keys and clicks that were sent: one that
-        was sent early may come to frames that show something else than was meant."""
+        """First state in which frames have taken all keys and clicks that were sent. Otherwise an
+        early event may reach a frame that shows something else."""
         return self.wait("the window to take what was sent", lambda s: all(
             s["taken"][what] >= count for what, count in self.sent.items()) and not s["input_waits"], 60)
 
@@ -117,12 +117,12 @@ class WindowTest(unittest.TestCase):
         """A key press; one that closes the window leaves none for its release."""
         self.xdotool("key", "--window", self.window, "--delay", "120", name, check=not closes)
         if closes:
-            self.xdotool("keyup", name)  # or it repeats into the next window
+            self.xdotool("keyup", name)  # otherwise it repeats into the next window
         else:
             self.taken()
 
     def close_by_cross(self) -> None:
-        """As a window manager says that somebody wants the window closed."""
+        """Closes the window as a window manager does for a person."""
         x11 = ctypes.CDLL("libX11.so.6")
         x11.XOpenDisplay.restype = ctypes.c_void_p
         x11.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
@@ -148,7 +148,7 @@ class WindowTest(unittest.TestCase):
         self.wait(f"a notice with '{text}'", lambda s: any(text in n for n in s["notices"]))
 
     def click(self, x: float, y: float, times: int = 1, button: int = 1) -> None:
-        """At what is drawn by the frames that all that was done before needs."""
+        """Clicks where the frames that all earlier actions need have drawn."""
         self.move(x, y)
         self.settled()
         self.xdotool("click", "--repeat", str(times), "--delay", "20", str(button))
@@ -163,11 +163,11 @@ class WindowTest(unittest.TestCase):
             try:
                 return json.loads(line)
             except json.JSONDecodeError:
-                continue  # half a line
+                continue  # an incomplete line
         return {"ticks": 0, "frames": 0}
 
     def wait(self, what: str, holds, seconds: float = 30) -> dict:
-        """The first state for which `holds`; slow machines get their time."""
+        """First state for which `holds`; slow machines get their time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             state = self.state()
@@ -178,12 +178,12 @@ class WindowTest(unittest.TestCase):
         self.fail(f"waited {seconds} s for {what}; the state is {self.state()}")
 
     def wait_until(self, what: str, holds) -> None:
-        """What is not told by the state."""
+        """Waits for a condition that the state does not show."""
         self.wait(what, lambda _: holds())
 
     def settled(self) -> dict:
-        """The state once all that was done up to now has done what it does: a frame may be under
-        way, the next one takes it, and what it opened needs some more."""
+        """State after the effects of all actions so far: a frame may be under way, the next one
+        takes them, and opened things need some more."""
         self.taken()
         time.sleep(0.2)  # a state is never older, unless a frame takes longer
         frames = self.state()["frames"]
@@ -191,14 +191,14 @@ class WindowTest(unittest.TestCase):
                          and not s["input_waits"])
 
     def go_on(self, seconds: float) -> dict:
-        """The state after so many seconds of the loop, however long it takes."""
+        """State after so many seconds of the loop, however long they take."""
         ticks = self.state()["ticks"]
         return self.wait(f"{seconds} s", lambda s: s["ticks"] > ticks + 1000 * seconds)
 
     def hold_tip(self) -> tuple[float, float]:
-        """By the mouse, which is there then."""
+        """Holds the tip by the mouse; returns the mouse's place."""
         x, y = self.state()["places"]["tip"]
-        while True:  # the view may be on its way, and the arm
+        while True:  # the view and the arm may still be moving
             before = x, y
             x, y = self.go_on(0.3)["places"]["tip"]
             if max(abs(x - before[0]), abs(y - before[1])) < 1:

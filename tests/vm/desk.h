@@ -1,4 +1,4 @@
-// A reference device on the desk and the running loop that holds it, as the program has them.
+// A reference device on the desk and the running loop that holds it, as in the program.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ namespace limpid::test {
 
 using namespace std::chrono_literals;
 
-inline constexpr Time kReport = 1ms;  // of the reference devices
+inline constexpr Time kReport = 1ms;  // period of the reference devices
 inline constexpr Time kReadingLife = 5ms + kReport;
 inline constexpr Time kTickLife = 10ms;
 
@@ -57,7 +57,7 @@ std::unique_ptr<Model> make_model(double effort = kEffort) {
   }
 }
 
-// The one device of this kind; replugged ones may take a moment.
+// Finds the one device of this kind; a replugged one may take a moment.
 inline FoundDevice find_device(std::string_view kind) {
   std::vector<FoundDevice> found;
   wait_until([&] {
@@ -104,12 +104,12 @@ class Desk {
   void record(const std::filesystem::path& out, const RunPlan& plan) {
     loop.record(std::make_unique<Recorder>(out, session_info(plan), plan.parameters, true));
   }
-  // Until the stick leans on the gate's side and is pushed back.
+  // Waits until the stick leans on the gate's side and is pushed back.
   bool push() {
     arm_force(true);
     return wait_until([&] { return torque() < -0.1; });
   }
-  // What its motors do to the first axis [N m].
+  // Torque of the motors on the first axis [N m].
   double torque() {
     return device->with([&](Time) { return model->forces().newest()[0]; });
   }
@@ -117,7 +117,7 @@ class Desk {
     loop.update();
     return loop.snapshot().force_state;
   }
-  // Lets this happen to the device; how long after that it was without force, within 100 ms.
+  // Calls `failure` on the device; time from then until it had no force, if within 100 ms.
   std::optional<Time> time_to_zero(const std::function<void(Time)>& failure) {
     const Time moment = device->with([&](Time now) {
       failure(now);
@@ -134,7 +134,7 @@ class Desk {
   SceneDocument document = joystick_gate();
   std::unique_ptr<Model> model;
   std::unique_ptr<UhidDevice> device;
-  // What the window sets, from its next frame on.
+  // Changes the window's settings from its next frame on.
   void set(const std::function<void(Controls&)>& change) {
     const std::lock_guard lock(mutex);
     change(controls);
@@ -143,11 +143,11 @@ class Desk {
   Controls controls;
   std::mutex mutex;
   LiveLoop loop{{}};
-  std::atomic<bool> hangs = false;  // the window does
+  std::atomic<bool> hangs = false;  // the window makes no frames
   std::jthread window;
 };
 
-// Says where the stick is as usual, but keeps the loop waiting when told to.
+// Passes readings on, but keeps the loop waiting while `stalled`.
 class Stalling final : public Device {
  public:
   Stalling(std::unique_ptr<Device> device, const std::atomic<bool>& stalled)
@@ -165,7 +165,7 @@ class Stalling final : public Device {
   const std::atomic<bool>& stalled_;
 };
 
-// One line of the table of measured times.
+// Prints one line of the table of measured times.
 inline void print_time(const std::string& what, std::optional<Time> zero, Time limit) {
   std::printf("| %-48s | %7.2f ms | %5.1f ms |\n", what.c_str(), zero ? in_ms(*zero) : NAN,
               in_ms(limit));

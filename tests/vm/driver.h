@@ -1,4 +1,5 @@
-// Another process that drives the device: this program with the device's name as its argument.
+// Starts another process that drives the device: this program with the device's name as its
+// argument.
 #pragma once
 
 #include <spawn.h>
@@ -9,7 +10,7 @@
 
 namespace limpid::test {
 
-// `name`: kName of its model.
+// Starts the driver; `name` is kName of the device's model.
 inline pid_t start_driver(std::string name) {
   std::string program = "/proc/self/exe";
   std::string word = "drive-" + std::move(name);

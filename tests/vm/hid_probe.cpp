@@ -1,6 +1,6 @@
 // Proof that the virtual machine and the reference devices do what tests rely on: each device is
-// found through hidapi, read and written for a second at 1 kHz, pulled out, and found again.
-// Prints what it measured; exit status 1 if a promise is broken.
+// found through hidapi, read and written for a second at 1 kHz, pulled out, and found again. Prints
+// the measurements; exit status 1 if a promise is broken.
 #include <hidapi/hidapi.h>
 #include <sys/prctl.h>
 
@@ -32,7 +32,7 @@ double milliseconds(Time time) { return std::chrono::duration<double, std::milli
 
 using Handle = std::unique_ptr<hid_device, decltype(&hid_close)>;
 
-// As a program finds it: by enumeration.
+// Opens the device as a program does: by enumeration.
 Handle open_device(const HidIdentity& identity) {
   hid_device_info* const list = hid_enumerate(identity.vendor, identity.product);
   std::string path;
@@ -50,8 +50,8 @@ struct Traffic {
   Time longest_gap{};
 };
 
-// Forgets what waits, then reads for a second and sends what `answer` makes of each report, if
-// anything.
+// Discards waiting reports, then reads for a second and sends the result of `answer` for each
+// report, if any.
 Traffic talk(hid_device* device, const std::function<Report(ReportView)>& answer) {
   std::array<std::uint8_t, 128> old{};
   while (hid_read_timeout(device, old.data(), old.size(), 0) > 0) {
@@ -118,7 +118,8 @@ void probe_space_mouse() {
   pull_out_and_in(device, handle, model.identity());
 }
 
-// Constant force from the west, for 20 ms at a time; most firmwares push towards positive X then.
+// Pushes with a constant force from the west, for 20 ms at a time; most firmwares push towards
+// positive X then.
 class PidHost {
  public:
   PidHost(hid_device* device, const PidLayout& layout)
@@ -199,7 +200,7 @@ void probe_pid_joystick(const char* title, const PidJoystickOptions& options) {
     return std::tuple(model.forces().zero_after(silent), model.forces().largest(),
                       model.violations().size());
   });
-  // The hand gives way: torque over stiffness.
+  // The hand yields by torque over stiffness.
   const bool reversed = options.firmware == PidFirmware::arduino;
   const double sign = reversed ? -1 : 1;
   const double expected = sign * options.torque_limit / 2 / options.physics.stiffness;
@@ -240,7 +241,7 @@ void probe_raw_device() {
   const std::uint32_t crc = crc32_of(std::span(about).subspan(1, 60));
   promise(size == 65 && read_at<std::uint32_t>(about, 61) == crc, "the feature is whole");
   std::uint32_t sequence = 0, before = 0;
-  int lost = -1;  // the first one follows none
+  int lost = -1;  // the first report follows none
   float x = 0;
   const Traffic traffic = talk(handle.get(), [&](ReportView reading) {
     lost += read_at<std::uint32_t>(reading, 4) == before + 1 ? 0 : 1;

@@ -1,5 +1,5 @@
-// Sticks behind the kernel's HID stack are moved and found out; and whatever ends the motion, its
-// force is gone in time.
+// Identification of sticks behind the kernel's HID stack: they are moved, and the force ends in
+// time whatever ends the motion.
 #include <gtest/gtest.h>
 
 #include "app/device/identify_run.h"
@@ -9,7 +9,7 @@
 namespace limpid::test {
 namespace {
 
-// A stick on the desk, the run that moves it, and who watches.
+// A stick on the desk, the run that moves it, and the thread that watches.
 class Identification {
  public:
   explicit Identification(const UnlikeStick& stick) : model(stick.made()), device(*model) {
@@ -70,7 +70,8 @@ void expect_found(unsigned seed, int bits, Time lag) {
 TEST(Identify, FindsAStickOfSixteenBitsWithALagOfOneMillisecond) { expect_found(1, 16, 1ms); }
 TEST(Identify, FindsAStickOfTenBitsWithALagOfFourMilliseconds) { expect_found(4, 10, 4ms); }
 
-// Ends the motion four seconds after it began; nothing may push later than `limit` after that.
+// Ends the motion by `failure` four seconds after its start; no force may act later than `limit`
+// after that.
 void expect_end(const char* what, const std::function<void(Identification&)>& failure, Time limit,
                 ExcitationEnd end) {
   Identification identification(UnlikeStick(1, 16, 0ms));

@@ -11,7 +11,7 @@
 
 namespace limpid::test {
 
-inline constexpr double kRange = 0.35;        // of the stick [rad]
+inline constexpr double kRange = 0.35;        // of the stick to each side [rad]
 inline constexpr double kEffort = 0.5;        // of its motors [N m]
 inline constexpr double kStickLength = 0.12;  // [m]
 
@@ -29,12 +29,12 @@ inline AxisPhysics stick_axis(int axis) {
 inline double lean_right(double t) { return 0.3 * std::clamp(2 * t - 1, 0.0, 1.0); }
 
 struct Circling {
-  static constexpr double kRest = 1.5;    // before it moves [s]
-  static constexpr double kLean = 0.28;   // its furthest, behind the gate's sides [rad]
-  static constexpr double kTurns = 0.37;  // a second
+  static constexpr double kRest = 1.5;    // rest before the motion [s]
+  static constexpr double kLean = 0.28;   // largest angle, behind the gate's sides [rad]
+  static constexpr double kTurns = 0.37;  // turns a second
   static constexpr double kFastest = 2 * 3.14159265358979323846 * kTurns * kLean;  // [rad/s]
 
-  // Of one axis, t [s] -> [rad]. Around and around, with the other axis slower.
+  // Path of an axis, t [s] -> [rad]: around and around, with the other axis slower.
   static double path(int axis, double t) {
     const double s = std::max(t - kRest, 0.0);
     const double grow = std::min(s, 1.0) * std::min(s, 1.0);
@@ -42,7 +42,7 @@ struct Circling {
   }
 };
 
-// The same hand as joint torques on the virtual arm, at rows with these times of the hand's [s].
+// Rows of the virtual arm under the same hand as joint torques, at these times of the hand [s].
 inline Rows circle_virtually(const ArmDescription& arm, const Scene& scene,
                              const std::vector<double>& times) {
   const AxisPhysics hand = stick_axis(0);
@@ -83,9 +83,9 @@ inline Difference difference(const Rows& device, const Rows& ideal) {
   return d;
 }
 
-// What the two may differ by [N m]. The virtual arm sees its angle and pushes at once; here the
-// newest reading is up to 1 ms old when a tick takes it, and the torque waits up to 1 ms for the
-// I/O thread's next turn, so that it comes up to `delay` [s] later.
+// Bounds of the difference between the two [N m]. The virtual arm reads its angle and pushes at
+// once. Here the newest reading is up to 1 ms old when a tick takes it, and the torque waits up to
+// 1 ms for the I/O thread's next turn: it acts up to `delay` [s] later.
 struct Allowed {
   double usual, touching;
 };

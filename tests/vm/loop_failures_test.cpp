@@ -1,5 +1,4 @@
-// Whatever fails while the stick is pushed, the reference device itself measures when its force
-// ended.
+// Ends of force at failures while the stick is pushed, measured by the reference device itself.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -55,7 +54,7 @@ TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsHalfReports) {
   this->expect_end("half reports", Fault::cut_short, ForceState::stale);
 }
 
-// Its encoders' wires are broken: new reports come, and all say the same.
+// The encoders' wires are broken: new reports arrive with the same angles.
 TYPED_TEST(FailingLoop, EndsForceWhenReadingsStandStillThoughReportsGoOn) {
   this->desk.open();
   ASSERT_TRUE(this->desk.push());
@@ -86,7 +85,7 @@ TYPED_TEST(FailingLoop, EndsForceWhenTheDeviceSendsGarbage) {
   this->expect_zero("garbage", zero, kReadingLife);
 }
 
-// The motors keep what they were told last: nobody outside can help, but nothing more is told.
+// The motors keep their last torque; nobody outside can help, but no command is sent any more.
 TYPED_TEST(FailingLoop, GivesUpADeviceWhoseFirmwareHangs) {
   this->desk.open();
   ASSERT_TRUE(this->desk.push());
@@ -131,7 +130,7 @@ TYPED_TEST(FailingLoop, EndsForceWhenNoTickComes) {
   this->desk.loop.close();
 }
 
-// SIGABRT: also what becomes of an exception in the loop.
+// SIGABRT stands for an exception in the loop, too.
 TYPED_TEST(FailingLoop, EndsForceWhenTheProcessIsInterruptedOrDies) {
   for (const int signal : {SIGINT, SIGTERM, SIGKILL, SIGSEGV, SIGABRT}) {
     const pid_t driver = start_driver(this->name());
@@ -141,20 +140,20 @@ TYPED_TEST(FailingLoop, EndsForceWhenTheProcessIsInterruptedOrDies) {
     const Time moment = steady_now();
     kill(driver, signal);
     wait(100ms);
-    // Interrupts are heard by the next frame.
+    // The next frame notices an interrupt.
     const bool heard = signal == SIGINT || signal == SIGTERM;
     this->expect_zero(std::string("killed, SIG") + sigabbrev_np(signal),
                       this->desk.zero_after(moment), heard ? 30ms : 10ms);
     waitpid(driver, nullptr, 0);
-    // The guardian's hold on the device ends with it; the hand begins anew.
+    // The guardian's hold on the device ends with the device; the hand begins anew.
     this->desk.device->unplug();
     wait(50ms);
     this->desk.device->replug();
   }
 }
 
-// Another program pushes with it; this one tries to open it, again and again. Any report of this
-// one's would show: as a zero torque, a feature asked for or set, or, to a raw device, a command
+// The first program pushes; a second one tries to open the device, again and again. Any report from
+// the second would show: as a zero torque, a feature read or set, or, on a raw device, a command
 // out of order.
 TYPED_TEST(FailingLoop, IsLeftAloneByASecondProgramAndFreeOnceTheFirstIsKilled) {
   constexpr int kAttempts = 20;
@@ -218,7 +217,7 @@ TEST_F(FailingRawLoop, EndsForceWhenReadingsRepeatThemselves) {
   expect_end("the same reading again and again", Fault::stuck, ForceState::stale);
 }
 
-// Its counter is off by a turn for one report, which arrives whole.
+// The device's counter is off by a turn for one report, which arrives whole.
 TEST_F(FailingRawLoop, EndsForceAtOneWrongReading) {
   desk.open();
   ASSERT_TRUE(desk.push());
@@ -247,7 +246,7 @@ TEST_F(FailingRawLoop, EndsForceWhenTheDeviceReportsAFault) {
   EXPECT_EQ(desk.force_state(), ForceState::fault);
 }
 
-// Nothing reaches it for 40 ms, and its watchdog cuts; then everything does again.
+// No report reaches the device for 40 ms, and its watchdog cuts; then all arrive again.
 TEST_F(FailingRawLoop, FadesInFromNothingAfterTheDevicesWatchdogHasCut) {
   desk.open();
   ASSERT_TRUE(desk.push());

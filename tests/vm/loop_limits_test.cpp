@@ -1,5 +1,5 @@
-// The limits that hold on every real device, measured where they matter: at a device that is led by
-// a stiff hand, far too fast, too far, or along with its motors.
+// Limits that hold on every real device, measured at a device that a stiff hand leads far too fast,
+// too far, or along with its motors.
 #include <gtest/gtest.h>
 
 #include "tests/vm/desk.h"
@@ -8,10 +8,11 @@
 namespace limpid::test {
 namespace {
 
-// The first joint is pressed towards smaller angles wherever it is, as hard as its motor can.
+// A scene that presses the first joint towards smaller angles everywhere, as hard as its motor can.
 template <class Model>
 struct LimitedLoop : testing::Test {
-  // The stick rests at -0.3 rad for 1.2 s, then is led to 0.3 at `rate` [rad/s], and stays.
+  // Opens the device; the stick rests at -0.3 rad for 1.2 s, is led to 0.3 at `rate` [rad/s], and
+  // stays.
   void open(double rate, double effort = kEffort) {
     AxisPhysics physics = stick_axis(0);
     physics.stiffness = 120 * effort;
@@ -33,7 +34,7 @@ struct LimitedLoop : testing::Test {
       return now + std::chrono::microseconds(static_cast<int>(1e6 * kStart));
     });
   }
-  // The smallest |torque| in this time, counted from where the hand begins to move [N m].
+  // The smallest |torque| in this time, counted from the start of the hand's motion [N m].
   double least(Time from, Time to) {
     return extreme(
         from, to, [](double a, double b) { return std::min(a, b); }, 1e9);
@@ -69,7 +70,7 @@ struct LimitedLoop : testing::Test {
 TYPED_TEST_SUITE(LimitedLoop, Models);
 
 TYPED_TEST(LimitedLoop, FadesWhenAJointIsFasterThan15RadiansASecond) {
-  this->open(24);  // 25 ms for 0.6 rad; force is gone at 22.5
+  this->open(24);  // 25 ms for 0.6 rad; the force is gone at 22.5
   wait(1400ms);
   EXPECT_GT(this->most(-50ms, 0ms), 0.4);
   const double torque = this->least(10ms, 28ms);
@@ -80,7 +81,7 @@ TYPED_TEST(LimitedLoop, FadesWhenAJointIsFasterThan15RadiansASecond) {
 }
 
 TYPED_TEST(LimitedLoop, FadesWhenTheTipIsFasterThan2MetresASecond) {
-  this->arm.tip.translation() *= 3;  // 0.36 m: 9 rad/s are 3.2 m/s, where it is gone at 3
+  this->arm.tip.translation() *= 3;  // 0.36 m: 9 rad/s are 3.2 m/s; the force is gone at 3
   this->open(9);
   wait(1400ms);
   EXPECT_GT(this->most(-50ms, 0ms), 0.4);
@@ -94,7 +95,7 @@ TYPED_TEST(LimitedLoop, FadesBeyondTheRangeOfAJoint) {
   this->open(1);
   wait(2000ms);
   EXPECT_GT(this->most(0ms, 300ms), 0.4);
-  EXPECT_NEAR(this->most(450ms, 450ms + 1ms), 0.25, 0.1);  // halfway beyond
+  EXPECT_NEAR(this->most(450ms, 450ms + 1ms), 0.25, 0.1);  // halfway beyond the limit
   const double torque = this->most(550ms, 800ms);
   this->report("0.2 rad beyond the range", torque);
   EXPECT_EQ(torque, 0);
@@ -110,7 +111,7 @@ TYPED_TEST(LimitedLoop, PushesWithTenNewtonsAtMost) {
   EXPECT_GE(torque, 10 * 0.12 * 0.9);
 }
 
-// 5 N m over 0.6 rad would be 3 J; the less is left of the 2.25, the less force there is.
+// 5 N m over 0.6 rad would be 3 J, with 2.25 allowed: the force fades as the rest decreases.
 TYPED_TEST(LimitedLoop, FadesWhenTheMotorsPutOutTooMuchEnergy) {
   constexpr double kRate = 2.5;      // of the way back [rad/s]
   this->arm.tip.translation() *= 5;  // 10 N at 0.6 m

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinute = 60;  // [s]
 
-// Also says when each reading was taken.
+// A device that notes the time of each reading.
 class Watched final : public Device {
  public:
   explicit Watched(std::unique_ptr<Device> device, std::vector<Time>& times)
@@ -30,7 +30,7 @@ class Watched final : public Device {
 };
 
 struct Minute {
-  std::vector<double> times;  // of the rows, in the hand's time [s]
+  std::vector<double> times;  // times of the rows, on the hand's clock [s]
   Session session;
 };
 
@@ -58,14 +58,14 @@ Minute run_on_device(Desk<Model>& desk) {
   wait(std::chrono::seconds(static_cast<int>(kMinute + Circling::kRest)));
   EXPECT_EQ(desk.force_state(), ForceState::on);
   EXPECT_EQ(desk.loop.recorder()->dropped(), 0u);
-  // Before it is finished: on the machine's one processor that is in the loop's way.
+  // Read before the recording is finished: on the machine's one processor that delays the loop.
   EXPECT_LE(desk.loop.status().slipped, 6);
   desk.loop.finish_recording();
   desk.loop.close();
   minute.session = read_session(dir / "a.h5");
 
-  // The trace has every tick from the first on; the recording's are those after the restart of
-  // its time.
+  // Times exist for every tick from the first on; the recording begins after the restart of its
+  // time.
   const RowLayout layout = minute.session.layout;
   const auto stride = static_cast<std::size_t>(layout.stride());
   std::vector<double> early(8192 * 2 * stride);
@@ -95,7 +95,7 @@ TYPED_TEST_SUITE(PidMinute, Models, Names);
 
 TYPED_TEST(PidMinute, AgreesWithTheVirtualArm) {
   Desk<TypeParam> desk;
-  // Around its edge the torque changes faster than the hand moves.
+  // Removes the bump: around its edge the torque changes faster than the hand moves.
   std::erase_if(desk.document.scene.objects, has_shape<Sphere>);
   const Minute minute = run_on_device(desk);
   ASSERT_GE(minute.session.size(), 60'000u);
@@ -105,7 +105,7 @@ TYPED_TEST(PidMinute, AgreesWithTheVirtualArm) {
   for (std::size_t k = 0; k < minute.session.size(); ++k) rows.add(minute.session.row(k));
   const Difference d =
       difference(rows, circle_virtually(desk.arm, desk.document.scene, minute.times));
-  // Two ticks, and a tenth of one that the report is on its way.
+  // Two ticks of delay, and a tenth of a tick for the report's transfer.
   const Allowed allowed = allowed_difference(2.1e-3, TypeParam::kTorqueLevels);
   std::printf(
       "| %zu ticks, torque up to %.3f N m; difference rms %.3f (allowed %.2f), at most "

@@ -1,5 +1,5 @@
-// What the device feels after the loop, the whole program or the window has stood still: never
-// from nothing to full force in one report.
+// Torque of the device after the loop, the whole program or the window has stood still: never from
+// nothing to full force in one report.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,8 +17,9 @@ template <class Model>
 struct StalledLoop : testing::Test {
   static std::string name() { return kName<Model>; }
 
-  // From `resumed` on the force may hold what it had for a few reports or be gone, but grows
-  // slowly: at each report by the slew's part of the time, and all in all as it fades in.
+  // Expects a slow return: from `resumed` on, the force may keep its value for a few reports or be
+  // gone, but grows at most by the slew's part of the time in each report, and overall as the
+  // fade-in allows.
   void expect_slow_return(const std::string& what, Time resumed, double full) {
     std::vector<ForceSample> samples;
     desk.device->with([&](Time) {
@@ -44,7 +45,7 @@ struct StalledLoop : testing::Test {
     std::printf("| %-48s | %7.3f N m in one report, of %.3f |\n", (name() + ": " + what).c_str(),
                 largest_step, full);
   }
-  // Of the push before.
+  // Torque of the push before the stall [N m].
   double full() { return std::abs(desk.torque()); }
 
   Desk<Model> desk;

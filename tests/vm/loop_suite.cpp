@@ -1,4 +1,4 @@
-// The loop's tests in the virtual machine, or, with an argument, the program that some of them
+// Runs the loop's tests in the virtual machine; with an argument, is the program that some of them
 // kill.
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
@@ -12,7 +12,7 @@
 
 namespace {
 
-// Pushes whatever leans on the gate, until it is interrupted or killed.
+// Holds the device and pushes when it leans on the gate, until interrupted or killed.
 template <class Model>
 int drive() {
   using namespace limpid;

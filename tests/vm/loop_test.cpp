@@ -1,5 +1,5 @@
-// The running loop against reference devices that are well: nothing is lost, all are found, one
-// that was pulled out comes back without force.
+// The running loop with healthy reference devices: nothing is lost, all are found, and one that was
+// pulled out comes back without force.
 #include <gtest/gtest.h>
 
 #include "tests/support/rows.h"
@@ -52,7 +52,7 @@ TEST(RawLoop, LosesNoReportEitherWay) {
   EXPECT_EQ(desk.loop.status().slipped, 0);
 }
 
-// One that only says what changes is at rest, and pushed all the same.
+// A device that reports only changes is silent at rest, and is pushed all the same.
 TEST(PidLoop, PushesAStickThatSaysNothingWhileItRests) {
   PidJoystickOptions options{.torque_limit = kEffort, .physics = stick_axis(1)};
   options.only_changes = true;
@@ -119,9 +119,9 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
   const Session session = read_session(dir / "a.h5");
   EXPECT_NEAR(static_cast<double>(session.size()), static_cast<double>(ticks_after - ticks_before),
               10);
-  std::vector<int> states;  // one after the other
+  std::vector<int> states;  // in this order
   for (std::size_t k = 0; k < session.size(); ++k) {
-    // Ticks that came too late were given up, and the time says so.
+    // Ticks that came too late were given up, and the time shows it.
     const double periods =
         k == 0 ? 1 : 1e3 * (session.at(k, Column::time)[0] - session.at(k - 1, Column::time)[0]);
     ASSERT_NEAR(periods, std::round(periods), 1e-6) << k;
@@ -133,7 +133,7 @@ TYPED_TEST(PulledOut, ComesBackWithoutForceAndTheRecordingGoesOn) {
       ASSERT_EQ(session.at(k, Column::motor_torque)[0], 0) << k;
     }
   }
-  // A tick that says that something stands still may come before the loss is noticed.
+  // A tick may find its readings frozen before the loss is noticed.
   std::erase(states, static_cast<int>(ForceState::stale));
   std::erase(states, static_cast<int>(ForceState::stalled));
   const auto number = [](ForceState state) { return static_cast<int>(state); };
@@ -159,7 +159,7 @@ TEST(SpaceMouse, LeadsTheHandOfAVirtualArm) {
   EXPECT_TRUE(wait_until([&] { return loop.update() && loop.snapshot().connected; }));
   wait(200ms);
   EXPECT_LT((tip() - home).norm(), 1e-3);
-  // Away from the user, up.
+  // Motion away from the user, and up.
   device.with([&](Time) {
     model.move([](double) { return SpaceMouseModel::Cap{0, -0.6, -0.4, 0, 0, 0}; });
     model.press(2);

@@ -1,4 +1,4 @@
-// Every device that the loop is tried with: joysticks of four firmwares and a raw arm.
+// Models of every device that the loop is tried with: joysticks of four firmwares and a raw arm.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr Time kStart = 100s;  // of the device's life; any
+constexpr Time kStart = 100s;  // any time of the device's life
 
 Report command(std::uint32_t sequence, float torque) {
   Report report(65);
@@ -30,7 +30,7 @@ Report command(std::uint32_t sequence, float torque) {
   return report;
 }
 
-// Lets the device live for a while; returns the newest report.
+// Advances the device from `from` to `until`; returns the newest report.
 Report live(ReferenceDevice& device, Time from, Time until) {
   Report newest;
   for (Time now = from + 1ms; now <= until; now += 1ms) {
@@ -39,7 +39,7 @@ Report live(ReferenceDevice& device, Time from, Time until) {
   return newest;
 }
 
-// A host of the standard layout that knows no more than an effect of constant force along X.
+// A host of the standard layout that uses only an effect of constant force along X.
 struct PidHost {
   PidReports reports = pid_reports(PidLayout::standard());
   using Kind = DescriptorWriter::Kind;
@@ -78,7 +78,7 @@ struct PidHost {
 };
 
 TEST(CrcOfTheReferences, IsTheOneOfTheStandard) {
-  const std::string check = "123456789";  // its published check value
+  const std::string check = "123456789";  // its check value is published
   EXPECT_EQ(crc32_of({reinterpret_cast<const std::uint8_t*>(check.data()), 9}), 0xCBF43926U);
 }
 

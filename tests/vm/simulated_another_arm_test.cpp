@@ -1,5 +1,5 @@
-// A strong device of which nobody has said which arm it is, pushed against a stiff wall: what its
-// motors give is felt at its own tip, whatever levers the arm has that it is taken for.
+// A strong device without a description of its arm, pushed against a stiff wall: its motors' torque
+// acts at its own tip, whatever the levers of the arm that stands in for it.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace limpid::test {
 namespace {
 
 constexpr double kStrong = 3;       // of its motors [N m]
-constexpr double kOwnLever = 0.05;  // of the device, which the arm in use does not have [m]
+constexpr double kOwnLever = 0.05;  // of the device; the arm in use has other ones [m]
 
 // The largest torque while a strong hand leans the device through the side of its gate.
 double pushed(const ArmDescription& arm) {
@@ -34,7 +34,7 @@ double pushed(const ArmDescription& arm) {
   return desk.model->forces().largest();
 }
 
-// Also where somebody has set a lower limit for the tip.
+// Holds also with a lower limit set for the tip.
 TEST(AnotherArm, IsHeldToTheTipsLimitAtAShortLeverUntilSomebodyHasSaidWhichItIs) {
   const DeviceKind raw{.key = "raw"};
   const DeviceTraits traits = pushing(2, kRange, kStrong);

@@ -1,5 +1,4 @@
-// The check of a joystick's axes on joysticks that are as they should be and on others, in
-// simulated time.
+// The check of a joystick's axes, on joysticks without and with faults, in simulated time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,9 +46,9 @@ struct CheckedStick : testing::Test {
     link->exchange.step();
     now += 1ms;
   }
-  // To its end; how long it took.
+  // Runs the check to its end; returns the time it took.
   Time run() {
-    for (int i = 0; i < 10; ++i) {  // readings first
+    for (int i = 0; i < 10; ++i) {  // some readings first
       link->transport.arrive(model->input(now));
       link->exchange.step();
       now += 1ms;
@@ -75,8 +74,8 @@ struct CheckedStick : testing::Test {
   std::unique_ptr<Model> model;
   std::unique_ptr<SimulatedLink> link;
   std::optional<AxisCheck> check;
-  std::function<void(Two&)> wire = [](Two&) {};  // from the check to the motors
-  double asked = 0;                              // at most, by the check [N m]
+  std::function<void(Two&)> wire = [](Two&) {};  // from the check's torque to the motors'
+  double asked = 0;                              // largest torque of the check [N m]
 };
 using Models = testing::Types<PidJoystickModel, ArduinoJoystick, FinoJoystick, OpenFfboardJoystick,
                               AdaptJoystick>;
@@ -92,7 +91,7 @@ TYPED_TEST(CheckedStick, IsFoundToPushAsItsFirmwareDoes) {
   this->expect(verdict(reversed[0]), verdict(reversed[1]));
   EXPECT_LE(this->model->forces().largest(), 0.1 * kEffort * (1 + 2.0 / 127));
   EXPECT_THAT(this->model->violations(), testing::IsEmpty());
-  this->connect(reversed);  // as it would be remembered
+  this->connect(reversed);  // as if remembered from an earlier check
   this->run();
   this->expect(AxisVerdict::right, AxisVerdict::right);
 }
@@ -107,7 +106,7 @@ TYPED_TEST(CheckedStick, MayBeLetGo) {
 
 using OneStick = CheckedStick<PidJoystickModel>;
 
-// Held by a spring, it gives way by torque over stiffness at the most.
+// Against its spring the stick yields by torque over stiffness at most.
 TEST_F(OneStick, TellsHowFarItMoves) {
   run();
   for (int i = 0; i < 2; ++i) {
@@ -128,7 +127,7 @@ TEST_F(OneStick, WithSwappedAxesIsRefused) {
   expect(AxisVerdict::wrong_axis, AxisVerdict::unknown);
 }
 
-// As with firmwares that take one direction for every effect.
+// Some firmwares take one direction for every effect.
 TEST_F(OneStick, ThatPushesOneAxisOnlyIsRefused) {
   wire = [](Two& torque) { torque = {torque[0] + torque[1], 0}; };
   run();
@@ -147,7 +146,7 @@ TEST_F(OneStick, WithADeadMotorIsRefused) {
   expect(AxisVerdict::right, AxisVerdict::nothing_moved);
 }
 
-// What a pad does whose motors only shake: nothing.
+// Pads whose motors only shake do not move either.
 TEST_F(OneStick, WithoutMotorsIsRefused) {
   wire = [](Two& torque) { torque = {}; };
   run();
@@ -160,7 +159,7 @@ TEST_F(OneStick, ThatIsHeldFirmlyIsRefused) {
   expect(AxisVerdict::nothing_moved, AxisVerdict::unknown);
 }
 
-// It takes all of its force, whatever it is told, and keeps it.
+// The axis pushes with all of its force, whatever the command, and keeps on.
 TEST_F(OneStick, ThatRunsAwayIsStoppedAtOnceAndRefused) {
   for (const bool held : {true, false}) {
     connect({});
@@ -182,7 +181,7 @@ TEST_F(OneStick, ThatRunsAwayIsStoppedAtOnceAndRefused) {
   }
 }
 
-// It moves on by itself after a push.
+// The axis moves on by itself after a push.
 TEST_F(OneStick, ThatDoesNotStopIsRefused) {
   model->hand().hold(false);
   bool pushed = false;
@@ -231,7 +230,7 @@ TEST_F(OneStick, ThatTheHandLetsGoLeavesNothing) {
   expect(AxisVerdict::given_up, AxisVerdict::unknown);
 }
 
-// How the motors of a home-made device are wired nobody knows but who wired them.
+// The wiring of a home-made device's motors is known only to its maker.
 TEST(CheckedRawDevice, WithAReversedMotorIsFoundWithATenthOfItsForceAndTurnedRound) {
   Time now = 1h;
   RawDeviceModel model({.joints = 2, .torque_limit = kEffort});
@@ -258,7 +257,7 @@ TEST(CheckedRawDevice, WithAReversedMotorIsFoundWithATenthOfItsForceAndTurnedRou
     EXPECT_EQ(check.finding(1).verdict, known ? AxisVerdict::right : AxisVerdict::reversed);
     EXPECT_LE(model.forces().largest(), 0.1 * kEffort + 1e-6);
     EXPECT_GT(model.forces().largest(), 0);
-    axes[1].reversed = true;  // as it would be remembered
+    axes[1].reversed = true;  // as if remembered from an earlier check
   }
   EXPECT_THAT(model.violations(), testing::IsEmpty());
 }

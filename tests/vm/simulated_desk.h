@@ -1,6 +1,5 @@
-// A reference device and the loop that holds it, in one thread and simulated time: every number
-// comes out the same each time. What threads, the kernel and hidapi add only the virtual machine
-// shows.
+// A reference device and the loop that holds it, in one thread and simulated time: every number is
+// the same each time. Effects of threads, the kernel and hidapi show only in the virtual machine.
 #pragma once
 
 #include <deque>
@@ -23,7 +22,7 @@ constexpr int torque_levels() {
   return 10000;
 }
 
-// To the model at once, without a kernel between.
+// Hands reports to the model at once, without a kernel between.
 class ModelTransport final : public HidTransport {
  public:
   ModelTransport(ReferenceDevice& model, const Time& now) : model_(model), now_(now) {}
@@ -72,7 +71,7 @@ class ModelTransport final : public HidTransport {
   std::deque<Report> waiting_;
 };
 
-// As long as the device is plugged in.
+// A device that exists until it is unplugged.
 class SimulatedLink final : public Device {
  public:
   SimulatedLink(ReferenceDevice& model, std::unique_ptr<HidProtocol> protocol, const Time& now)
@@ -99,8 +98,8 @@ class SimulatedLink final : public Device {
   HidExchange exchange;
 };
 
-// Readings come at each whole millisecond, the I/O thread wakes 0.05 ms later, the tick runs in the
-// middle; its torque waits for the next reading.
+// The device with its loop. Readings come at each whole millisecond, the I/O thread wakes 0.05 ms
+// later, the tick runs in the middle; its torque waits for the next reading.
 template <class Model>
 class SimulatedDesk {
  public:
@@ -148,7 +147,7 @@ class SimulatedDesk {
       if (ticking) rig.step(parameters, {{rig.tip(), 1}, wisher.at(armed)}, row.add());
     }
   }
-  // Until it has been pushed for a while, as far as it is.
+  // Runs until the stick leans on the gate as far as it goes and has been pushed for a while.
   bool push() {
     armed = true;
     run(1500);

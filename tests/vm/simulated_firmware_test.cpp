@@ -37,7 +37,7 @@ struct Firmware : testing::Test {
     }
     return "none";
   }
-  // For so many milliseconds; what the motors do at the end.
+  // Commands `torque` for so many milliseconds; returns the motors' torque at the end.
   Torque push(std::array<double, 2> torque, int milliseconds = 20) {
     for (int i = 0; i < milliseconds; ++i, now += 1ms) {
       link->transport.arrive(model->input(now));
@@ -62,7 +62,7 @@ TYPED_TEST_SUITE(Firmware, Models);
 
 TYPED_TEST(Firmware, PushesAlongTheAxisThatIsAskedFor) {
   this->connect();
-  // Of 255 steps none is 90 degrees; of 127 magnitudes none is 0.3.
+  // Rounding: none of 255 directions is 90 degrees, none of 127 magnitudes is 0.3.
   const double leak = 0.007 * 0.3, step = kEffort / 127;
   for (const double asked : {0.3, -0.3}) {
     const Torque x = this->push({asked, 0});
@@ -114,11 +114,11 @@ TYPED_TEST(Firmware, EndsItsForceByItselfWithinTheEffectsTime) {
   EXPECT_LE(*zero, 11ms);
 }
 
-// What an earlier program has left there is gone after the reset.
+// The reset removes the effects that an earlier program has left.
 TYPED_TEST(Firmware, HasRoomAgainAfterAnotherProgramLeftItFull) {
   const auto options = TypeParam::usual_options();
   for (int i = 0; i < options.capacity; ++i) {
-    this->connect();  // without ending it
+    this->connect();  // without ending the program before
     this->link.reset();
   }
   EXPECT_EQ(this->complaint(), "none");

@@ -1,4 +1,4 @@
-// A stick behind its protocol that is moved to be identified, in simulated time.
+// Identification of a stick behind its protocol, in simulated time.
 #pragma once
 
 #include <vector>
@@ -32,7 +32,8 @@ class SimulatedIdentification {
   std::unique_ptr<RawDeviceModel> model;
 
  private:
-  // Readings at each whole millisecond, the tick in the middle, its torque out with the next.
+  // Readings come at each whole millisecond, the tick runs in the middle, its torque leaves with
+  // the next.
   void tick() {
     using namespace std::chrono_literals;
     link_.transport.arrive(model->input(now_));

@@ -1,5 +1,5 @@
-// Devices behind their protocol are found out, in simulated time; a coupling comes nearer to what
-// it promises on them then.
+// Identification of devices behind their protocol, in simulated time, and its benefit: with the
+// identified parameters a coupling keeps its promises better.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -40,14 +40,15 @@ TEST_P(SimulatedIdentify, FindsWhatTheStickIs) {
 }
 
 struct Felt {
-  double inertia = 0;  // part of the stick's own that is felt
-  double off = 0;      // the hand's torque in free motion off the one that eta promises, of it
-  double slope = 0;    // of the coordination error against the contact torque [rad/(N m)]
-  double energy = 0;   // most of E_c [J]
-  bool force = true;   // all along
+  double inertia = 0;  // felt inertia over the stick's own
+  double off =
+      0;  // relative error of the hand's torque in free motion from the one that eta promises
+  double slope = 0;   // slope of the coordination error against the contact torque [rad/(N m)]
+  double energy = 0;  // highest E_c [J]
+  bool force = true;  // force was on all along
 };
 
-// A hand on the stick, which its own spring pulls at as well.
+// A hand on the stick, beside the stick's own spring.
 class Hand {
  public:
   static constexpr double kStiffness = 2, kDamping = 0.02;  // [N m/rad, N m s/rad]
@@ -97,8 +98,8 @@ Parameters suited(const ArmDescription& arm, double resolution) {
   return p;
 }
 
-// What explains the hand's torque: inertia and damping, as parts of the stick's own, friction, and
-// of each axis a spring and a push.
+// Fit of the hand's torque in free motion: inertia and damping as parts of the stick's own,
+// friction, and for each axis a spring and a push.
 class FreeMotion {
  public:
   void add(const UnlikeStick& stick, const SprungHand& axes, const Hand& hand, double t,
@@ -107,7 +108,7 @@ class FreeMotion {
       const AxisPhysics& axis = stick.axes[static_cast<std::size_t>(i)];
       const double v = axes.velocity(i), a = (v - before_[i]) / 1e-3, x = axes.position(i);
       const double torque = hand.torque(i, t);
-      const double mean = 0.5 * (torque + torque_[i]);  // as that of the acceleration
+      const double mean = 0.5 * (torque + torque_[i]);  // as the acceleration's, over the tick
       before_[i] = v, torque_[i] = torque;
       if (t < 3 || std::abs(v) < 0.05) continue;
       const double inertia = axis.inertia * a, damping = (axis.friction + b_v) * v;
@@ -144,7 +145,7 @@ Felt felt_on(const UnlikeStick& stick, const ArmDescription& believed) {
     for (int ms = 1; ms <= 5000; ++ms) {
       desk.run(1);
       const std::size_t k = desk.row.size() - 1;
-      // One that leans on the stop stands still under its friction: then nothing shows that its
+      // A stick that leans on the stop stands still under its friction: then nothing shows that its
       // readings are alive, and its force fades.
       const ForceState why = desk.rig.force_state();
       const bool still = pressing && why == ForceState::frozen;
@@ -182,7 +183,7 @@ TEST_P(SimulatedIdentify, BringsTheCouplingNearerToItsPromise) {
       100 * before.off, 100 * after.off, 1e3 * before.slope, 1e3 * after.slope, 1e3 * before.energy,
       1e3 * after.energy);
   EXPECT_TRUE(after.force);
-  // Not the inertia alone: friction that is taken off late is felt as some.
+  // The rest is not the inertia's alone: friction that is compensated late is felt in part.
   EXPECT_LT(after.off, 0.95 * before.off);
   EXPECT_NEAR(after.slope, before.slope, 0.1 * before.slope);
   EXPECT_LT(after.energy, 1e-4);

@@ -1,4 +1,4 @@
-// The suite of the virtual machine in simulated time, for places without one. Not shown here: that
+// The suite of the virtual machine in simulated time, for places without one. It does not show that
 // the kernel's HID stack and hidapi carry the reports, that threads keep their times, that a
 // guardian stops the device of a killed process, and recordings across an unplugging.
 #include <gtest/gtest.h>
@@ -13,11 +13,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time kReadingLife = 5ms + 1ms;  // and one report
+constexpr Time kReadingLife = 5ms + 1ms;  // life of a reading and one report
 constexpr Time kTickLife = 10ms;
 
 ArmDescription joystick() { return read_urdf(assets_dir() / "devices/joystick.urdf"); }
-// Without the bump: around its edge the torque changes faster than the hand moves.
+// The gate without the bump: around its edge the torque changes faster than the hand moves.
 Scene gate() {
   Scene scene = read_scene(assets_dir() / "devices/joystick.toml", joystick()).scene;
   std::erase_if(scene.objects, has_shape<Sphere>);
@@ -74,7 +74,7 @@ TYPED_TEST(SimulatedLoop, EndsForceWhenTheDeviceSendsGarbage) {
   EXPECT_LE(*zero, kReadingLife);
 }
 
-// Its encoders' wires are broken: new reports come, and all say the same.
+// The encoders' wires are broken: new reports arrive with the same angles.
 TYPED_TEST(SimulatedLoop, EndsForceWhenReadingsStandStillThoughReportsGoOn) {
   auto& here = this->desk;
   ASSERT_TRUE(here.push());
@@ -101,7 +101,7 @@ TYPED_TEST(SimulatedLoop, EndsForceWhenReadingsStandStillThoughReportsGoOn) {
   EXPECT_TRUE(here.push());
 }
 
-// Held against the wall for ten seconds by a hand that does not tremble.
+// A hand that does not tremble holds the device against the wall for ten seconds.
 TYPED_TEST(SimulatedLoop, PushesOnWhereAHandHoldsTheDeviceStill) {
   auto& here = this->desk;
   ASSERT_TRUE(here.push());
@@ -121,7 +121,7 @@ TYPED_TEST(SimulatedLoop, EndsForceWhenNoTickComes) {
   EXPECT_LE(*zero, kTickLife);
 }
 
-// The device itself: a raw one by its watchdog, a PID one because its effects end.
+// The device ends the force itself: a raw one by its watchdog, a PID one because its effects end.
 TYPED_TEST(SimulatedLoop, EndsForceWhenNobodySpeaksAnyMore) {
   ASSERT_TRUE(this->desk.push());
   const Time silence = this->desk.now;
@@ -158,7 +158,7 @@ TYPED_TEST(SimulatedLoop, AgreesWithTheVirtualArm) {
     here.model->hand().axis(axis).path = [axis](double t) { return Circling::path(axis, t); };
   }
   here.model->hand().begin(here.now);
-  std::vector<double> times;  // of the ticks, from the hand's beginning
+  std::vector<double> times;  // times of the ticks, from the hand's beginning
   for (int k = 0; k < kTicks; ++k) times.push_back(1e-3 * (k + 0.5));
   here.armed = true;
   here.run(kTicks);
@@ -178,7 +178,7 @@ TEST_F(SimulatedRawLoop, EndsForceWhenTheDeviceReportsAFault) {
   expect_end([](RawDeviceModel& model, bool on) { model.set_unwell(on); }, ForceState::fault, 3ms);
 }
 
-// Its counter is off for one report, which arrives whole.
+// The device's counter is off for one report, which arrives whole.
 TEST_F(SimulatedRawLoop, EndsForceAtOneWrongReading) {
   for (const double off : {2 * std::numbers::pi, -0.9, 1e6}) {
     ASSERT_TRUE(desk.push());
@@ -200,8 +200,8 @@ TEST_F(SimulatedRawLoop, EndsForceAtOneWrongReading) {
   EXPECT_TRUE(desk.push());
 }
 
-// The limit at its tip is lowered while it is pressed harder than that: never more, and the force
-// is there again when it is pressed less, whichever law.
+// The limit at the tip is lowered below the hand's press: the force never exceeds it, and is there
+// again when the hand presses less, with every law.
 TYPED_TEST(SimulatedLoop, HoldsTheLimitAtItsTipAndPushesOnWithinIt) {
   auto& here = this->desk;
   constexpr double kLimit = 1;  // [N]
@@ -221,7 +221,7 @@ TYPED_TEST(SimulatedLoop, HoldsTheLimitAtItsTipAndPushesOnWithinIt) {
   EXPECT_GT(here.row.at(here.row.size() - 1, Column::energy_ledger), 0);
 }
 
-// Nothing reaches it for a while, until its watchdog cuts; then everything does again.
+// No report reaches the device until its watchdog cuts; then all arrive again.
 TEST_F(SimulatedRawLoop, FadesInFromNothingAfterTheDevicesWatchdogHasCut) {
   for (const int deaf : {11, 15, 40, 400}) {
     ASSERT_TRUE(desk.push());

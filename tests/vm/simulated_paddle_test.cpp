@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Reports as the protocol's page has them, made without the code that reads them.
+// A command as the protocol's page describes it, made without the code that reads it.
 Report command(std::uint8_t mode, std::uint32_t sequence, float torque) {
   Report report(64);
   report[0] = 0x4C;
@@ -34,7 +34,7 @@ struct OnTheDesk : testing::Test {
     model.power(true, now);
     link = std::make_unique<SimulatedLink>(model, std::make_unique<RawProtocol>(), now);
   }
-  // What the motor does then [N m].
+  // Commands `torque` for so many milliseconds; returns the motor's torque at the end [N m].
   double push(double torque, int milliseconds = 20) {
     for (int i = 0; i < milliseconds; ++i, now += 1ms) {
       link->transport.arrive(model.input(now));
@@ -43,7 +43,7 @@ struct OnTheDesk : testing::Test {
     }
     return model.forces().newest()[0];
   }
-  // Laid at its end, and a session begun.
+  // Lays the paddle at its end and begins a session.
   void begin() {
     model.lay_at_its_end();
     push(0, 5);
@@ -86,7 +86,7 @@ TEST_F(OnTheDesk, IsWithoutTorqueUntilItKnowsWhereItIs) {
   EXPECT_NEAR(reading().x[0], model.hand().position(0), 1 / paddle_build.counts);
 }
 
-// A computer that pushes all the same gets nothing.
+// A computer that pushes all the same gets no torque.
 TEST_F(OnTheDesk, DoesNotRelyOnTheComputer) {
   std::uint32_t sequence = 0;
   const auto told = [&](float torque) {
@@ -144,7 +144,7 @@ TEST_F(OnTheDesk, CutsTheTorqueByItselfAndSaysSo) {
   EXPECT_NEAR(model.forces().newest()[0], 0.2, 1e-6);
 }
 
-// With line A, B or both broken, and a hand that does not hold still.
+// Line A, B or both are broken, and the hand does not hold still.
 TEST_F(OnTheDesk, LosesItsTorqueWhereALineOfItsEncoderDoesNotChange) {
   for (const int lines : {1, 2, 3}) {
     model.power(false, now);
@@ -166,7 +166,7 @@ TEST_F(OnTheDesk, LosesItsTorqueWhereALineOfItsEncoderDoesNotChange) {
   }
 }
 
-// As its torque fades, the hand moves it, and it comes back at a bounded rate.
+// When the torque fades, the hand moves the paddle, and the torque comes back at a bounded rate.
 TEST_F(OnTheDesk, PushesOnWhereAHandHoldsItStill) {
   model.hand().axis(0).stiffness = 7;
   begin();
@@ -238,7 +238,7 @@ TEST_F(OnTheDesk, LetsGoWhenTheHandDoesAndOnFaults) {
   EXPECT_NEAR(push(0.2), 0.2, 1e-6);
 }
 
-// Where it is, it does not know any longer.
+// The paddle no longer knows its angle.
 TEST_F(OnTheDesk, IsAtFaultOnceItsEncoderHasSkippedAStep) {
   begin();
   EXPECT_NEAR(push(0.2), 0.2, 1e-6);
@@ -250,7 +250,7 @@ TEST_F(OnTheDesk, IsAtFaultOnceItsEncoderHasSkippedAStep) {
   EXPECT_EQ(push(0.2, 200), 0) << "for good";
 }
 
-// 1 - exp(-t/10 s) of (0.8/0.3)^2: after 1.52 s it is as warm as it may be.
+// The winding warms by 1 - exp(-t/10 s) of (0.8/0.3)^2: it reaches its limit after 1.52 s.
 TEST_F(OnTheDesk, SparesItsWinding) {
   model.hand().axis(0).stiffness = 20;
   model.hand().axis(0).path = [](double t) { return 0.1 + 0.01 * std::sin(20 * t); };
@@ -261,7 +261,7 @@ TEST_F(OnTheDesk, SparesItsWinding) {
   EXPECT_NEAR(push(0.8, 5), 0.8, 1e-6) << "once it has cooled";
 }
 
-// Moved by itself, with a firmware between.
+// Identification of a paddle through its firmware.
 struct Moved {
   explicit Moved(PaddleModel& model) {
     Time now = 1h;
@@ -297,7 +297,7 @@ struct Moved {
   double seconds = 0;
 };
 
-// Nobody holds it; the grip switch is taped.
+// Physics of a paddle that nobody holds; the grip switch is taped.
 AxisPhysics alone() {
   AxisPhysics physics = PaddleModel::paddle_axis();
   physics.stiffness = physics.damping = 0;

@@ -1,5 +1,5 @@
-// Devices whose endpoint takes its time for each report, as full-speed USB does (1 ms) and slower
-// ones do: how long after the loop stands still, or wants no force any more, the force is gone.
+// Devices whose endpoint takes its time for each report, as full-speed USB (1 ms) and slower ones
+// do: time to zero force after the loop stands still, or wants no force any more.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Takes its time for each report that it sends; readings and ticks go on meanwhile.
+// A transport that takes its time for each report it sends; readings and ticks go on meanwhile.
 class SlowTransport final : public HidTransport {
  public:
   SlowTransport(ReferenceDevice& model, const Time& now, std::function<void(Time)> pass)
@@ -41,7 +41,7 @@ class SlowTransport final : public HidTransport {
   std::function<void(Time)> pass_;
 };
 
-// The device pushes both axes; the loop ticks every millisecond.
+// A device that pushes on both axes, with a loop that ticks every millisecond.
 template <class Model>
 struct SlowEndpoint : testing::Test {
   SlowEndpoint() {
@@ -75,7 +75,7 @@ struct SlowEndpoint : testing::Test {
       pass(50us);
     }
   }
-  // The device pushes, and goes on, with reports that take so long.
+  // Makes the device push, and go on, with reports that take so long.
   void push(Time takes) {
     transport->takes = takes;
     wanted = {0.3, -0.2};
@@ -84,7 +84,7 @@ struct SlowEndpoint : testing::Test {
     run(300ms);
     ASSERT_GT(model->forces().largest(from + 200ms), 0.15);
   }
-  // The worst of several moments within a round of reports.
+  // The longest time to zero force after `what`, over several moments within a round of reports.
   Time zero_after(Time takes, const std::function<void()>& what) {
     Time worst{};
     for (int i = 0; i < 25; ++i) {
@@ -135,7 +135,7 @@ TYPED_TEST(SlowEndpoint, HasNoForceSoonAfterTheLoopStandsStillHoweverLongItsRepo
 TYPED_TEST(SlowEndpoint, HasNoForceAtOnceWhereTheLoopWantsNoneHoweverLongItsReportsTake) {
   for (const Time takes : kTakes) {
     const Time zero = this->zero_after(takes, [this] { this->wanted = {0, 0}; });
-    const Time limit = 2 * kTurn + 3 * takes;  // the next tick says so
+    const Time limit = 2 * kTurn + 3 * takes;  // the next tick asks for zero
     print(kName<TypeParam>, "force is cut", takes, zero, limit);
     EXPECT_LE(zero, limit) << takes.count();
   }

@@ -1,4 +1,4 @@
-// Sticks that are not what the joystick's file says, for whoever finds out what they are.
+// Sticks that differ from the joystick's file, to be identified.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@ struct UnlikeStick {
   RawDeviceLayout layout{.joints = 2, .torque_limit = kEffort};
   std::array<AxisPhysics, 2> axes;
 
-  // Inertia half to twice the file's, friction to 0.03 N m, weight, a spring; bits of an axis, lag.
+  // A random stick: inertia half to twice the file's, friction to 0.03 N m, weight, a spring;
+  // `bits` of an axis, `lag`.
   UnlikeStick(unsigned seed, int bits, Time lag) {
     Random random(seed);
     layout.lag = lag;
@@ -37,7 +38,8 @@ struct UnlikeStick {
     return model;
   }
 
-  // `way`: from a reading to the device's hearing of the answer, without its own lag [s].
+  // Compares with the truth; `way` is the time from a reading to the device's reception of the
+  // answer, without its own lag [s].
   void expect_found(const Identified& found, double way) const {
     const double lag = std::chrono::duration<double>(layout.lag).count();
     EXPECT_NEAR(found.delay.value, way + lag, 1e-3);
@@ -48,7 +50,7 @@ struct UnlikeStick {
       EXPECT_NEAR(joint.inertia.value, axis.inertia, 0.05 * axis.inertia);
       EXPECT_NEAR(joint.coulomb.value, axis.coulomb, 0.1 * axis.coulomb);
       EXPECT_NEAR(joint.viscous.value, axis.friction, 0.1 * axis.friction);
-      // Spring and weight at 0.2 rad, whoever of them is thought to pull.
+      // Pull of spring and weight together at 0.2 rad: which of the two pulls is not told apart.
       Vec<kAnyDof> x = found.middle;
       const double before = pull_at(found, x, i);
       x[static_cast<Eigen::Index>(i)] += 0.2;

@@ -38,7 +38,8 @@ TEST(InParallel, ThrowsWhatAPieceThrewOnceAllHaveEnded) {
       --inside;
       throw std::runtime_error("piece 1");
     }
-    while (!over) std::this_thread::yield();  // it is told at once, however long its work is
+    // The cancel arrives at once, however long the work takes.
+    while (!over) std::this_thread::yield();
     --inside;
     return true;
   };

@@ -23,8 +23,7 @@ TEST(UriOfAFile, LeadsBackToTheFile) {
   EXPECT_EQ(file_of(uri_of(all)), fs::path(all));
 }
 
-// RFC 8089 lets the name of the computer be left out or be localhost; hexadecimal digits may be
-// small.
+// RFC 8089 allows an absent computer name or localhost; hexadecimal digits may be lower case.
 TEST(FileOfAUri, IsReadInAllItsForms) {
   EXPECT_EQ(file_of("file:///a%c3%a4"), fs::path("/a\xc3\xa4"));
   EXPECT_EQ(file_of("file://localhost/a+b"), fs::path("/a+b"));
@@ -38,7 +37,7 @@ TEST(FileOfAUri, IsNothingWhereItIsNoFileOfThisComputer) {
   }
 }
 
-// Each with the variables that were there before.
+// Restores the environment variables after each test.
 class SessionBus : public testing::Test {
  protected:
   void TearDown() override {

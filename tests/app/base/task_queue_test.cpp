@@ -65,7 +65,7 @@ TEST(TasksOfAQueue, LetGoOfWhatTheyHeldWhenTheyAreDone) {
   EXPECT_EQ(thing.use_count(), 1);
 }
 
-// In a process without privileges, as most are; what it finds is its exit status.
+// Exit status of `life` in a process without privileges, as most processes are.
 int without_privileges(int (*life)()) {
   const pid_t child = fork();
   if (child == 0) {
@@ -80,7 +80,7 @@ int without_privileges(int (*life)()) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// Notes how the thread that reads it is scheduled.
+// Notes the scheduling of the thread that reads it.
 struct WatchedTransport final : HidTransport {
   explicit WatchedTransport(std::shared_ptr<test::FakeHid> hid) : under(std::move(hid), true) {}
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
@@ -110,7 +110,7 @@ std::unique_ptr<HidDevice> connect() {
                                      HidPlace{"A device", "1209:4c50:1", ""});
 }
 
-// The window steps back before any device is opened.
+// The window lowers its own priority before any device is opened.
 TEST(TasksOfAQueue, GiveDevicesAThreadThatIsNotBehindAllOthers) {
   EXPECT_EQ(without_privileges([] {
               TaskQueue tasks;

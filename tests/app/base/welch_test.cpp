@@ -29,13 +29,13 @@ std::vector<double> noise(std::size_t length) {
 }
 
 TEST(Welch, FindsASineAtItsFrequencyWithHalfItsSquaredAmplitudeAsPower) {
-  const std::size_t segment = 500;  // 2 Hz apart: 40 Hz is a whole number of steps
+  const std::size_t segment = 500;  // steps of 2 Hz: 40 Hz is a whole number of them
   const Spectrum s = welch(sine(3, 40, 5000), kRate, segment);
   EXPECT_DOUBLE_EQ(s.step, 2);
   const auto peak = std::max_element(s.density.begin(), s.density.end()) - s.density.begin();
   EXPECT_EQ(peak, 20);
   EXPECT_NEAR(s.power(), 4.5, 1e-12);
-  // A Hann window spreads it over the two neighbours, a quarter of the peak each, and no further.
+  // A Hann window spreads the peak over its two neighbours, a quarter each, and no further.
   EXPECT_NEAR(s.density[19] / s.density[20], 0.25, 1e-9);
   EXPECT_NEAR(s.density[21] / s.density[20], 0.25, 1e-9);
   EXPECT_NEAR(s.power(44) - s.power(34), 4.5, 1e-12);
@@ -67,7 +67,7 @@ TEST(Welch, GivesWhiteNoiseItsVarianceAtEveryFrequency) {
 TEST(Welch, PutsAConstantAtZero) {
   const Spectrum s = welch(std::vector<double>(1000, 2), kRate, 100);
   EXPECT_NEAR(s.power(), 4, 1e-12);
-  EXPECT_NEAR(s.power(s.step), 4, 1e-12);  // within the window's width
+  EXPECT_NEAR(s.power(s.step), 4, 1e-12);  // power within the window's width
 }
 
 TEST(Welch, RefusesASignalShorterThanASegmentAndAnOddOne) {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Joints that give way by so much a newton metre.
+// A device whose joints yield by a given angle per newton metre.
 class Yielding final : public Device {
  public:
   explicit Yielding(std::vector<double> give)
@@ -45,7 +45,7 @@ class Yielding final : public Device {
 
 ArmDescription stick() { return read_urdf(LIMPID_ASSETS_DIR "/devices/joystick.urdf"); }
 
-// The window, as it is seen while it runs.
+// Runs the check, with a thread that plays the window.
 AxisCheck checked(Yielding& device, AxisCheckProgress& progress, bool window_hangs = false,
                   const SafetyLimits& limits = {}) {
   std::atomic<bool> done = false;
@@ -94,7 +94,7 @@ TEST(AxisCheckRun, EndsWithoutForceWhenItIsCancelled) {
 }
 
 TEST(AxisCheckRun, EndsWhenTheWindowHangs) {
-  Yielding device({1e-9, 1e-9});  // it would push for seconds
+  Yielding device({1e-9, 1e-9});  // a hard axis, which takes seconds
   AxisCheckProgress progress;
   const AxisCheck check = checked(device, progress, true);
   EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
@@ -111,11 +111,10 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   EXPECT_TRUE(device.stopped);
 }
 
-// The stick's tip is on a lever of so many metres: a torque of tau is a force of tau over the
-// lever.
+// The stick's tip is on a lever [m]: a torque tau is a force of tau over the lever.
 TEST(AxisCheckRun, PushesWithNoMoreThanTheForceThatIsSet) {
   const ArmDescription arm = stick();
-  double reach = 0;  // of the second joint's axis, straight up
+  double reach = 0;  // distance of the second joint's axis, straight up
   {
     Arm<kAnyDof> frames_of(arm);
     Arm<kAnyDof>::Frames frames;
@@ -138,7 +137,7 @@ TEST(AxisCheckRun, PushesWithNoMoreThanTheForceThatIsSet) {
 }
 
 TEST(AxisCheckRun, EndsAtALimitThatIsSet) {
-  // A stick beyond the part of its range that is allowed.
+  // A stick outside of the allowed part of its range.
   class Astray final : public Device {
    public:
     const DeviceTraits& traits() const override { return traits_; }

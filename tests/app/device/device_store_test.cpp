@@ -66,7 +66,7 @@ TEST(DeviceStore, LowersLimits) {
   EXPECT_EQ(read.joint_speed, 15);
 }
 
-// Each of these once meant the widest limit, or an axis that is not inverted.
+// Each of these values once meant the widest limit, or an axis that is not inverted.
 TEST(DeviceStore, RefusesADeviceOfWhichItCannotUnderstandOneValue) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
@@ -189,7 +189,7 @@ TEST(DeviceStore, ForgetsADelayThatWasTakenBack) {
   EXPECT_LT(load_device_store(file).notes.at("a").delay, 0);
 }
 
-// Many programs at once, each with an entry of its own; without the lock some would be lost.
+// Many programs write at once, each its own entry; without the lock some would be lost.
 TEST(DeviceStore, LosesNothingWhereManyWriteAtOnce) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
@@ -214,7 +214,7 @@ TEST(DeviceStore, LosesNothingWhereManyWriteAtOnce) {
   EXPECT_EQ(load_device_store(file).notes.size(), std::size_t{kPrograms * kEntries});
 }
 
-// Joints that give way by so much a newton metre.
+// Checks joints that yield by a given angle per newton metre.
 AxisCheck checked(const std::vector<double>& give) {
   AxisCheck check(test::pushing(static_cast<int>(give.size()), 0.35));
   std::vector<double> x(give.size());
@@ -258,7 +258,7 @@ TEST(DeviceStore, RemembersNothingOfACheckThatFailed) {
   EXPECT_EQ(reversed(notes), (std::vector{true, false}));
 }
 
-// Written before there were checks.
+// The file dates from before there were checks.
 TEST(DeviceStore, TakesTheJoysticksOfOldBooksForUnchecked) {
   const test::TempDir dir;
   const auto file = dir / "devices.toml";
@@ -274,7 +274,7 @@ TEST(DeviceStore, TakesTheJoysticksOfOldBooksForUnchecked) {
   EXPECT_TRUE(notes.axes.at(0).inverted);
 }
 
-// A hub with a device in use of this kind that is opened as a fake one.
+// A hub with a device of this kind in use, opened as a fake one.
 struct AHub : testing::Test {
   static constexpr DeviceKind kPushes{.pushes = true};
   static constexpr DeviceKind kSaysSoItself{};
@@ -364,7 +364,7 @@ TEST_F(AHub, TakesTheDeviceOnceTheFileIsMended) {
   EXPECT_NO_THROW(hub_->opening()());
 }
 
-// A device may be in the loop with them.
+// A device may be in the loop with these limits.
 TEST_F(AHub, GoesOnWithTheLimitsThatItHasWhenTheFileBreaks) {
   write("[device.a]\nchecked = true\n[device.a.limits]\ntip_force = 1.0\n");
   DeviceNotes& notes = hub(kPushes).notes("a");
@@ -475,7 +475,7 @@ TEST(ArmForADevice, IsWhatItWasIdentifiedAsUntilThatIsForgotten) {
   EXPECT_EQ(hub.arm_for(joints(3, 0.3)).arm.links[1].mass, omni.links[1].mass);
 }
 
-// What is found the second time was found with the first correction in place.
+// The second result was found with the first correction in place.
 TEST(DeviceHub, CorrectsATorqueScaleByWhatIsFoundAgain) {
   const test::TempDir dir;
   setenv("XDG_DATA_HOME", (dir / "data").c_str(), 1);

@@ -10,7 +10,7 @@ namespace {
 
 ArmDescription omni() { return read_urdf(LIMPID_ASSETS_DIR "/devices/omni.urdf"); }
 
-// The smallest force at the tip that makes the torque.
+// The smallest force at the tip that makes the torque [N].
 double tip_force(const ArmDescription& description, const Eigen::VectorXd& x,
                  const Eigen::VectorXd& torque) {
   const Arm<kAnyDof> arm(description);
@@ -42,7 +42,7 @@ TEST(IdentifyRun, KeepsWithinTheLimitsThatAreSetForTheDevice) {
   EXPECT_GT(most, 0.1) << "it pushed";
 }
 
-// Where it is, it has not said.
+// A device that has not sent a position.
 class Mute final : public Device {
  public:
   Mute() : traits_(UnlikeDevice(omni(), {}).traits()) {}

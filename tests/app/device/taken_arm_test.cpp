@@ -1,5 +1,4 @@
-// Which arm a device is taken for, and that nothing makes its limits wider than the device has
-// them.
+// The arm that a device is taken for; its limits are never wider than the device's.
 #include "app/device/taken_arm.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +23,7 @@ ArmDescription shipped(const char* file) {
   return read_urdf(std::string(LIMPID_ASSETS_DIR) + "/devices/" + file);
 }
 
-// Of a stranger: continuous joints, links of a metre, strong motors.
+// URDF of a stranger's arm: continuous joints, links of a metre, strong motors.
 std::string long_arm(int joints) {
   std::string text = "<robot name=\"long\"><link name=\"l0\"/>";
   for (int i = 1; i <= joints; ++i) {
@@ -44,7 +43,7 @@ struct ATakenArm : testing::Test {
     std::ofstream(dir / name) << text;
     return (dir / name).string();
   }
-  // Of a device that allows 3 N m and 0.35 rad to either side.
+  // Expects limits of a device with 3 N m and 0.35 rad to either side.
   static void expect_within_the_device(const ArmDescription& arm) {
     for (const Joint& joint : arm.joints) {
       EXPECT_LE(joint.effort, 3);
@@ -57,7 +56,7 @@ struct ATakenArm : testing::Test {
   const DeviceTraits traits = test::pushing(3, 0.35, 3);
 };
 
-// Nobody knows how short its levers are: at 5 cm 10 N are 0.5 N m.
+// The device's levers may be short: at 5 cm, 10 N are 0.5 N m.
 TEST_F(ATakenArm, IsABuiltInOneWithLittleForceUntilSomebodyHasSaidWhichItIs) {
   DeviceNotes notes;
   const TakenArm taken = taken_arm(notes, &kRaw, traits);
@@ -139,7 +138,7 @@ TEST_F(ATakenArm, SaysThatADeviceHasOtherJointsNowThanItWasIdentifiedWith) {
   }
 }
 
-// Its own levers and ranges are known: three slides in other places are not it.
+// The service knows its own levers and ranges: three slides in other places are a different arm.
 TEST_F(ATakenArm, OfADeviceThatSaysItselfWhichItIsIsThatOne) {
   DeviceTraits cursor = test::pushing(3, 4, 0.4);
   const ArmDescription own = shipped("inverse3.urdf");

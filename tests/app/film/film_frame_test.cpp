@@ -1,4 +1,4 @@
-// What a video's pictures show, read back from their pixels. Skipped where EGL gives no context.
+// Pictures of a video, read back from their pixels. Skipped where EGL gives no context.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -24,7 +24,7 @@ struct Picture {
   }
 };
 
-// The device ahead of the proxy by 20 mrad, in the proposed coupling.
+// A row with the device 20 mrad ahead of the proxy, in the proposed coupling.
 std::vector<double> row_at(const RowLayout& layout, double time) {
   std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
   const auto put = [&](Column column, double value) {
@@ -75,7 +75,8 @@ class FilmFrames : public testing::Test {
   int next_ = 0;
 };
 
-// Where the first plot's curve begins and ends; below its title and legend, left of the next plot.
+// First and last column of the first plot's curve, below its title and legend, left of the next
+// plot.
 std::pair<int, int> curve_ends(const Picture& picture) {
   const Rgb ink = limpid::ink(kDarkPalette, Ink::proxy);
   int first = picture.width, last = -1;
@@ -102,7 +103,7 @@ TEST_F(FilmFrames, HaveCurvesThatEndAtThePresent) {
   EXPECT_NEAR(static_cast<double>(half - from) / (whole - from), 0.5, 0.02);
 }
 
-// How many pixels of the upper part of the picture have the sign's colour.
+// Number of pixels of the sign's colour in the upper part of the picture.
 int sign_pixels(const Picture& picture) {
   int count = 0;
   for (int y = 0; y < picture.height / 5; ++y) {
@@ -158,7 +159,7 @@ TEST_F(FilmFrames, LeaveThePlotsOutWhereThereIsNoRoom) {
   EXPECT_NE(picture.at(8, picture.height - 8), kDarkPalette.panel);
 }
 
-// Pixels of the left half that look otherwise in the right one; below the legend.
+// Number of pixels below the legend that differ between the left half and the right one.
 int differing(const Picture& picture) {
   const int half = picture.width / 2, left = half - 1, right = half + 1;
   int count = 0;

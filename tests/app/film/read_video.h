@@ -1,4 +1,4 @@
-// A video read back by FFmpeg's own demuxers and decoders.
+// A video, read by FFmpeg's own demuxers and decoders.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct SeenVideo {
   int width = 0, height = 0;
   double duration = 0;             // [s]
   std::vector<Colour> left = {};   // mean colour of each picture's left half
-  std::vector<Colour> right = {};  // and of its right half
-  std::vector<double> times = {};  // when each is shown [s]
+  std::vector<Colour> right = {};  // mean colour of each picture's right half
+  std::vector<double> times = {};  // display time of each picture [s]
 };
 
 inline Colour mean_colour(const AVFrame& rgb, int from, int to) {
@@ -49,7 +49,7 @@ inline void look_at(const AVFrame& frame, AVRational time_base, SeenVideo& seen)
   seen.times.push_back(static_cast<double>(frame.best_effort_timestamp) * av_q2d(time_base));
 }
 
-// Throws std::runtime_error for what no player would open either.
+// Throws std::runtime_error for files that no player would open.
 inline SeenVideo read_video(const std::filesystem::path& file) {
   AVFormatContext* opened = nullptr;
   checked(avformat_open_input(&opened, av_address(file).c_str(), nullptr, nullptr));

@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-// 2 s of nothing.
+// A session of 2 s without motion.
 Session two_seconds() {
   Session session;
   session.info.tick = 0.001;

@@ -67,7 +67,7 @@ class Videos : public testing::Test {
     }
     return names;
   }
-  // From red beside grey to blue beside grey at picture number `turn`.
+  // Writes pictures of red beside grey, from picture `turn` on of blue beside grey.
   void write(const fs::path& out, int pictures, int turn, bool force = false) {
     VideoFile video(out, kSmall, force);
     for (int i = 0; i < pictures; ++i) video.add(halves(kSmall, i < turn ? kRed : kBlue, kGrey));
@@ -162,7 +162,7 @@ TEST_F(Videos, WhatIsThereStaysUnlessForced) {
 TEST_F(Videos, AFolderKeepsWhatIsNoPictureOfAVideo) {
   const fs::path folder = dir_ / "pictures.d/";
   fs::create_directory(folder);
-  write(folder, 4, 2);  // empty: nobody's
+  write(folder, 4, 2);  // an empty folder, which nobody needs
   std::ofstream(folder / "notes.txt") << "mine";
   EXPECT_THAT(refusal([&] { VideoFile(folder, kSmall, false); }), HasSubstr("not empty"));
   write(folder, 2, 1, true);

@@ -17,7 +17,7 @@ TEST(DevicePace, IsNothingBeforeTwoReadings) {
   EXPECT_EQ(pace.figures().rate, 0);
 }
 
-// Ticks of 1 ms look at readings that came every 2 ms, a little early and late by turns.
+// Ticks of 1 ms take readings that arrive every 2 ms, alternately a little early and late.
 TEST(DevicePace, MeasuresWhenReadingsArrivedNotWhenTheyWereLookedAt) {
   DevicePace pace;
   test::Random random(81);

@@ -1,4 +1,4 @@
-// The loop behind the window: what it records while controls change comes again bit for bit.
+// The loop behind the window: a recording made while controls change runs again bit for bit.
 #include "app/live/live_loop.h"
 
 #include <link.h>
@@ -44,14 +44,14 @@ std::unique_ptr<Recorder> recorder(const std::filesystem::path& out, const ArmDe
   return std::make_unique<Recorder>(out, info_of(arm, document, p), p, false);
 }
 
-// Waits until the loop has lived through some more ticks.
+// Waits until the loop has made so many more ticks.
 void let_live(LiveLoop& loop, std::int64_t ticks) {
   const auto until = loop.status().ticks + ticks;
   while (loop.status().ticks < until && loop.status().running) std::this_thread::sleep_for(1ms);
   ASSERT_TRUE(loop.status().running) << loop.status().failure;
 }
 
-// A tick's number and the hand's target at it, of all rows since the last call.
+// Tick number and hand's target of all rows since the last call.
 std::vector<std::pair<std::uint64_t, Vec3>> targets(LiveLoop& loop) {
   const RowLayout& layout = loop.layout();
   const auto stride = static_cast<std::size_t>(layout.stride());
@@ -77,7 +77,7 @@ std::unique_ptr<LedPath> path_of(bool waits) {
 TEST(LiveLoop, LeadsTheHandAlongAPathTickByTick) {
   LiveLoop loop({});
   loop.open(test::omni(), test::omni_scene("table.toml"), {}, kHome);
-  let_live(loop, 5);  // without a path the hand is where the tip is, but for rounding
+  let_live(loop, 5);  // without a path the hand stays at the tip, up to rounding
   loop.lead(path_of(false));
   let_live(loop, 150);
   const auto all = targets(loop);
@@ -92,7 +92,7 @@ TEST(LiveLoop, LeadsTheHandAlongAPathTickByTick) {
   }
 }
 
-// What is asked for may not fit: a scene that was read for an arm of more joints.
+// A scene may not fit: it was read for an arm of more joints.
 TEST(LiveLoop, GoesOnAsItWasWhereAnArmOrASceneIsRefused) {
   Scene of_another;
   of_another.add({.name = "stop", .shape = JointStop{.joint = 3}});
@@ -113,8 +113,8 @@ TEST(LiveLoop, GoesOnAsItWasWhereAnArmOrASceneIsRefused) {
   EXPECT_EQ(loop.layout().dof(), 3);
 }
 
-// The virtual arm is tried with more than the device is given: who reckons with the settings is
-// told what the loop makes of them.
+// The virtual arm accepts settings that a device does not get; readers of the settings are told the
+// loop's values.
 TEST(LiveLoop, SaysWhatItMakesOfSettingsForARealDevice) {
   const ArmDescription arm = test::omni();
   Parameters set;
@@ -151,7 +151,7 @@ TEST(LiveLoop, HoldsTheHandAtAPathsBeginningUntilARecordingBegins) {
   loop.lead(path_of(true));
   let_live(loop, 150);
   const auto all = targets(loop);
-  // Until the path is taken in, the target is the tip, which is there but for rounding.
+  // Before the path begins, the target is the tip, up to rounding.
   auto each = all.begin();
   for (; each != all.end() && each->second != kHome; ++each) {
     ASSERT_LT((each->second - kHome).norm(), 1e-12);
@@ -193,7 +193,7 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   LiveLoop loop({});
   Controls controls;
   loop.open(arm, table.scene, controls.parameters, kHome);
-  // It is in motion when the recording begins.
+  // The arm is in motion when the recording begins.
   controls.grab = true;
   controls.goal = kHome + Vec3(0.02, 0.03, 0.01);
   loop.set(controls);
@@ -227,7 +227,7 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(plan)), -1);
 }
 
-// The time of the newest row, once the loop has lived through some more ticks [ticks].
+// Time of the newest row in ticks, after some more ticks of the loop.
 std::int64_t arm_ticks(LiveLoop& loop) {
   let_live(loop, 20);
   loop.update();
@@ -251,10 +251,10 @@ TEST(LiveLoop, StandsStillWhilePausedAndGoesOnByAsManyTicksAsAreAskedFor) {
   controls.steps += 7;
   loop.set(controls);
   EXPECT_EQ(arm_ticks(loop), stood + 8);
-  loop.cut();  // is not kept waiting
+  loop.cut();  // a cut does not wait
   EXPECT_EQ(arm_ticks(loop), stood + 9);
   EXPECT_EQ(loop.snapshot().arming, Arming::off);
-  controls.steps += 1000;  // what is left of them is not wanted any more
+  controls.steps += 1000;  // the remaining steps are dropped
   controls.paused = false;
   controls.slow = 10;
   loop.set(controls);
@@ -264,7 +264,7 @@ TEST(LiveLoop, StandsStillWhilePausedAndGoesOnByAsManyTicksAsAreAskedFor) {
   EXPECT_NEAR(static_cast<double>(went), static_cast<double>(lived) / 10, 3);
 }
 
-// A hand may be on it.
+// A hand may hold the device.
 TEST(LiveLoop, DoesNotStandStillForADevice) {
   LiveLoop loop({});
   Controls controls;
@@ -279,7 +279,7 @@ TEST(LiveLoop, DoesNotStandStillForADevice) {
               static_cast<double>(loop.status().ticks - began), 30);
 }
 
-// Of the haptic thread: how often it touched a page that was not there.
+// Number of page faults of the haptic thread; -1 if it is not found.
 std::int64_t page_faults() {
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
     std::string stat;
@@ -297,7 +297,7 @@ std::int64_t page_faults() {
   return -1;
 }
 
-// As after a long time in which others needed the memory: no code is in it but what runs now.
+// Drops an object's code from memory, as if other programs had needed the memory for long.
 int drop_code(dl_phdr_info* object, std::size_t, void*) {
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   for (int i = 0; i < object->dlpi_phnum; ++i) {
@@ -310,7 +310,7 @@ int drop_code(dl_phdr_info* object, std::size_t, void*) {
   return 0;
 }
 
-// The leaf is a mesh: its search tree is part of it.
+// The leaf is a mesh, whose search tree must be in memory, too.
 TEST(LiveLoop, MeetsNoPageFaultFromItsFirstTickOnWhateverItTouches) {
   const ArmDescription arm = test::omni();
   dl_iterate_phdr(drop_code, nullptr);
@@ -381,7 +381,7 @@ TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
   ASSERT_EQ(session.twin->changes.size(), 1u);
   EXPECT_EQ(session.twin->changes[0].key(), "coupling.k_vc");
   EXPECT_TRUE(session.changes.empty());
-  // And both come again.
+  // Both runs come again.
   const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
   test::Rows first(session.layout), twin(session.layout);
   const auto stride = static_cast<std::size_t>(session.layout.stride());
@@ -510,7 +510,7 @@ TEST(LiveLoop, KeepsTheForceOfTheVirtualArmWhileARealDeviceTakesItsPlace) {
   EXPECT_EQ(loop.snapshot().arming, Arming::on);
 }
 
-// Whoever starts over does not thereby arm what an instability has switched off.
+// A new start does not arm force that an instability has switched off.
 TEST(LiveLoop, StaysOffWhenItStartsOverAfterAnInstability) {
   LiveLoop loop({});
   Controls controls;
@@ -531,7 +531,7 @@ TEST(LiveLoop, StaysOffWhenItStartsOverAfterAnInstability) {
   EXPECT_EQ(loop.snapshot().arming, Arming::off);
 }
 
-// Closing it may take long; until then it must not go on pushing.
+// Closing a device may take long; it must not push meanwhile.
 TEST(LiveLoop, StopsADeviceThatIsReplaced) {
   std::vector<bool> stopped;
   LiveLoop loop({}, [&](std::unique_ptr<Device> device) {
@@ -547,7 +547,7 @@ TEST(LiveLoop, StopsADeviceThatIsReplaced) {
   EXPECT_TRUE(stopped[0]);
 }
 
-// It goes on answering, from the middle of its joints' ranges but 0.9 rad at the first.
+// A device that answers from the middle of its ranges, except 0.9 rad at the first joint.
 class Turned final : public Device {
  public:
   const DeviceTraits& traits() const override { return traits_; }
@@ -567,7 +567,7 @@ class Turned final : public Device {
 TEST(LiveLoop, HoldsADeviceThatIsOpenedAgainToItsLowerLimits) {
   LiveLoop loop({});
   Controls controls;
-  controls.limits.range = 0.5;  // of about 1 rad each way, and 0.1 until force is gone
+  controls.limits.range = 0.5;  // narrower than the arm's 1 rad; 0.1 more until force is gone
   loop.set(controls);
   for (int opened = 0; opened < 2; ++opened) {
     loop.open(test::omni(), Scene{}, Parameters{}, std::make_unique<Turned>());
@@ -587,7 +587,7 @@ class Cap final : public Device {
   }
   const DeviceTraits& traits() const override { return traits_; }
   bool read(DeviceReading& newest) noexcept override {
-    newest.x[0] = *push_;  // to the right
+    newest.x[0] = *push_;  // push to the right
     newest.count = ++count_;
     return true;
   }
@@ -610,7 +610,7 @@ struct LedLoop : testing::Test {
     let_live(loop, ticks);
     loop.update();
   }
-  // Of the arm from where it rests, the largest of its joints [rad].
+  // Largest deviation of a joint from the arm's rest [rad].
   double away() const {
     const auto row = std::span<const double>(loop.snapshot().row);
     const auto x = RowLayout(3).in(row, Column::device_position);
@@ -623,7 +623,7 @@ struct LedLoop : testing::Test {
   LiveLoop loop{{}};
 };
 
-// The mouse wanted the tip 3 cm away, with a hand too weak to bring it there.
+// The mouse wanted the tip 3 cm away, with a hand too weak to move it.
 TEST_F(LedLoop, IsTakenHoldOfWhereTheTipIs) {
   controls.grab = true;
   controls.goal = kHome + Vec3(0, 0.03, 0);
@@ -633,7 +633,7 @@ TEST_F(LedLoop, IsTakenHoldOfWhereTheTipIs) {
   live(100);
   const double before = away();
   controls.parameters = {};
-  *push = 0.07;  // hardly
+  *push = 0.07;  // a very weak push
   live(500);
   EXPECT_NEAR(away(), before, 0.02);
 }
@@ -661,7 +661,7 @@ TEST(LiveLoop, ForgetsWhatWasAskedBeforeItWasOpened) {
   EXPECT_EQ(loop.snapshot().arming, Arming::off);
 }
 
-// What a device says first is where device and proxy begin, if it can be there.
+// Device and proxy begin at the device's first reading, if it is possible.
 TEST(LiveLoop, DoesNotBeginWhereItsDeviceCannotBe) {
   LiveLoop loop({});
   for (const double first : {1e6, std::nan("")}) {
@@ -699,7 +699,7 @@ TEST(LiveLoop, TakesItsForceAwayWhenNobodySetsItsControls) {
   EXPECT_EQ(loop.snapshot().force_state, ForceState::unwatched);
 }
 
-// The recorder is offered, taken and given up in every order, again and again.
+// A recorder is offered, taken and given up in every order, again and again.
 TEST(LiveLoop, LosesNoRecorderHoweverSoonItIsStopped) {
   const test::TempDir dir;
   const ArmDescription arm = test::omni();
@@ -710,7 +710,7 @@ TEST(LiveLoop, LosesNoRecorderHoweverSoonItIsStopped) {
     loop.record(recorder(file, arm, {}, Parameters{}));
     if (i % 4 != 0) std::this_thread::sleep_for(std::chrono::microseconds(300 * (i % 7)));
     if (i % 5 == 4) {
-      loop.open(arm, Scene{}, Parameters{}, kHome);  // in the middle of it
+      loop.open(arm, Scene{}, Parameters{}, kHome);  // while it is recording
     }
     loop.finish_recording();
     EXPECT_FALSE(loop.recording());

@@ -1,4 +1,4 @@
-// A device led from a command, without a window.
+// A device led by a command, without a window.
 #include "app/live/live_run.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 const std::atomic<bool> kNeverStops{false};
 
-// It sways by itself about the middle of its joints' ranges, one reading a tick.
+// A device that sways about the middle of its ranges, one reading a tick.
 class Swaying final : public Device {
  public:
   explicit Swaying(std::atomic<bool>& here) : here_(here), middle_(rest_pose(test::omni())) {}
@@ -46,7 +46,7 @@ class ALiveRun : public testing::Test {
     run_ = std::make_unique<LiveRun>(plan_, SafetyLimits{}, std::make_unique<Swaying>(here_),
                                      AskForPriority{});
   }
-  // Whether force is on before `seconds` are over.
+  // Whether force is on within `seconds`.
   bool gets_force(double seconds) {
     for (double t = 0; t < seconds && run_->now().arming != Arming::on; t += 0.02) {
       if (run_->now().arming == Arming::off || run_->now().arming == Arming::tripped) run_->arm();

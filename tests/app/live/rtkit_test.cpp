@@ -1,4 +1,4 @@
-// RealtimeKit's answers, from one that the test plays on a bus of its own.
+// RealtimeKit's answers, from a stand-in on a bus of the test's own.
 #include "app/live/rtkit.h"
 
 #include <dbus/dbus.h>
@@ -41,7 +41,7 @@ class Bus {
     }
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
-    std::array<char, 512> line{};  // once it says where, it listens
+    std::array<char, 512> line{};  // the bus listens once it has printed its address
     const ssize_t length = read(ends[0], line.data(), line.size());
     close(ends[0]);
     const std::string said(line.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
@@ -74,7 +74,7 @@ struct Outcome {
   Asked asked;
 };
 
-// What ask_rtkit() makes of the answer to its one question; none for an empty answer.
+// Outcome of ask_rtkit() for an answer to its only question; an empty `answer` gives none.
 Outcome ask(const std::function<DBusMessage*(DBusMessage*)>& answer) {
   Outcome outcome;
   DBusConnection* kit = dbus_bus_get_private(DBUS_BUS_SYSTEM, nullptr);

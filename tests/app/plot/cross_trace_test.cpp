@@ -13,7 +13,7 @@ namespace {
 
 using test::T;
 
-// x = cos, y = sin: a circle of radius 1, once in a second.
+// x = cos, y = sin: a circle of radius 1, once a second.
 History circle(int rows) {
   History history({.channels = 2, .seconds = 20});
   for (int i = 0; i < rows; ++i) {
@@ -85,7 +85,7 @@ TEST(Spectrum, OfAHistoryHasTheSineAtItsPixel) {
   }
 }
 
-// Rows before a start over are not one signal with those after it.
+// Rows before and after a new start are not one signal.
 TEST(Spectrum, IsOfTheLongestPartWithoutAGap) {
   History history({.channels = 1, .seconds = 20});
   for (int i = 0; i < 1000; ++i) history.append(i * T, std::array{5.0});

@@ -8,14 +8,14 @@
 namespace limpid {
 namespace {
 
-// What the window would show of a run, sample by sample.
+// The history of a run and its account, as the window shows them, sample by sample.
 struct Books {
   TraceChannels channels{RowLayout(3)};
   History history{{.channels = TraceChannels(RowLayout(3)).count(), .seconds = 60}};
   EnergyAccount account;
   int ticks = 0;
 
-  // For so many ticks E_c goes evenly to `energy` [J].
+  // Moves E_c evenly to `energy` [J] in so many ticks.
   void go_to(double energy, int count, bool limited = false) {
     const double from = account.total();
     for (int i = 1; i <= count; ++i) {
@@ -29,7 +29,7 @@ struct Books {
   void change(const char* key) { history.mark(0.001 * (ticks - 1), key, key); }
 };
 
-constexpr double kRound = 1e-6;  // the history is in single precision
+constexpr double kRound = 1e-6;  // the history has single precision
 
 TEST(EnergyAccount, CallsWhatNobodyElsePutInTheCouplingsOwn) {
   Books books;
@@ -39,7 +39,7 @@ TEST(EnergyAccount, CallsWhatNobodyElsePutInTheCouplingsOwn) {
   EXPECT_EQ(books.account.by_changes(), 0);
 }
 
-// A device whose weight the motors lift is given energy, and no hand is.
+// Energy goes to a device whose weight the motors lift, not to the hand.
 TEST(EnergyAccount, LeavesOutWhatWasForTheDevicesOwnForces) {
   Books books;
   for (int i = 1; i <= 500; ++i) {
@@ -87,7 +87,7 @@ TEST(EnergyAccount, GivesNoCreditForWhatASwitchTookAway) {
   Books books;
   books.change("coupling.kind");
   books.go_to(-0.2, 50);
-  books.go_to(-0.05, 50);  // still settling, and back below where it began
+  books.go_to(-0.05, 50);  // still settling, back below its beginning
   EXPECT_EQ(books.account.by_changes(), 0);
   EXPECT_NEAR(books.account.own(), -0.05, kRound);
 }
@@ -100,7 +100,7 @@ TEST(EnergyAccount, TakesARecordingsBeginForNoChange) {
   EXPECT_NEAR(books.account.own(), 0.05, kRound);
 }
 
-// All that E_c is made of, whoever's it is.
+// The parts of E_c, of every origin, add up.
 TEST(EnergyAccount, AddsUpToAllThatWasGiven) {
   Books books;
   books.go_to(0.2, 100);
@@ -115,7 +115,7 @@ TEST(EnergyAccount, AddsUpToAllThatWasGiven) {
   EXPECT_NEAR(a.forgiven(), 0.2, kRound);
 }
 
-// Each of two runs has its own: what changes in one is no excuse for the other.
+// Each of two runs has its own account: a change in one does not excuse the other.
 TEST(EnergyAccount, OfATwinIsItsOwn) {
   const TraceChannels channels{RowLayout(3)};
   const int one = channels.count();
@@ -134,7 +134,7 @@ TEST(EnergyAccount, OfATwinIsItsOwn) {
   };
   go_on(0, 100, std::nan(""));
   go_on(100, 200, 0);
-  history.mark(0.199, "eta 1", "coupling.eta");  // of the first run
+  history.mark(0.199, "eta 1", "coupling.eta");  // changes the first run only
   go_on(200, 300, 0.3);
   EXPECT_NEAR(first.own(), -0.0299, kRound);
   EXPECT_NEAR(second.own(), 0.3, kRound);
@@ -143,7 +143,7 @@ TEST(EnergyAccount, OfATwinIsItsOwn) {
   go_on(300, 400, 0.5);
   EXPECT_NEAR(second.by_changes(), 0.2, kRound);
   EXPECT_EQ(first.by_changes(), 0);
-  history.mark(0.399, "grip", "hand.stiffness");  // of both
+  history.mark(0.399, "grip", "hand.stiffness");  // changes both runs
   go_on(400, 450, 0.6);
   EXPECT_NEAR(second.by_changes(), 0.3, kRound);
 }
@@ -152,7 +152,7 @@ TEST(EnergyAccount, BooksWhatIsGainedAtTheMotorsLimitApart) {
   Books books;
   books.go_to(-0.1, 100);
   books.go_to(-0.15, 100, true);  // pressed in
-  books.go_to(-0.1, 100, true);   // and let out again: nothing gained
+  books.go_to(-0.1, 100, true);   // and released: no gain
   EXPECT_NEAR(books.account.by_limits(), 0, kRound);
   books.go_to(-0.04, 100, true);
   books.go_to(-0.04, 100);
@@ -188,7 +188,8 @@ TEST(EnergyAccount, IsTheSameAtAMomentWhetherPlayedOrJumpedTo) {
   EXPECT_EQ(back.by_changes(), there.by_changes());
 }
 
-// Down through the table, a while there, and up again, as one who presses hard.
+// A plan whose hand goes down through the table, stays there for a while and comes up again,
+// pressing hard.
 RunPlan pressing() {
   RunPlan plan = test::plan("table.toml", "touch.csv", 5);
   const Vec3 top = plan.hand.position.front();
@@ -200,10 +201,11 @@ RunPlan pressing() {
   return plan;
 }
 
-// The real loop: every law to every other while it presses onto the table, then off the table.
+// The real loop switches from every law to every other one while it presses on the table, then
+// leaves it.
 TEST(EnergyAccount, FindsNoFaultInAnyLawThatIsSwitchedToWhilePressing) {
   const RunPlan whole = pressing();
-  double most_given = 0;  // with what the switches put in
+  double most_given = 0;  // including the switches' energy
   for (std::uint8_t from = 0; from < kLaws; ++from) {
     for (std::uint8_t to = 0; to < kLaws; ++to) {
       if (to == from) continue;
@@ -221,7 +223,7 @@ TEST(EnergyAccount, FindsNoFaultInAnyLawThatIsSwitchedToWhilePressing) {
         if (changed[0] != nullptr) history.mark(time - plan.parameters.tick, "", "coupling.kind");
         channels.append(history, row);
         account.follow(history, history.end());
-        // What the predictive law promises is in its ledger, not in E_c.
+        // The predictive law's promise concerns its ledger, not E_c.
         const auto kind = static_cast<CouplingKind>(channels.layout().in(row, Column::kind)[0]);
         if (!info(kind).keeps_ledger) worst = std::max(worst, account.own());
         most_given = std::max(most_given, account.total());

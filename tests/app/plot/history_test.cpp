@@ -18,7 +18,7 @@ namespace {
 
 using test::T;
 
-// What the history should know, kept the plain way.
+// A plain reference of the history's content.
 struct Plain {
   std::vector<double> times;
   std::vector<float> values;
@@ -72,7 +72,7 @@ TEST(History, ExtentsStayRightAfterTheOldestSamplesWereOverwritten) {
   }
 }
 
-// A second run may come at any time: before, within and after the first lap.
+// A second run may begin at any time: before, within and after the first lap of the buffer.
 TEST(History, ExtentsAreRightWhereverTheFirstNumberComes) {
   for (const int nothing : {0, 1, 7, 8, 500, 4096, 8191, 8192, 8193, 20011}) {
     History history({.seconds = 8, .tick = T});
@@ -108,7 +108,7 @@ TEST(History, ChannelsThatNeverHadANumberTakeNoMemory) {
   const std::vector<double> nothing(kChannels, std::numeric_limits<double>::quiet_NaN());
   const std::size_t before = resident();
   for (int i = 0; i < 60'000; ++i) history.append(i * T, nothing);
-  // Of numbers it would be 60 MB; times take 0.5 MB.
+  // The values would take 60 MB; times alone take 0.5 MB.
   EXPECT_LT(resident() - before, 5'000'000u);
 }
 
@@ -203,7 +203,7 @@ TEST(History, RefusesRowsOfTheWrongWidthAndTimesThatAreNone) {
   EXPECT_THROW(History({.tick = 0}), std::invalid_argument);
 }
 
-// A second run counts its time from zero again; its marks stand in it, not in the first one.
+// A second run counts its time from zero again; its marks belong to it, not to the first one.
 TEST(History, MarksOfASecondRunStandInThatRun) {
   History history({.seconds = 8, .tick = T});
   for (int i = 0; i < 1000; ++i) history.append(i * T, std::array{1.0});
@@ -221,7 +221,7 @@ TEST(History, MarksOfASecondRunStandInThatRun) {
   EXPECT_NEAR(history.marks()[2].time, history.time(1300), 1e-9);
 }
 
-// Each is drawn in every frame, and a program may set thousands a second.
+// Every frame draws all marks, and a program may set thousands a second.
 TEST(HistoryMarks, AreBoundedAndTheOldestGoFirst) {
   History history({.channels = 1, .seconds = 60});
   const std::size_t all = 3 * History::kMostMarks;
@@ -235,7 +235,7 @@ TEST(HistoryMarks, AreBoundedAndTheOldestGoFirst) {
   EXPECT_EQ(history.marks().front().label, std::to_string(all - History::kMostMarks));
 }
 
-// Somebody marks a moment of before while settings go on changing.
+// A person marks an earlier moment while settings go on changing.
 TEST(HistoryMarks, StandInTheOrderOfTheirTimesWheneverTheyWereSet) {
   History history({.channels = 1, .seconds = 60});
   for (int i = 0; i < 3000; ++i) history.append(0.001 * i, std::array{0.0});

@@ -1,4 +1,4 @@
-// ImGui without a window: frames with the mouse and the keys as a test wants them.
+// ImGui without a window: frames with the test's mouse and keys.
 #pragma once
 
 #include <GLFW/glfw3.h>
@@ -23,7 +23,7 @@ class ImGuiFrames : public testing::Test {
   }
   ~ImGuiFrames() override { ImGui::DestroyContext(); }
 
-  // One frame of `seconds` in which `draw` is called.
+  // Draws a frame of `seconds` in which `draw` is called.
   template <class Draw>
   void frame(Draw&& draw, float seconds = 0.02f) {
     ImGui::GetIO().DeltaTime = seconds;

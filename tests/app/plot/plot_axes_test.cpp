@@ -1,4 +1,4 @@
-// The axes over time: autoscale, the window shared by the plots, and files beside one another.
+// Axes over time: autoscale, the window shared by the plots, and files written beside one another.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -181,7 +181,7 @@ TEST(PlotMenu, TellsWhatWasSavedOrWhyNot) {
   EXPECT_TRUE(bad->bad);
 }
 
-// As the window does: it asks for another place to work, and the history does not wait.
+// The window writes on another thread, and the history goes on meanwhile.
 TEST(PlotMenu, WritesATableElsewhereAsItWasWhenAskedFor) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "limpid-beside";
   std::filesystem::remove_all(folder);

@@ -38,7 +38,7 @@ std::vector<std::string> lines(const std::string& text) {
   return all;
 }
 
-// Every tag is closed in order, no stray < or &; enough to catch a writer that forgets escaping.
+// Expects every tag closed in order and no stray < or &; this catches forgotten escaping.
 void expect_well_formed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t at = 0; (at = xml.find_first_of("<&", at)) != std::string::npos; ++at) {
@@ -91,7 +91,7 @@ TEST(PlotCsv, HasWhatIsAlongTheOtherAxisBeforeTheCurve) {
   EXPECT_EQ(all[2], "2.001000,2.001,-2000,2001,-2,2001");
 }
 
-// A ramp's amplitudes are known only roughly; the frequencies are those of a second of it.
+// A ramp's amplitudes are known only roughly; its frequencies are those of a second.
 TEST(PlotCsv, OfASpectrumHasFrequencies) {
   PlotSpec spectrum = spec();
   spectrum.kind = PlotKind::spectrum;
@@ -128,7 +128,7 @@ TEST(PlotSvg, StripesWhatABandMarksFromWhereToWhere) {
   const std::string svg = plot_svg(marked, history, {0, 3, {}, {{-3, 3}}});
   expect_well_formed(svg);
   EXPECT_NE(svg.find("force off: &lt;why&gt;"), std::string::npos);
-  // The curves' area is the clip path's rectangle; a third of it is marked, in the middle.
+  // The clip path's rectangle is the curves' area; a third in the middle is marked.
   double left = 0, width = 0, from = 0, wide = 0, other = 0;
   const auto number = [&](std::size_t at, const char* format, auto*... into) {
     ASSERT_NE(at, std::string::npos);
@@ -176,7 +176,7 @@ TEST(PlotSvg, OfAnEmptyHistoryIsStillAPicture) {
   expect_well_formed(plot_svg(spec(), History({.channels = 2}), {0, 10, {}, {{-1, 1}}}));
 }
 
-// Of two runs in one history the times are those of the second, as its axis has them.
+// With two runs in one history the times are the second one's, as on its axis.
 TEST(PlotCsv, HasTheTimesOfTheNewestRun) {
   History history({.channels = 2, .seconds = 5});
   for (const double value : {1.0, 2.0}) {
@@ -188,7 +188,7 @@ TEST(PlotCsv, HasTheTimesOfTheNewestRun) {
   EXPECT_EQ(all[1], "0.500000,2000,500");
 }
 
-// The band's outline goes there along the highest values and back along the lowest.
+// The band's outline follows the highest values forwards and the lowest ones backwards.
 TEST(PlotSvg, DrawsABandFromTheHighestToTheLowestOfEachColumn) {
   History history({.channels = 1, .seconds = 30});
   for (int i = 0; i < 20000; ++i) history.append(i * 0.001, std::array{i % 2 == 0 ? 1.0 : -2.0});
@@ -204,7 +204,7 @@ TEST(PlotSvg, DrawsABandFromTheHighestToTheLowestOfEachColumn) {
   for (double x = 0, y = 0; in >> x >> comma >> y;) points.push_back({x, y});
   ASSERT_GT(points.size(), 1000u);
   ASSERT_EQ(points.size() % 2, 0u);
-  // Between the frame's edges the axis reaches from -4 to 4: 1 is at 3/8 of it, -2 at 3/4.
+  // The axis reaches from -4 to 4 between the frame's edges: 1 is at 3/8 of it, -2 at 3/4.
   const std::string area = svg.substr(svg.find("<clipPath"));
   const auto number = [&](const std::string& key) {
     return std::stod(area.substr(area.find(" " + key + "=\"") + key.size() + 3));

@@ -1,4 +1,4 @@
-// Plots as the window draws them, frame by frame.
+// Plots of the window, drawn frame by frame.
 #include <set>
 
 #include "app/plot/plot.h"
@@ -58,7 +58,7 @@ TEST_F(APlot, LeavesTheEnergyOfTheRunBeforeBehindAtOnce) {
 
 struct Found {
   std::set<int> curves;
-  float lowest = 0;  // that a name reaches
+  float lowest = 0;  // lowest end of a name
 };
 
 Found names(const PlotLegend& legend, ImVec2 size) {
@@ -116,7 +116,7 @@ TEST_F(APlot, NamesBothRunsOfATwinInALineThatIsTooShortForTheirWholeNames) {
   });
 }
 
-// Where the mouse is, and not where the curve ends: the label stands at the value's height.
+// The label stands at the height of the value under the mouse, not at the curve's end.
 TEST_F(APlot, WritesTheValuesOfTheMomentThatIsPointedAt) {
   PlotSpec spec = energy();
   spec.end_labels = true;
@@ -139,7 +139,7 @@ TEST_F(APlot, WritesTheValuesOfTheMomentThatIsPointedAt) {
   });
 }
 
-// As many as there are distances between them along the curve, whole as it scrolls.
+// The curve has a sign for each distance along it, complete while it scrolls.
 TEST_F(APlot, PutsSignsOnTheCurveOfASecondRun) {
   frame([&] {
     const ScreenRect area{{0, 0}, {640, 100}};

@@ -9,7 +9,7 @@
 namespace limpid {
 namespace {
 
-// 3 + 2 sin over ten whole periods, and a channel that has no numbers in the second half.
+// 3 + 2 sin over ten whole periods, and a channel without numbers in the second half.
 History waves() {
   History history({.channels = 2, .seconds = 12});
   for (int i = 0; i < 10'000; ++i) {
@@ -29,7 +29,7 @@ TEST(RangeFigures, OfAWaveAreThoseOfTheory) {
   EXPECT_NEAR(found.high, 5, 1e-6);
 }
 
-// Both ends belong to it.
+// Both ends of the range count.
 TEST(RangeFigures, AreOfTheRowsFromStartToStop) {
   EXPECT_EQ(figures_between(waves(), 0, 1, 1.01).count, 11u);
   EXPECT_EQ(figures_between(waves(), 0, 1.0001, 1.0009).count, 0u);

@@ -1,4 +1,4 @@
-// Pixels against areas that are known, and the picture of a plot against itself at another size.
+// Pixels against known areas, and the picture of a plot against the same at another size.
 #include "app/plot/raster_canvas.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 constexpr Rgb kBlack{0, 0, 0}, kWhite{255, 255, 255};
 using Point = PlotCanvas::Point;
 
-// How many pixels of the layout are black, grey ones by their part.
+// Area of black in pixels of the layout; grey ones count in part.
 double black(const Raster& raster, double scale) {
   double sum = 0;
   for (std::size_t i = 0; i < raster.rgba.size(); i += 4) sum += 1 - raster.rgba[i] / 255.0;
@@ -59,17 +59,18 @@ TEST_P(Pixels, LeavesTheGapsOfADashedLineFree) {
   EXPECT_NEAR(area(), 80 * 2 * 0.5, 2);
 }
 
-// A corner is no darker than the rest, whichever way the line turns.
+// A corner is no darker than the rest, for every turn of the line.
 TEST_P(Pixels, JoinsALineRoundAndOnce) {
   canvas.polyline(std::array{Point{20, 20}, Point{60, 20}, Point{60, 60}}, kBlack, 4);
-  const double ends = std::numbers::pi * 4;            // a half disc at each, of radius 2
-  const double corner = 4 - std::numbers::pi * 4 / 4;  // a quarter of a disc for a square, outside
+  const double ends = std::numbers::pi * 4;  // a half disc of radius 2 at each end
+  // Outside, a quarter disc instead of a square.
+  const double corner = 4 - std::numbers::pi * 4 / 4;
   EXPECT_NEAR(area(), 80 * 4 + ends - corner, 5);
 }
 
 TEST_P(Pixels, DrawsARingByItsRadius) {
   canvas.ring({50, 40}, 20, kBlack, kWhite);
-  const double ring = 2 * std::numbers::pi * 20 * 1.8;  // a thin line, in pieces: to a twentieth
+  const double ring = 2 * std::numbers::pi * 20 * 1.8;  // a thin line in pieces: to a twentieth
   EXPECT_NEAR(area(), ring, 0.05 * ring);
 }
 
@@ -114,7 +115,7 @@ TEST_P(Pixels, SetsTextWhereItsAnchorIs) {
   EXPECT_NEAR(middle_of(PlotCanvas::Anchor::end), 100 - half, 0.5);
 }
 
-// What a person would see of both is the same picture.
+// Both sizes look the same to a person.
 TEST(RasterOfAPlot, IsTheSamePictureAtEverySize) {
   History history({.channels = 2, .seconds = 5});
   for (int i = 0; i < 3000; ++i) {
@@ -149,7 +150,7 @@ TEST(RasterOfAPlot, IsTheSamePictureAtEverySize) {
       }
     }
     EXPECT_LT(apart / (3 * once.width * once.height), 2) << "of 255";
-    // The curve's colour is there, and the paper's.
+    // The colours of the curve and the paper occur.
     const Rgb wave = ink(palette(theme), Ink::device);
     int found = 0;
     for (std::size_t i = 0; i < large.rgba.size(); i += 4) {

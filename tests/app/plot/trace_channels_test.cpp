@@ -76,7 +76,7 @@ TEST(TraceChannels, AreInMetresAndNewtonsOfJointsThatSlide) {
   EXPECT_EQ(shown(turns, "coordination/error"), Shown(5, "rad"));
 }
 
-// Asked for more than it can give, by the limits of the arm or by the parameters' own.
+// A motor is asked for more than its limit, the arm's or the parameters' own.
 TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
   const ArmDescription arm = test::omni();
   Parameters p;
@@ -92,13 +92,13 @@ TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
   channels.set_limits(motor_limits(arm, p));
   EXPECT_TRUE(channels.limited(row, 1));
   EXPECT_FALSE(channels.limited(row, 0));
-  layout.in(std::span(row), Column::motor_torque)[1] = -0.1;  // on its way there, or fading
+  layout.in(std::span(row), Column::motor_torque)[1] = -0.1;  // still rising, or fading
   EXPECT_FALSE(channels.limited(row, 1));
   layout.in(std::span(row), Column::motor_torque)[1] = 0;  // force off
   EXPECT_FALSE(channels.limited(row, 1));
 }
 
-// Any column of a recording is a channel, with its value and its unit.
+// Every column of a recording is a channel, with its value and its unit.
 TEST_P(TraceChannelsOfJoints, AreAllThatARecordingHolds) {
   const RowLayout layout(GetParam());
   const TraceChannels channels(layout);
@@ -147,7 +147,7 @@ TEST(TraceChannels, AreOfEachBodyWhereItIsAndHowFastItMoves) {
   EXPECT_EQ(speed.unit, "m/s");
 }
 
-// Against the arm's own kinematics, by finite differences for how fast.
+// Compared with the arm's own kinematics, speeds by finite differences.
 TEST(TraceChannels, KnowTheTipsOfTheArm) {
   const RowLayout layout(3);
   const TraceChannels channels(test::omni(), layout, {});
@@ -196,7 +196,7 @@ TEST(TraceChannels, HaveNoneOfBodiesWhereNothingMoves) {
   EXPECT_FALSE(channels.find("energy/objects"));
 }
 
-// Of as many bodies as there can be, on the largest arm, a row's channels still fit.
+// A row's channels fit even with the largest number of bodies on the largest arm.
 TEST(TraceChannels, FitIntoAHistoryHoweverManyMove) {
   const RowLayout layout(kMaxDof, kMostBodies);
   const TraceChannels channels(layout, {}, std::vector<std::string>(kMostBodies, "die"));
@@ -207,7 +207,7 @@ TEST(TraceChannels, FitIntoAHistoryHoweverManyMove) {
   History history({.channels = 2 * channels.count(), .seconds = 0.01});
   const std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.5);
   channels.append(history, row, row);
-  int last = 0;  // of the bodies' channels
+  int last = 0;  // number of the bodies' last channel
   for (int i = 0; i < channels.count(); ++i) {
     if (channels.infos()[static_cast<std::size_t>(i)].key.ends_with("turning")) last = i;
   }

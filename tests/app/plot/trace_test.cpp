@@ -45,7 +45,7 @@ TEST(Trace, BandsHoldEverySampleOfTheirPixel) {
   for (SampleIndex row = 0; row < history.end(); ++row) {
     const double x = std::floor(window.pixel(history.time(row)) + 1e-9);
     if (x < 1 || x >= 332) continue;
-    // The neighbours are in for times that lie on the border of two pixels.
+    // Neighbours count for times on the border of two pixels.
     const auto at = static_cast<std::size_t>(x);
     bool inside = false;
     for (std::size_t i = at - 1; i <= at + 1; ++i) {

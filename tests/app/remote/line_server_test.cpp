@@ -22,7 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-// The other side, which waits for a few seconds at most.
+// A client that waits for a few seconds at most.
 class Peer {
  public:
   explicit Peer(const std::filesystem::path& path) : file_(socket(AF_UNIX, SOCK_STREAM, 0)) {
@@ -43,7 +43,7 @@ class Peer {
     if (file_ >= 0) close(std::exchange(file_, -1));
   }
   void end_saying() const { shutdown(file_, SHUT_WR); }
-  // False where the other side takes no more.
+  // Sends text; false if the server takes no more.
   bool say(std::string_view text) const {
     while (!text.empty()) {
       const ssize_t sent = send(file_, text.data(), text.size(), MSG_NOSIGNAL);
@@ -52,7 +52,7 @@ class Peer {
     }
     return true;
   }
-  // Without its end; empty: there is none.
+  // Next line without its end; empty if there is none.
   std::string line() {
     while (received_.find('\n') == std::string::npos) {
       std::array<char, 4096> bytes{};
@@ -179,7 +179,7 @@ TEST_F(LineServerTest, OffersNothingToOneThatDoesNotRead) {
   const std::string line(10'000, 'x');
   int taken = 0;
   while (server->offer(from, line) && taken < 1000) ++taken;
-  EXPECT_LT(taken, 200);  // what it has room for, and the system for a socket
+  EXPECT_LT(taken, 200);  // the room of the server and the system's socket
   EXPECT_EQ(peer.line(), line);
 }
 
@@ -197,7 +197,7 @@ TEST_F(LineServerTest, TakesNothingMoreOfOneThatDoesNotFetchItsAnswers) {
   EXPECT_LT(answered, 200u);
 }
 
-// A controller that never reads must be able to stop what it has set going.
+// A controller that never reads must be able to stop what it has started.
 TEST_F(LineServerTest, HearsTheCutOfAClientThatHasNotFetched400Answers) {
   listen_for_cut();
   Peer peer(path);
@@ -224,7 +224,7 @@ TEST_F(LineServerTest, HearsTheCutBehindSixteenLinesThatNobodyHasAnswered) {
   EXPECT_TRUE(cut_is_heard());
 }
 
-// Else a program could fill the memory, or be stopped from saying more.
+// Otherwise a program could fill the memory, or be kept from saying more.
 TEST_F(LineServerTest, DropsLinesThatFindNoRoomCountsThemAndHearsTheCutAmongThem) {
   listen_for_cut();
   Peer peer(path);

@@ -1,4 +1,4 @@
-// Lines of clients: what is understood of them, and what is refused in which words.
+// Lines of clients: their meaning, and the words of refusals.
 #include "app/remote/protocol.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What is asked for is done as the loop's owner does it, now or later, and nobody raises a limit.
+// Requests are carried out as the loop's owner does, now or later, and nobody raises a limit.
 #include "app/remote/remote.h"
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ class RemoteTest : public testing::Test {
     const std::string text = line + "\n";
     ASSERT_EQ(send(file, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
   }
-  // The next line, after turns of the owner.
+  // Next line, after turns of the owner.
   json hear() {
     const auto end = std::chrono::steady_clock::now() + 5s;
     while (received.find('\n') == std::string::npos && std::chrono::steady_clock::now() < end) {
@@ -155,7 +155,7 @@ TEST(UsualSettings, StayWithinLimitsAndLeaveADeviceWhatIsItsOwn) {
   EXPECT_EQ(simulated.encoder_step, 0);
 }
 
-// As passivity that is broken puts other settings in their place: these are not kept by a request.
+// Broken passivity puts temporary settings in place; a request must not keep these.
 TEST_F(RemoteTest, SetsOnTopOfWhatIsThereOnceWhatIsForAWhileHasEnded) {
   parameters.hand_stiffness = 3000;
   host.before_set = [this](LineServer::Client) { parameters.hand_stiffness = 300; };
@@ -212,7 +212,7 @@ TEST_F(RemoteTest, SendsRowsAtTheirRateAndCountsThoseThatAreMissing) {
   EXPECT_EQ(ask(R"({"id":5,"do":"get","keys":[]})")["id"], 5);
 }
 
-// One name for a channel, live and recorded.
+// A channel has the same name live and recorded.
 TEST_F(RemoteTest, KnowsTheNamesThatSessionsHave) {
   const ArmDescription arm = test::omni();
   channels = TraceChannels(arm, layout, {});
@@ -232,7 +232,7 @@ TEST_F(RemoteTest, KnowsTheNamesThatSessionsHave) {
   remote->row(row, {}, 0);
   EXPECT_EQ(hear()["rows"], json({{0, {1.0, 2.0, 3.0}, {0.0, 0.0, 7.0}, nullptr}}));
   for (const ColumnInfo& column : kColumnInfo) {
-    if (layout.width(column.column) == 0) continue;  // of bodies, of which there are none
+    if (layout.width(column.column) == 0) continue;  // of bodies, which are absent
     const std::string name = column.path + 1;
     EXPECT_TRUE(ask(R"({"do":"row","channels":[")" + name + R"("]})").contains("ok")) << name;
   }
@@ -294,7 +294,7 @@ TEST(SetByRemote, KnowsTheArmsOwnLimits) {
   Parameters p;
   set_by_remote(p, "device.torque_limit", own, highest);
   EXPECT_THROW(set_by_remote(p, "device.torque_limit", 1.1 * own, highest), RemoteError);
-  // Of a file that says otherwise, no more than a person has chosen is taken.
+  // A file cannot raise a limit above a person's choice.
   Parameters of_file;
   of_file.torque_limit = 100;
   hold_limits(of_file, Parameters{}, arm);

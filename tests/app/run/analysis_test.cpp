@@ -55,7 +55,7 @@ TEST(Analysis, OfAGripIsWhereTheFirstPoleOfTheHandleCrosses) {
   p.hand_damping = 0;
   const Eigen::VectorXd x = rest_pose(arm);
   const double limit = analyze(arm, x, p, {}).eta_min_grip;
-  EXPECT_NEAR(limit, 0.56, 0.03);  // what the theory found for this grip
+  EXPECT_NEAR(limit, 0.56, 0.03);  // limit of the theory for this grip
   const auto growth = [&](double eta) {
     p.eta = eta;
     double most = -1e9;
@@ -137,7 +137,7 @@ TEST(Passivity, IsNoneOfSpringAndDamperWhereConditionThreeIsBroken) {
   EXPECT_EQ(passive(p), true);
 }
 
-// As on arms whose joints are damped unequally: Routh's limit of the grip may lie above eta_min.
+// On arms with unequally damped joints, Routh's limit of the grip may lie above eta_min.
 TEST(Passivity, OfAGripIsNoneBelowRouthsLimit) {
   Analysis a;
   a.eta_min = 0.4;
@@ -185,7 +185,7 @@ TEST(Analysis, TakesTheWorstOfUnequallyDampedJoints) {
   const Analysis of_arm = analyze(arm, rest_pose(arm), p, 2 * kPi * 20);
   EXPECT_NEAR(of_arm.b, 0.025, 1e-15);
   EXPECT_NEAR(of_arm.condition3.device_margin, 0.001, 1e-15);
-  // Whichever joint, and so whichever mode, that is.
+  // The result holds for any joint, and so for any mode.
   constexpr double w_b = 2 * kPi * 20;
   for (int turn = 0; turn < 3; ++turn) {
     std::rotate(dampings.begin(), dampings.begin() + 1, dampings.end());
@@ -198,7 +198,7 @@ TEST(Analysis, TakesTheWorstOfUnequallyDampedJoints) {
       const double w_f = 0.035 / mode.m, w_c = mode.b / mode.m;
       worst_in_band = std::max(worst_in_band, (w_f - w_c * w_f * w_f / (w_b * w_b)) / (w_c + w_f));
     }
-    EXPECT_GT(worst, least + 0.05);  // the modes do differ
+    EXPECT_GT(worst, least + 0.05);  // the modes differ
     EXPECT_NEAR(a.eta_min, worst, 1e-12);
     EXPECT_NEAR(*a.eta_min_band, worst_in_band, 1e-12);
   }

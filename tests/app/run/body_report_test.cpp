@@ -1,4 +1,4 @@
-// What is said of moving objects, against what can be worked out by hand.
+// Reports on moving objects, against calculations by hand.
 #include "app/run/body_report.h"
 
 #include <gmock/gmock.h>
@@ -72,7 +72,7 @@ TEST(BodyReport, KnowsHowFarAJointLetsItSink) {
   EXPECT_NEAR(energy(object), 0.1 * kG * 0.06, 1e-12);
 }
 
-// Against a search over the whole turn.
+// Compared with a search over the whole turn.
 TEST(BodyReport, AHingeOfAnyAxisSinksToItsLowestPlace) {
   test::Random random(6);
   for (int round = 0; round < 30; ++round) {
@@ -108,7 +108,7 @@ TEST(BodyReport, NamesThoseThatAreInEachOther) {
   EXPECT_TRUE(pairs(box(Vec3::Zero()), box(Vec3(0, 0, 0.04))).empty()) << "stands on it";
 }
 
-// Each shape in each other one, one in the middle of the other, and well apart.
+// Each shape in each other one: with coinciding middles, and well apart.
 TEST(BodyReport, SeesEveryShapeInEveryOther) {
   const std::vector<Shape> shapes{Sphere{0.03}, Box{Vec3(0.02, 0.06, 0.05)}, Cylinder{0.02, 0.08},
                                   Capsule{0.02, 0.05}};
@@ -152,7 +152,7 @@ TEST(BodyReport, SeesPartsInAFloor) {
   EXPECT_THAT(overlapping(on_a_floor({pin})), ElementsAre(Pair(0, 2)));
 }
 
-// 400 N/m drawn by 0.25 m: 400 * 0.25^2 / 2 = 12.5 J.
+// 400 N/m stretched by 0.25 m: 400 * 0.25^2 / 2 = 12.5 J.
 TEST(BodyReport, CountsWhatSpringsHoldAtTheStart) {
   Scene scene = on_a_floor({body("a", Sphere{0.02}, Vec3(0.3, 0, -0.08)),
                             body("b", Sphere{0.02}, Vec3(0.3, 0.2, -0.08))});

@@ -18,7 +18,7 @@ const RowLayout kLayout(3);
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// A row at rest but for one number.
+// A row at rest, with at most one number set.
 std::vector<double> row(double time, Column column = Column::kind, int joint = 0,
                         double value = 0) {
   std::vector<double> values(static_cast<std::size_t>(kLayout.stride()), 0);
@@ -33,7 +33,7 @@ DivergenceWatch after(std::initializer_list<std::vector<double>> rows) {
   return watch;
 }
 
-// After a wild row and so many calm ones.
+// A watch after a wild row, so many calm ones, and growing wild ones.
 DivergenceWatch swinging(int calm) {
   DivergenceWatch watch(kLayout);
   watch.add(row(0));
@@ -191,7 +191,7 @@ TEST(Simulate, SaysSinceWhenAndWhyALoopIsUnstable) {
   const auto since = static_cast<std::size_t>(std::llround(end.diverged_at / 0.01));
   ASSERT_GT(since, 0u);
   ASSERT_LT(since, rows.size());
-  // Up to there every number is one of this world.
+  // Up to that row every velocity is credible.
   for (std::size_t k = 0; k < since; ++k) {
     for (const Column c : {Column::device_velocity, Column::proxy_velocity}) {
       ASSERT_LE(rows.vec(k, c).cwiseAbs().maxCoeff(), 1e3) << k;

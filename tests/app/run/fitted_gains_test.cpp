@@ -11,7 +11,7 @@
 namespace limpid {
 namespace {
 
-// As heavy and long as an arm in a factory; `damping` of every joint.
+// An arm as heavy and long as in a factory; every joint has `damping`.
 ArmDescription large_arm(double damping) {
   ArmDescription arm = test::random_arm(6, 3);
   for (Joint& joint : arm.joints) {
@@ -48,8 +48,8 @@ TEST(FittedGains, KeepCondition3AndTheMarginOfEta) {
       EXPECT_GE(a.condition3.proxy_margin, 0);
       EXPECT_LT(a.eta_min, 0.6);
       EXPECT_GT(a.eta_min, 0.5);
-      // Rounding to two digits is all that is left of the device's damping, but at the stiffest
-      // spring that there is.
+      // The margin left of the device's damping comes from rounding to two digits, except at the
+      // stiffest possible spring.
       const double b_d = device_damping(arm, p).minCoeff();
       if (p.k_vc < find_parameter("coupling.k_vc")->maximum) {
         EXPECT_LT(a.condition3.device_margin, 0.1 * b_d) << damping << ' ' << tick;
@@ -59,7 +59,6 @@ TEST(FittedGains, KeepCondition3AndTheMarginOfEta) {
   }
 }
 
-// 50 per second off the arm's motion, as the built-in arm's dampers take: of b/m, over the modes.
 TEST(FittedGains, ReckonWithTheDelayThatWasMeasured) {
   for (const double damping : {0.004, 0.012, 0.5}) {
     ArmDescription arm = large_arm(damping);
@@ -73,7 +72,7 @@ TEST(FittedGains, ReckonWithTheDelayThatWasMeasured) {
   }
 }
 
-// Nobody measured a damping that it has not.
+// The arm is identified without damping.
 TEST(FittedGains, GiveAnIdentifiedArmNoDampingOfItsOwn) {
   ArmDescription arm = large_arm(0);
   arm.delay = 0.001;
@@ -94,6 +93,7 @@ TEST(SuggestedCompensation, IsOfWhatWasMeasuredAlone) {
   EXPECT_TRUE(suggested_compensation(arm).holds_springs);
 }
 
+// Rate of the dampers: b/m, the geometric mean over the modes; 50 per second on the built-in arm.
 TEST(FittedGains, DampAnArmThatSaysNoDampingAsTheBuiltInOneIs) {
   const auto rate = [](const ArmDescription& arm, double b_d) {
     const Analysis a = analyze(arm, rest_pose(arm), Parameters{}, std::nullopt);

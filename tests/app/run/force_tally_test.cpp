@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// Two milliseconds a tick; so many ticks in each state, one after the other.
+// Tally of so many ticks of 2 ms in each state, in this order.
 std::string tally(std::initializer_list<std::pair<ForceState, int>> states) {
   const RowLayout layout(3);
   ForceTally tally(layout);

@@ -11,7 +11,7 @@
 namespace limpid {
 namespace {
 
-// All joints about y or z, stretched out along x: as many arms are at zero.
+// An arm with all joints about y or z, stretched out along x, as many arms are at zero.
 ArmDescription stretched_arm() {
   ArmDescription arm = test::random_arm(6, 1);
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {

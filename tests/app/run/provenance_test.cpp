@@ -1,4 +1,4 @@
-// Where figures and tables say that they come from.
+// Statements of origin in figures and tables.
 #include "app/run/provenance.h"
 
 #include <gmock/gmock.h>

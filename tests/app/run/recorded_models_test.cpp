@@ -1,4 +1,4 @@
-// A recording stands alone: with the models it was made with gone, it runs and looks the same.
+// Recordings stand alone: without the models that they were made with, they run and look the same.
 #include <fmt/format.h>
 
 #include <cstring>
@@ -57,7 +57,7 @@ void expect_same(const Model& a, const Model& b) {
   }
 }
 
-// Empty where EGL gives no context.
+// A picture of the plan; empty where EGL gives no context.
 std::vector<unsigned char> picture_of(const RunPlan& plan) {
   constexpr int kWidth = 160, kHeight = 100;
   if (!test::has_offscreen_pictures()) return {};
@@ -77,7 +77,8 @@ std::vector<unsigned char> picture_of(const RunPlan& plan) {
   return read_rgba(kWidth, kHeight);
 }
 
-// Records the plan, takes its models away and runs the recording again; and the recording of that.
+// Records the plan, takes its models away and runs the recording again; then the same with that
+// run's recording.
 void expect_to_stand_alone(RunPlan plan, const fs::path& folder,
                            const std::function<void()>& take_away) {
   plan.models = build_meshes(plan.document);
@@ -136,13 +137,13 @@ std::string base64(const Bytes& bytes) {
 
 constexpr const char* kBinary = "data:application/octet-stream;base64,";
 
-// A sheet of 0.2 m with a picture on it; `rest` are its images and buffers.
+// A sheet of 0.2 m with a picture on it; `rest` holds its images and buffers.
 struct Sheet {
   Bytes corners, others;
 
   Sheet() {
     append_values<float>(corners, {0, 0, 0, 0.2f, 0, 0, 0, 0.2f, 0, 0.2f, 0.2f, 0});
-    append_values<float>(others, {0, 0, 1, 0, 0, 1, 1, 1});          // where on the picture
+    append_values<float>(others, {0, 0, 1, 0, 0, 1, 1, 1});          // places on the picture
     append_values<std::uint16_t>(others, {0, 1, 2, 0, 1, 3, 2, 0});  // two lists of three
   }
   // Two triangles of two materials, from two buffers.
@@ -181,7 +182,7 @@ class OddModels : public testing::Test {
   void write_text(const fs::path& name, const std::string& text) {
     test::write_file(folder_ / name, text);
   }
-  // A scene of these models, recorded and run again without them.
+  // Expects that a scene of these models is recorded and runs again without them.
   void expect_to_be_carried(const std::vector<std::string>& files) {
     std::string toml;
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -263,7 +264,7 @@ TEST_F(OddModels, OfOneFileTwiceAndSuffixesInCapitals) {
   EXPECT_EQ(read_session(dir_ / "first.h5").info.models.size(), 2u);
 }
 
-// What is only looked at is not carried: it is left out when it is gone.
+// Decoration is not carried: it is left out when its file is gone.
 TEST_F(OddModels, OfDecorationThatIsGoneDoNotKeepARecordingFromBeingOpened) {
   fs::copy(test::assets_dir() / "scenes/table.glb", folder_ / "table.glb");
   const std::string table = (folder_ / "table.glb").string();

@@ -59,7 +59,7 @@ TEST(Recorder, KeepsMarksAtRowsThatThereAre) {
                 {0, "before the first row"}, {450, "in the middle"}, {899, "behind the end"}}));
 }
 
-// One more would make the recording unreadable: the mark is refused, and the recording goes on.
+// A further mark would make the recording unreadable: it is refused, and the recording goes on.
 TEST(Recorder, TakesAsManyMarksAsTheReaderDoes) {
   const test::TempDir dir;
   Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
@@ -71,7 +71,7 @@ TEST(Recorder, TakesAsManyMarksAsTheReaderDoes) {
   EXPECT_EQ(read_session(dir / "a.h5").marks.size(), kMostMarks);
 }
 
-// A file of no rows has no moment to be marked: it would be refused when it is read.
+// A file without rows has no moment to mark: it would be refused when it is read.
 TEST(Recorder, KeepsNoMarksWithoutRows) {
   const test::TempDir dir;
   Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
@@ -123,7 +123,7 @@ TEST(Recorder, WritesChangesBesideTheRowTheyHoldFrom) {
     }
     ASSERT_TRUE(recorder.push(sample_rows(layout, k, 1)));
   }
-  recorder.changed(p);  // nothing new
+  recorder.changed(p);  // no change
   recorder.finish();
   const auto changes = read_session(dir / "a.h5").changes;
   ASSERT_EQ(changes.size(), 4u);
@@ -154,7 +154,7 @@ TEST(Recorder, LeavesAPartThatCanBeRecoveredIfItIsNotFinished) {
   EXPECT_EQ(std::memcmp(session.rows.data(), wanted.data(), wanted.size() * sizeof(double)), 0);
 }
 
-// They come faster than the writing thread, which rests between its rounds, takes them.
+// Changes come faster than the writing thread takes them, as it rests between its rounds.
 TEST(Recorder, CountsChangesThatFoundNoRoom) {
   const test::TempDir dir;
   Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
@@ -172,7 +172,7 @@ TEST(Recorder, CountsChangesThatFoundNoRoom) {
   EXPECT_EQ(read_session(dir / "a.h5").changes.size(), kept);
 }
 
-// While it lives, files of this program may not grow beyond `bytes`.
+// Limits files of this program to `bytes` during its life.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -194,11 +194,11 @@ TEST(Recorder, LetsTheRunGoOnWhenTheDiskIsFullAndKeepsWhatWasWritten) {
   std::size_t pushed = 0;
   std::string said;
   {
-    const FileSizeLimit limit(12'000'000);  // a second chunk of 8000 rows, not a third
+    const FileSizeLimit limit(12'000'000);  // a second chunk of 8000 rows, but no third
     Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
     while (recorder.push_waiting(sample_rows(layout, pushed, 1)) && pushed < 200'000) ++pushed;
     EXPECT_TRUE(recorder.failed());
-    // A loop with a clock never waits for it, nor does it end.
+    // A loop with a clock neither waits for a failed recorder nor ends.
     for (int k = 0; k < 100'000; ++k) recorder.push(sample_rows(layout, pushed, 1));
     EXPECT_GT(recorder.dropped(), 0u);
     EXPECT_THAT(recorder.error(), HasSubstr("File too large"));

@@ -1,4 +1,4 @@
-// What a device's own forces cost in a coupling, and what taking them off is worth.
+// Cost of a device's own forces in a coupling, and the benefit of compensating them.
 #include "app/run/rehearsal.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 struct Bench {
   ArmDescription file = test::omni(), truth = unlike(file, 4, 0.03);
   Unlikeness bench = drawn_bench(file, 4, Vec3(0, 0, -9.81));
-  ArmDescription known = truth;  // as somebody who found everything has it
+  ArmDescription known = truth;  // the result of a perfect identification
 
   Bench() {
     known.delay = 1e-3 * bench.delay;

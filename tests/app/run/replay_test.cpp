@@ -1,4 +1,4 @@
-// What was recorded comes again, bit for bit.
+// Recordings run again, bit for bit.
 #include "app/run/replay.h"
 
 #include <cmath>
@@ -86,7 +86,7 @@ TEST(Replay, KeepsWhatIsChosenOtherwiseAgainstTheRecordedChanges) {
   chosen.eta = 3;
   const auto rows = rows_of(replay(session, "a.h5", chosen));
   for (std::size_t k = 0; k < rows.size(); ++k) ASSERT_EQ(rows.at(k, Column::eta), 3);
-  // All else goes as it went.
+  // All other settings are as recorded.
   EXPECT_EQ(rows.at(700, Column::kind), 0);
   EXPECT_EQ(rows.at(1000, Column::kind), 1);
 }
@@ -108,9 +108,9 @@ TEST(Replay, RefusesASessionWhoseTextsAreBroken) {
               testing::HasSubstr("coupling.eta"));
 }
 
-// A real device's hand is not measured: what the observer saw of it acts instead. That lags behind
-// by the observer's time, m / alpha, so that the integral of the torque is short by as much of the
-// present torque, and the arm, which has its damping for it, is behind by that over b_d.
+// A real device's hand is not measured: the observer's estimate of it acts instead. The estimate
+// lags by the observer's time, m / alpha. So the integral of the torque is short by that time's
+// share of the present torque, and the damped arm is behind by this over b_d.
 TEST(Replay, LetsTheEstimateActWhereNobodyMeasuredTheHand) {
   const test::TempDir dir;
   const RunPlan plan = test::plan("free.toml", "touch.csv", 3);
@@ -144,7 +144,7 @@ TEST(Replay, LetsTheEstimateActWhereNobodyMeasuredTheHand) {
   EXPECT_LT(error, way / 10);
 }
 
-// A recording of a real device by this plan: nobody measured the hand.
+// A recording of a real device with this plan: nobody measured the hand.
 Session blind(const RunPlan& plan, const std::filesystem::path& out) {
   Recorder recorder(out, session_info(plan), plan.parameters, false);
   simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
@@ -189,7 +189,7 @@ TEST(Replay, TakesTheNearestRecordedEstimateAtAnotherTick) {
   faster.rows = 2300;
   const auto rows = rows_of(faster);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    // 0.4 k is never halfway: of every five, at 0, 0.4, 0.8, 1.2, 1.6.
+    // 0.4 k is never halfway: five rows at 0, 0.4, 0.8, 1.2, 1.6.
     const std::size_t nearest[] = {0, 0, 1, 1, 2};
     const std::size_t row = std::min<std::size_t>(2 * (k / 5) + nearest[k % 5], 899);
     ASSERT_EQ(rows.at(k, Column::hand_torque), session.at(row, Column::hand_torque_estimate)[0])
@@ -208,7 +208,8 @@ TEST(Replay, HasTickSeedLengthAndStartOfTheRecording) {
   EXPECT_EQ(session.info.tick, 0.002);
   EXPECT_EQ(session.info.seed, 7654321u);
   EXPECT_EQ(session_parameters(session, "a.h5").tick, 0.002);
-  const RunPlan again = replay(session, "a.h5", Parameters{});  // chosen: the defaults, T = 1 ms
+  // The chosen settings: defaults, T = 1 ms.
+  const RunPlan again = replay(session, "a.h5", Parameters{});
   EXPECT_EQ(again.parameters.tick, 0.002);
   EXPECT_EQ(again.parameters.eta, 1);
   EXPECT_EQ(again.seed, 7654321u);
@@ -229,7 +230,7 @@ TEST(Replay, TicksAsTheFileSaysEvenIfItsParametersSayOtherwise) {
   EXPECT_EQ(session_parameters(session, "a.h5").tick, 0.004);
 }
 
-// The virtual arm in a real device's place has the forces that the motors held, each by itself.
+// The virtual arm in a real device's place has each of the forces that the motors compensated.
 TEST(Replay, GivesTheVirtualArmTheForcesThatTheMotorsHeld) {
   for (const auto& [weight, springs] : {std::pair(true, false), {false, true}, {false, false}}) {
     const test::TempDir dir;

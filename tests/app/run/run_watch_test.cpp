@@ -1,4 +1,4 @@
-// What a run must not do without a word.
+// Faults of a run that must be reported.
 #include "app/run/run_watch.h"
 
 #include <gmock/gmock.h>
@@ -16,12 +16,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Rows of the built-in arm at rest, whose energies the test writes.
+// Rows of the built-in arm at rest, with energies set by the test.
 class Watched {
  public:
   explicit Watched(const Parameters& p = {}) : watch(test::omni(), layout, p) { go_to(0, 1); }
 
-  // So many ticks, over which E_c goes evenly to `energy` [J], a motor giving `torque` [N m].
+  // Moves E_c evenly to `energy` [J] in so many ticks, with a motor's torque of `torque` [N m].
   void go_to(double energy, int count, double torque = 0) {
     const double from = energy_;
     for (int i = 1; i <= count; ++i) {
@@ -40,7 +40,7 @@ class Watched {
   RowLayout layout{3};
   RunWatch watch;
   std::uint64_t rows = 0;
-  double speed = 0;  // of the first joint [rad/s]
+  double speed = 0;  // speed of the first joint [rad/s]
 
  private:
   double energy_ = 0;  // [J]
@@ -55,7 +55,7 @@ TEST(RunWatch, SaysHowMuchEnergyTheCouplingGaveAndSinceWhen) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0], HasSubstr("15 J"));
   EXPECT_THAT(warnings[0], HasSubstr("not passive (proposed, eta 1)"));
-  // It goes up by 10 mJ a tick, from -0.2 J in row 100: above 1 mJ in row 121.
+  // E_c rises by 10 mJ a tick, from -0.2 J in row 100: above 1 mJ in row 121.
   EXPECT_THAT(warnings[0], HasSubstr("t = 0.121 s"));
 }
 
@@ -149,7 +149,7 @@ TEST(RunWatch, SaysNothingOfTheShippedHandUnderAnyLaw) {
   }
 }
 
-// Far below eta_min, in a stiff grip that does not damp, the loop gives energy without end.
+// Far below eta_min, in a stiff undamped grip, the loop gives energy without end.
 TEST(RunWatch, SaysThatALoopFarBelowEtaMinIsNotPassive) {
   RunPlan plan = test::plan("table.toml", "touch.csv", 4);
   plan.parameters.eta = 0.05;

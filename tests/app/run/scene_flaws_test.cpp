@@ -1,4 +1,4 @@
-// What is wrong with a scene, against scenes that have one flaw each.
+// Flaws of scenes, each in a scene with a single one.
 #include "app/run/scene_flaws.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What becomes of the models that a scene names.
+// Models that a scene names: reading, refusals and warnings.
 #include "app/run/scene_meshes.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace limpid {
 namespace {
 
-constexpr std::uint32_t kSide = 230;  // just more than twice what is drawn coarsely
+constexpr std::uint32_t kSide = 230;  // just above twice the triangles of a coarse model
 
 // A bumpy sheet of 2 side^2 triangles as a binary STL.
 std::vector<unsigned char> sheet(std::uint32_t side) {
@@ -84,7 +84,7 @@ TEST(SceneMeshes, ShareWhatIsOfOneFile) {
             test::shape<Mesh>(document.scene, 1).triangles);
 }
 
-// A sheet of 3 units, at the size at which it stands in the scene.
+// A sheet of 3 units, at its size in the scene.
 TEST(SceneMeshes, WarnOfSizesThatNoHandTouches) {
   SceneDocument document = with_sheets(3, {"sheet.stl"});
   const MeshModels models = build_meshes(document);

@@ -103,7 +103,7 @@ TEST(Simulate, MakesChangesAtTheirRowsAndSaysSo) {
     return true;
   });
   EXPECT_EQ(changed_at, (std::vector<std::uint64_t>{100, 300, 400}));
-  EXPECT_TRUE(std::isnan(last.damping));  // back to the arm's own
+  EXPECT_TRUE(std::isnan(last.damping));  // back to the arm's own value
   EXPECT_EQ(last.eta, 2.5);
 }
 

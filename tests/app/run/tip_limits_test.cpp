@@ -17,7 +17,8 @@ double wall(const TipLimits& l, CouplingKind kind) {
   return l.walls[static_cast<std::size_t>(kind)].stiffness;
 }
 
-// What is named holds, and may be cautious by a factor: up to what `experiment zwidth` finds.
+// Expects a recommended stiffness that is stable, and cautious by a factor at most: up to the one
+// that `experiment zwidth` finds.
 void expect_named(const Parameters& p, double found) {
   const double named = wall(limits(p), CouplingKind::predictive);
   EXPECT_LE(named, found);
@@ -54,7 +55,7 @@ TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   heavy.hand_mass_at_tip = 0.5;
   heavy.hand_mass = 0.05;
   EXPECT_LT(wall(limits(heavy), predictive), wall(limits(exact), predictive));
-  heavy.hand_mass = 0.5;  // it knows of it
+  heavy.hand_mass = 0.5;  // the law knows the mass
   EXPECT_EQ(wall(limits(heavy), predictive), wall(limits(exact), predictive));
   late.device_delay = 1;
   EXPECT_LT(wall(limits(late), predictive), 5000);
@@ -96,7 +97,7 @@ TEST(TipLimits, KnowTheStiffestThingOfTheScene) {
   EXPECT_EQ(limits({}, scene).scene, 0);
   scene.add({.shape = Plane{}, .material = {600}});
   scene.add({.shape = Sphere{}, .material = {5000}});
-  scene.add({.shape = JointStop{}, .material = {6000}});  // in N m/rad
+  scene.add({.shape = JointStop{}, .material = {6000}});  // [N m/rad]
   EXPECT_EQ(limits({}, scene).scene, 5000);
 }
 

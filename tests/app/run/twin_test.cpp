@@ -1,4 +1,4 @@
-// Two runs on one hand: each as if it ran alone, one file, and both again from it.
+// Two runs on one hand: each as if it ran alone, in one file, and both again from it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ Both run_both(const RunPlan& plan) {
   return both;
 }
 
-// Proposed beside standard, both with a change on the way.
+// A plan of the proposed law beside the standard one, both with a change during the run.
 RunPlan pair() {
   RunPlan plan = test::plan("obstacles.toml", "touch.csv", 2);
   plan.parameters.eta = 0.7;
@@ -145,7 +145,7 @@ TEST(Twin, StandsBehindTheFirstRunInATable) {
   std::getline(file, row);
   EXPECT_NE(header.find(",twin_time_s,"), std::string::npos);
   EXPECT_EQ(std::ranges::count(header, ','), std::ranges::count(row, ','));
-  constexpr int kTips = 5 * 3;  // places and velocities of both, and the total force
+  constexpr int kTips = 5 * 3;  // places and velocities of both tips, and the total force
   EXPECT_EQ(std::ranges::count(header, ',') + 1, 2 * (session.layout.stride() + kTips));
 }
 
@@ -161,7 +161,7 @@ TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
   const Recovered saved = recover_session(dir / "a.h5.part", false);
   const Session session = read_session(saved.file);
   ASSERT_TRUE(session.twin);
-  EXPECT_EQ(session.size(), 512u);  // of the blocks that were whole, the fewer
+  EXPECT_EQ(session.size(), 512u);  // the smaller number of whole blocks
   EXPECT_EQ(session.twin->size(), 512u);
 }
 

@@ -21,7 +21,7 @@ TEST_P(UrdfOf, AnArmReadsAsThatArm) {
     joint.friction = 0.01 * static_cast<double>(i + 1);
     joint.spring = 0.02 * static_cast<double>(i);
     joint.offset = -0.003 * static_cast<double>(i);
-    if (i == 0 && !arm.slides(0)) continue;  // without stops
+    if (i == 0 && !arm.slides(0)) continue;  // this one has no stops
     joint.lower = -0.5 - 0.1 * static_cast<double>(i);
     joint.upper = 0.7;
   }

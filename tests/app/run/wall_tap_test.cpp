@@ -52,7 +52,7 @@ TEST(WallTap, BeginsBeforeTheWallAndEndsPressedOnIt) {
   EXPECT_LT(t.rattle, 0.01);
 }
 
-// Through the standard coupling's spring a wall is 1 / (1/K + lever^2/k_vc).
+// Through the standard coupling's spring a wall has the compliance 1/K + lever^2/k_vc.
 TEST(WallTap, FeelsAWallThroughASpringAsSoftAsItIs) {
   const ArmDescription arm = test::omni();
   Parameters p;
@@ -71,7 +71,7 @@ TEST(WallTap, AsksNoMoreOfTheMotorsThanTheyBearTwice) {
   p.torque_limit = 0.1;
   const double borne = bearable_press(arm, place, p, 100);
   EXPECT_LT(borne, 100);
-  // Half as strong motors bear half of it.
+  // Motors half as strong bear half of the force.
   p.torque_limit = 0.05;
   EXPECT_NEAR(bearable_press(arm, place, p, 100), borne / 2, 1e-12);
 }
@@ -83,7 +83,7 @@ TEST(WallTap, OfAnArmOfOneJointTurnsIt) {
   EXPECT_NEAR(t.felt, 1, 0.05);
 }
 
-// Not in the wall, nothing is felt of it: no division by nothing.
+// Without contact there is no stiffness, and no division by zero.
 TEST(WallMeter, ThatSeesNoContactFindsNoWall) {
   const ArmDescription arm = test::omni();
   Tapped t = tap(arm, rest_pose(arm), {.wall = 1000, .press = 1}, predictive());

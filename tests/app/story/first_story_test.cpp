@@ -1,4 +1,4 @@
-// The story that comes along: what its sentences say is in its rows.
+// The shipped story: its rows agree with its sentences.
 #include <gtest/gtest.h>
 
 #include "app/base/folders.h"
@@ -9,7 +9,7 @@ namespace limpid {
 namespace {
 
 constexpr std::size_t kFirst = 0, kTwin = 1;
-constexpr double kPassive = 1e-6;  // what round-off may give [J]
+constexpr double kPassive = 1e-6;  // bound of the round-off [J]
 
 class TheFirstStory : public testing::Test {
  protected:
@@ -21,7 +21,7 @@ class TheFirstStory : public testing::Test {
     delete run_;
     delete story_;
   }
-  // The step whose sentence has these words.
+  // Numbers of the step whose sentence has these words.
   static std::array<StepNumbers, 2> step(const std::string& words) {
     const auto all = measure(story_->steps, run_->session);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -46,7 +46,7 @@ TEST_F(TheFirstStory, ShowsDeviceAndProxyDriftApartUnderTheStandardCouplingAlone
   const auto [standard, predictive] = step("drift apart");
   EXPECT_GT(standard.largest_error, 0.02);
   EXPECT_GT(standard.largest_error, 10 * predictive.largest_error);
-  // Nothing else limits them: the drift is the coupling's, contact torque over k_vc.
+  // Nothing else limits the runs: the drift is the coupling's, contact torque over k_vc.
   EXPECT_NEAR(standard.largest_error, standard.largest_contact / Parameters{}.k_vc,
               0.01 * standard.largest_error);
 }

@@ -1,4 +1,4 @@
-// Scripts as people write them, right and wrong, and what a plan makes of them.
+// Scripts as people write them, right and wrong, and the plans made of them.
 #include "app/story/story.h"
 
 #include <gmock/gmock.h>
@@ -135,8 +135,8 @@ TEST(StoryScripts, RefuseSettingsThatCannotHoldForOneRunOrFromThere) {
                  "in the first step only");
 }
 
-// An error of 0.3 rad amid the first step, of 0.4 rad in the second one's first row; E_c that
-// climbs from -2 J by 1 J, and falls.
+// The error is 0.3 rad amid the first step and 0.4 rad in the second one's first row. E_c climbs
+// from -2 J by 1 J, and falls.
 TEST(StoryNumbers, AreOfOneStepEach) {
   Story story = parse(kWhole);
   Session session;

@@ -1,4 +1,4 @@
-// What a session keeps of its story, and shows again.
+// Story of a session: kept in the file and shown again.
 #include <gmock/gmock.h>
 
 #include "app/story/run_story.h"

@@ -11,7 +11,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-// Of two bodies, one of which has dots in its name and a joint.
+// A scene of two bodies; one has dots in its name, and a joint.
 const std::string kScene = R"(title = "Two"
 about = "Two bodies."
 
@@ -90,11 +90,11 @@ TEST_F(BodyAxes, SetWhatTheyName) {
   EXPECT_EQ(lid("spring", "70").force.spring, 70);
   EXPECT_EQ(lid("detent.force", "0.2").force.detent_force, 0.2);
   EXPECT_EQ(lid("detent.period", "0.004").force.detent_period, 0.004);
-  // Its friction for the tip, of a body that is called as a joint's key begins.
+  // The key is the body's mass: the body's name begins like a joint's key.
   EXPECT_EQ(made("scene.body.lid.joint.mass", "0.1", "lid.joint").body->mass, 0.1);
 }
 
-// Moments that the scene gives are those of the same shape, and a density no longer holds.
+// Given moments scale with the mass, as the shape stays; a given density no longer holds.
 TEST_F(BodyAxes, MakeABodyHeavierInAllThatItWeighs) {
   const Object die = made("scene.body.die.mass", "0.1", "die");
   EXPECT_LT((*die.body->inertia - Vec3(2e-5, 4e-5, 5e-5)).norm(), 1e-18);
@@ -131,7 +131,7 @@ TEST_F(BodyAxes, SayWhatIsWrongAndWhatIsAllowed) {
               AllOf(HasSubstr("table.toml"), HasSubstr("nothing moves in this scene")));
 }
 
-// Along a boundary, too.
+// Boundaries can be searched along bodies' keys, too.
 TEST_F(BodyAxes, MayBeSearchedAlong) {
   const std::string boundary = R"(scene = "two.toml"
 hand = { at = [0.19, 0, 0] }

@@ -31,7 +31,7 @@ class Boundaries : public testing::Test {
   std::atomic<bool> stop_{false};
 };
 
-// Of the continuous loop, in grips of any stiffness.
+// Routh's limit of the continuous loop, in grips of any stiffness.
 TEST_F(Boundaries, OfStabilityAreRouthsLimit) {
   const SweepPlan plan = test::sweep_plan(dir_, kRouth);
   ASSERT_EQ(plan.points(), 2u);

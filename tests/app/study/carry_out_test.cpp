@@ -82,7 +82,7 @@ Outcome runs_away(TrialRunner& lab) {
   return sound(lab);
 }
 
-// Whatever else an experiment makes of it.
+// Holds for any other result of the experiment.
 TEST_F(CarryOut, CallsATrialThatDivergedAFailureAndSaysTheConditions) {
   const Outcome outcome = carry_out({"away", "about", runs_away}, in(dir_));
   EXPECT_FALSE(outcome.passed());
@@ -104,7 +104,7 @@ TEST(Worse, KeepsWhatIsNoNumberWhereMaximumWouldDropIt) {
 TEST_F(CarryOut, PromisesNothingWithoutChecks) { EXPECT_FALSE(Outcome{}.passed()); }
 
 TEST_F(CarryOut, ReportsOnEveryVerdictThereIs) {
-  // The report knows the experiments by name; what stands in their places here is made up.
+  // The report knows the experiments by name; made up ones take their places here.
   carry_out({"inertia", "about", sound}, in(dir_));
   carry_out({"passivity", "about", broken}, in(dir_));
   write_report(dir_);

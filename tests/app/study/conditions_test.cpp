@@ -47,7 +47,7 @@ TEST(Conditions, OfManyRunsNameEachValueOrTheirEnds) {
   EXPECT_THAT(text, HasSubstr("tick 1 and 2 ms"));
 }
 
-// Where some runs have strong motors and others the arm's own, both are said.
+// With strong motors in some runs and the arm's own in others, both are named.
 TEST(Conditions, OfMotorsLeaveNoneOut) {
   Conditions conditions;
   Parameters p;

@@ -14,8 +14,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kTick = 0.001;
 
-// Two periods of the record of a one-joint mass and damper that is shaken: mean torque and position
-// in closed form.
+// Record of a shaken one-joint mass and damper over two periods: mean torque and position in closed
+// form.
 Session shaken(const Multisine& shaking, double m, double b, double seconds) {
   Session s;
   s.info.tick = kTick;

@@ -1,4 +1,4 @@
-// What an identification leaves, and how the next one compares with it.
+// Results of an identification, and their comparison with the next one's.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

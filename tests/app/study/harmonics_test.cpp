@@ -35,7 +35,7 @@ TEST(Harmonics, FindWhereAStraightLineInLogFrequencyFallsThroughALevel) {
   }
   EXPECT_NEAR(falls_through(f, value, 0.5), std::exp(2.5), 1e-9);
   EXPECT_EQ(falls_through(f, value, -5), 0);
-  EXPECT_EQ(falls_through({1, 2, 4}, {1, 0.5, 1}, 0.5), 0);  // touched is not fallen through
+  EXPECT_EQ(falls_through({1, 2, 4}, {1, 0.5, 1}, 0.5), 0);  // a touch of the limit is no fall
   EXPECT_EQ(falls_through({1, 2, 4}, {1, 0.5, 0.2}, 0.5), 2);
 }
 

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 
 namespace fs = std::filesystem;
 
-// All that a trial decides; how long ticks took is the machine's.
+// Numbers that a trial decides; durations of ticks are the machine's.
 std::vector<double> physics(const Session& session) {
   std::vector<double> values;
   for (std::size_t k = 0; k < session.size(); ++k) {
@@ -74,7 +74,7 @@ TEST_F(Laboratories, ReadWhatIsThereInsteadOfRunningIt) {
   for (const auto& [name, time] : written) EXPECT_EQ(fs::last_write_time(file(name)), time);
 }
 
-// Far below its least eta in a stiff grip, with motors that hold nothing back.
+// A trial far below its least eta in a stiff grip, with motors without limits.
 Trial runaway(const std::string& name) {
   Parameters p;
   p.eta = 0.05;
@@ -196,8 +196,8 @@ TEST(HandVariation, StartsAndEndsWhereThePathDoesAndStaysNearIt) {
   }
 }
 
-// On a path that is followed at a steady pace the pace is between 0.8 and 1.2 of it, so that half
-// of the way is never farther from half of the time than the hurry's integral, 0.2 / (2 pi).
+// The hand follows its path at 0.8 to 1.2 of a steady pace. So half of the way is never farther
+// from half of the time than the pace's integral, 0.2 / (2 pi).
 TEST(HandVariation, IsOnItsWayWhenThePathIs) {
   HandPath straight = circle();
   const Vec3 way(0.1, 0.02, 0);

@@ -51,7 +51,7 @@ class LiveExperiments : public testing::Test {
     s.layout = RowLayout(3);
     simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
       s.rows.insert(s.rows.end(), row.begin(), row.end());
-      // As of a real device, whose hand nobody measures.
+      // A real device's hand is not measured.
       for (double& torque : s.layout.in(std::span(s.rows).last(row.size()), Column::hand_torque)) {
         torque = std::numeric_limits<double>::quiet_NaN();
       }
@@ -87,7 +87,7 @@ TEST_F(LiveExperiments, CoordinationFailsWhereNothingIsTouched) {
   EXPECT_FALSE(run_the("coordination", bench).passed());
 }
 
-// Both runs under one law: the second slope is no smaller than the first.
+// Both runs have the same law: the second slope is no smaller than the first.
 TEST_F(LiveExperiments, CoordinationFailsWhereTheCouplingsAreAlike) {
   LiveLaboratory bench = lab({pressing});
   bench.run = [run = bench.run](LiveTrial trial) {
@@ -128,7 +128,7 @@ TEST_F(LiveExperiments, ZwidthSaysThatTheWallWasNotTouched) {
   EXPECT_THROW(run_the("zwidth", bench), std::runtime_error);
 }
 
-// Against rows made by hand: a torque of 0.7 M a, and one joint with a damper.
+// Compared with rows made by hand: a torque of 0.7 M a, and one joint with a damper.
 TEST_F(LiveExperiments, WhatIsFeltIsTheTorqueAlongTheMotion) {
   const ArmDescription arm = lab({swinging}).arm;
   Session s;

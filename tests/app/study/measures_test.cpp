@@ -14,7 +14,7 @@
 namespace limpid {
 namespace {
 
-// What a plan measures, by name, at a point.
+// Values that a plan measures at a point, by name.
 class Measures : public testing::Test {
  protected:
   void read(const std::string& text) { plan_ = test::sweep_plan(dir_, text); }
@@ -46,7 +46,8 @@ axis = [{ key = "coupling.k_vc", values = [5, 10, 20] }]
   }
 }
 
-// A wall behind the spring of the standard coupling: 1 / (1 + K lever^2 / k_vc) of it is felt.
+// A wall behind the spring of the standard coupling: the stiffness is 1 / (1 + K lever^2 / k_vc) of
+// its own.
 TEST_F(Measures, WallThatIsTappedIsFeltThroughTheCouplingsSpring) {
   read(R"(hand = { tap = 1 }
 seconds = 2
@@ -93,7 +94,7 @@ axis = [{ key = "coupling.eta", values = [0.5, 1, 3] }]
   }
 }
 
-// Under the proposed law, eta (b_d + b_v) and what (1) lags behind (2): k_vc T/2.
+// Damping under the proposed law: eta (b_d + b_v), plus k_vc T/2 for the lag of (1) behind (2).
 TEST_F(Measures, DampingFeltInFreeMotionIsThatOfDeviceAndProxy) {
   read(R"(scene = "free.toml"
 hand = "free.csv"
@@ -108,8 +109,8 @@ axis = [{ key = "coupling.eta", values = [0.7, 1, 2] }]
   }
 }
 
-// The wall behind the coupling's spring, seen from the tip: 1/K = 1/K_wall + n'JJ'n / k_vc. A rough
-// wall would hold the tip across n as well.
+// The wall behind the coupling's spring, from the tip: 1/K = 1/K_wall + n'JJ'n / k_vc. A rough wall
+// would hold the tip across n as well.
 TEST_F(Measures, StiffnessFeltIsTheWallBehindTheSpring) {
   std::ofstream(dir_ / "smooth.toml")
       << "[[plane]]\nname = \"table top\"\npoint = [0.2, 0.0, -0.04]\nnormal = [0.0, 0.0, 1.0]\n"
@@ -134,7 +135,8 @@ axis = [{ key = "coupling.kind", values = ["standard", "predictive"] },
   }
 }
 
-// A tip that trembles at 80 Hz about a joint: rms speed r A w / sqrt 2. One at 2 Hz does not.
+// A tip that trembles at 80 Hz about a joint has an rms speed of r A w / sqrt 2. At 2 Hz it does
+// not count.
 TEST_F(Measures, ChatterIsTheFastPartOfTheTipsSpeed) {
   const ArmDescription omni = test::omni();
   const RowLayout layout(omni.dof());
@@ -154,7 +156,7 @@ TEST_F(Measures, ChatterIsTheFastPartOfTheTipsSpeed) {
       std::ranges::copy(x, layout.in(std::span(row), Column::proxy_position).begin());
       meter.add(row);
     }
-    // Speed from differences falls short of the true one by sin(wT/2) / (wT/2).
+    // Speed by differences falls short of the true one by sin(wT/2) / (wT/2).
     const double expected = r * A * w / std::sqrt(2) * std::sin(w * T / 2) / (w * T / 2);
     EXPECT_NEAR(meter.chatter(), f > 20 ? expected : 0, 0.01 * expected) << f;
   }

@@ -34,7 +34,7 @@ theory = ["pr"]
 
 class Tables : public testing::Test {
  protected:
-  // Its file with the first `blocks` blocks in it.
+  // The sweep's file with its first `blocks` blocks.
   fs::path written(const SweepPlan& plan, std::uint64_t blocks = 1000) {
     const SweepFolder folder(plan, dir_ / "out");
     SweepBook book(plan, folder, false);
@@ -86,7 +86,7 @@ TEST_F(Tables, SayWhatTheyLack) {
   const hid_t h5 = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   H5Adelete(h5, "key");
   H5Fclose(h5);
-  EXPECT_EQ(refusal(file), "nothing");  // of an older program
+  EXPECT_EQ(refusal(file), "nothing");  // from an older program
   const hid_t again = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   H5Ldelete(again, "/measure/stable", H5P_DEFAULT);
   H5Fclose(again);
@@ -143,14 +143,14 @@ TEST_F(Tables, AreMapsOverAnyTwoAxes) {
   EXPECT_EQ(map.kind, SweepMap::Kind::cells);
   EXPECT_EQ(map.rows, 3u);
   ASSERT_EQ(map.spots.size(), 6u);
-  // From the softest grip on, whatever the order in the plan; eta upwards.
+  // Spots run from the softest grip on, in any order of the plan; eta upwards.
   EXPECT_EQ(map.spots[0].x, 100);
   EXPECT_EQ(map.spots[0].point, 2u * 6 + 3);
   EXPECT_EQ(map.spots[4].point, 2u * 6 + 1);
   EXPECT_EQ(map.spots[4].cell.value, opened->table.at(13, 0));
   ASSERT_EQ(map.lines.size(), 1u);
   EXPECT_EQ(map.lines[0].label, "PR (25)");
-  // Words stand at 0, 1, 2.
+  // Words have the places 0, 1, 2.
   choice.y = 0;
   const SweepMap kinds = make_map(*opened, choice);
   EXPECT_EQ(kinds.spots[2].y, 2);
@@ -173,7 +173,7 @@ axis = [ { key = "hand.stiffness", values = [100, 200, 300] },
   for (const FigurePoint& p : map.lines[0].points) {
     if (std::isfinite(p.x)) ends.push_back(p);
   }
-  // Up between 100 and 200 N/m beside eta 0.6, then to the right between 0.4 and 0.6.
+  // The line goes up between 100 and 200 N/m at eta 0.6, then to the right between 0.4 and 0.6.
   ASSERT_EQ(ends.size(), 2u * 3);
   EXPECT_EQ(std::pair(ends[0].x, ends[0].y), std::pair(150.0, 0.5));
   EXPECT_EQ(std::pair(ends[1].x, ends[1].y), std::pair(150.0, 0.7));

@@ -1,4 +1,4 @@
-// Plans of a test's own, and what comes of them.
+// Plans for tests, and the files they make.
 #pragma once
 
 #include <fstream>
@@ -22,7 +22,7 @@ inline std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// The table's bytes, of all blocks that are there; whether these are all.
+// Bytes of the table from all existing blocks; `complete` tells whether these are all.
 inline std::string gathered(const SweepPlan& plan, const std::filesystem::path& out,
                             bool& complete) {
   const SweepFolder folder(plan, out);
@@ -33,7 +33,7 @@ inline std::string gathered(const SweepPlan& plan, const std::filesystem::path& 
   return bytes_of(folder.table());
 }
 
-// Fast: a few ticks a point.
+// A fast plan: a few ticks a point.
 inline const std::string kShort = R"(title = "Short"
 scene = "free.toml"
 hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }

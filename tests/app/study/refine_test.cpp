@@ -29,14 +29,14 @@ depth = 3
 
 class Refining : public testing::Test {
  protected:
-  // Values of the stiffness and eta of a point, both 0 to 1 over the map.
+  // Value of a point by kind, stiffness and eta; the latter two are 0 to 1 over the map.
   using Field = std::function<double(std::size_t kind, double x, double y)>;
 
   static double value_of(const SweepPlan& plan, std::uint64_t number, const Field& field) {
     const SweepPoint point = point_of(plan, number);
     return field(point.place[0], (point.values[1] - 100) / 1000, (point.values[2] - 0.1) / 1);
   }
-  // As a sweep would fill it.
+  // Fills a table as a sweep would.
   static SweepTable refined(const SweepPlan& plan, const Field& field) {
     SweepTable table(plan);
     std::uint64_t from = 0;
@@ -79,8 +79,8 @@ TEST_F(Refining, FindsTheSameMapAsAllPointsOfTheFineGridWithATenthOfThem) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// A cell that is not divided itself may have a neighbour's points on its edge: the tongue enters
-// the cells below where none of their own corners sees it.
+// An undivided cell may have a neighbour's points on its edge: the tongue enters the cells below
+// where none of their own corners lies in it.
 TEST_F(Refining, FollowsWhatANeighbourFound) {
   const SweepPlan plan = test::sweep_plan(dir_, kField);
   const Field field = [](std::size_t, double x, double y) {
@@ -110,7 +110,7 @@ TEST_F(Refining, OfNumbersKeepsToItsTolerance) {
   }
   // Between two points of the finest grid the ridge falls by 0.11; elsewhere by no more than 0.02.
   EXPECT_LT(worst, 0.02);
-  // Nothing changes where the ridge is not.
+  // No cell is divided away from the ridge.
   EXPECT_FALSE(table.rows.row_of(number_of(plan, {0, 4, 76}, 0, 0)));
 }
 
@@ -126,7 +126,7 @@ depth = 1
               testing::ElementsAre(100, 200, 400, std::sqrt(400.0 * 500), 500));
   SweepTable table(plan);
   ASSERT_EQ(table.points(), 6u);
-  // The second repeat alone differs, between the first two.
+  // The second repeat alone differs, between the first two stiffnesses.
   table.take(0, {1, 0, 1, 1, 1, 1});
   ASSERT_TRUE(table.grow());
   ASSERT_EQ(table.points(), 8u);
@@ -158,7 +158,7 @@ TEST_F(Refining, RefusesWhatHasNoCells) {
   EXPECT_THAT(refusal("depth = 3", "depth = 3\nmeasure = \"chatter\""), HasSubstr("is measured"));
 }
 
-// What only the work itself can show: of real runs.
+// Refinement of real runs, which only the work itself can show.
 class RefinedWork : public testing::Test {
  protected:
   static constexpr const char* kPlan = R"(title = "Refined"
@@ -179,7 +179,7 @@ tolerance = 0.002
 x = "stiffness"
 )";
 
-  // Rounds until nothing comes any more; how many calls that took.
+  // Works in rounds until no points are left; returns the number of calls.
   int work(const fs::path& out, const SweepShare& share, int most = 100) {
     const SweepFolder folder(plan_, out);
     SweepBook book(plan_, folder, false);
@@ -205,7 +205,7 @@ TEST_F(RefinedWork, ComesToTheSameTableWhoeverDoesItAndWhateverIsLost) {
   EXPECT_GT(work(dir_ / "threads", {.threads = 3}), 1);
   const std::string table = gathered(dir_ / "threads");
   ASSERT_TRUE(complete_);
-  // Shards one after the other: each stops where a round needs the others.
+  // Shards run one after the other: each stops where a round needs the others.
   for (int call = 0; call < 10; ++call) {
     for (const std::uint64_t shard : {2u, 0u, 1u}) {
       work(dir_ / "shards", {.shard = shard, .shards = 3, .threads = 1}, 1);
@@ -213,7 +213,7 @@ TEST_F(RefinedWork, ComesToTheSameTableWhoeverDoesItAndWhateverIsLost) {
   }
   EXPECT_EQ(gathered(dir_ / "shards"), table);
   EXPECT_TRUE(complete_);
-  // Blocks that are gone, of all rounds, are made again; so is what depends on them.
+  // Deleted blocks of all rounds are made again, together with those that depend on them.
   std::vector<fs::path> blocks;
   for (const auto& entry : fs::directory_iterator(dir_ / "shards/blocks")) {
     blocks.push_back(entry.path());
@@ -238,7 +238,7 @@ TEST_F(RefinedWork, ItsTableOpensAsItWasWrittenAndEveryPointIsThatOfTheFullGrid)
     const auto again = measure_point(plan_, opened->table.rows.point(i), stop_);
     EXPECT_EQ(again->front(), opened->table.at(i, 0)) << i;
   }
-  // A map without gaps: what was not run is inferred.
+  // The map has no gaps: points that were not run are inferred.
   const SweepMap map = make_map(*opened, first_choice(*opened->plan, opened->table));
   ASSERT_EQ(map.spots.size(), 13u * 13);
   std::size_t inferred = 0;
@@ -250,8 +250,8 @@ TEST_F(RefinedWork, ItsTableOpensAsItWasWrittenAndEveryPointIsThatOfTheFullGrid)
   EXPECT_EQ(sweep_figure(plan_, opened->table).panels[0].series[0].cells.size(), 13u * 13);
 }
 
-// Where a run diverges there is no number: the border to those is looked for, between numbers that
-// are all alike as well.
+// A run that diverges gives no number. The border of such runs is searched, even between numbers
+// that are all alike.
 TEST_F(Refining, FindsTheBorderToWhereThereIsNoNumber) {
   std::string text = kField;
   text += "measure = \"energy\"\ntolerance = 0.02\n";
@@ -261,7 +261,7 @@ TEST_F(Refining, FindsTheBorderToWhereThereIsNoNumber) {
   };
   const SweepTable table = refined(plan, field);
   EXPECT_LT(table.points(), plan.points() / 2);
-  // Beside the border all points of the finest grid are there.
+  // Beside the border all points of the finest grid exist.
   std::uint64_t beside = 0;
   for (std::uint64_t n = 0; n < plan.points(); ++n) {
     const auto place = point_of(plan, n).place;
@@ -274,7 +274,7 @@ TEST_F(Refining, FindsTheBorderToWhereThereIsNoNumber) {
     EXPECT_TRUE(table.rows.row_of(n)) << place[1] << ", " << place[2];
   }
   EXPECT_GT(beside, 100u);
-  // Far from it, on either side, nothing is asked.
+  // Far from the border, on either side, no point is run.
   EXPECT_FALSE(table.rows.row_of(number_of(plan, {0, 3, 3}, 0, 0)));
   EXPECT_FALSE(table.rows.row_of(number_of(plan, {0, 77, 77}, 0, 0)));
 }

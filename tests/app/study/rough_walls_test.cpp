@@ -5,7 +5,7 @@
 
 namespace limpid {
 
-Outcome friction(TrialRunner& lab);  // of the table of experiments
+Outcome friction(TrialRunner& lab);  // in the table of experiments
 
 namespace {
 
@@ -13,8 +13,8 @@ constexpr RoughWalls kFlat{
     .walls = 1, .stiffness = 1000, .friction_static = 0.4, .friction_kinetic = 0.4};
 
 TEST(Friction, GivesNothingWhereItsSpringIsStretchedAndLetGo) {
-  // l = -K_t z, its work over a tick at the end's force, as the implicit rule has it: stretching
-  // takes K_t (z' - z)^2 / 2 more than is stored.
+  // l = -K_t z: work over a tick at the end's force, by the implicit rule. Stretching takes K_t (z'
+  // - z)^2 / 2 more than is stored.
   const Vec3 z(1e-4, 0, 0), further(3e-4, 0, 0);
   const Rub before{.normal = 2, .friction = -1000 * z};
   const Rub now{.normal = 2, .friction = -1000 * further, .moved = further - z};
@@ -48,7 +48,7 @@ TrialResult run(const Trial& trial) {
   return TrialRunner("walls", options).run({trial}).front();
 }
 
-// Pressed into a corner, each wall is found to push with its own force.
+// A tip pressed into a corner: each wall is found to push with its own force.
 TEST(RoughWalls, AreToldApartByTheirForces) {
   RoughWalls corner{.walls = 3, .stiffness = 2000, .friction_static = 0.5, .friction_kinetic = 0.5};
   Parameters p;
@@ -73,7 +73,7 @@ TEST(RoughWalls, AreToldApartByTheirForces) {
   }
 }
 
-// Along a wall the tip moves as it does, without what goes into the wall.
+// Motion along a wall is the tip's, without its part into the wall.
 TEST(RoughWalls, AreRubbedByWhatTheTipMovesAlongThem) {
   const RoughWalls flat{.stiffness = 1000, .friction_static = 0.2, .friction_kinetic = 0.2};
   Parameters p;
@@ -102,8 +102,8 @@ TEST(RoughWalls, AreRubbedByWhatTheTipMovesAlongThem) {
   EXPECT_GT(went.y(), 0.01);
 }
 
-// What its caption says of the hands: 3 N onto a plane of 1000 N/m, 30 mm aside and back; 5 N into
-// an edge and a corner of 3000 N/m.
+// The caption describes the hands: 3 N onto a plane of 1000 N/m, 30 mm aside and back; 5 N into an
+// edge and a corner of 3000 N/m.
 TEST(FrictionExperiment, PressesAndDragsAsItsCaptionSays) {
   const test::TempDir temp;
   TrialRunner::Options options;
@@ -123,7 +123,7 @@ TEST(FrictionExperiment, PressesAndDragsAsItsCaptionSays) {
     return Vec3(at[0], at[1], at[2]);
   };
   const Session smooth = session("drag-0-0");
-  // Without friction the hand's spring of 300 N/m is all that presses.
+  // Without friction only the hand's spring of 300 N/m presses.
   EXPECT_NEAR(target(smooth, 0.5).z(), kMeet.z() - 3.0 / 300 - 3.0 / 1000, 1e-6);
   EXPECT_NEAR(target(smooth, 2.0).y(), 0.03, 1e-6);
   EXPECT_NEAR(target(smooth, 3.49).y(), 0, 1e-6);
@@ -140,7 +140,7 @@ TEST(FrictionExperiment, PressesAndDragsAsItsCaptionSays) {
   }
 }
 
-// From the tick in which it is touched on, the second wall's force is its own.
+// From the tick of its contact on, the second wall's force is its own.
 TEST(RoughWalls, ThatAreNotTouchedDoNotPush) {
   const RoughWalls edge{
       .walls = 2, .stiffness = 2000, .friction_static = 0.5, .friction_kinetic = 0.5};

@@ -22,7 +22,7 @@ TEST(Sampling, OfALatinHypercubeHasOneValueInEachInterval) {
   }
 }
 
-// The first points of the sequence as Joe and Kuo give them, in Gray's order, the shift undone.
+// The first points of the sequence by Joe and Kuo, in Gray's order, with the shift undone.
 TEST(Sampling, OfSobolIsHisSequenceTurnedRound) {
   const UnitSamples samples = sobol_samples(2, 7, 11);
   const double first[] = {0.5, 0.75, 0.25, 0.375, 0.875, 0.625, 0.125};
@@ -47,13 +47,13 @@ TEST(Sampling, IsTheSameForOneSeedAndNotForAnother) {
   }
 }
 
-// Spearman's: of independent orders it has the deviation 1 / sqrt(n - 1).
+// Spearman's rank correlation of independent orders has the deviation 1 / sqrt(n - 1).
 TEST(Sampling, OfALatinHypercubePutsEachDimensionInAnOrderOfItsOwn) {
   constexpr std::size_t count = 101, dimensions = 4;
   const UnitSamples samples = latin_samples(dimensions, count, 3);
   const auto rank = [&](std::size_t d, std::size_t i) { return std::floor(samples[d][i] * count); };
   for (std::size_t a = 0; a < dimensions; ++a) {
-    // The order of the samples themselves is none of the dimensions', either.
+    // The samples' own order is not that of a dimension, either.
     for (std::size_t b = a + 1; b <= dimensions; ++b) {
       double off = 0;
       for (std::size_t i = 0; i < count; ++i) {

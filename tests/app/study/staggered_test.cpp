@@ -14,7 +14,7 @@ namespace {
 
 constexpr double T = 1e-3;
 
-// The map of a tick of a body of mass m on a spring and damper whose other end stands still.
+// Largest eigenvalue of a tick's map of a mass m on a spring and damper whose other end is fixed.
 double largest_eigenvalue(double m, double K, double B) {
   Eigen::Matrix2d step;
   const double v_x = -T * K / m, v_v = 1 - T * B / m;
@@ -36,7 +36,7 @@ HandPath nudge() {
   return hand_path("nudge", T, 0.5, [](double t) { return Vec3(0.2, 0, t > 0.01 ? 1e-4 : 0); });
 }
 
-// In a hand so stiff that the device hardly moves.
+// The hand is so stiff that the device hardly moves.
 TEST(StaggeredBody, IsUnstableBelowThatMassOnTheArm) {
   Parameters p;
   p.hand_stiffness = 1e5;
@@ -50,7 +50,7 @@ TEST(StaggeredBody, IsUnstableBelowThatMassOnTheArm) {
   }
 }
 
-// A spring without a damper: what the body has and what the tip gave are the same at all times.
+// A spring without a damper: the body's energy always equals what the tip gave.
 TEST(StaggeredBody, HasWhatTheTipGaveIt) {
   const double m = 0.05, g = 9.81;
   Parameters p;
@@ -62,7 +62,7 @@ TEST(StaggeredBody, HasWhatTheTipGaveIt) {
                                           .normal = Vec3(-Vec3::UnitZ()),
                                           .gap = 0.02,
                                           .own = [=](double) { return m * g; }});
-  // It falls freely until it is there.
+  // The body falls freely until it is there.
   const auto k = static_cast<std::size_t>(0.05 / T);
   const double t = static_cast<double>(k + 1) * T;
   EXPECT_NEAR(run.travel[k], -g * t * (t + T) / 2, 1e-12);
@@ -71,7 +71,7 @@ TEST(StaggeredBody, HasWhatTheTipGaveIt) {
   EXPECT_EQ(run.contact.front(), 0);
 }
 
-// A record of a point of mass that a hand shakes.
+// Record of a point mass that a hand shakes.
 TEST(FeltMass, IsThatOfAPointOfMass) {
   const double m = 0.02, f = 3, w = 2 * std::numbers::pi * f;
   TipRecord record{T, {}, {}};
@@ -79,7 +79,7 @@ TEST(FeltMass, IsThatOfAPointOfMass) {
   const auto place = [&](int k) { return Vec3(0.001 * std::sin(w * k * T) * along); };
   for (int k = 0; k <= 2000; ++k) record.tip.push_back(place(k));
   for (int k = 0; k < 2000; ++k) {
-    // The mean of -m w^2 x over the tick, beside a damper's and a force across.
+    // The mean of -m w^2 x over the tick, beside a damper's force and one across.
     const Vec3 mean = m * w * 0.001 / T * (std::cos(w * (k + 1) * T) - std::cos(w * k * T)) * along;
     const Vec3 v = (place(k + 1) - place(k)) / T;
     record.force.emplace_back(mean + 0.7 * v + Vec3(1, 0, 1) * std::sin(w * k * T));

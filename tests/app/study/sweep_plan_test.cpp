@@ -111,14 +111,15 @@ axis = [ { key = "coupling.eta", values = [1] } ])"),
   EXPECT_EQ(refusal(joints("32")), "taken");
 }
 
-// A plan of a stranger, or a table that has one in it, must not start a program that runs his code.
+// A stranger's plan, or a table that holds one, must not start a program that runs the stranger's
+// code.
 TEST_F(SweepPlans, ExpandNoXacroUnlessTheyMay) {
   std::ofstream(dir_ / "arm.xacro") << "<robot name='r'><xacro:link name='a'/></robot>";
   const std::string text =
       with("device = \"arm.xacro\"\naxis = [{ key = \"coupling.eta\", values = [1] }]");
   EXPECT_THAT(refusal(text), AllOf(HasSubstr("arm.xacro"), HasSubstr("--allow-xacro")));
   const std::string path = getenv("PATH");
-  setenv("PATH", "/nowhere", 1);  // allowed, it is looked for
+  setenv("PATH", "/nowhere", 1);  // if allowed, the program is looked for
   try {
     read_sweep_plan(dir_ / "plan.toml", Xacro::expand);
     ADD_FAILURE();

@@ -23,7 +23,7 @@ class SweepWork : public testing::Test {
     const SweepFolder folder(plan_, out);
     return work_off(plan_, rows_, folder, share, stop_, done_, take);
   }
-  // The table's bytes.
+  // Bytes of the table.
   std::string gathered(const fs::path& out) { return test::gathered(plan_, out, complete_); }
   std::string reference() {
     work(dir_ / "reference", {.threads = 1});

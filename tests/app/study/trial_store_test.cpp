@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Change = std::function<void(RunPlan&)>;
 
-// Everything a plan can have.
+// A plan with every possible content.
 RunPlan rich_plan() {
   RunPlan plan = plan_of("table", "touch", {});
   plan.rows = 40;
@@ -108,7 +108,7 @@ TEST(TrialKey, IsTheSameForTheSame) {
   EXPECT_EQ(program_digest(), program_digest());
 }
 
-// One trial in a folder of its own, and whether a second call runs it again.
+// A trial in a folder of its own, and whether a second call runs it again.
 class StoredTrial : public testing::Test {
  protected:
   void SetUp() override { options_.dir = temp_ / "."; }
@@ -119,7 +119,7 @@ class StoredTrial : public testing::Test {
     t.plan.changes = {{30, "coupling.eta = 2.0"}};
     return t;
   }
-  // The torques' and positions' bits are the same either way; how long ticks took is not.
+  // Torques and positions have the same bits every time; durations of ticks differ.
   TrialResult run(const Trial& t) { return TrialRunner("test", options_).run({t}).front(); }
   bool reused(const Trial& t) {
     const TrialResult before = run(trial());
@@ -164,7 +164,7 @@ TEST_F(StoredTrial, IsRunAgainForAnotherParameterArmOrHand) {
 
 TEST_F(StoredTrial, IsRunAgainWhereItsFileWasTouched) {
   const TrialResult before = run(trial());
-  // One number of one row is another one in what is a sound session still.
+  // A number of one row is changed in an otherwise sound session.
   Session changed = read_session(file());
   const auto number = static_cast<std::size_t>(20 * changed.layout.stride() +
                                                changed.layout.offset(Column::device_position));

@@ -1,4 +1,4 @@
-// Colours against what people can tell apart, computed here and not by the program.
+// Colours against people's ability to tell them apart, computed here and not by the program.
 #include "app/style/palette.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 using Three = std::array<double, 3>;
 using Seen = std::array<Three, 3>;
 
-// How people see who lack no cone, or that for long, middle or short waves: Machado, Oliveira and
-// Fernandes 2009, severity 1, on linear RGB.
+// Responses of eyes with all cones, and without those for long, middle or short waves: Machado,
+// Oliveira and Fernandes 2009, severity 1, on linear RGB.
 constexpr std::array<Seen, 4> kEyes{{
     {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
     {{{0.152286, 1.052583, -0.204868},
@@ -86,12 +86,12 @@ TEST_P(PaletteOf, ShowsLawsAtThreeToOneOnAllThatIsBehindThem) {
     for (const Rgb back : {p.panel, p.raised, p.backdrop}) {
       EXPECT_GE(ratio(law_ink(p, law), back), 3) << law;
     }
-    // What is written on a button of this colour.
+    // Contrast of the text on a button of this colour.
     EXPECT_GE(ratio(text_on(law_ink(p, law)), law_ink(p, law)), 4.5) << law;
   }
 }
 
-// Two colours that differ by 2.3 are just told apart side by side; here are five times of it.
+// Two colours that differ by 2.3 are just told apart side by side; the bound is five times that.
 TEST_P(PaletteOf, TellsLawsApartForEveryEye) {
   for (const Seen& eye : kEyes) {
     for (int one = 0; one < static_cast<int>(kLawColours.size()); ++one) {
@@ -102,7 +102,8 @@ TEST_P(PaletteOf, TellsLawsApartForEveryEye) {
   }
 }
 
-// A law is no thing: neither device, proxy, hand, contact nor energy, nor a broken promise.
+// A law has no thing's colour: not that of device, proxy, hand, contact, energy or a broken
+// promise.
 TEST_P(PaletteOf, HasNoLawInAThingsColour) {
   for (int law = 0; law < static_cast<int>(kLawColours.size()); ++law) {
     for (const Ink thing : {Ink::device, Ink::proxy, Ink::hand, Ink::contact, Ink::energy}) {

@@ -1,4 +1,4 @@
-// What the legend takes of a picture.
+// Room that the legend takes in a picture.
 #include "app/style/picture_legend.h"
 
 #include "tests/app/plot/imgui_frames.h"

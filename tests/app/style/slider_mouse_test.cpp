@@ -1,4 +1,4 @@
-// What the mouse does to a slider, frame by frame.
+// Effects of the mouse on a slider, frame by frame.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace limpid {
 namespace {
 
-constexpr float kLeft = 100, kTop = 50, kWidth = 400, kTrack = 75;  // [px], of a slider drawn here
+constexpr float kLeft = 100, kTop = 50, kWidth = 400, kTrack = 75;  // place of the slider [px]
 
 class SliderMouse : public ImGuiFrames {
  protected:
@@ -55,7 +55,7 @@ class SliderMouse : public ImGuiFrames {
     ImGui::GetIO().AddInputCharactersUTF8(text);
     draw();
     key(GLFW_KEY_ENTER);
-    wait(1);  // or the next click is a third one
+    wait(1);  // otherwise the next click is a third one
   }
   void key(int which) {
     for (const bool down : {true, false}) {
@@ -66,7 +66,7 @@ class SliderMouse : public ImGuiFrames {
 
   Parameters parameters;  // eta 1, in the middle of a slider from 0.1 to 10
   int changes = 0;
-  double given = 1;  // by the last change, at once
+  double given = 1;  // given at once by the last change
   bool of_value = false;
 };
 

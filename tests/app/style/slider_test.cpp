@@ -50,7 +50,7 @@ TEST(ParameterSlider, HoldsValuesWithinTheAllowedRange) {
   EXPECT_EQ(p.kind, CouplingKind::standard);
 }
 
-// Relative luminance_by_wcag and contrast as WCAG 2 defines them.
+// Relative luminance and contrast as WCAG 2 defines them.
 double luminance_by_wcag(Rgb c) {
   const auto linear = [](std::uint8_t byte) {
     const double x = byte / 255.0;

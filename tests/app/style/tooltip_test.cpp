@@ -9,7 +9,7 @@ namespace {
 
 class ATooltip : public ImGuiFrames {
  protected:
-  // The tooltip of an item of a panel once its size is known, with the mouse on the item.
+  // The tooltip of a panel's item once its size is known, with the mouse on the item.
   ImRect of_item(const ImRect& panel, const ImRect& item) {
     const ImGuiWindow* shown = nullptr;
     for (int i = 0; i < 4; ++i) {
@@ -49,7 +49,7 @@ TEST_F(ATooltip, StandsAboveABarBelowAndBelowABarAbove) {
       const ImRect item({x, top + 10}, {x + 60, top + 30});
       const ImRect tip = of_item(bar, item);
       EXPECT_FALSE(tip.Overlaps(item)) << x << ", " << top;
-      // Nor anything else in the bar, such as the time beside the timeline.
+      // The tooltip covers nothing else in the bar, such as the time beside the timeline.
       EXPECT_FALSE(tip.Overlaps(ImRect({0, top + 10}, {800, top + 30}))) << x << ", " << top;
       EXPECT_TRUE(ImRect({0, 0}, {800, 600}).Contains(tip)) << x << ", " << top;
     }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMebibyte = 1 << 20;
 
-// TMPDIR has another value for as long as it lives.
+// Sets TMPDIR to another value during its life.
 class WithFolder {
  public:
   explicit WithFolder(const char* folder) {
@@ -30,7 +30,7 @@ class WithFolder {
   std::optional<std::string> was_;
 };
 
-// Resident pages of files [bytes].
+// Resident memory of mapped files [bytes].
 std::size_t resident_of_files() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {

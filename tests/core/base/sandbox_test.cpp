@@ -1,5 +1,5 @@
-// What a program that reads files of strangers can do, once it has shut itself in: each attempt
-// in a process of its own, which leaves with what it was told.
+// Abilities of a program that reads files of strangers, once it has shut itself in. Each attempt is
+// a process of its own, and its result the exit status.
 #include "core/base/sandbox.h"
 
 #include <fcntl.h>
@@ -40,7 +40,8 @@ class Sandbox : public testing::Test {
     if (kSanitized) GTEST_SKIP() << "sanitized";
   }
 
-  // The status that a process leaves with; errno where `attempt` returns a negative number.
+  // Exit status of a process that makes `attempt` in the sandbox: errno if the attempt returns a
+  // negative number.
   int leaves_with(const std::function<long()>& attempt, const std::filesystem::path& folder) {
     const pid_t child = fork();
     if (child == 0) {
@@ -136,11 +137,11 @@ TEST_F(Sandbox, StartsNothingAndSpeaksToNobody) {
             EACCES);
 }
 
-// Calls of many uses: each use that changes or reaches something outside, and those that stay.
+// Calls with many uses: uses that change or reach something outside are refused, the others stay.
 TEST_F(Sandbox, HasOfCallsOfManyUsesOnlyThoseThatReadingNeeds) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
-  ASSERT_EQ(dup2(ends[1], 3), 3);  // the one that stays open
+  ASSERT_EQ(dup2(ends[1], 3), 3);  // this one stays open
   f_owner_ex owner{F_OWNER_PID, getpid()};
   struct flock lock {};
   lock.l_type = F_RDLCK;

@@ -1,4 +1,4 @@
-// Against encodings that the standard writes out: U+00E9, U+20AC, U+1F916.
+// UTF-8 against encodings that the standard spells out: U+00E9, U+20AC, U+1F916.
 #include "core/base/utf8.h"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@ template <int N, template <int> class Rest = SteadyFactor>
 void expect_the_dense_solution(int n, unsigned seed) {
   Random random(seed);
   for (int round = 0; round < 100; ++round) {
-    // A stiff coupling between a heavy and a light side, and what a proxy's speed turns.
+    // A stiff coupling between a heavy and a light side, with the Coriolis part of a proxy's speed.
     const Mat<N> ww = random.positive_definite(n, 0.1, 2) + random.matrix(n, 0.01);
     const Mat<N> wu = random.matrix(n, 0.05), uw = random.matrix(n, 0.05);
     const Mat<N> uu = random.positive_definite(n, 0.05, 1) + random.matrix(n, 0.005);

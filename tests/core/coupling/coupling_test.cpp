@@ -42,8 +42,8 @@ TEST(Condition3, CountsTheLeastDampedJoint) {
   EXPECT_NEAR(c.device_margin, -0.001, 1e-15);
 }
 
-// What device and proxy are given in all while they move in a way that ends where it began, the
-// torque of the device d ticks late, less what their dampers take [J].
+// Energy given to device and proxy over motions that end where they begin, less the work of their
+// dampers [J]. The device's torque acts d ticks late.
 double given(const SpringDamper& p, double b_d, int d, const std::vector<double>& dx1,
              const std::vector<double>& dx2) {
   constexpr double T = 0.001;
@@ -64,7 +64,8 @@ double given(const SpringDamper& p, double b_d, int d, const std::vector<double>
   return energy;
 }
 
-// Motions of every frequency a tick has room for, in and against one another.
+// Largest energy given over motions of every frequency up to half the tick rate, in phase and
+// against one another.
 double most_given(const SpringDamper& p, double b_d, int d) {
   double most = -1;
   for (const double part : {0.01, 0.05, 0.1, 0.2, 0.3, 0.5}) {
@@ -80,7 +81,7 @@ double most_given(const SpringDamper& p, double b_d, int d) {
   return most;
 }
 
-// By the books alone: no model of arm, proxy or hand.
+// The energy books alone decide: no model of arm, proxy or hand.
 TEST(Condition3, BoundsWhatADelayedDeviceCanBeGiven) {
   Random random(71);
   for (const int d : {0, 1, 3, 8}) {
@@ -99,12 +100,12 @@ TEST(Condition3, BoundsWhatADelayedDeviceCanBeGiven) {
       EXPECT_LE(given(p, b_d, d, dx1, dx2), 1e-12) << d;
     }
     if (d == 0) continue;
-    p.b_v = p.k_vc * 0.001 / 2;  // as (3) has it without a delay
+    p.b_v = p.k_vc * 0.001 / 2;  // the bound of (3) without a delay
     EXPECT_GT(most_given(p, 2 * p.b_vc + p.k_vc * 0.001, d), 1e-6) << d;
   }
 }
 
-// The same through a link: what each side has of the other is so many ticks old.
+// The same through a link: each side knows the other as it was `age` ticks ago.
 double given_through_link(const SpringDamper& p, double b_d, const std::vector<int>& age1,
                           const std::vector<int>& age2, const std::vector<double>& dx1,
                           const std::vector<double>& dx2) {
@@ -144,7 +145,8 @@ std::vector<int> ages(const LinkSettings& s, std::uint64_t direction, int ticks)
   return ages;
 }
 
-// By the books alone, on the edge of the condition and, where the delay is all that counts, beyond.
+// The energy books alone decide, on the edge of the condition and, where only the delay counts,
+// beyond it.
 TEST(Condition3, BoundsWhatDeviceAndProxyCanBeGivenThroughALink) {
   Random random(72);
   for (const auto& [delay, jitter] : {std::pair(1, 0), {5, 0}, {40, 0}, {0, 4}, {10, 10}}) {
@@ -174,7 +176,7 @@ TEST(Condition3, BoundsWhatDeviceAndProxyCanBeGivenThroughALink) {
       EXPECT_LE(given_through_link(p, b_d, age1, age2, dx1, dx2), 1e-9) << delay << ' ' << jitter;
     }
     if (delay < 5 || jitter > 0) continue;
-    // Slowly against one another: a twentieth less damping is too little by far.
+    // Slow motions against one another: a tenth less damping is too little by far.
     std::vector<double> dx1, dx2;
     for (int k = 0; k < 40000; ++k) {
       dx1.push_back(1e-4 * std::cos(2 * 3.14159265358979 * 1e-3 * k));
@@ -216,7 +218,7 @@ struct Random2 {
 class CouplingOfJoints : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Arms, CouplingOfJoints, testing::Values(1, 2, 3, 7, 32));
 
-// Whatever eta is and whoever pushes.
+// The law ignores eta and all forces.
 TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
   const int n = GetParam();
   Random2 r(n, 70);
@@ -290,8 +292,8 @@ TEST_P(CouplingOfJoints, ProposedScalesWhatReachesTheLockedSystem) {
 }
 
 TEST_P(CouplingOfJoints, ProposedLeavesNoOuterTorqueOnTheShapeSystem) {
-  // phi^T (tau1 + tau2) - tau2 is the control torque on the shape system (10). With the outer
-  // f_E = phi^T (f1 + f2) - f2 it comes to C_EL v_L: f1 and f2 are gone.
+  // phi^T (tau1 + tau2) - tau2 is the control torque on the shape system (10). With the outer f_E =
+  // phi^T (f1 + f2) - f2 it becomes C_EL v_L: f1 and f2 cancel.
   const int n = GetParam();
   const Random2 r(n, 73);
   for (const double eta : {0.5, 1.0, 3.0}) {
@@ -307,7 +309,7 @@ TEST_P(CouplingOfJoints, ProposedLeavesNoOuterTorqueOnTheShapeSystem) {
 }
 
 TEST_P(CouplingOfJoints, AtRestAndWithEtaOneContactsReachTheDeviceInFull) {
-  // Equal poses, f1 = 0: the device gets f2 less what moves the locked inertia's share.
+  // Equal poses, f1 = 0: the device gets f2 less the torque that moves the locked inertia's share.
   const int n = GetParam();
   Random2 r(n, 74);
   r.one.v.setZero();

@@ -1,4 +1,4 @@
-// The passive decomposition against what it is for: S^T diag(M1, M2) S block diagonal, and (11)
+// The passive decomposition against its definition: S^T diag(M1, M2) S block diagonal, and (11)
 // multiplied out with S differentiated numerically.
 #include "core/coupling/decomposition.h"
 
@@ -44,7 +44,7 @@ Eigen::MatrixXd block_diagonal(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 class DecompositionOfJoints : public testing::TestWithParam<int> {
  protected:
   int n() const { return GetParam(); }
-  // With its matrices written out.
+  // The decomposition with its matrices written out.
   struct Whole : Decomposition<kAnyDof> {
     Whole(const Dynamics<kAnyDof>& device, const Dynamics<kAnyDof>& proxy)
         : Decomposition(device, proxy) {}

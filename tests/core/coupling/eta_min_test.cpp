@@ -48,7 +48,8 @@ TEST(LockedResponse, IsTheTransferFunction) {
   const auto H = locked_response({2, 3, 5}, 1, 4);
   EXPECT_NEAR(H.real(), 3.0 / 73, 1e-15);
   EXPECT_NEAR(H.imag(), -8.0 / 73, 1e-15);
-  // At rest the observer sees all: 1/(eta b). Far above it sees nothing: 1/(j w m).
+  // At rest the observer estimates all of the force: 1/(eta b). Far above its band it estimates
+  // nothing: 1/(j w m).
   EXPECT_NEAR(locked_response({2, 3, 5}, 0.5, 0).real(), 1 / (0.5 * 3), 1e-15);
   EXPECT_NEAR(std::abs(locked_response({2, 3, 5}, 0.5, 1e9)) * 2e9, 1, 1e-8);
 }

@@ -1,4 +1,4 @@
-// What is felt of a joint under each law, against the closed forms and the networks in ticks.
+// The impedance of a joint under each law, against the closed forms and the networks in ticks.
 #include "core/coupling/felt.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST(FeltJoint, IsTheInverseOf24WithoutTicksOrContact) {
 }
 
 TEST(FeltJoint, IsLateByATickAndAHalfOfTheEstimateAndByHalfOneOfTheContact) {
-  // Next to no coupling and no proxy's damper: what stays is (m s + b_d) over the observer's share.
+  // Next to no coupling and no proxy's damper: the rest is (m s + b_d) over the observer's share.
   constexpr double T = 0.003, eta = 0.6, w_f = 150;
   const FeltJoint free{2e-4, 0.012, 0, 1e-14, 0, T, 0};
   const FeltJoint wall{2e-4, 0.012, 0, 1e-14, 0, T, 40};
@@ -58,7 +58,7 @@ TEST(FeltJoint, WithAFastObserverIsTheIdealOne) {
   }
 }
 
-// What the network in ticks of T answers to a shaking joint of inertia 1: torque against velocity.
+// Torque over velocity of the network, in ticks of T, under a shaking joint of inertia 1.
 std::complex<double> shaken_network(double eta, double band, double f, double T) {
   InertiaNetwork<1> network;
   network.start(1);

@@ -33,7 +33,7 @@ struct Body {
 };
 
 TEST(ForceObserver, FindsAConstantForceWithEveryGainAndTick) {
-  // What is left of the error after a time t is exp(-alpha/m t) in every mode of M.
+  // The error's remaining part after a time t is exp(-alpha/m t) in every mode of M.
   for (const int n : {1, 3, 7}) {
     Random random(80);
     const Eigen::MatrixXd M = random.positive_definite(n, 1e-4, 1e-3);
@@ -71,7 +71,7 @@ TEST(ForceObserver, StaysWithinTheForceItSeesAtAThousandTimesTheExplicitLimit) {
     const Vector f1 = Vector::Constant(1, std::sin(0.03 * k));
     observer.applied(Vector::Zero(1));
     body.live(T, f1);
-    // It overshoots by no more than |E| < 0.21 of what the force changes by in a tick.
+    // The overshoot is at most |E| < 0.21 of the force's change in a tick.
     ASSERT_LE(std::abs(body.estimate(observer, alpha, T)[0]), 1 + 0.21 * 0.03);
     ASSERT_NEAR(observer.present()[0], f1[0], 2e-3 + 1e-9) << k;
   }
@@ -116,7 +116,7 @@ TEST(ForceObserver, FollowsTheFilterOfEveryModeOfAMatrix) {
 }
 
 TEST(ForceObserver, TakesTheDevicesOwnDampingForNoHumanForce) {
-  // Coasting under its own damping, stepped by the trapezoidal rule.
+  // The device coasts under its own damping, stepped by the trapezoidal rule.
   constexpr double m = 3e-4, b_d = 0.012, T = 1e-3;
   Observer observer(1);
   Body body(Matrix::Constant(1, 1, m));
@@ -131,7 +131,7 @@ TEST(ForceObserver, TakesTheDevicesOwnDampingForNoHumanForce) {
 }
 
 TEST(ForceObserver, CountsTheCoriolisTorque) {
-  // Constant velocity needs C v: with just that from the motors nobody else pushes.
+  // Constant velocity needs C v: if the motors give just that, nobody else pushes.
   Random random(82);
   const Matrix M = random.positive_definite(3, 1e-4, 1e-3), C = random.matrix(3, 1e-3);
   const Vector v = random.vector(3, 2);
@@ -152,7 +152,7 @@ TEST(ForceObserver, GoesOnFromTheEstimateItIsGiven) {
   Observer observer(3);
   observer.reset(f1, Vector::Zero(3));
   EXPECT_EQ(observer.present(), f1);
-  // Balanced by the motors, nothing moves and nothing changes.
+  // The motors balance the force: nothing moves and nothing changes.
   observer.applied(-f1);
   observer.applied(-f1);
   for (int k = 0; k < 100; ++k) {
@@ -162,8 +162,8 @@ TEST(ForceObserver, GoesOnFromTheEstimateItIsGiven) {
   EXPECT_LT((observer.present() - f1).norm(), 1e-12);
 }
 
-// A free body whose positions are sampled, and its velocity estimated from those: between two
-// samples of it lie the middles of two ticks.
+// A free body whose positions are sampled, and its velocity estimated from them. Between two
+// samples of the velocity lie the middles of two ticks.
 struct SampledBody {
   explicit SampledBody(Random& random, int n)
       : M(random.positive_definite(n, 1e-4, 1e-3)), x(random.vector(n, 1)), before(x) {
@@ -190,7 +190,7 @@ TEST(ForceObserver, TakesNoShareOfAMotorThatPushesAtRandomForAHuman) {
   SampledBody body(random, n);
   const Matrix nothing = Matrix::Zero(n, n);
   Observer observer(n);
-  observer.applied(random.vector(n, 1));  // of a run before
+  observer.applied(random.vector(n, 1));  // torque of an earlier run
   observer.applied(random.vector(n, 1));
   observer.estimate(0.1, T, body.M, nothing, random.vector(n, 1), Vector::Zero(n));
   observer.reset(Vector::Zero(n), body.sample(T));
@@ -215,7 +215,7 @@ TEST(ForceObserver, FollowsItsRecurrenceUnderEverythingAtOnce) {
     Observer observer(n);
     Vector f = random.vector(n, 1), v = random.vector(n, 2);
     Vector tau = Vector::Zero(n), tau_before = tau;
-    observer.applied(random.vector(n, 1));  // of a run before
+    observer.applied(random.vector(n, 1));  // torque of an earlier run
     observer.applied(random.vector(n, 1));
     observer.reset(f, v);
     for (int k = 0; k < 100; ++k) {

@@ -1,4 +1,4 @@
-// The networks' passivity for whatever motion, and the inertia that they stand for.
+// The networks' passivity under any motion, and the inertia that they present.
 #include "core/coupling/inertia_network.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Complex = std::complex<double>;
 constexpr double kBand = 5.3;  // [Hz]
 constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
 
-// The damping that pays for the ladder, by its proof [N m s/rad].
+// The damping that the ladder needs, by its proof [N m s/rad].
 double price(double eta, const Matrix& M_L, double T, double band) {
   const double w2 = 2 * std::numbers::pi * band, k = w2 * w2 / kA1;
   const Matrix N = (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) * M_L;
@@ -36,14 +36,14 @@ class Moved {
 
   struct Tick {
     double given;  // work and change of storage [J]
-    double paid;   // what the device's damping has to pay for it [J]
+    double paid;   // share that the device's damping must cover [J]
     double size;   // [J]
   };
   Tick tick(double eta, const Matrix& M_L, double gain, const Vector& dx, double T, double band) {
     const double before_set = network.storage();
     network.set({eta, edge}, M_L, gain, T, band);
     const double before = network.storage();
-    EXPECT_LE(before, before_set);  // crossing 1 loses it
+    EXPECT_LE(before, before_set);  // a crossing of 1 loses it
     const Vector torque = network.force() - network.damping() * (dx / T);
     const double cost = eta < 1 ? price(eta, M_L, T, band) : 0;
     network.advance(dx, T);
@@ -54,7 +54,7 @@ class Moved {
   }
 
   Random random;
-  double edge = InertiaShape::kFastest;  // of what is added [rad/s]
+  double edge = InertiaShape::kFastest;  // of the added inertia [rad/s]
   InertiaNetwork<kAnyDof> network;
 };
 
@@ -108,7 +108,7 @@ TEST_P(InertiaNetworkOfJoints, GivesNoMoreThanItStoredAndItsPriceHowever) {
     eta = std::clamp(eta + random.between(-0.02, 0.02), 0.0, 5.0);
     if (random.between(0, 1) < 0.01) eta = 1;
     if (random.between(0, 1) < 0.001) T = random.between(2e-4, 2e-3);
-    // Whatever the model says of the inertia, jumps as well.
+    // The model's inertia may take any value, and jump.
     if (random.between(0, 1) < 0.1) M = random.positive_definite(n, 1e-5, 1e-2);
     const double gain = random.between(0, 1);
     const auto tick = moved.tick(eta, M, gain, motions.next(T), T, kBand);
@@ -150,8 +150,9 @@ TEST_P(InertiaNetworkOfJoints, AtNaturalInertiaIsNotThere) {
   }
 }
 
-// The torque's answer to a device that swings, by the mean velocity over each tick: force over
-// acceleration at the frequency [kg m^2], its real part a mass that pushes along with it.
+// The network's response to a device that swings, with the mean velocity over each tick: force over
+// acceleration at the frequency [kg m^2]. Its real part is a mass that pushes along with the
+// device.
 Complex mass_added(double eta, double M, double hertz, double T) {
   InertiaNetwork<1> network;
   network.start(1);
@@ -186,8 +187,8 @@ TEST(InertiaNetwork, TakesAwayItsShareOfTheInertiaInTheBand) {
   }
 }
 
-// What the ladder is as a circuit in continuous time: a spring, then a mass with a damper, then a
-// spring with a damper behind it, in velocities (nu), in units of its band.
+// Impedance of the ladder as a circuit in continuous time, in velocities (nu), in units of its
+// band: a spring, then a mass with a damper, then a spring with a damper behind it.
 Complex ladder_impedance(double w) {
   const Complex p(0, w);
   const Complex last = 1.0 / (p * kA3 + 1 / kR);
@@ -212,7 +213,7 @@ TEST(InertiaNetwork, AboveOneIsAMassOnASpringAndDamper) {
       const double x = hertz / 25;
       const Complex s(0, x);
       const Complex wanted = -(1.0 + 1.4 * s) / (1.0 + 1.4 * s + s * s);
-      // The torque of a tick is felt at its middle: so far no delay.
+      // The torque of a tick acts at its middle on average: a delay of zero.
       const Complex got = mass_added(eta, 7e-4, hertz, 0.001) / (7e-4 * (eta - 1));
       EXPECT_LT(std::abs(got - wanted), 0.01 + 0.1 * x * x)
           << eta << " at " << hertz << ' ' << got << wanted;
@@ -224,9 +225,9 @@ TEST(InertiaNetwork, AboveOneIsAMassOnASpringAndDamper) {
   }
 }
 
-// Of a device M w' = -B_g w late by t and of a grip k_h without damping: on the axis
-//     M w^2 = k_h + w B_g sin(w t), 0 = B_g cos(w t):
-// the added mass may damp no more than beta = B_g/M of w_1 - w_h^2/w_1 at w_1 = pi/(2 t).
+// A device M w' = -B_g w, late by t, in a grip k_h without damping. On the axis M w^2 = k_h + w B_g
+// sin(w t), 0 = B_g cos(w t): the added mass may damp no more than beta = B_g/M of w_1 - w_h^2/w_1
+// at w_1 = pi/(2 t).
 TEST(AddedMass, DampsNoMoreThanADelayBears) {
   for (const double T : {0.0005, 0.001, 0.002, 0.004}) {
     for (const double eta : {1.2, 2.0, 5.0, 20.0, 100.0}) {
@@ -250,7 +251,7 @@ TEST(AddedMass, IsAsItIsSetWhereNothingIsLate) {
     EXPECT_EQ(added.eta, eta);
     EXPECT_EQ(added.edge, InertiaShape::kFastest);
   }
-  // 5 to 10, 5 and 3.3 Hz with 1, 2 and 3 ms that are possible.
+  // Delays of 1, 2 and 3 ms allow 5 to 10, 5 and 3.3 Hz.
   for (const auto& [most, hertz] : {std::pair(1, 10.0), {2, 5.0}, {3, 3.3}}) {
     EXPECT_NEAR(added_mass(5, most, 0.001).edge / 2 / std::numbers::pi, hertz, 0.1);
   }

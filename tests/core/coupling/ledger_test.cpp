@@ -1,4 +1,4 @@
-// The account of energy against sums written down once more.
+// The account of energy against sums written out independently.
 #include "core/coupling/ledger.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ class LedgerOfJoints : public testing::TestWithParam<int> {
     b_lo_ = random_.vector(n(), 0.01).cwiseAbs();
     ledger_.start(y_, std::nullopt);
   }
-  // A tick under this torque, sent for it.
+  // Adds a tick under the torque `tau`, which was also sent for it.
   void add(const Any& y, const Any& x, const Any& tau, const Any& b_lo, double q) {
     ledger_.add(
         y, x, [&](int) { return tau; }, b_lo, 0, q, T);
@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Joints, LedgerOfJoints, testing::Values(1, 3, 7));
 TEST_P(LedgerOfJoints, IsWhatCameInAndWasDissipatedLessWhatIsStored) {
   double wanted = kE0, stored = 0.002;
   ledger_.settle(kE0, stored);
-  EXPECT_DOUBLE_EQ(ledger_.reserve(), wanted);  // whatever is stored at first is nobody's debt
+  EXPECT_DOUBLE_EQ(ledger_.reserve(), wanted);  // the initially stored energy is nobody's debt
   for (int k = 0; k < 200; ++k) {
     const Any next = y_ + random_.vector(n(), 1e-3), tau = random_.vector(n(), 0.1);
     add(next, y_, tau, b_lo_, 0);
@@ -55,7 +55,7 @@ TEST_P(LedgerOfJoints, IsWhatCameInAndWasDissipatedLessWhatIsStored) {
     wanted -= now - stored;
     stored = now;
     ledger_.settle(kE0, stored);
-    wanted = std::min(wanted, kCap);  // more than that is not kept
+    wanted = std::min(wanted, kCap);  // the cap
     ASSERT_NEAR(ledger_.reserve(), wanted, 1e-14);
   }
 }
@@ -153,7 +153,7 @@ TEST_P(LedgerOfJoints, CutsTheContactForceAtOnceAndGivesItBackIn50Milliseconds) 
 TEST_P(LedgerOfJoints, CutsTheDampingAndGivesItBackIn200Milliseconds) {
   const Any none = Any::Zero(n());
   ledger_.settle(kE0, 0);
-  const auto with = [&](double share) {  // of E0 that is left
+  const auto with = [&](double share) {  // `share` of E0 is left
     ledger_.settle(kE0, (1 - share) * kE0);
     ledger_.govern(none, none, 0.5, T);
     return ledger_.damping();
@@ -164,7 +164,7 @@ TEST_P(LedgerOfJoints, CutsTheDampingAndGivesItBackIn200Milliseconds) {
   EXPECT_NEAR(with(0.395), 0.1, 1e-12);
   EXPECT_NEAR(with(0.35), 0, 1e-12);
   EXPECT_EQ(with(-0.2), 0);
-  EXPECT_EQ(ledger_.torque(), 1);  // what is stored was not given
+  EXPECT_EQ(ledger_.torque(), 1);  // stored energy was not given
   for (int k = 1; k <= 400; ++k) ASSERT_NEAR(with(1), 1 - std::pow(1 - T / 0.2, k), 1e-12);
 }
 
@@ -192,7 +192,8 @@ TEST_P(LedgerOfJoints, CutsAllTorqueByWhatWasGivenAndByWhatIsOnItsWay) {
     }
     const double target = std::clamp(((least - coming) / kE0 - 0.25) / (0.35 - 0.25), 0.0, 1.0);
     wanted = target < wanted ? target : wanted + T / 0.2 * (target - wanted);
-    ledger_.settle(kE0, 0.3 * k * kE0);  // that the hand stores it in a wall takes no torque away
+    // Energy that the hand stores in a wall takes no torque away.
+    ledger_.settle(kE0, 0.3 * k * kE0);
     ledger_.govern(none, none, 0.5, T);
     ASSERT_NEAR(ledger_.torque(), wanted, 1e-9) << k;
     part = part || (wanted > 0.1 && wanted < 0.9);
@@ -201,7 +202,7 @@ TEST_P(LedgerOfJoints, CutsAllTorqueByWhatWasGivenAndByWhatIsOnItsWay) {
   EXPECT_EQ(ledger_.torque(), 0);
 }
 
-// What the hand does to a device without force is nobody's debt, and fills nothing up.
+// The work of the hand on a device without force is nobody's debt and fills no account.
 TEST_P(LedgerOfJoints, StaysAsItIsWhileNoTorqueLeavesAndIsFilledByWhoeverArms) {
   const Any none = Any::Zero(n());
   ledger_.settle(kE0, 0.001);
@@ -218,7 +219,7 @@ TEST_P(LedgerOfJoints, StaysAsItIsWhileNoTorqueLeavesAndIsFilledByWhoeverArms) {
   add(y_, y_, tau, none, 0);
   ledger_.settle(kE0, 0.02, true);
   EXPECT_NEAR(ledger_.reserve(), 0.001, 1e-15);
-  ledger_.settle(kE0, 0.021);  // and with force every debt counts
+  ledger_.settle(kE0, 0.021);  // with force every debt counts
   EXPECT_NEAR(ledger_.reserve(), 0, 1e-15);
   ledger_.refill();
   EXPECT_DOUBLE_EQ(ledger_.reserve(), kE0);
@@ -226,7 +227,7 @@ TEST_P(LedgerOfJoints, StaysAsItIsWhileNoTorqueLeavesAndIsFilledByWhoeverArms) {
   EXPECT_NEAR(ledger_.reserve(), kE0, 1e-15);
 }
 
-// Half a second within half a milliradian: then 5 mJ are forgiven, until it has 2 mJ.
+// After half a second within half a milliradian 5 mJ are forgiven, up to a balance of 2 mJ.
 TEST_P(LedgerOfJoints, ForgivesWhatAHandThatHoldsStillSeemsToOwe) {
   const Any none = Any::Zero(n());
   const auto tick = [&](const Any& y) {
@@ -260,11 +261,11 @@ TEST_P(LedgerOfJoints, ForgivesNothingWhileTheDeviceMoves) {
   }
 }
 
-// A torque that acts d ticks late does the work of the tick in which it acts: the account of that
-// delay is right, and the least of all is what counts.
+// A torque that acts d ticks late does the work of the tick in which it acts. The account of the
+// true delay is right, and the lowest account counts.
 TEST_P(LedgerOfJoints, CountsTheLeastOfTheAccountsOfEveryDelayThatIsPossible) {
   constexpr int kLeast = 1, kMost = 4;
-  std::vector<Any> sent(kMost + 1, Any::Zero(n()));  // the last one first
+  std::vector<Any> sent(kMost + 1, Any::Zero(n()));  // the newest first
   std::vector<double> wanted(kMost + 1, kE0);
   ledger_.expect(kLeast, kMost);
   ledger_.settle(kE0, 0);
@@ -287,7 +288,7 @@ TEST_P(LedgerOfJoints, CountsTheLeastOfTheAccountsOfEveryDelayThatIsPossible) {
   }
   EXPECT_TRUE(other);
   const double left = ledger_.reserve();
-  ledger_.expect(0, 6);  // of delays that come into question now, nobody knows more
+  ledger_.expect(0, 6);  // delays that are possible only now start from the same balance
   ledger_.settle(kE0, 0);
   EXPECT_EQ(ledger_.reserve(), left);
 }
@@ -301,20 +302,20 @@ TEST_P(LedgerOfJoints, StartsAnewWithNoMoreThanIsLeft) {
   EXPECT_EQ(ledger_.contact(), 0);
   const double left = ledger_.reserve();
   ledger_.start(y_, std::nullopt);
-  ledger_.start(y_, std::nullopt);  // twice before it is used
+  ledger_.start(y_, std::nullopt);  // a second start before any use
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), left);
   EXPECT_EQ(ledger_.contact(), 1);
   EXPECT_EQ(ledger_.damping(), 1);
   EXPECT_EQ(ledger_.torque(), 1);
   EXPECT_EQ(ledger_.dx(), Any::Zero(n()));
-  ledger_.start(y_, 0.002);  // as a recording says
+  ledger_.start(y_, 0.002);  // the balance of a recording
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), 0.002);
   ledger_.start(y_, 1.0);
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), 0.003);
-  ledger_.start(y_, std::numeric_limits<double>::infinity());  // of a new loop
+  ledger_.start(y_, std::numeric_limits<double>::infinity());  // a new loop
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), 0.003);
 }

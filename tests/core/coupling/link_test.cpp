@@ -31,7 +31,7 @@ LinkSettings link(int delay, int jitter, double loss, int seed = 1) {
   return {.link_delay = delay, .link_jitter = jitter, .link_loss = loss, .link_seed = seed};
 }
 
-// All packets there ever were, looked through from the first to the last in every tick.
+// A reference: keeps all packets ever sent and searches them all in every tick.
 class Queue {
  public:
   int newest(int now, const LinkSettings& s, std::uint64_t direction) {
@@ -58,14 +58,14 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
     LinkSettings s;
     int lost = 0;
     for (int k = 0; k < 900; ++k) {
-      if (k % 150 == 0) {  // also from one to another
+      if (k % 150 == 0) {  // also changes of the settings
         s = link(static_cast<int>(random.between(0, 200.99)),
                  static_cast<int>(random.between(0, 50.99)), random.one_of({0.0, 0.3, 0.9}),
                  1 + round);
       }
       const Numbered known = channel.pass(numbered(k), s);
       const int wanted = queue.newest(k, s, direction);
-      if (wanted < 0) {  // the first one, at rest
+      if (wanted < 0) {  // the initial packet, at rest
         EXPECT_EQ(known.number, 0);
         EXPECT_TRUE(known.resting);
         ++lost;
@@ -78,7 +78,7 @@ TEST(Link, GivesTheNewestSentOfAllThatHaveArrived) {
   }
 }
 
-// And so the condition for passivity may count on it.
+// The condition for passivity relies on this bound.
 TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
   for (const auto& [delay, jitter] : {std::pair(0, 5), {20, 0}, {7, 50}, {200, 50}}) {
     OneWay<Numbered> channel(1, {});
@@ -87,7 +87,7 @@ TEST(Link, TellsNothingThatIsOlderThanDelayAndJitter) {
     for (int k = 0; k < 5000; ++k) {
       const int age = k - static_cast<int>(channel.pass(numbered(k), s).number);
       EXPECT_LE(age, s.oldest());
-      if (k < 250) continue;  // what was known at the start is older
+      if (k < 250) continue;  // the initial packet is older
       oldest = std::max(oldest, age);
       EXPECT_GE(age, delay);
     }
@@ -119,14 +119,14 @@ TEST(Link, ThatWasOffKnowsWhatIsSoWhenItComesOn) {
   EXPECT_FALSE(channel.pass(numbered(531), s).resting);
 }
 
-// Faults of the thread at pages that it touches for the first time.
+// Number of pages that this thread has touched for the first time.
 long first_touches() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
   return usage.ru_minflt;
 }
 
-// So many packets go there and back, and are all different.
+// Sends so many packets in each direction, all different.
 void exchange(ProxyLink<kAnyDof>& link, int joints, int ticks) {
   Random random(4);
   auto device = FromDevice<kAnyDof>::zero(joints);
@@ -139,7 +139,7 @@ void exchange(ProxyLink<kAnyDof>& link, int joints, int ticks) {
   }
 }
 
-// The first tick that touches a page waits for it, a few microseconds each.
+// A tick that touches a page for the first time waits for it, a few microseconds.
 TEST(Link, TouchesNoPageForTheFirstTimeInATick) {
   for (const int joints : {6, kMaxDof}) {
     ProxyLink<kAnyDof> used(joints), fresh(joints);
@@ -147,7 +147,7 @@ TEST(Link, TouchesNoPageForTheFirstTimeInATick) {
       each->start();
       each->of(link(200, 50, 0.1));
     }
-    exchange(used, joints, 300);  // its code and its stack
+    exchange(used, joints, 300);  // touches its code and its stack
     const long before = first_touches();
     exchange(fresh, joints, 300);
     // Two directions of 256 packets; a page has 512 numbers.
@@ -191,7 +191,7 @@ TEST(Link, LosesNoPartOfAPacket) {
   }
 }
 
-// Counts against what they should be, within four and a half standard deviations.
+// Compares counts with their expectations, within four and a half standard deviations.
 TEST(Link, LosesAndDelaysPacketsEvenlyAndEachDirectionByItself) {
   constexpr int kPackets = 100000;
   const double off = 4.5 * std::sqrt(kPackets);
@@ -224,7 +224,7 @@ TEST(Link, LosesAndDelaysPacketsEvenlyAndEachDirectionByItself) {
 
 struct AllSettings : LawSettings, LinkSettings {};
 
-// A device that is moved along, and a proxy that follows it under a law.
+// A device that is led, and a proxy that follows it under a law.
 class Followed {
  public:
   Followed(int n, unsigned seed)
@@ -234,7 +234,7 @@ class Followed {
     coupling_.start({zero_(), zero_(), zero_()});
   }
 
-  // All torques, one under the other.
+  // Returns the torques of all ticks, one below the other.
   Eigen::VectorXd run(CouplingKind kind, const AllSettings& p, bool through) {
     Random random(seed_);
     Eigen::VectorXd all(0);
@@ -301,7 +301,7 @@ TEST(Link, DoesNothingUnderThePredictiveLaw) {
   EXPECT_EQ(direct, Followed(3, 5).run(CouplingKind::predictive, p, false));
 }
 
-// (1) and (2) by hand, with what was so a while ago.
+// (1) and (2) by hand, each side with the other's state before the delay.
 TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
   constexpr int kDelay = 4, n = 2;
   const double T = 0.001;
@@ -327,7 +327,7 @@ TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
     in.link = link_of.of(link(kDelay, 0, 0));
     const Eigen::VectorXd tau1 = law.step(p, in, proxy);
     vbar2.push_back(proxy.vbar());
-    const std::size_t old = k > kDelay ? k - kDelay : 0;  // at first as it was at the start
+    const std::size_t old = k > kDelay ? k - kDelay : 0;  // until then the state at the start
     const Eigen::VectorXd v1_old =
         old > 0 ? Eigen::VectorXd((x1[old] - x1[old - 1]) / T) : Eigen::VectorXd(b);
     const Eigen::VectorXd wanted1 = -p.b_vc * (v1 - vbar2[old]) - p.k_vc * (x1[k] - x2[old]);

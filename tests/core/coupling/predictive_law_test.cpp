@@ -1,4 +1,4 @@
-// One tick of the predictive law, solved again with matrices written out from its equations.
+// A tick of the predictive law, solved again with matrices written out from its equations.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -61,7 +61,7 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
         -c * v_E - s0 + locked - p.b_v * w + shape - phi.transpose() * shape;
     EXPECT_LT((tau1 - wanted).norm(), 1e-9 * tau1.norm()) << seed;
     EXPECT_GT(locked.norm(), 1e-6 * tau1.norm()) << "the term counts";
-    // The midpoint rule, or where a joint dies out within a tick the exact decay of each.
+    // The midpoint rule, or, for a joint that dies out within a tick, its exact decay.
     const Eigen::Array3d a = T * 0.013 * M1.inverse().diagonal().array();
     Eigen::VectorXd ahead = Eigen::VectorXd::Constant(3, 2);
     if ((a > 1).any()) ahead = a / (a / (1 - (-a).exp()) - 1);

@@ -1,4 +1,4 @@
-// The predictor on devices that it knows exactly, and on those that it does not.
+// The predictor on devices that it knows exactly, and on others.
 #include "core/coupling/predictor.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using Vector = Vec<kAnyDof>;
 
 using test::T;
 
-// Of constant M, C and damping, moved by the midpoint rule.
+// A device of constant M, C and damping, moved by the midpoint rule.
 struct Device {
   Matrix M, C;
   Vector b, x, v;
@@ -50,7 +50,7 @@ class PredictorOfJoints : public testing::TestWithParam<int> {
   Jacobian<kAnyDof> J_ = 0.1 * random_.matrix(std::max(n(), 3), 1).topLeftCorner(3, n());
   Predictor<kAnyDof> predictor_;
 
-  // Device and predictor over a tick with a known torque and a hand's unknown one.
+  // Advances device and predictor by a tick with a known torque and an unknown one of a hand.
   void tick(const Vector& tau, const Vector& hand, const PredictorGains& g) {
     predictor_.correct(device_.x, T, 0, g.p, false);
     predictor_.model(device_.M, device_.C, device_.b, J_, T, g.p, g.mu, 0, 0, false);
@@ -67,7 +67,7 @@ TEST_P(PredictorOfJoints, FindsAnUnknownConstantTorqueAndIsExactThen) {
     tick(random_.vector(n(), 0.2), hand, {0, 1, 0.2});
     if (k < 30) continue;
     ASSERT_LT((predictor_.w() - device_.w).norm(), 1e-9) << k;
-    // The drive is that of the device, but for the torque that is known.
+    // The drive is the device's, apart from the known torque.
     const Vector rest = predictor_.D0() * predictor_.w() - predictor_.drive();
     ASSERT_LT((predictor_.D0() * device_.w - predictor_.drive() - rest).norm(), 1e-9);
   }
@@ -87,7 +87,7 @@ TEST_P(PredictorOfJoints, CorrectsNothingInsideOfAnEncodersCell) {
   constexpr double q = 1e-3, p = 0.3;
   const Vector x = device_.x, v = device_.v, f = random_.vector(n(), 0.1);
   for (int round = 0; round < 100; ++round) {
-    predictor_.start(x, v, f);  // foretold for the first reading: x, with v
+    predictor_.start(x, v, f);  // predicted for the first reading: x, with v
     Vector beyond = none();
     for (double& e : beyond) {
       if (random_.between(0, 1) < 0.5) e = random_.between(-1, 1) * 1e-3;
@@ -98,7 +98,7 @@ TEST_P(PredictorOfJoints, CorrectsNothingInsideOfAnEncodersCell) {
     }
     predictor_.correct(y, T, q, p, false);
     predictor_.model(device_.M, device_.C, device_.b, J_, T, p, 1, 0, 0, false);
-    const Vector w0 = none();  // nothing was foretold of the first tick
+    const Vector w0 = none();  // nothing was predicted for the first tick
     const Vector x_ahead = x + T * w0, v_ahead = 2 * w0 - v;
     const Vector error = y - x_ahead;
     for (int i = 0; i < n(); ++i) {
@@ -179,7 +179,7 @@ TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
   for (int round = 0; round < 3; ++round) {
     shake(heavy, true);
     EXPECT_EQ(wrong, 0) << "with a mass";
-    // Foretold by the one that is active, with the hand's mass.
+    // The active predictor made the prediction, with the hand's mass.
     EXPECT_LT((predictor_.w() - device_.w).norm(), 1e-9);
     shake(light, true);
     EXPECT_EQ(wrong, 0) << "without";
@@ -189,8 +189,7 @@ TEST_P(PredictorOfJoints, TakesTheHeavyHandForHeavyAndLetsItGoAgain) {
   EXPECT_EQ(wrong, 0) << "without a second predictor";
 }
 
-// A joint that moves alone: a v' = -b v + f has an exact answer over a tick, also where it dies
-// out.
+// A joint that moves alone: a v' = -b v + f has an exact solution over a tick, even if it dies out.
 TEST(Predictor, OfLinksThatDieOutWithinATickIsExact) {
   for (const double a : {1e-6, 0.3, 1.5, 4.0, 20.0}) {  // T b / M
     const double M = 2e-4, b = a * M / T, f = 0.03, v0 = 2, x0 = 0.1;

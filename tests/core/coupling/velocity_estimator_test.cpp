@@ -84,15 +84,15 @@ TEST(VelocityEstimator, AdaptiveOfASlowRampIsWithinAStepOverItsWindow) {
 }
 
 TEST(VelocityEstimator, AdaptiveOfAFastMotionDoesNotLag) {
-  // 40 rad/s^2 and coarse encoders. Where the window is L ticks long its chord misses a parabola by
-  // a L^2 T^2 / 8, which may be a step and the rounding of three samples; and L T a / 2 is the lag.
+  // 40 rad/s^2 and coarse encoders. The chord of a window of L ticks misses a parabola by a L^2 T^2
+  // / 8, which may be a step and the rounding of three samples; the lag is L T a / 2.
   constexpr double step = 4e-4, a = 40;
   VelocityEstimator<kAnyDof> v(1);
   v.reset(one(0));
   for (int k = 1; k <= 500; ++k) {
     const double t = k * T;
     v.update(one(quantised(a * t * t / 2, step)), T, VelocitySource::adaptive, step);
-    const double window = std::sqrt(8 * 2 * step / a);  // longest there can be [s]
+    const double window = std::sqrt(8 * 2 * step / a);  // the longest possible [s]
     const double bound = a * std::min(window, 16 * T) / 2 + step / T;
     ASSERT_NEAR(v.estimate()[0], a * t, bound) << k;
   }
@@ -110,7 +110,7 @@ TEST(VelocityEstimator, AdaptiveIsQuieterThanTheRawDifferenceInSlowMotion) {
     raw += std::pow(v.raw()[0] - truth, 2);
     adaptive += std::pow(v.estimate()[0] - truth, 2);
   }
-  EXPECT_LT(adaptive, raw / 50);  // a window of 16: up to 256 times
+  EXPECT_LT(adaptive, raw / 50);  // a window of 16 gives up to 256 times less
 }
 
 TEST(VelocityEstimator, LowPassFollowsTheImplicitRecurrenceAtEveryTick) {
@@ -132,8 +132,8 @@ TEST(VelocityEstimator, LowPassFollowsTheImplicitRecurrenceAtEveryTick) {
   }
 }
 
-// The longest window of up to 16 ticks, each shorter one included, whose chord passes within a step
-// of every sample; from all there ever were.
+// Slope over the longest window of up to 16 ticks whose chord passes within a step of every sample,
+// as all shorter ones' do; searched in all samples.
 double end_fit(const std::vector<double>& x, double tick, double step) {
   const auto last = static_cast<int>(x.size()) - 1;
   const auto at = [&](int ago) { return x[static_cast<std::size_t>(last - ago)]; };

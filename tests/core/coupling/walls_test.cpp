@@ -1,4 +1,4 @@
-// Limits of walls at the tip, against a bar and a sliding mass whose numbers are plain.
+// Limits of walls at the tip, against a bar and a sliding mass with simple numbers.
 #include "core/coupling/walls.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(Walls, ThatAreInfinitelyFastAndHeavyHandedEndWhereTheDesignSaysSo) {
   const double b = (0.012 + 0.012) / 0.225 / 0.225 + 2 + 0.2 * tip.mass / 0.001;
   EXPECT_NEAR(mistaken_wall(tip, s), std::sqrt(2 * b * tip.mass / 1e-9), 1e-3);
   const double heavy = mistaken_wall(tip, s);
-  s.hand_mass = tip.mass;  // half of what moves: 2^1/2 as stiff
+  s.hand_mass = tip.mass;  // half of the moving mass: 2^1/2 as stiff
   EXPECT_NEAR(mistaken_wall(tip, s), std::sqrt(2.0) * heavy, 1e-2);
   s.hand_mass = 0;
   EXPECT_TRUE(std::isinf(mistaken_wall(tip, s)));
@@ -55,7 +55,7 @@ TEST(Walls, AreSofterWhereTheTorqueIsLate) {
   const TipAlong tip = bar(0.225, 5e-4, 0.012);
   WallSetting s{.T = 0.001, .k_vc = 10, .b_v = 0.012, .hand_damping = 2};
   const double prompt = proposed_wall(tip, s);
-  s.delay = 0.0017;  // as long as half a tick and b_v/k_vc together
+  s.delay = 0.0017;  // half a tick and b_v/k_vc together
   EXPECT_NEAR(proposed_wall(tip, s), prompt / 2, 1e-9);
   EXPECT_NEAR(every_hands_wall(tip, 0.001, 0.002), every_hands_wall(tip, 0.001) / 5, 1e-9);
 }

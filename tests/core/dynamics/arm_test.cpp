@@ -1,4 +1,4 @@
-// The dynamics of chains against mechanics written down another way: points moved by finite
+// The dynamics of chains against mechanics formulated differently: points moved by finite
 // differences, energies summed over links, Christoffel's symbols from differences of M.
 #include "core/dynamics/arm.h"
 
@@ -228,7 +228,8 @@ TEST(Arm, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
 TEST(Arm, OfOneJointIsAPendulum) {
   const ArmDescription description = random_arm(1, 9);
   const Link& link = description.links[0];
-  const Vec3 a = description.joints[0].axis;  // goes through the link's origin, fixed in it
+  // The axis passes through the link's origin and is fixed in the link.
+  const Vec3 a = description.joints[0].axis;
   const double lever2 = link.com.squaredNorm() - std::pow(link.com.dot(a), 2);
   const double inertia = a.dot(link.inertia * a) + link.mass * lever2;
   const Any arm(description);
@@ -285,13 +286,13 @@ TEST(Arm, ThatTurnsASlideIsTheTextbooks) {
   const Vector Cv = coriolis_at(arm, x, v) * v;
   EXPECT_NEAR(Cv[0], 2 * m * r * (0.1 * v[1]) * v[0], 1e-15);
   EXPECT_NEAR(Cv[1], -0.1 * m * r * v[0] * v[0], 1e-15);
-  EXPECT_NEAR(reach(description), 0.25, 1e-15);  // a travel without limits counts for nothing
+  EXPECT_NEAR(reach(description), 0.25, 1e-15);  // an unlimited travel is not counted
   description.joints[1].lower = -0.5;
   description.joints[1].upper = 2;
   EXPECT_NEAR(reach(description), 0.45, 1e-15);
 }
 
-// The farthest corner of the box that they span, not the sum of its edges.
+// The slides reach the farthest corner of the box that they span, not the sum of its edges.
 TEST(Arm, OfSlidesAcrossEachOtherReachesAsFarAsTheirBox) {
   ArmDescription description;
   for (int i = 0; i < 3; ++i) {
@@ -300,12 +301,12 @@ TEST(Arm, OfSlidesAcrossEachOtherReachesAsFarAsTheirBox) {
     joint.axis = Vec3::Unit(i);
     joint.lower = -1;
     joint.upper = 2 + i;
-    joint.origin.translation() = Vec3(0.1, 0, 0);  // of the first: where the arm stands
+    joint.origin.translation() = Vec3(0.1, 0, 0);  // the first one's is the arm's place
     description.joints.push_back(joint);
   }
   EXPECT_NEAR(reach(description), Vec3(0.1 + 0.1 + 0.2, 0.3, 0.4).norm(), 1e-15);
-  description.joints[1].origin.linear() =
-      Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();  // turns what comes after alike
+  // The turn applies to the following slides as well.
+  description.joints[1].origin.linear() = Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();
   EXPECT_NEAR(reach(description),
               Vec3(0.4, 0.3 * std::cos(0.3) + 0.1 * std::sin(0.3),
                    0.3 * std::sin(0.3) + 0.4 * std::cos(0.3))
@@ -323,7 +324,7 @@ TEST(Arm, TurnsItsAnglesOnToRoundOff) {
       dx[0] = size;
       const auto turned = arm.turned(arm.angles(x), dx);
       for (int i = 0; i < 5; ++i) {
-        // One rounding of each of the sines, products and the sum; the sum x + dx rounds, too.
+        // Bound: a rounding of each of the sines, products and the sum; the sum x + dx rounds, too.
         ASSERT_NEAR(turned.sin[i], std::sin(x[i] + dx[i]), 1e-15) << size;
         ASSERT_NEAR(turned.cos[i], std::cos(x[i] + dx[i]), 1e-15) << size;
       }
@@ -332,7 +333,7 @@ TEST(Arm, TurnsItsAnglesOnToRoundOff) {
 }
 
 TEST(Arm, TurnsExactlyByTheSineOfASmallStep) {
-  // From zero the series stands alone: a last digit of what is small.
+  // From zero only the series counts; its error is a last digit of the small angle.
   const Any arm(random_arm(1, 142));
   for (double d = -0.03; d <= 0.03; d += 1.7e-4) {
     const Vector dx = Vector::Constant(1, d);

@@ -82,7 +82,7 @@ TEST(FarthestTip, OfAnArmWithOffsetWristsIsFarBelowTheSumOfItsLinks) {
   EXPECT_LT(farthest_tip(arm).distance, 0.9 * reach(arm));
 }
 
-// The farthest corner of the box that slides across each other span.
+// Slides across each other reach the farthest corner of the box that they span.
 TEST(FarthestTip, OfSlidesIsTheFarthestCornerOfTheirBox) {
   ArmDescription arm;
   for (int i = 0; i < 3; ++i) {
@@ -95,7 +95,7 @@ TEST(FarthestTip, OfSlidesIsTheFarthestCornerOfTheirBox) {
   }
   arm.links.resize(3);
   EXPECT_NEAR(farthest_tip(arm).distance, Vec3(0.2, 0.3, 0.5).norm(), 1e-15);
-  arm.joints[1].upper = INFINITY;  // a travel without limits counts for nothing
+  arm.joints[1].upper = INFINITY;  // an unlimited travel is not counted
   EXPECT_NEAR(farthest_tip(arm).distance, Vec3(0.2, 0, 0.5).norm(), 1e-15);
 }
 
@@ -118,7 +118,7 @@ TEST(FarthestTip, IsNeverBelowWhatRandomPosesGiveNorAboveTheBound) {
       }
       most = std::max(most, distance_at(arm, x));
     }
-    EXPECT_GE(found.distance, most * (1 - 1e-12)) << n;  // of one joint all are as far
+    EXPECT_GE(found.distance, most * (1 - 1e-12)) << n;  // with one joint all poses are equally far
     EXPECT_EQ(farthest_tip(arm).at, found.at) << "the same answer every time";
   }
 }

@@ -56,7 +56,7 @@ TEST(InverseKinematics, FindsNothingOutOfReach) {
 }
 
 TEST(InverseKinematics, FindsAMicrometreOrNothing) {
-  // Two links in a line that has no more than 0.5 m to give, whatever carries them.
+  // Two links in a line with a reach of 0.5 m; the base's place adds nothing.
   ArmDescription arm;
   arm.joints.resize(2);
   arm.links.resize(2);

@@ -23,7 +23,7 @@ Mat<kAnyDof> inertia(const ArmDescription& description, const Eigen::VectorXd& x
   return M;
 }
 
-// A body of the same material and shape, s times as long, weighs s^3 and turns like s^5.
+// An arm of the same material and shape, s times as long, has masses of s^3 and inertias of s^5.
 TEST(RandomArm, BuiltLargerIsTheSameArmOfTheSameMaterial) {
   const ArmDescription arm = random_arm(5, 7);
   const Eigen::VectorXd x = Random(3).vector(5, 1);
@@ -48,7 +48,7 @@ TEST(RandomArm, HasNoBetterBearingsForBeingSmall) {
   }
 }
 
-// Rows are made of what is drawn: a turn is a turn to round-off.
+// Rows follow from the random numbers, so a turn is a turn to round-off.
 TEST(Random, TurnsWithoutStretching) {
   Random random(5);
   for (int i = 0; i < 100; ++i) {

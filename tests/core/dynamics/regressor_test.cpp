@@ -1,5 +1,5 @@
-// Torques from parameters against the arm's own M and C, and against the slope of what its links
-// weigh.
+// Torques from parameters against the arm's own M and C, and against the slope of its links'
+// potential energy.
 #include "core/dynamics/regressor.h"
 
 #include <gtest/gtest.h>

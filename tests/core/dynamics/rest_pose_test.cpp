@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-// The tip's slowest direction against its fastest.
+// Ratio of the tip's slowest direction to its fastest.
 double roundness(const ArmDescription& description, const Eigen::VectorXd& x) {
   const Arm<kAnyDof> arm(description);
   Arm<kAnyDof>::Frames f;

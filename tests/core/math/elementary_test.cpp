@@ -1,4 +1,4 @@
-// Against the library's long double functions, which have eleven bits more.
+// Elementary functions against the library's in long double, which has eleven bits more.
 #include "core/math/elementary.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// How far apart, in units of the wanted number's last place as a double.
+// Difference in units of the wanted number's last place as a double.
 double places(double found, long double wanted) {
   const auto rounded = static_cast<double>(wanted);
   const double size = std::abs(rounded);
@@ -29,7 +29,7 @@ class Elementary : public testing::Test {
   double between(double low, double high) {
     return std::uniform_real_distribution(low, high)(random_);
   }
-  // As likely of one size as of another, of either sign.
+  // A number of either sign whose exponent is evenly distributed.
   double of_any_size(int least, int most) {
     const double x = std::ldexp(between(1, 2), std::uniform_int_distribution(least, most)(random_));
     return between(-1, 1) < 0 ? -x : x;

@@ -5,7 +5,7 @@
 namespace limpid {
 namespace {
 
-// What is left of a sine of amplitude 1 once the filter has settled: by its power over 2 s.
+// Gain of the settled filter for a sine of amplitude 1, by its power over 2 s.
 double gain(HighPass filter, int frequency, int rate) {
   double power = 0;
   for (int k = 0; k < 4 * rate; ++k) {

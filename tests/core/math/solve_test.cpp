@@ -12,7 +12,8 @@ namespace {
 
 using test::Random;
 
-// Each number of joints that a loop by fours can end in, and the two that are compiled for.
+// Runs with every remainder of a loop by fours as the number of joints, and with the two compiled
+// sizes.
 template <class F>
 void for_sizes(const F& f) {
   for (int n = 1; n <= kMaxDof; ++n) f(std::integral_constant<int, kAnyDof>{}, n);
@@ -54,7 +55,7 @@ TEST(Solve, MovesAFactorAsItsMatrixMoves) {
     EXPECT_LT((Ldot * L.transpose() + L * Ldot.transpose() - Adot).norm(), 1e-11 * Adot.norm())
         << n;
     EXPECT_TRUE(Eigen::MatrixXd(Ldot).isLowerTriangular(0)) << n;
-    // With Adot = C + C^T what is left of C is skew.
+    // With Adot = C + C^T the rest of C is skew.
     const Mat<N> skew = skew_rest<N>(half, L, Ldot), wanted = half - L * Ldot.transpose();
     EXPECT_LT((skew - wanted).norm(), 1e-11 * half.norm()) << n;
     EXPECT_EQ((skew + skew.transpose()).norm(), 0) << n;

@@ -1,6 +1,6 @@
-// Loops of many joints are compiled for SSE2 and AVX2, and chosen when the program is loaded: here
-// the chosen ones against the same loops compiled for SSE2 alone. On a processor without AVX2 these
-// are the same code.
+// Loops of many joints, compiled for SSE2 and AVX2 and chosen when the program is loaded: the
+// chosen ones against the same loops compiled for SSE2 alone. On a processor without AVX2 these are
+// the same code.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -38,7 +38,7 @@ TEST(WidestVectors, ReckonEachNumberAsNarrowOnesDo) {
   }
 }
 
-// N: with code of its own, and M the same for narrow vectors.
+// N has code of its own; M gives the same for narrow vectors.
 template <int N, int M>
 void expect_the_same_of_wide_factors(Eigen::Index n) {
   using namespace wide;

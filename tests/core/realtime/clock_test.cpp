@@ -12,12 +12,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A world in which time passes only by sleeping, by looking at the clock or by saying so.
+// A world in which time passes only by sleeping, by reading the clock or by changing `now`.
 struct World {
   nanoseconds now{0};
-  nanoseconds look{0};                // what a look at the clock takes
-  nanoseconds oversleep{0};           // how late every sleep ends
-  std::vector<nanoseconds> sleeps{};  // until when
+  nanoseconds look{0};                // time that reading the clock takes
+  nanoseconds oversleep{0};           // delay of the end of every sleep
+  std::vector<nanoseconds> sleeps{};  // their wanted ends
 };
 
 struct SimulatedTime {
@@ -37,7 +37,7 @@ TestClock clock_in(World& world, nanoseconds period = kT, nanoseconds spin = 0ns
   return {kStart, period, spin, SimulatedTime{&world}};
 }
 
-// Ticks that follow without a sleep, at most `limit`.
+// Number of ticks until the next sleep, at most `limit`.
 int ticks_until_sleep(TestClock& clock, const World& world, int limit) {
   const auto sleeps = world.sleeps.size();
   int count = 0;
@@ -81,7 +81,7 @@ TEST(Clock, CatchesUpAfterAStallAndKeepsTheSchedule) {
   World world;
   TestClock clock = clock_in(world);
   clock.wait();
-  world.now += 13'500us;  // over the deadlines of ticks 1 to 13
+  world.now += 13'500us;  // past the deadlines of ticks 1 to 13
   for (std::int64_t k = 1; k <= 13; ++k) {
     const Wake wake = clock.wait();
     ASSERT_EQ(wake.tick, k);
@@ -108,7 +108,7 @@ TEST(Clock, SlipsByWholePeriodsWhatTwentyTicksCannotCatchUp) {
   World world;
   TestClock clock = clock_in(world);
   clock.wait();
-  world.now += 100'500us;  // over 100 deadlines
+  world.now += 100'500us;  // past 100 deadlines
   const Wake first = clock.wait();
   EXPECT_EQ(first.tick, 1);
   EXPECT_EQ(first.latency, 99'500us);
@@ -124,9 +124,9 @@ TEST(Clock, LetsAStallWhileCatchingUpSlipRatherThanProlongTheSeries) {
   World world;
   TestClock clock = clock_in(world);
   clock.wait();
-  world.now += 15'500us;  // over 15 deadlines
+  world.now += 15'500us;  // past 15 deadlines
   for (int k = 1; k <= 10; ++k) clock.wait();
-  world.now += 7ms;  // 5 + 7 overdue, of which there is room for 10
+  world.now += 7ms;  // 5 + 7 overdue, with room for 10
   EXPECT_EQ(ticks_until_sleep(clock, world, 100), 10);
   EXPECT_EQ(clock.counts().slipped, 2);
 }
@@ -146,7 +146,8 @@ TEST(Clock, SleepsAfterCatchingUpForTwentyPeriodsHoweverSlowTheTicksAre) {
         world.now += compute;
         clock.wait();
       }
-      // The tick before catching up, the last one to begin in time, and the sleep at the end.
+      // Bound: the tick before catching up, 20 periods, the last tick that began in time, and the
+      // sleep at the end.
       EXPECT_LE(world.now - begin, compute + 20 * kT + compute + kT);
     }
   }
@@ -243,7 +244,7 @@ TEST(Clock, RunsNoTickBackToBackWhereNoneMayBe) {
     TestClock clock(kStart, kT, 0ns, SimulatedTime{&world}, 0);
     for (int k = 0; k < 5; ++k) clock.wait();
     const nanoseconds before = world.now;
-    world.now += stall;  // in a tick
+    world.now += stall;  // within a tick
     const Wake late = clock.wait();
     EXPECT_EQ(late.tick, 5);
     EXPECT_GE(late.moment, before + stall);
@@ -253,7 +254,7 @@ TEST(Clock, RunsNoTickBackToBackWhereNoneMayBe) {
     EXPECT_EQ(world.sleeps.size(), sleeps + 1) << "then it waits";
     EXPECT_EQ((next.moment - kStart) % kT, 0ns) << "on the old schedule";
     EXPECT_EQ(next.moment - late.moment, kT);
-    // So many periods as have passed have been run or given up.
+    // Every period that has passed was either run or given up.
     EXPECT_EQ(next.tick + clock.counts().slipped, (next.moment - kStart) / kT);
   }
 }

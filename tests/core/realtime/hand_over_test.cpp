@@ -9,7 +9,7 @@
 namespace limpid {
 namespace {
 
-// Counts how many there are; a damaged one would show.
+// A thing that counts its living copies; damage would show in its two values.
 struct Thing {
   Thing(int number, std::atomic<int>& alive) : value(number), twice(2 * number), alive_(alive) {
     ++alive_;
@@ -82,7 +82,7 @@ TEST_F(Handing, WorksWhileBothSidesRun) {
   for (int i = 1; i <= kOffers; ++i) {
     over.offer(make(i));
     EXPECT_LE(alive, 4);
-    // Now and then until the loop has it, or at least a newer one.
+    // At times waits until the loop has this one, or a newer one.
     while (i % 100 == 0 && newest < i) over.collect();
   }
   done = true;

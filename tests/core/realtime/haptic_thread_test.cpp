@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Returns once the loop has stopped by itself.
+// Waits until the loop has stopped by itself.
 LoopStatus wait_for_the_end(const HapticThread& haptics) {
   while (haptics.status().running) std::this_thread::yield();
   return haptics.status();
@@ -153,7 +153,7 @@ TEST(HapticThread, ReportsTheSchedulingItReallyHas) {
   EXPECT_FALSE(report.explanation.empty());
 }
 
-// Whoever is not privileged has to ask, and is granted nothing without a limit of its time.
+// A process without privileges must ask, and gets nothing without a limit of its time.
 TEST(BecomeRealtime, LimitsItsTimeBeforeItAsks) {
   const pid_t child = fork();
   if (child == 0) {

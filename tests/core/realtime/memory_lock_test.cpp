@@ -24,8 +24,8 @@ const auto kPage = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
 
 enum Verdict : int { yes, no, skipped };
 
-// In a process of its own, whose memory nothing has locked before. The pages of files that this one
-// has used are not yet in it.
+// Runs `work` in a child process, whose memory nothing has locked before. Pages of files that this
+// process has used are not mapped there yet.
 Verdict in_a_child(const std::function<Verdict()>& work) {
   const pid_t child = fork();
   if (child == 0) _exit(work());
@@ -35,7 +35,7 @@ Verdict in_a_child(const std::function<Verdict()>& work) {
   return static_cast<Verdict>(WEXITSTATUS(status));
 }
 
-// How many pages would make who touches them wait; -1 if the kernel does not say.
+// Number of pages that are not in memory; -1 if the kernel does not say.
 int absent(std::uintptr_t from, std::uintptr_t to) {
   const int pagemap = open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
   if (pagemap < 0) return -1;
@@ -56,11 +56,11 @@ int absent(const void* from, std::size_t bytes) {
 }
 
 struct Code {
-  std::string_view library;  // how its name begins; empty: the program
+  std::string_view library;  // beginning of its name; empty: the program
   int absent = 0, pages = 0;
 };
 
-// Sums up the code of one library.
+// Adds up the code pages of one library.
 int look(dl_phdr_info* object, std::size_t, void* into) {
   Code& code = *static_cast<Code*>(into);
   std::string_view name = object->dlpi_name;
@@ -95,7 +95,7 @@ TEST_P(CodeOfTicks, IsThereBeforeTheFirstOne) {
 
 INSTANTIATE_TEST_SUITE_P(LockMemory, CodeOfTicks, testing::Values("", "libc.so", "libstdc++.so"));
 
-// Reservations, as the stacks of threads and what malloc keeps, are many times what is used.
+// Reserved memory, as of threads' stacks and malloc, is many times the used memory.
 TEST(LockMemory, BringsInNothingThatNobodyUsesHoweverOften) {
   const Verdict left = in_a_child([] {
     constexpr std::size_t kBytes = 1 << 20;
@@ -117,20 +117,20 @@ TEST(LockMemory, KeepsWhatIsMappedLaterOnceItIsTouched) {
     void* later = mmap(nullptr, kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (later == MAP_FAILED) return skipped;
     *static_cast<volatile char*>(later) = 1;
-    // What is locked cannot be given up.
+    // Locked memory cannot be given up.
     return madvise(later, kPage, MADV_DONTNEED) != 0 && absent(later, kPage) == 0 ? yes : no;
   });
   if (kept == skipped) GTEST_SKIP() << "memory cannot be locked here";
   EXPECT_EQ(kept, yes);
 }
 
-// Blocks that were large once teach malloc to keep others of their size.
+// Freed large blocks make malloc keep others of their size.
 TEST(GiveBackWhatIsFreed, GivesBackLargeBlocksThatLieUnderSmallOnes) {
   const Verdict given_back = in_a_child([] {
     give_back_what_is_freed();
     lock_memory();
     constexpr std::size_t kBytes = 1 << 20;
-    const auto taken = [] { return mallinfo2().arena; };  // the heap
+    const auto taken = [] { return mallinfo2().arena; };  // size of the heap
     const auto fill = [](std::size_t bytes) {
       auto block = std::make_unique<std::vector<char>>(bytes, 'x');
       return block;

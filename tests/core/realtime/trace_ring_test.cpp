@@ -65,7 +65,7 @@ TEST(TraceRing, PopsWholeRowsOnly) {
   EXPECT_EQ(ring.size(), 1u);
 }
 
-// The reader is kept slower than the writer now and then, so that rows are dropped as well.
+// The reader is slower than the writer at times, so that rows are dropped as well.
 TEST(TraceRing, DeliversEveryAcceptedRowOnceAndInOrderUnderTwoThreads) {
   constexpr std::int64_t kRows = 300'000;
   constexpr std::size_t kStride = 7;

@@ -1,4 +1,4 @@
-// Who may push: every event in every state, and a long random walk.
+// Arming: every event in every state, and a long random walk.
 #include "core/tick/arming.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::Random;
 using enum Arming;
 using test::T;
 
-// Written out again from the description, in words.
+// The table is written out again from the description, in words.
 TEST(Arming, GoesWhereEachEventTakesIt) {
   using Event = ArmingEvent;
   const std::map<std::pair<Arming, Event>, Arming> moves{
@@ -65,7 +65,7 @@ TEST(ForceGate, FadesInOverHalfASecond) {
   EXPECT_TRUE(gate.steady());
 }
 
-// A gate with full force.
+// A gate that is open to full force.
 struct OpenGate : testing::Test {
   OpenGate() {
     gate.start(false);
@@ -175,7 +175,7 @@ TEST(ForceGate, NeverOpensWithoutBeingArmedWhateverHappens) {
   Random random(40);
   ForceGate gate;
   gate.start(false);
-  bool asked = false;  // since it was last off or tripped
+  bool asked = false;  // since the gate was last off or tripped
   double before = 0;
   int opened = 0;
   for (int k = 0; k < 1'000'000; ++k) {

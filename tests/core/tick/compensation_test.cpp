@@ -80,7 +80,7 @@ TEST(Compensation, GoesByWhereDownIsSaidToBe) {
   }
 }
 
-// Whatever it takes the velocity for: noise, late, the wrong sign.
+// Holds for any error of the velocity: noise, delay, the wrong sign.
 TEST(Compensation, NeverPutsOutMoreThanItsShareOfTheFriction) {
   const Bench bench(2);
   Random random(603);
@@ -108,7 +108,7 @@ TEST(Compensation, TakesItsShareOffWhenTheDeviceMovesOn) {
   EXPECT_NEAR(torque[0], -0.7 * 0.02, 0.05 * 0.7 * 0.02);
 }
 
-// An encoder of 10 bits at the edge of a cell: a step there and back at every tick, at random.
+// An encoder of 10 bits at the edge of a cell: at every tick it may step there or back, at random.
 TEST(Compensation, DoesNotChatterWhereAnEncoderFlickers) {
   const Bench bench(1);
   const Parameters p = with({.friction_share = 0.7});

@@ -13,7 +13,7 @@ namespace {
 using test::Random;
 using Vector = Vec<kAnyDof>;
 using test::T;
-constexpr double kSlew = 0.1;  // from no torque to the limit [s]
+constexpr double kSlew = 0.1;  // time from no torque to the limit [s]
 
 Vector three(double a, double b, double c) { return Vec3(a, b, c); }
 
@@ -56,7 +56,7 @@ TEST(MotorStage, ArrivesAtTheNewCommandAndFollowsItFromThenOn) {
   EXPECT_EQ(motors.pass(Vector::Constant(1, 0.5), limit, 1, T)[0], 0.5);
 }
 
-// A loop that oscillates swings its command faster than the motors follow at that rate.
+// The command of a loop that oscillates swings faster than the motors follow at that rate.
 TEST(MotorStage, EndsItsSlewWhereTheCommandIsNeverMet) {
   MotorStage<kAnyDof> motors(1);
   const Vector limit = Vector::Constant(1, 0.5);
@@ -107,8 +107,8 @@ TEST(MotorStage, IsZeroAtOnceWhenForceIsCutAndHasForgottenItsSlewThen) {
   EXPECT_EQ(motors.pass(command, limit, 0.5, T), 0.5 * command);
 }
 
-// The rate holds in wall time: a tick that comes a tenth of a period after the one before it may
-// move the torque by a tenth of a step.
+// The rate holds in wall time: a tick that comes a tenth of a period after the last one may move
+// the torque by a tenth of a step.
 TEST(MotorStage, BoundsTheRateOfRealMotorsInTheTimeThatPassed) {
   Random random(112);
   MotorStage<kAnyDof> motors(2);

@@ -194,7 +194,7 @@ TEST(ParameterText, SpellsChoicesAndLeavesTheArmsOwnEmpty) {
 }
 
 TEST(Parameters, AreEqualIfEveryOneOfThemIs) {
-  EXPECT_EQ(Parameters{}, Parameters{});  // also those left to the arm, which are not numbers
+  EXPECT_EQ(Parameters{}, Parameters{});  // also values left to the arm, which are not numbers
   for (const ParameterInfo& info : parameter_table()) {
     Parameters p;
     if (std::holds_alternative<int Parameters::*>(info.field)) {

@@ -1,4 +1,4 @@
-// The predictive law in the tick: its ledger, worked out from the rows alone.
+// The predictive law in the tick: its ledger, computed from the rows alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,8 @@ namespace {
 using test::random_arm;
 using test::Rows;
 
-// A device that is led back and forth whatever the motors do, at times fast, at times slowly.
+// Path of a device that is led back and forth whatever its motors do, at times fast, at times
+// slowly.
 Eigen::VectorXd led(std::size_t k, double T) {
   const double t = static_cast<double>(k) * T;
   const double swing = 0.2 * std::sin(2 * t) + 0.02 * std::sin(40 * t) * std::sin(0.9 * t);
@@ -22,8 +23,8 @@ Eigen::VectorXd led(std::size_t k, double T) {
 }
 
 struct LedTick {
-  int delay;     // known, between command and motor [ticks]
-  bool guarded;  // a hand is on it
+  int delay;     // known delay from command to motor [ticks]
+  bool guarded;  // a real device, with a hand on it
 };
 
 class LedgerOf : public testing::TestWithParam<LedTick> {};
@@ -31,10 +32,9 @@ INSTANTIATE_TEST_SUITE_P(Devices, LedgerOf,
                          testing::Values(LedTick{0, false}, LedTick{3, false}, LedTick{0, true},
                                          LedTick{1, true}, LedTick{3, true}));
 
-// H = E - stored. E begins with E0 and what is stored, gives the work of the torque that acts,
-// which is as old as the delay, and has back what the device's own damping takes: of a real device
-// nobody is sure of that. No more than 20 mJ are kept. At eta 1 nothing is stored but in spring and
-// proxy.
+// H = E - stored. E begins with E0 and the stored energy. It loses the work of the acting torque,
+// which is as old as the delay, and gains the work of the device's damping, which is not certain on
+// a real device. At most 20 mJ are kept. At eta 1 only spring and proxy store energy.
 TEST_P(LedgerOf, TheTickIsThatOfTheTorqueThatActedAndOfTheDampingThatIsSure) {
   constexpr double kDamping = 0.02, kCap = 0.02;
   const auto [delay, guarded] = GetParam();

@@ -1,4 +1,4 @@
-// When a guarded device may push, against the limits it is given.
+// Reasons against force on a guarded device, at the limits it is given.
 #include "core/tick/safety.h"
 
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ namespace {
 using test::T;
 using Vector = Vec<kAnyDof>;
 
-// An arm of two joints, well, armed and at rest; the tip moves as the joints do, in x and y.
+// An arm of two joints, healthy, armed and at rest; the tip moves as the joints do, in x and y.
 struct SafeArm : testing::Test {
   SafeArm() {
     for (Joint& joint : arm.joints) joint.lower = -1, joint.upper = 1;
     safety = std::make_unique<Safety<kAnyDof>>(arm);
   }
-  // So many ticks with all that the test has changed: what there is to say against force.
+  // Judges so many ticks with the test's values; returns the reason against force.
   ForceState judge(int ticks = 1) {
     for (int i = 0; i < ticks; ++i)
       against = safety->judge(health, diverged, {x, v, J, tau, put_out, T});
@@ -119,7 +119,7 @@ TEST_F(SafeArm, FadesBeyondTheRangeOfAJoint) {
   for (const double side : {-1.0, 1.0}) {
     x[1] = side;
     EXPECT_EQ(judge(), ForceState::on);
-    x[1] = side * 1.025;  // of 0.1 rad
+    x[1] = side * 1.025;  // 0.025 of 0.1 rad beyond
     EXPECT_EQ(judge(), ForceState::too_far);
     EXPECT_NEAR(against.ceiling, 0.75, 1e-9);
     x[1] = side * 1.2;
@@ -187,8 +187,8 @@ TEST_F(SafeArm, ForgetsSpeedAndEnergyWhenItStarts) {
 
 TEST_F(SafeArm, IsHeldBackByTheStrictestOfItsLimits) {
   J.setZero();
-  v[0] = 21;           // of 15 to 22.5 rad/s: a fifth is left
-  put_out = 1.65 * T;  // of 1.5 to 2.25 J: four fifths are
+  v[0] = 21;           // between 15 and 22.5 rad/s: a fifth is left
+  put_out = 1.65 * T;  // between 1.5 and 2.25 J: four fifths are left
   EXPECT_EQ(judge(5000), ForceState::too_fast);
   EXPECT_NEAR(against.ceiling, 0.2, 1e-3);
 }
@@ -201,7 +201,7 @@ TEST_F(SafeArm, HoldsOneJointToItsRangeBesideAnotherWithoutAny) {
     half.joints[static_cast<std::size_t>(free)].upper = kNone;
     safety = std::make_unique<Safety<kAnyDof>>(half);
     safety->limit({.range = 0.5});
-    for (const double beyond : {-0.55, 0.55}) {  // of 0.5 to 0.6 rad
+    for (const double beyond : {-0.55, 0.55}) {  // halfway from 0.5 to 0.6 rad
       x.setZero();
       x[1 - free] = beyond;
       EXPECT_EQ(judge(), ForceState::too_far) << free;
@@ -227,13 +227,13 @@ TEST_F(SafeArm, CanBeHeldToLowerLimits) {
   safety->limit({.joint_speed = 3, .tip_speed = 0.4, .tip_force = 2, .energy = 0.3, .range = 0.5});
   v[1] = -0.5;
   EXPECT_EQ(judge(1000), ForceState::too_fast);
-  EXPECT_NEAR(against.ceiling, 0.5, 1e-3);  // of 0.4 to 0.6 m/s
+  EXPECT_NEAR(against.ceiling, 0.5, 1e-3);  // halfway from 0.4 to 0.6 m/s
   J.setZero();
   v[1] = 3.75;
   judge(1000);
-  EXPECT_NEAR(against.ceiling, 0.5, 1e-3);  // of 3 to 4.5 rad/s
+  EXPECT_NEAR(against.ceiling, 0.5, 1e-3);  // halfway from 3 to 4.5 rad/s
   v[1] = 0;
-  x[0] = -0.55;  // of 0.5 to 0.6 rad
+  x[0] = -0.55;  // halfway from 0.5 to 0.6 rad
   EXPECT_EQ(judge(1000), ForceState::too_far);
   EXPECT_NEAR(against.ceiling, 0.5, 1e-9);
   x[0] = 0.49;
@@ -260,7 +260,8 @@ TEST_F(SafeArm, CannotBeHeldToHigherLimitsThanItsOwn) {
   EXPECT_GT(allowed({-1, -1, -1, -1, -1}).tip_force, 0);
 }
 
-// As it is until the test says otherwise: 0.2 N m of 0.4 to 0.8, at readings that stand still.
+// An arm that pushes with 0.2 N m of 0.4 to 0.8 unless the test changes that; its readings stand
+// still.
 struct SafeArmThatPushes : SafeArm {
   SafeArmThatPushes() { tau = Vec3(0.2, -0.1, 0).head(2); }
 };
@@ -291,7 +292,7 @@ TEST_F(SafeArmThatPushes, HasItsForceBackAsSoonAsAnyReadingMovesByTheLeast) {
   }
 }
 
-// However little of it is left: else it would come back.
+// The fade goes on at small torques; otherwise the force would come back.
 TEST_F(SafeArmThatPushes, FadesOnWhenTheTorqueHasBecomeSmall) {
   judge(350);
   tau.setZero();

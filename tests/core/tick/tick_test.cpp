@@ -19,7 +19,7 @@ using test::Random;
 using test::random_arm;
 using test::Rows;
 
-// A device that is led along a path whatever the motors do.
+// Path of a device that is led whatever its motors do.
 Eigen::VectorXd led(int n, std::size_t k, double T) {
   Eigen::VectorXd x(n);
   const double t = static_cast<double>(k) * T;
@@ -216,7 +216,7 @@ TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
       ASSERT_EQ(tau.norm(), 0);
     }
   }
-  // Starting over forgets it.
+  // A new start clears the divergence.
   tick.start(p, Start<3>::at_rest(led(3, 0, p.tick)));
   EXPECT_FALSE(tick.diverged());
   const Vec<3> x = led(3, 0, p.tick);
@@ -260,7 +260,7 @@ TEST(Tick, WritesTheVelocityThatTheObserverUsed) {
   }
 }
 
-// What the stop has stored at first was not gained.
+// Energy that the stop has stored at the start was not gained.
 TEST(Tick, CountsWhatContactsGainFromWhereItStarts) {
   const ArmDescription arm = random_arm(3, 128);
   const Parameters p;
@@ -311,7 +311,7 @@ TEST(Tick, TakesNewSettingsInFromTheTickTheyAreGivenAt) {
   }
 }
 
-// A damping that it does not have would be taken for the hand's force: f1_hat = f1 + (b_set - b) v.
+// A damping that the arm lacks would be taken for the hand's force: f1_hat = f1 + (b_set - b) v.
 TEST(Tick, BelievesNoMoreDampingOfARealArmThanItsFileHas) {
   const ArmDescription arm = random_arm(3, 131);
   const auto estimates = [&](double damping, bool guarded) {
@@ -333,7 +333,8 @@ TEST(Tick, BelievesNoMoreDampingOfARealArmThanItsFileHas) {
   EXPECT_NE(estimates(0, true), estimates(kFromArm, true)) << "less may be tried";
 }
 
-// The rows of a real arm are those of the settings that the loop says it takes, and of these alone.
+// The rows of a real arm follow from the settings that the loop reports to take, and from these
+// alone.
 TEST(Tick, TakesTheSettingsOfARealArmAsTheFunctionSaysThatAllOthersAsk) {
   const ArmDescription arm = random_arm(3, 133);
   const auto rows_of = [&](const Parameters& p) {
@@ -358,7 +359,7 @@ TEST(Tick, TakesTheSettingsOfARealArmAsTheFunctionSaysThatAllOthersAsk) {
   EXPECT_EQ(rows_of(set), rows_of(as_taken(set, RealDevice::of(arm, 0))));
 }
 
-// There law, observer and contacts begin anew from where things are.
+// Law, observer and contacts begin anew there, at the present positions.
 TEST(Tick, LeadsTheTorqueOfARealArmOnWhereARecordingBegins) {
   const ArmDescription arm = random_arm(3, 132);
   constexpr std::size_t kBefore = 600;
@@ -373,7 +374,7 @@ TEST(Tick, LeadsTheTorqueOfARealArmOnWhereARecordingBegins) {
       const Vec<3> x = led(3, k, p.tick);
       if (k == kBefore) {
         Start<3> here = Start<3>::at_rest(x);
-        here.x2 = x - Vec<3>::Constant(0.05);  // the spring asks for more at once
+        here.x2 = x - Vec<3>::Constant(0.05);  // the spring's torque jumps
         tick.restart_here(p, here);
       }
       tick.run(p, {x, x, Vec<3>::Zero(), {.guarded = guarded}}, ForceRequest::as_it_is, rows.add());
@@ -391,7 +392,7 @@ TEST(Tick, LeadsTheTorqueOfARealArmOnWhereARecordingBegins) {
   EXPECT_GT(jump(false), 4 / 0.1) << "rows of a virtual arm follow from where they begin";
 }
 
-// Whatever is set to try the virtual arm with.
+// The bound ignores settings meant for the virtual arm.
 TEST(Tick, GivesARealArmNoMoreThanItsOwnLimitNorFaster) {
   const ArmDescription arm = random_arm(3, 130);
   for (const double setting : {100.0, 0.3, kFromArm}) {

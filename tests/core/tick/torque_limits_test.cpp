@@ -1,5 +1,4 @@
-// What leaves for the motors against both of its limits, the force at the tip by an independent
-// solution.
+// The motors' torque against both of its limits, the force at the tip by an independent solution.
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
@@ -15,8 +14,8 @@ using Vector = Vec<kAnyDof>;
 
 constexpr double kTip = 10;  // [N]
 
-// The smallest force at the tip that does as much as it can of this torque, by its singular values;
-// what would take a thousand times the force of another direction is none.
+// The smallest force at the tip that gives as much of this torque as it can, by its singular
+// values. Directions that would take a thousand times the force of another one are left out.
 double force_of(const Vector& tau, const Jacobian<kAnyDof>& J) {
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.transpose(), Eigen::ComputeThinU | Eigen::ComputeThinV);
   svd.setThreshold(1e-3);
@@ -65,8 +64,7 @@ TEST(TorqueLimits, ScaleTheTorquesOfAnyArmByTheForceTheyMake) {
   }
 }
 
-// Motors that are stronger than they need be: it is the tip that is held back, or the joints, or
-// both.
+// Motors stronger than necessary: the limit that acts is the tip's, the joints', or both.
 TEST(TorqueLimits, HoldJointsAndTipTogetherForAHundredThousandTorques) {
   Random random(8);
   int by_tip = 0, by_joint = 0, by_both = 0;
@@ -100,7 +98,7 @@ TEST(TorqueLimits, HoldJointsAndTipTogetherForAHundredThousandTorques) {
   EXPECT_GT(by_both, 1000);
 }
 
-// Commands that jump while the arm moves, a coupling that is switched, a limit that is lowered.
+// Commands jump while the arm moves, a coupling is switched, a limit is lowered.
 TEST(TorqueLimits, HoldWhileTheTorqueIsOnItsWay) {
   Random random(9);
   int on_the_way = 0;

@@ -12,8 +12,8 @@ namespace {
 
 using Kind = BodyJoint::Kind;
 
-// What the rule of the tick takes off a swing by itself, of what something pushes: its amplitude
-// fades at this rate at w [1/s].
+// Rate at which the integration itself damps the amplitude of a swing at w, if something pushes the
+// body [1/s].
 double of_the_rule(double w) { return (BodyMotion::kTheta - 0.5) * kTick * w * w / 2; }
 
 // A ball of 50 g that hangs 10 cm below a joint.
@@ -38,7 +38,7 @@ double angle_of(const BodyWorld& world) {
   return std::atan2(-world.center(0).x(), -world.center(0).z());
 }
 
-// One after the other, on either side.
+// Amplitudes of successive swings, on both sides in turn.
 std::vector<double> peaks(BodyWorld& world, std::size_t wanted) {
   std::vector<double> all;
   double before = angle_of(world), rate = 0;
@@ -67,7 +67,8 @@ TEST(BodyJoints, ADampedBallJointsPendulumFadesAsItShould) {
   }
 }
 
-// Each half swing ends by twice the friction over the weight's stiffness nearer to the middle.
+// Dry friction ends each half swing nearer to the middle, by twice the friction over the weight's
+// stiffness.
 TEST(BodyJoints, DryFrictionOfABallJointTakesTheSameOffEverySwing) {
   const double friction = 0.01 * kWeight * kLength;
   BodyWorld world(pendulum(0.105, 0, friction));
@@ -99,7 +100,7 @@ TEST(BodyJoints, ABallJointSticksWhereFrictionBearsTheWeight) {
   EXPECT_LE(kWeight * kLength * std::abs(std::sin(angle_of(moving))), friction * 1.01);
 }
 
-// Of a ball that only turns: the tick's rule by hand.
+// A ball that only turns follows the tick's rule, computed by hand.
 TEST(BodyJoints, WhatABallJointTakesUpIsItsDampersWork) {
   Scene scene;
   scene.gravity.setZero();
@@ -117,7 +118,7 @@ TEST(BodyJoints, WhatABallJointTakesUpIsItsDampersWork) {
     if (k == 0) first = 0.5 * I * before.squaredNorm();
     run(world, 1);
     const Vec3 change = world.spin(0) - before;
-    const double theta = k == 0 ? 0.5 : BodyMotion::kTheta;  // pushed at the last tick
+    const double theta = k == 0 ? 0.5 : BodyMotion::kTheta;  // 1/2 unless pushed a tick before
     const Vec3 mean = before + theta * change;
     EXPECT_LT((I * change + kTick * joint.damping * mean).norm(), 1e-15) << k;
     lost += kTick * joint.damping * mean.squaredNorm() + (theta - 0.5) * I * change.squaredNorm();
@@ -126,7 +127,7 @@ TEST(BodyJoints, WhatABallJointTakesUpIsItsDampersWork) {
   EXPECT_GT(lost, 0.9 * first);
 }
 
-// A torque of the same size against the motion, whichever way it goes.
+// Friction is a torque of constant size against the motion, in every direction.
 TEST(BodyJoints, DryFrictionOfABallJointBrakesEvenly) {
   Scene scene;
   scene.gravity.setZero();
@@ -170,7 +171,7 @@ TEST(BodyJoints, TheProjectedTorqueIsWhatItSays) {
   EXPECT_LT(rubbing, 1800);
 }
 
-// Two bodies on one axis in empty space, of which one turns against the other.
+// Two bodies on one axis in empty space; one turns against the other.
 Scene two_on_an_axis(const BodyJoint& between) {
   Scene scene;
   scene.gravity.setZero();
@@ -185,7 +186,7 @@ Scene two_on_an_axis(const BodyJoint& between) {
 const double kBase = 0.5 * 0.1 * 9e-4, kWheel = 0.5 * 0.05 * 4e-4;  // [kg m^2]
 const double kReduced = kBase * kWheel / (kBase + kWheel);
 
-// From one crossing of the middle to the next but one.
+// Mean period by linear interpolation of upward crossings of the middle.
 double period_of(BodyWorld& world, int body, int most) {
   std::vector<double> crossings;
   double before = world.joint(body);
@@ -258,7 +259,7 @@ TEST(BodyJoints, AHingeOnABodyEndsAtItsStopsAndClicksIntoItsDetents) {
   const double steps = clicks.joint(1) / 0.25;
   EXPECT_NEAR(steps, std::round(steps), 1e-3);
   EXPECT_GT(steps, 1.5);
-  // Its place is that of the bodies.
+  // The joint's angle agrees with the bodies' poses.
   const Mat3 R = clicks.pose(0).linear().transpose() * clicks.pose(1).linear();
   const double angle = std::atan2(R(1, 0), R(0, 0));
   EXPECT_NEAR(std::remainder(clicks.joint(1) - angle, 2 * M_PI), 0, 1e-4);
@@ -316,7 +317,7 @@ TEST(BodyJoints, ASliderOnABodyIsBrakedAndStopped) {
   EXPECT_NEAR(most, 0.05, 2e-3);
 }
 
-// What pulls it off its line is borne, however both turn.
+// The rail bears every force off its line, however both parts turn.
 TEST(BodyJoints, ASliderStaysOnItsLineWhileAllOfItTurns) {
   BodyJoint spring;
   spring.force.spring = 20;
@@ -348,7 +349,7 @@ TEST(BodyJoints, ASliderStaysOnItsLineWhileAllOfItTurns) {
   EXPECT_LT((momentum() - before).norm(), 2e-3 * before.norm());
 }
 
-// Far out on its line, where that turns fast.
+// Far out on its line the body meets a line that turns fast.
 TEST(BodyJoints, ASliderMakesNothingFarOutOnALineThatTurns) {
   BodyJoint spring;
   spring.force.spring = 6;
@@ -367,7 +368,7 @@ TEST(BodyJoints, ASliderMakesNothingFarOutOnALineThatTurns) {
   EXPECT_GT(most, 0.05);
 }
 
-// However often it has gone round.
+// Holds after any number of turns.
 TEST(BodyJoints, AHingeIsWhereItsHalvesAre) {
   BodyJoint light;
   light.damping = 1e-9;
@@ -379,7 +380,8 @@ TEST(BodyJoints, AHingeIsWhereItsHalvesAre) {
   EXPECT_NEAR(std::remainder(world.joint(1) - std::atan2(R(1, 0), R(0, 0)), 2 * M_PI), 0, 1e-4);
 }
 
-// What holds a joint gives way with what acts in it: else each would wait for the other.
+// A joint's friction and damping yield to the forces in it; otherwise each would wait for the
+// other.
 TEST(BodyJoints, AreFoundInFewSweeps) {
   for (const auto& [damping, friction] : {std::pair{0.0, 1e-3}, std::pair{1e-3, 0.0}}) {
     BodyWorld world(pendulum(0.5, damping, friction));
@@ -392,8 +394,8 @@ TEST(BodyJoints, AreFoundInFewSweeps) {
   }
 }
 
-// A force goes on as others let it go on: a change from outside, of which damping takes its share,
-// is the whole of what is done to both halves, and the next sweep finds the same forces again.
+// A joint's force goes on under outside changes. The change, of which damping takes its share, is
+// all that acts on both halves, and the next sweep finds the same forces again.
 TEST(BodyJoints, KeepAccountOfAllThatTheyPushWith) {
   Random random(5);
   for (const Kind kind : {Kind::ball, Kind::hinge}) {
@@ -430,7 +432,7 @@ TEST(BodyJoints, KeepAccountOfAllThatTheyPushWith) {
   }
 }
 
-// A door that hangs on a door, both on springs and dampers, under their weight.
+// A chain of two doors, one hinged on the other, both on springs and dampers, under their weight.
 TEST(BodyJoints, AChainOfHingesMakesNoEnergy) {
   Scene scene;
   for (int i = 0; i < 3; ++i) {
@@ -449,7 +451,7 @@ TEST(BodyJoints, AChainOfHingesMakesNoEnergy) {
   }
   BodyWorld world(scene);
   std::vector<double> numbers = state(world);
-  numbers[10 + 19] = 12;  // of the first, about its hinge [rad/s]
+  numbers[10 + 19] = 12;  // first door's speed about its hinge [rad/s]
   ASSERT_TRUE(world.read(numbers));
   EXPECT_LT(run(world, 8000), 1e-9);
   for (int i = 1; i < 3; ++i) EXPECT_GT(world.joint(i), -1.02) << i;
@@ -478,7 +480,7 @@ TEST(BodyJoints, GoOnFromTheirNumbersBitForBit) {
   EXPECT_EQ(state(one), state(other));
 }
 
-// As where a scene is edited while the loop runs.
+// A scene is edited while the loop runs.
 TEST(BodyJoints, StayWhereTheyAreInAnotherScene) {
   BodyJoint between;
   between.force.detent_force = 0.01;

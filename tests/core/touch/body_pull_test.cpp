@@ -10,8 +10,8 @@
 namespace limpid::test {
 namespace {
 
-constexpr double kSwing = 25;      // of the pull's spring with the body [rad/s]
-constexpr double kLongest = 0.04;  // it pulls no harder than this far off [m]
+constexpr double kSwing = 25;      // frequency of the pull's spring with the body [rad/s]
+constexpr double kLongest = 0.04;  // distance beyond which the pull grows no further [m]
 
 TEST(BodyPull, HoldsABodyAsFarBelowTheTargetWhateverItsMass) {
   for (const double mass : {0.0005, 0.05, 5.0}) {
@@ -43,7 +43,7 @@ TEST(BodyPull, BringsABodyToRestAsACriticallyDampedSpringDoes) {
   }
 }
 
-// Lifted slowly it is given its weight times the way, and little more for what the tick loses.
+// A slow lift gives the weight times the way, plus little for the tick's losses.
 TEST(BodyPull, GivesWhatItsWorkIs) {
   const double mass = 0.08, sag = 9.81 / (kSwing * kSwing);
   Scene scene;
@@ -62,7 +62,7 @@ TEST(BodyPull, GivesWhatItsWorkIs) {
   EXPECT_LE(gain, 1e-13);
 }
 
-// However it is swung round and turned, no energy comes from nowhere.
+// Swung round and turned in any way, the body gains no energy from nowhere.
 TEST(BodyPull, MakesNoEnergy) {
   Scene scene;
   scene.add(body("slab", Box{{0.03, 0.05, 0.01}}, 0.08, {0.1, -0.2, 0.3}));
@@ -122,7 +122,7 @@ TEST(BodyPull, OfABodyThatIsNotThereIsNone) {
   EXPECT_EQ(world.all_pulled(), 0);
 }
 
-// At its axis nothing moves it, however it is pulled; elsewhere it turns to the target.
+// A pull at the axis moves nothing; elsewhere the door turns to the target.
 TEST(BodyPull, TurnsWhatIsOnAHinge) {
   for (const bool of_world : {true, false}) {
     Scene scene;

@@ -61,7 +61,7 @@ TEST(BodyWorld, APendulumKeepsItsEnergyAndItsPeriod) {
   ASSERT_TRUE(world.read(numbers));
   EXPECT_LT(run(world, 20000), 1e-12);
   EXPECT_GT(world.gain(), -1e-12);
-  // From one crossing to the next but one, by straight lines in between.
+  // Period by linear interpolation of upward crossings of the middle.
   std::vector<double> crossings;
   double before = world.joint(0);
   for (int k = 0; crossings.size() < 21; ++k) {
@@ -78,7 +78,7 @@ TEST(BodyWorld, APendulumKeepsItsEnergyAndItsPeriod) {
 TEST(BodyWorld, ABlockSlidesAsCoulombSays) {
   for (const double friction : {0.2, 0.5}) {
     Scene scene;
-    const double slope = 0.35;  // rad: tan 0.365
+    const double slope = 0.35;  // [rad]: tan 0.365
     scene.gravity = 9.81 * Vec3(std::sin(slope), 0, -std::cos(slope));
     scene.add(floor_at(0));
     scene.add(body("block", Box{{0.04, 0.04, 0.01}}, 0.1, {0, 0, 0.00499}, friction));
@@ -98,7 +98,7 @@ TEST(BodyWorld, WhatRestsSinksByItsWeightOverItsContactsStiffness) {
   EXPECT_NEAR(0.015 - world.center(0).z(), 0.05 * 9.81 / 20000, 1e-8);
 }
 
-// A disc on a plane keeps its points wherever it goes.
+// A sliding disc keeps its contact points with the plane.
 TEST(BodyWorld, WhatSlidesDoesNotSink) {
   for (const double mass : {0.005, 0.5}) {
     Scene scene;
@@ -123,8 +123,8 @@ TEST(BodyWorld, WhatSlidesDoesNotSink) {
   }
 }
 
-// As fast as it came, times that; and without turning, for the floor is smooth. What falls weighs
-// so much that a bounce takes many ticks.
+// The ball leaves with its speed times the restitution, and without turning, as the floor is
+// smooth. The masses are so large that a bounce takes many ticks.
 TEST(BodyWorld, ABallBouncesAsItsRestitutionSays) {
   for (const double mass : {0.03, 0.5}) {
     for (const double restitution : {0.6, 0.9, 0.97}) {
@@ -146,7 +146,7 @@ TEST(BodyWorld, ABallBouncesAsItsRestitutionSays) {
   }
 }
 
-// Nothing is lost in rolling, and the ball stays as deep as its weight presses it in.
+// Rolling loses nothing, and the ball stays as deep as its weight presses it in.
 TEST(BodyWorld, ABallRollsOnWithoutSinking) {
   Scene scene;
   scene.add(floor_at(0));
@@ -164,8 +164,7 @@ TEST(BodyWorld, ABallRollsOnWithoutSinking) {
   EXPECT_NEAR(0.015 - world.center(0).z(), 0.05 * 9.81 / 20000, 1e-7);
 }
 
-// Blocks that are turned against each other meet in eight corners, of which four count, now these
-// and now those.
+// Blocks turned against each other meet in eight corners; four of them count, in changing choice.
 TEST(BodyWorld, AStackStandsStillAndSleeps) {
   Scene scene;
   scene.add(floor_at(0));
@@ -188,7 +187,7 @@ TEST(BodyWorld, AStackStandsStillAndSleeps) {
   }
 }
 
-// As in Newton's cradle; and what rests on another one presses it in by its weight.
+// Two balls are a Newton's cradle.
 TEST(BodyWorld, ABallHandsItsSpeedOnToAnother) {
   Scene scene;
   scene.gravity.setZero();
@@ -216,7 +215,7 @@ TEST(BodyWorld, ABallOnABallSinksByItsWeight) {
   EXPECT_NEAR(0.02 - (world.center(1).z() - world.center(0).z()), 0.05 * 9.81 / 20000, 1e-6);
 }
 
-// Of what is not pressed in so far that it comes out on the other side.
+// The bodies are not pressed in so far that they come out on the other side.
 TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
   Random random(7);
   const std::array<Shape, 4> shapes{Box{{0.03, 0.02, 0.04}}, Sphere{0.015}, Cylinder{0.012, 0.03},
@@ -239,8 +238,8 @@ TEST(BodyWorld, MakesNoEnergyWhateverFallsOnWhatever) {
   }
 }
 
-// Depths by hand: four points of 20,000 N/m each below either body; beyond that what the points had
-// when the fall brought them.
+// Depths by hand: four contact points of 20,000 N/m each below either body, plus the points' depth
+// from the fall.
 TEST(BodyWorld, CarriesAHeavyBodyOnALightOne) {
   for (const double ratio : {10.0, 100.0, 300.0}) {
     Scene scene;
@@ -255,7 +254,8 @@ TEST(BodyWorld, CarriesAHeavyBodyOnALightOne) {
   }
 }
 
-// One after another, from below: springs in a row that a weight presses together.
+// Stacked blocks sink one after another, from below: a row of springs that a weight presses
+// together.
 TEST(BodyWorld, StacksSinkByTheWeightAboveOverTheirContacts) {
   Scene scene;
   scene.add(floor_at(0));
@@ -268,7 +268,7 @@ TEST(BodyWorld, StacksSinkByTheWeightAboveOverTheirContacts) {
   double below = -0.015;
   for (int i = 0; i < 10; ++i) {
     const double depth = below + 0.03 - world.center(i).z();
-    // A little of it was there before anything pressed.
+    // A little of the depth was there before anything pressed.
     EXPECT_NEAR(depth, 0.02 * 9.81 * (10 - i) / 80000, 5e-6) << i;
     below = world.center(i).z();
   }
@@ -340,7 +340,7 @@ TEST(BodyWorld, GoesToSleepAndIsWokenByWhatFallsOnIt) {
   run(world, 10);
   const std::vector<double> later = state(world);
   EXPECT_TRUE(std::equal(asleep.begin() + 10, asleep.begin() + 10 + 4 * 23, later.begin() + 10));
-  run(world, 150);  // it hits at 0.77 s
+  run(world, 150);  // it hits the floor at 0.77 s
   EXPECT_EQ(world.awake(), 4);
 }
 
@@ -368,7 +368,7 @@ TEST(BodyWorld, GoesOnFromItsNumbersBitForBit) {
   EXPECT_EQ(a, b);
 }
 
-// As where a scene is edited while the loop runs: nothing is given or made by that.
+// A scene is edited while the loop runs: this gives and makes no energy.
 TEST(BodyWorld, GoesOnWithItsBooksInAnotherScene) {
   Scene scene;
   scene.add(floor_at(0));
@@ -427,14 +427,14 @@ TEST(BodyWorld, AnswersAForceWithItsMass) {
   EXPECT_NEAR(world.given(), 0.5 * 0.05 * world.speed(0).squaredNorm(), 1e-15);
 }
 
-// As where no forces were found for the arm and what it touches.
+// A tick found no forces for the arm and the bodies it touches.
 TEST(BodyWorld, WhatIsHeldForATickOnlyLosesAndThenGoesOn) {
   Scene scene;
   scene.add(floor_at(0));
   scene.add(body("touched", Box{Vec3::Constant(0.03)}, 0.05, {0, 0, 0.0149}));
   scene.add(body("falling", Sphere{0.02}, 0.05, {0.3, 0, 0.5}));
   BodyWorld world(scene);
-  run(world, 3);  // it is being pushed out
+  run(world, 3);  // the floor is pushing it out
   const double before = world.gain(), speed = world.speed(0).norm();
   ASSERT_GT(speed, 0);
   const Vec3 there = world.center(0), falling = world.center(1);
@@ -466,14 +466,14 @@ TEST(BodyWorld, AKeyClicksWhereItsTableSays) {
   joint.force.travel = {{0, 0.5}, {0.002, 0.9}, {0.006, 0.1}, {0.0096, 0.9}};
   scene.add(key);
   BodyWorld world(scene);
-  // Pressed with 0.6 N it stops where the table says so, with 1.2 N at the end.
+  // Pressed with 0.6 N the key rests where its table says; with 1.2 N at the end.
   const double weight = 0.002 * 9.81;
   for (const auto& [force, rest] : {std::pair{0.6, 0.0005 * (0.1 + weight) / 0.1},
                                     std::pair{1.2, 0.0096 + (0.3 + weight) / 20000}}) {
     for (int k = 0; k < 3000; ++k) {
       world.touch(0);
       world.begin(T);
-      // A damper that is no part of it brings it to rest.
+      // A damper of the test's own brings the key to rest.
       const BodyWorld::End end = world.end_at(0, world.center(0));
       world.push(end, {0, 0, -force - 0.5 * world.speed(0).z()});
       world.settle();

@@ -1,4 +1,4 @@
-// All contacts' forces together: each is its own law's answer to the motion, and they add up.
+// Forces of all contacts together: each follows its own law for the motion, and they add up.
 #include "core/touch/contact_solve.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Arm3 = Arm<3>;
 
 using test::T;
 
-// A device, its proxy on a stiff coupling, and what the contacts' torque does to both.
+// A device and its proxy on a stiff coupling, and the effect of the contacts' torque on both.
 struct Answer {
   Answer(const Mat3& inertia, Random& random) : M(inertia) {
     const Mat3 D0 = 2 / T * M + random.matrix(3, 1e-3) + 0.012 * Mat3::Identity();
@@ -29,7 +29,8 @@ struct Answer {
     A << ww, -c, -c, uu;
     const Mat3 phi = 1e-4 * random.matrix(3, 1);
     const double governor = random.between(0.7, 1);
-    // Both sides added up, and the proxy's, of the device's motion and the proxy's beside it.
+    // The sum of both sides' equations, and the proxy's; unknowns are the device's motion and the
+    // proxy's relative to it.
     const Mat3 proxy_w = uu - c;
     contact.system = CoupledSystem<3>(ww - c + proxy_w, proxy_w, proxy_w, uu);
     contact.on_device = 1;
@@ -43,7 +44,7 @@ struct Answer {
     const Eigen::VectorXd x = A.fullPivLu().solve(b);
     return {x.head<3>(), x.tail<3>()};
   }
-  // The proxy's part of what a torque moves.
+  // Motion of the proxy under a contact torque.
   Vec3 moved(const Vec3& torque) const {
     Eigen::VectorXd b(6);
     b << on_device * torque, contact.on_proxy * torque;
@@ -58,7 +59,7 @@ struct Answer {
   ContactAnswer<3> contact;
 };
 
-// An arm among obstacles, ticked without inertia of its own: the drive pushes it about.
+// An arm among obstacles, ticked without its own inertia: the drive pushes it about.
 class Bench {
  public:
   Bench(const Scene& scene, unsigned seed)
@@ -74,7 +75,7 @@ class Bench {
     arm.inertia(f, M);
     return M;
   }
-  // A wall this deep in the arm's tip.
+  // A wall that lies `depth` above the arm's tip.
   static Object plane(const Vec3& normal, double depth, const Material& material) {
     const Vec3 tip = Arm3(test::random_arm(3, 5)).tip_at(start());
     return {"", pose_at(tip + depth * normal), Plane{normal}, material};
@@ -86,7 +87,7 @@ class Bench {
     arm.point_jacobian(f, 2, arm.tip(f), J);
     return J;
   }
-  // With a force at the tip of the device [N].
+  // Runs a tick with a force at the device's tip [N].
   void tick(const Vec3& push) {
     arm.frames(x, f);
     contacts.find(arm, f, x, T);
@@ -115,7 +116,7 @@ class Bench {
   Motion<3> motion;
   Vec3 f2;
   double potential = 0;
-  std::vector<ContactMemory> memories;  // of each in the list, before the tick
+  std::vector<ContactMemory> memories;  // of each contact in the list, before the tick
 };
 
 Material some_material(Random& random, bool friction) {
@@ -148,7 +149,7 @@ Vec3 press(const Scene& scene, Random& random) {
   return push;
 }
 
-// Wall and friction, from the motion alone.
+// Expects the contact's wall force and friction as computed from the motion alone.
 void expect_its_own_law(const Bench& bench, const Contact<3>& c, const ContactMemory& before) {
   const Vec3 u = bench.motion.u, g = -c.gradient;
   const double response = T * g.dot(bench.answer.moved(g));
@@ -166,7 +167,7 @@ void expect_its_own_law(const Bench& bench, const Contact<3>& c, const ContactMe
   bench.arm.point_jacobian(bench.f, c.link, c.point, J);
   Vec3 wanted = -K_t * across * (before.anchor + T * J * u);
   if (wanted.norm() > mu * F) wanted *= mu * F / wanted.norm();
-  // Where it slips its own six steps leave a little.
+  // Friction that slips is found by six steps of its own, which leave a small error.
   ASSERT_LT((c.friction - wanted).norm(), 1e-4 * std::max(1.0, F));
   ASSERT_LE(c.friction.norm(), mu * c.force * (1 + 1e-12) + 1e-15);
 }
@@ -202,7 +203,7 @@ TEST(ContactSolve, LeavesEachContactWithWhatItsOwnLawAsksOfTheMotion) {
   EXPECT_GT(slipped, 200);
 }
 
-// The same forces as functions of the motion, and how they answer it.
+// Forces as functions of the motion equal those found together, and their slopes are right.
 TEST(ContactSolve, AsAFunctionOfTheMotionIsTheForceThatItSettledOn) {
   Random random(97);
   int pushed = 0, smooth = 0;
@@ -274,7 +275,7 @@ TEST(ContactSolve, OfWallsWithFrictionNeverGivesEnergy) {
     Bench bench(scene, 1200 + static_cast<unsigned>(round));
     for (int k = 0; k < 20; ++k) {
       bench.tick(press(scene, random));
-      double after = 0;  // what is stored if walls are flat and the motion straight [J]
+      double after = 0;  // stored if walls are flat and the motion straight [J]
       for (const Contact<3>& c : bench.contacts.list()) {
         const double d = std::max(0.0, c.depth + T * c.gradient.dot(bench.motion.u));
         after +=
@@ -295,7 +296,7 @@ TEST(ContactSolve, TakesTheDeepest32OfMore) {
     scene.add(Bench::plane(Vec3::UnitZ(), 1e-4 + 1e-5 * i, {.stiffness = 0.1}));
   }
   Bench bench(scene, 94);
-  bench.answer.contact.damping = 0;  // which would hold those that others push out
+  bench.answer.contact.damping = 0;  // the damper would hold contacts that others push out
   bench.tick(Vec3::Zero());
   ASSERT_EQ(std::as_const(bench.contacts).list().size(), 50u);
   for (std::size_t i = 0; i < 50; ++i) {
@@ -316,7 +317,7 @@ TEST(ContactSolve, ForgetsWhatItLeft) {
     bench.go_on();
     bench.tick(Vec3(3, 0, -1));
     ASSERT_FALSE(blank(bench.contacts.memory(0)));
-    // Off within one tick, however far.
+    // The arm leaves within one tick, by any distance.
     const Jacobian<3> J = bench.tip_jacobian();
     bench.x += J.fullPivLu().solve(Vec3(0, 0, 2e-3 + away));
     bench.tick(Vec3::Zero());
@@ -329,7 +330,7 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
   for (const double kinetic : {0.2, 0.0}) {
     Scene scene;
     const Material m{.stiffness = 1000, .friction_static = 0.6, .friction_kinetic = kinetic};
-    scene.add(Bench::plane(Vec3::UnitZ(), 2e-3, m));  // held by 2 N
+    scene.add(Bench::plane(Vec3::UnitZ(), 2e-3, m));  // pressed with 2 N
     Bench bench(scene, 96);
     bench.answer.on_device.setIdentity();
     bench.answer.contact.on_proxy.setZero();
@@ -345,7 +346,7 @@ TEST(ContactSolve, SlipsAtTheKineticForceUntilItSticksAgain) {
     EXPECT_FALSE(slipping());
     double most = 0, pull = 0;
     while (!slipping() && pull < 5) most = std::max(most, friction(pull += 0.002));
-    EXPECT_NEAR(most, 0.6, 1e-6);  // as far as it sticks
+    EXPECT_NEAR(most, 0.6, 1e-6);  // the limit of sticking
     for (int k = 0; k < 5; ++k) {
       EXPECT_NEAR(friction(pull), kinetic, 1e-9);
       EXPECT_TRUE(slipping());
@@ -386,7 +387,7 @@ TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
       const Vec3 push = -3 * normal + 0.05 * k * normal.unitOrthogonal();
       a.tick(push);
       b.tick(push);
-      // Where it breaks within the tick, a mesh knows when by a 32nd.
+      // A mesh finds the moment of a break within a tick only to a 32nd.
       const Contact<3>& c = std::as_const(a.contacts).list()[0];
       if (c.depth + T * c.gradient.dot(a.motion.u) <= 0) break;
       ++pushed;
@@ -399,10 +400,7 @@ TEST(ContactSolve, OfAFlatMeshIsThatOfAPlane) {
   EXPECT_GT(pushed, 600);
 }
 
-// 0.34 of m_n/T is the most that a wall may damp, 0.2 of it what it does by itself; m_n is what the
-// tip weighs along the normal.
-// A wall that faces along an axis about which nothing turns: it can push nothing away, and rubs at
-// nothing.
+// A wall faces along an axis about which nothing turns: it pushes nothing away and rubs at nothing.
 TEST(ContactSolve, LeavesOutAWallThatNoJointCanServe) {
   Random random(98);
   for (int round = 0; round < 20; ++round) {
@@ -418,6 +416,8 @@ TEST(ContactSolve, LeavesOutAWallThatNoJointCanServe) {
   }
 }
 
+// A wall may damp by 0.34 of m_n/T at most; 0.2 of it is its own. m_n is the tip's mass along the
+// normal.
 TEST(ContactSolve, BoundsTheDamperOfAWall) {
   Random random(213);
   for (int i = 0; i < 20; ++i) {

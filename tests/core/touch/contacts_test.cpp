@@ -18,7 +18,7 @@ namespace {
 using test::Random;
 using test::random_arm;
 
-// A shape and where it is.
+// A shape at its pose.
 template <class S>
 struct Placed {
   S shape;
@@ -116,7 +116,7 @@ TEST(Distance, ToABoxIsToTheNearestOfItsPoints) {
     EXPECT_GE(std::abs(surface.distance), sampled - spacing);
     within += inside(box, point) ? 1 : 0;
     expect_gradient(box, point);
-    // One step along the normal lands on the surface.
+    // The foot along the normal lies on the surface.
     const Vec3 foot = point - surface.distance * surface.normal;
     EXPECT_NEAR(box.from(foot).distance, 0, 1e-12);
   }
@@ -148,7 +148,7 @@ TEST(NearestOnSegment, IsNoFurtherThanAnyOtherPointOfIt) {
   expect_nearest(some_box(), random);
 }
 
-// An arm of n joints with one capsule in its middle, and where they are.
+// An arm of n joints with one capsule in its middle, its pose, and a scene.
 struct World {
   explicit World(int n)
       : description(random_arm(n, 21)), arm(description), x(Random(22).vector(n, 2)) {
@@ -189,7 +189,7 @@ struct World {
   Vec<kAnyDof> x;
   Scene scene;
   Arm<kAnyDof>::Frames frames;
-  Vec3 from, to;  // of the capsule
+  Vec3 from, to;  // ends of the capsule
 };
 
 class ContactsOfJoints : public testing::TestWithParam<int> {};
@@ -265,8 +265,8 @@ TEST(Contacts, OfASceneThatWasReadForAnotherArmAreRefused) {
   }
 }
 
-// Balls that the tip is 1 mm deep in, the hardest neither first nor last, and a stop, which is
-// nowhere.
+// The tip is 1 mm deep in balls, the hardest neither first nor last. A stop has no place to be
+// listed.
 TEST(Contacts, AreListedByTheHardestIfThereIsNoRoomForAll) {
   World w(3);
   w.scene.probes.clear();
@@ -327,7 +327,7 @@ class TipBeforeThings : public testing::Test {
     arm_.point_jacobian(frames_, 2, tip_, J_);
   }
 
-  // Deep by this much; negative: apart.
+  // Adds a plane that is `deep` in the tip; a negative value is a gap.
   void add_plane(double deep) {
     scene_.add({"", pose_at(tip_ - (kRadius - deep) * out_[0]), Plane{out_[0]}, 700});
   }
@@ -342,7 +342,7 @@ class TipBeforeThings : public testing::Test {
     sheet.pose.translation() = tip_ - (kRadius - deep) * out_[2] + aside * out_[2].unitOrthogonal();
     scene_.add(sheet);
   }
-  // Where the joints are with the tip there, going straight from x.
+  // Joint angles with the tip at `to`, reached straight from x.
   Vec<kAnyDof> led(Vec<kAnyDof> x, const Vec3& to) const {
     Arm<kAnyDof>::Frames f;
     Jacobian<kAnyDof> J;
@@ -354,9 +354,9 @@ class TipBeforeThings : public testing::Test {
     }
     return x;
   }
-  // How the joints move for the tip to move so.
+  // Joint rates for this rate of the tip.
   Vec<kAnyDof> joints(const Vec3& rate) const { return Mat3(J_).inverse() * rate; }
-  // The tip's rate with these parts along the three normals.
+  // Rate of the tip with these components along the three normals.
   Vec3 rate(const Vec3& along) const {
     Mat3 normals;
     for (int i = 0; i < 3; ++i) normals.row(i) = out_[i];
@@ -396,19 +396,19 @@ TEST_F(TipBeforeThings, TakesNobodyInOnceContactsAreOnlyLetGo) {
   ASSERT_TRUE(contacts.list()[0].touching);
   ASSERT_FALSE(contacts.list()[1].touching);
   ASSERT_EQ(contacts.meshes()[0].rank, 0);
-  // In half a tick: 4 mm away from the plane, into ball and sheet.
+  // Half a tick of this moves the tip 4 mm away from the plane, and into ball and sheet.
   const Vec<kAnyDof> vbar = joints(rate(Vec3(8, -8, -8)));
   EXPECT_TRUE(contacts.reconsider(vbar, kTick, true));
   EXPECT_FALSE(contacts.list()[0].touching);
   EXPECT_FALSE(contacts.list()[1].touching);
   EXPECT_EQ(contacts.meshes()[0].rank, 0);
-  EXPECT_FALSE(contacts.reconsider(vbar, kTick, true));  // so that a tick comes to its end
+  EXPECT_FALSE(contacts.reconsider(vbar, kTick, true));  // the iteration of a tick ends here
   EXPECT_TRUE(contacts.reconsider(vbar, kTick, false));
   EXPECT_FALSE(contacts.list()[0].touching);
   EXPECT_TRUE(contacts.list()[1].touching);
   EXPECT_EQ(contacts.meshes()[0].rank, 1);
   EXPECT_FALSE(contacts.reconsider(vbar, kTick, false));
-  // And let go again, the sheet as well.
+  // The reverse motion releases all, the sheet as well.
   EXPECT_TRUE(contacts.reconsider(-vbar, kTick, true));
   EXPECT_FALSE(contacts.list()[0].touching);
   EXPECT_FALSE(contacts.list()[1].touching);
@@ -432,13 +432,14 @@ TEST_F(TipBeforeThings, SaysWhereAndHowHardItIsPushedUntilItIsLifted) {
     EXPECT_LT((forces[i].force - newtons[i] * out_[i]).norm(), 1e-5) << i;
     sum += newtons[i] * out_[i];
   }
-  // The arm's own things name the middle of the tip, meshes the place on their surface.
+  // Forces from shapes name the middle of the tip as their place, those from meshes the place on
+  // the surface.
   EXPECT_LT((forces[0].point - tip_).norm(), 1e-12);
   EXPECT_LT((forces[2].point - (tip_ - 0.004 * out_[2])).norm(), 1e-7);
   EXPECT_LT((f2 - J_.transpose() * sum).norm(), 1e-6);
-  EXPECT_EQ(contacts.forces(std::span(forces).first(2)), 2u);  // as many as fit
+  EXPECT_EQ(contacts.forces(std::span(forces).first(2)), 2u);  // no more than fit
 
-  // 10 mm away from all three.
+  // A position 10 mm away from all three.
   const Vec<kAnyDof> away = led(x_, tip_ + rate(Vec3::Constant(0.01)));
   find(contacts, away);
   EXPECT_TRUE(contacts.push(Vec<kAnyDof>::Zero(3), kTick, f2));
@@ -461,7 +462,7 @@ TEST_F(TipBeforeThings, PushesAtTheMiddleOfAStep) {
 }
 
 TEST_F(TipBeforeThings, LooksTwoCentimetresAroundAndStoresNothingThere) {
-  // No further can it come within a tick.
+  // The tip moves less than this distance within a tick.
   add_plane(-0.015);
   add_ball(-0.019);
   Contacts<kAnyDof> contacts = placed(x_);
@@ -481,17 +482,18 @@ TEST_F(TipBeforeThings, LooksTwoCentimetresAroundAndStoresNothingThere) {
   EXPECT_EQ(contacts.potential(), 0);
 }
 
-// Led through a sheet to 3 mm behind it; who starts anew there is pushed to the other side.
+// The tip is led through a sheet to 3 mm behind it. Contacts that begin anew there are pushed to
+// the other side.
 class TipBehindASheet : public TipBeforeThings {
  protected:
   static constexpr double kWay = 0.01;  // from 2 mm before the sheet [m]
 
-  // Where the ball is pulled to, along the sheet's normal [m].
+  // Pull on the ball along the sheet's normal [m].
   double pull(const Contacts<kAnyDof>& contacts) const {
     const auto& c = contacts.meshes()[0];
     return out_[2].dot(c.direction.leftCols(c.rank) * c.depth.head(c.rank));
   }
-  // There, and still there for a tick.
+  // The pull after a tick behind the sheet [m].
   double side_after(Contacts<kAnyDof>& contacts) const {
     find(contacts, behind_);
     return pull(contacts);
@@ -514,7 +516,7 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   };
   set(1, 0, kRadius);
   Contacts<kAnyDof> first = came_through();
-  ASSERT_GT(side_after(first), 0.007);  // to where it came from
+  ASSERT_GT(side_after(first), 0.007);  // towards the side it came from
   const std::shared_ptr<const TriangleMesh> shape = test::shape<Mesh>(scene_).triangles;
   const auto taken_over = [&] {
     Contacts<kAnyDof> next = placed(behind_);
@@ -525,7 +527,7 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   EXPECT_LT(taken_over(), 0) << "another shape, even if it is an equal one";
   test::shape<Mesh>(scene_).triangles = shape;
   EXPECT_GT(taken_over(), 0.007);
-  test::object<Mesh>(scene_).material.stiffness = 100;  // may change
+  test::object<Mesh>(scene_).material.stiffness = 100;  // stiffness may change
   EXPECT_GT(taken_over(), 0.007);
   for (const auto& [scale, aside, radius] :
        {std::tuple(2.0, 0.0, kRadius), {1.0, 0.001, kRadius}, {1.0, 0.0, 0.0051}}) {
@@ -535,7 +537,7 @@ TEST_F(TipBehindASheet, IsTakenOverWithItsSideByAnEqualWorldOnly) {
   }
 }
 
-// From end to end, 0.75 radii apart at most, but no more than 24.
+// Balls are at most 0.75 radii apart, but no more than 24.
 TEST(Contacts, OfACapsuleAndAMeshAreARowOfBallsFromEndToEnd) {
   World w(3);
   w.scene.add(test::obstacle(test::sheet(4, 0.3), 900));
@@ -559,7 +561,7 @@ TEST(Contacts, OfACapsuleAndAMeshAreARowOfBallsFromEndToEnd) {
   }
 }
 
-// Bit for bit, wherever both are led from there: nothing of what it knows is left behind.
+// All later forces are equal bit for bit: the new contacts have everything that the old ones know.
 TEST_F(TipBehindASheet, GoesOnAsTheOneItWasTakenOverFrom) {
   add_sheet(-0.002);
   Contacts<kAnyDof> first = came_through();

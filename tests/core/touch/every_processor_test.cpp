@@ -1,4 +1,5 @@
-// Embree takes the widest vectors that a processor has. What a mesh answers must not show it.
+// Answers of meshes on every kind of processor: Embree takes the widest vectors it finds, which
+// must not show.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 #include "core/touch/triangle_mesh.h"
 #include "tests/support/meshes.h"
 
+namespace limpid {
 namespace {
 
 std::string& kind_of_processor() {
@@ -19,23 +21,11 @@ std::string& kind_of_processor() {
   return isa;
 }
 
-}  // namespace
-
-// In the place of Embree's own, which it calls: the program's functions come before a library's.
-extern "C" RTCDevice rtcNewDevice(const char* config) {
-  using Make = RTCDevice (*)(const char*);
-  static const auto make = reinterpret_cast<Make>(dlsym(RTLD_NEXT, "rtcNewDevice"));
-  return make((std::string(config == nullptr ? "" : config) + kind_of_processor()).c_str());
-}
-
-namespace limpid {
-namespace {
-
 using test::Random;
 using test::Triangles;
 constexpr double kAnywhere = std::numeric_limits<double>::max();
 
-// All bits of what is answered.
+// The bits of all answers.
 class Answers {
  public:
   void add(bool found, const MeshPoint& at) {
@@ -54,8 +44,8 @@ class Answers {
   std::vector<std::uint64_t> all_;
 };
 
-// Questions at random, and such where several triangles are equally near or equally far: over
-// corners and edges, and ways that lead through them.
+// Asks at random, and where several triangles are equally near or far: over corners and edges, and
+// along ways that lead through them.
 Answers answers(const Triangles& triangles) {
   const auto mesh = triangles.mesh();
   Answers all;
@@ -100,7 +90,7 @@ TEST(TriangleMesh, AnswersAlikeOnEveryKindOfProcessor) {
       try {
         EXPECT_TRUE(answers(triangles) == here) << isa;
         ++tried;
-      } catch (const std::runtime_error&) {  // more than this processor has
+      } catch (const std::runtime_error&) {  // this processor lacks it
       }
       kind_of_processor().clear();
     }
@@ -110,3 +100,11 @@ TEST(TriangleMesh, AnswersAlikeOnEveryKindOfProcessor) {
 
 }  // namespace
 }  // namespace limpid
+
+// Replaces Embree's function and calls it: the program's functions take precedence over a
+// library's.
+extern "C" RTCDevice rtcNewDevice(const char* config) {
+  using Make = RTCDevice (*)(const char*);
+  static const auto make = reinterpret_cast<Make>(dlsym(RTLD_NEXT, "rtcNewDevice"));
+  return make((std::string(config == nullptr ? "" : config) + limpid::kind_of_processor()).c_str());
+}

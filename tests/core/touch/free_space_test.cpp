@@ -1,5 +1,5 @@
 // The nearest point of a room of planes, against Dykstra's alternating projections and against the
-// conditions that single it out.
+// conditions that determine it.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -62,7 +62,7 @@ TEST(FreeSpace, GivesThePointThatAlternatingProjectionsConvergeTo) {
     FreeSpace::Active active;
     ASSERT_TRUE(room(planes).project(c, x, active));
     const Vec3 wanted = dykstra(planes, c, 2000);
-    if ((dykstra(planes, c, 1000) - wanted).norm() > 1e-10) continue;  // too slow
+    if ((dykstra(planes, c, 1000) - wanted).norm() > 1e-10) continue;  // Dykstra has not converged
     EXPECT_LT((x - wanted).norm(), 1e-8);
     ++compared;
   }
@@ -80,7 +80,7 @@ TEST(FreeSpace, PushesOnlyOutwardsAndOnlyWithPlanesThatHold) {
     FreeSpace::Active active;
     ASSERT_TRUE(space.project(c, x, active));
     for (const HalfSpace& p : planes) ASSERT_GE(p.normal.dot(x) - p.offset, -1e-8 * size);
-    // x - c is a sum of active normals, none taken negatively.
+    // x - c is a sum of active normals with weights that are not negative.
     ASSERT_LE(active.count, 3);
     Eigen::Matrix<double, 3, Eigen::Dynamic> normals(3, active.count);
     for (int i = 0; i < active.count; ++i) {
@@ -97,7 +97,7 @@ TEST(FreeSpace, PushesOnlyOutwardsAndOnlyWithPlanesThatHold) {
     ASSERT_LT((normals * weights - (x - c)).norm(), 1e-12 * strain * size);
     ASSERT_GE(weights.minCoeff(), -1e-12 * strain * strain * size);
     ASSERT_LT((space.onto(c, active) - x).norm(), 1e-15 * size);
-    // The force by its basis.
+    // The orthonormal basis of the active normals spans the force.
     Mat3 e;
     const int rank = space.basis(active, e);
     ASSERT_EQ(rank, active.count);
@@ -131,7 +131,7 @@ TEST(FreeSpace, TakesParallelPlanesAsTheOneThatIsFurtherOut) {
     const double size = std::pow(10.0, random.between(-3, 1));
     const Vec3 n = random.direction(), c = random.point(size);
     const double offset = n.dot(c) + random.between(0.1, 1) * size;
-    // Once more the same, one beneath, and one askew by less than can be told.
+    // Adds the plane again: the same, one beneath, and one tilted by less than can be told.
     const double askew = std::pow(10.0, random.between(-17, -3));
     const Vec3 almost = (n + askew * n.unitOrthogonal()).normalized();
     const FreeSpace space = room({{n, offset - 0.05 * size},

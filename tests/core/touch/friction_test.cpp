@@ -1,4 +1,4 @@
-// Friction against its law, written down once more, and against its balance of energy.
+// Friction against its law, written out independently, and against its balance of energy.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -19,17 +19,18 @@ struct Rub {
 
   Vec2 force() const { return friction_force(K_t, radius, z, T, b, W); }
   Vec2 speed(const Vec2& l) const { return b + W * l; }
-  // What the law asks for where l moves it so.
+  // Friction by its law, for the motion under the force l.
   Vec2 wanted(const Vec2& l) const {
     const Vec2 free = -K_t * (z + T * speed(l));
     return free.norm() > radius ? Vec2(radius * free.normalized()) : free;
   }
-  double given(const Vec2& l) const {  // work and change of what the spring stores [J]
+  double given(const Vec2& l) const {  // work and change of the energy in the spring [J]
     return T * l.dot(speed(l)) + 0.5 * K_t * ((l / K_t).squaredNorm() - z.squaredNorm());
   }
 };
 
-// Positive definite, not quite symmetric: `stiffness` is K_t T times its size.
+// A random contact whose response W is positive definite, not quite symmetric, and of size
+// `stiffness`/(K_t T).
 Rub some_rub(Random& random, double stiffness) {
   Rub r{};
   r.K_t = random.between(50, 2000);
@@ -81,7 +82,7 @@ TEST(Friction, ThatSlipsIsAsLargeAsItMayAndOpposesTheStretchedSpring) {
   Random random(23);
   int slipped = 0;
   for (int round = 0; round < 100000; ++round) {
-    // A tick's answer to a force, in a contact of a device: K_t T W about 0.1.
+    // A contact of a device: the response of a tick to a force, K_t T W, is about 0.1.
     const Rub r = some_rub(random, std::pow(10, random.between(-3, -0.7)));
     const Vec2 l = r.force();
     const Vec2 stretched = r.z + r.T * r.speed(l);
@@ -95,7 +96,7 @@ TEST(Friction, ThatSlipsIsAsLargeAsItMayAndOpposesTheStretchedSpring) {
 }
 
 TEST(Friction, OfAnIsotropicAnswerIsExactAtOnce) {
-  // Then the force is along what drives it, however strong the answer is.
+  // With an isotropic response the force is along its drive, however strong the response is.
   Random random(24);
   for (int round = 0; round < 100000; ++round) {
     Rub r = some_rub(random, 1);

@@ -1,4 +1,4 @@
-// Against formulas of solids, and against sums over many small cubes.
+// Masses and inertias against formulas of solids, and against sums over many small cubes.
 #include "core/touch/mass_properties.h"
 
 #include <gtest/gtest.h>
@@ -90,7 +90,7 @@ Pose some_pose(std::uint32_t seed) {
   return pose;
 }
 
-// Two halves put together are the whole, however the whole lies in its frame.
+// Two halves together are the whole, at any pose of the whole in its frame.
 TEST(MassProperties, OfPartsAddUp) {
   const Pose at = some_pose(5);
   Object halves = body(Sphere{1e-9});
@@ -166,7 +166,7 @@ TEST(MassProperties, OfAMeshTurnWithItsAxes) {
   expect_near(found.inertia, mass_properties(box).inertia, 1e-7);
 }
 
-// A sheet encloses nothing, so the box around it counts.
+// A sheet encloses no volume, so the box around it counts.
 TEST(MassProperties, OfAnOpenMeshAreThoseOfItsBox) {
   const Object found = body(
       Mesh{.triangles = test::height_field(8, 0.2, [](double x, double) { return x / 2; }).mesh()});

@@ -1,4 +1,4 @@
-// What is said of meshes that are not whole, and what is refused.
+// Reports on meshes with faults, and meshes that are refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,8 +57,8 @@ TEST(Health, CountsOpenEdgesOddOnesAndWhatHasNoArea) {
   EXPECT_EQ(mesh->triangles(), 20u);
 }
 
-// A ring of a round section, computed all the way round, so that the vertices of its two seams are
-// there twice. `apart` [rad]: by how much it does not close along its length.
+// A ring of round section, computed all the way round: the vertices of its two seams are there
+// twice. It stays open by `apart` along its length [rad].
 Triangles ring_with_seams(int along, int round, double scale, double apart = 0) {
   const double pi = std::numbers::pi;
   return test::grid(along, round).mapped([&](const Vec3& p) {
@@ -85,14 +85,14 @@ TEST(Health, OfASeamThatIsOffByRoundingIsSpotless) {
 
 TEST(Health, OfATrueGapSaysSo) {
   const double diagonal = std::hypot(2.6, 2.6, 0.6);
-  for (const double gap : {1e-2, 1e-5, 1e-6}) {  // parts of the diagonal, at the inner side
+  for (const double gap : {1e-2, 1e-5, 1e-6}) {  // relative to the diagonal, at the inner side
     const auto mesh = ring_with_seams(24, 16, 1, gap * diagonal / 0.7).mesh();
     EXPECT_EQ(mesh->health().open_edges, 2u * 16) << gap;
     EXPECT_EQ(mesh->triangles(), 2u * 24 * 16);
   }
 }
 
-// Whatever the order: all of what is near becomes one, and what has no area by that is left out.
+// In any order, near vertices become one, and triangles thereby without area are left out.
 TEST(Health, CountsATriangleThatIsSmallerThanRounding) {
   Triangles body = test::icosphere(1);
   const std::uint32_t corner = body.indices[0],

@@ -1,5 +1,5 @@
-// What holds of a ball on any mesh, whatever its path: the force is finite and never jumps, nothing
-// is fallen through, and nothing is left when the ball has left.
+// Properties of a ball on any mesh and path: the force is finite and never jumps, the ball never
+// falls through, and no force remains when it has left.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +16,9 @@ using test::Random;
 using test::Triangles;
 
 using test::T;
-constexpr double kSlip = 0.1 * T;  // of the anchor beyond what the centre does, in a tick [m]
+constexpr double kSlip = 0.1 * T;  // of the anchor beyond the centre's motion in a tick [m]
 
-// A ball, its force over the stiffness, and what must be true of it in every tick.
+// A ball, its force over the stiffness, and checks of it in every tick.
 class Watched {
  public:
   Watched(const Object& mesh, double radius, const Vec3& c)
@@ -109,11 +109,11 @@ Triangles shape(const std::string& name) {
 constexpr const char* kShapes[] = {"bumpy", "fine",  "torus",  "box",     "plate",
                                    "field", "sheet", "folded", "slivers", "soup"};
 constexpr double kSizes[] = {1e-3, 0.05, 10.0};  // [m]
-constexpr double kRadii[] = {0.0, 0.02, 0.5};    // of that
+constexpr double kRadii[] = {0.0, 0.02, 0.5};    // relative to the size
 
 class AnyMesh : public testing::TestWithParam<const char*> {
  protected:
-  // Runs `path(obstacle, radius, random)` at every size; it says for how long it touched.
+  // Runs `path(obstacle, radius, random)` at every size; it returns its number of ticks in contact.
   template <class Path>
   void at_every_size(Path&& path) {
     const auto mesh = shape(GetParam()).mesh();
@@ -135,7 +135,7 @@ class AnyMesh : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Shapes, AnyMesh, testing::ValuesIn(kShapes),
                          [](const auto& name) { return std::string(name.param); });
 
-// In front of the surface.
+// A start in front of the surface.
 Vec3 start(const Object& mesh, double radius, double most_apart, Random& random) {
   const Vec3 far = 2 * test::mesh_of(mesh).triangles->radius() * random.direction();
   MeshPoint near;
@@ -210,7 +210,8 @@ TEST_P(AnyMesh, LeavesNothingBehindOnceItHasBeenLeft) {
   });
 }
 
-// Pressed straight against an open sheet and taken back: always pushed to where it came from.
+// Presses straight against an open sheet and goes back: the force is always towards the side of
+// origin.
 void press_a_sheet(const Triangles& sheet, double highest, double depth, unsigned seed) {
   Random random(seed);
   for (const double size : kSizes) {

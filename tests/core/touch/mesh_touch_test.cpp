@@ -1,4 +1,4 @@
-// A ball on surfaces whose contact has a closed form.
+// A ball on surfaces whose contact force has a closed form.
 #include "core/touch/mesh_touch.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::Triangles;
 
 using test::T;
 
-// What pulls at the ball's centre, over the stiffness [m].
+// Pull at the ball's centre: force over stiffness [m].
 Vec3 pull(const MeshTouch& touch, const Vec3& c) {
   if (touch.held()) return touch.anchor() - c;
   if (!touch.near()) return Vec3::Zero();
@@ -26,7 +26,7 @@ Vec3 pull(const MeshTouch& touch, const Vec3& c) {
   return x - c;
 }
 
-// Moves there in steps of at most `step`, and stays a tick.
+// Moves the ball to `to` in steps of at most `step`, and stays a tick.
 void go(MeshTouch& touch, Vec3& c, const Vec3& to, double step) {
   const Vec3 from = c;
   const int count = static_cast<int>(std::ceil((to - from).norm() / step));
@@ -83,7 +83,7 @@ TEST(Ball, OnAFineSphereIsPushedOutOfItsMiddle) {
     Vec3 c = obstacle.pose.translation() + 2 * rest * random.direction();
     touch.place(c);
     for (int round = 0; round < 50; ++round) {
-      // Around the sphere, no deeper than 2 mm.
+      // A goal around the sphere, no deeper than 2 mm.
       const Vec3 out = (c - obstacle.pose.translation() + 0.5 * rest * random.direction());
       const double depth = random.between(-0.001, 0.002);
       const Vec3 goal = obstacle.pose.translation() + (rest - depth) * out.normalized();
@@ -96,7 +96,7 @@ TEST(Ball, OnAFineSphereIsPushedOutOfItsMiddle) {
         touch.follow(c, T);
         const Vec3 from = c - obstacle.pose.translation();
         const double overlap = std::max(0.0, rest - from.norm());
-        // As far as the facets are beneath the sphere, and as askew as they are.
+        // Bounds: the facets lie beneath the sphere and are tilted against it.
         ASSERT_NEAR(pull(touch, c).norm(), overlap, 2e-5 + 0.02 * overlap);
         const double askew = 0.03 * overlap + 0.02 * (radius > 0 ? 0 : overlap);
         ASSERT_LT((pull(touch, c) - overlap * from.normalized()).norm(), 2e-5 + askew);
@@ -111,7 +111,8 @@ TEST(Ball, RollsOverAConvexEdgeAndItsCorner) {
   cube.pose = some_pose(random, 0.1);
   constexpr double kRadius = 0.005;
   MeshTouch touch(cube, kRadius);
-  // Along the surface of the rounded cube, in by 0.2 of the radius: over faces, edges and corners.
+  // The path follows the surface of the rounded cube, in by 0.2 of the radius: over faces, edges
+  // and corners.
   Vec3 direction = Vec3::UnitZ();
   const auto nearest_of = [&](const Vec3& p) { return Vec3(p.cwiseMax(-0.05).cwiseMin(0.05)); };
   Vec3 local(0, 0, 0.08);
@@ -122,7 +123,7 @@ TEST(Ball, RollsOverAConvexEdgeAndItsCorner) {
     if (k % 500 == 0) direction = random.direction();
     local += 1e-4 * direction;
     const Vec3 foot = nearest_of(local);
-    if (foot == local) {  // went in: out again
+    if (foot == local) {  // it went in: goes out again
       direction = local.normalized();
       local += 5e-4 * direction;
     }
@@ -134,7 +135,8 @@ TEST(Ball, RollsOverAConvexEdgeAndItsCorner) {
     touch.follow(cube.pose * local, T);
     const Vec3 wanted = std::max(0.0, kRadius - height) * out;
     const Vec3 found = cube.pose.linear().transpose() * pull(touch, cube.pose * local);
-    // In motion it is one step nearer to the answer each tick, by how deep it is in radii.
+    // In motion the touch takes one iteration a tick, which leaves a part of the error: the depth
+    // in radii.
     const double step = (local - before).norm();
     const double askew = 1.3 * step / (0.8 * kRadius) * 0.2;
     ASSERT_LT((found - wanted).norm(), 1e-7 + askew * wanted.norm()) << k;
@@ -164,14 +166,15 @@ TEST(Ball, InAGrooveIsHeldByBothOfItsSides) {
       const Triangles triangles = groove(slope, 3);
       Object obstacle = test::obstacle(triangles);
       obstacle.pose = some_pose(random, 0.1);
-      // Where the two offset planes meet; a point without a size stays a little off the surface.
+      // The two offset planes meet at the bottom; a point without a size stays a little off the
+      // surface.
       const double bottom = radius / std::cos(slope);
       const double skin = 1.1e-5 * test::mesh_of(obstacle).triangles->radius() / std::cos(slope);
       MeshTouch touch(obstacle, radius);
       Vec3 c = obstacle.pose * Vec3(0.001, 0.013, bottom + 0.03);
       touch.place(c);
       for (int round = 0; round < 50; ++round) {
-        // Beneath the bottom, where both sides push.
+        // A place beneath the bottom, where both sides push.
         const double depth = random.between(0.0005, 0.005);
         const double lateral = random.between(-0.9, 0.9) * depth * std::tan(slope);
         const Vec3 local(lateral, random.between(-0.02, 0.02), bottom - depth);
@@ -208,13 +211,13 @@ TEST(Ball, InACornerOfThreeStaysThere) {
   }
 }
 
-// Flat, but divided at random.
+// A flat square, divided at random.
 Triangles divided_square(int points, double size, Random& random) {
   Triangles out;
   const float h = static_cast<float>(size / 2);
   out.vertices = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
   out.indices = {0, 1, 2, 0, 2, 3};
-  while (points-- > 0) {  // a point of a triangle makes three of it
+  while (points-- > 0) {  // a point in a triangle divides it into three
     const auto t =
         3 * static_cast<std::size_t>(random.between(0, static_cast<double>(out.count()) - 0.01));
     const std::uint32_t a = out.indices[t], b = out.indices[t + 1], c = out.indices[t + 2];
@@ -261,7 +264,7 @@ TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
     for (const double radius : {0.0, 0.02}) {
       MeshTouch here(still, radius), there(turned, scale * radius);
       const auto map = [&](const Vec3& p) { return Vec3(turned.pose * Vec3(scale * p)); };
-      // Over hills and through valleys, in by half its radius at most.
+      // A path over hills and through valleys, in by half the ball's radius at most.
       const auto at = [&](double t) {
         const Vec3 d = Vec3(std::sin(t), std::cos(1.3 * t), std::sin(0.7 * t + 1)).normalized();
         return Vec3((test::bumpy_radius(d, 0.3) + radius + 0.01 * std::sin(9 * t)) * d);
@@ -271,20 +274,20 @@ TEST(Ball, FeelsTheSameWhereverTheWorldIsAndWhicheverWayItIsTurned) {
       int touching = 0;
       for (int k = 0; k < 6000; ++k) {
         const Vec3 c = at(1e-3 * k);
-        here.follow(c, T), there.follow(map(c), scale * T);  // slipping alike in its size
+        here.follow(c, T), there.follow(map(c), scale * T);  // slips in proportion to its size
         const Vec3 mine = pull(here, c);
         const Vec3 theirs = turned.pose.linear().transpose() * pull(there, map(c)) / scale;
         touching += mine.norm() > 0 ? 1 : 0;
         difference = std::max(difference, (mine - theirs).norm());
       }
-      // As far as it counts as on the surface.
+      // The distance at which the ball counts as on the surface.
       EXPECT_LT(difference, 1e-5) << scale << ' ' << radius;
       EXPECT_GT(touching, 1000);
     }
   }
 }
 
-// As what hangs on the tip: to the ball the mesh stands still.
+// The mesh moves with the body that carries it; relative to the ball it stands still.
 TEST(Ball, GoesAlongWithAMeshThatCarriesItHoweverFast) {
   const Object object = test::obstacle(test::box(Vec3::Constant(0.04)));
   MeshTouch touch(object, 0.004);
@@ -306,8 +309,8 @@ TEST(Ball, GoesAlongWithAMeshThatCarriesItHoweverFast) {
 }
 
 TEST(Ball, ThroughASheetCouldNotFindItsSideAgain) {
-  // Beyond half its radius the nearest side of an open sheet may be the wrong one; a body's is
-  // known.
+  // Beyond half its radius the nearest side of an open sheet may be the wrong one; a closed body's
+  // side is known.
   constexpr double kRadius = 0.004;
   const auto pressed = [&](const Triangles& triangles, double top, double depth) {
     MeshTouch touch(test::obstacle(triangles), kRadius);

@@ -1,4 +1,4 @@
-// The proxy against things: forces at the midpoint, energy stored and given back, never a pull.
+// The proxy in contact: forces at the midpoint, energy stored and given back, never a pull.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,8 +52,9 @@ TEST(ProxyInContact, OfOneJointFollowsTheScalarMidpointRule) {
 }
 
 TEST(ProxyInContact, ThatLastsKeepsItsEnergy) {
-  // Pressed half a radian into stops of 20 N m/rad by 10 N m and let swing by 0.15 rad: no joint
-  // can get out, and in joint space a stop is linear, so what motion loses it stores to round-off.
+  // Stops of 20 N m/rad are pressed by half a radian with 10 N m; the joints swing by 0.15 rad. No
+  // joint leaves, and in joint space a stop is linear: the energy lost by the motion is stored to
+  // round-off.
   for (const int n : {1, 3, 7}) {
     for (const double T : {0.001, 0.008}) {
       Random random(51);
@@ -68,7 +69,7 @@ TEST(ProxyInContact, ThatLastsKeepsItsEnergy) {
       double swung = 0;
       for (int k = 0; k < 2000; ++k) {
         proxy.advance(T, drive);
-        // Energy about the balance, which it had when it was let go.
+        // Energy about the balance, equal to that at release.
         const Vector off = proxy.x() - x + Vector::Constant(n, 0.15);
         const double energy = proxy.kinetic_energy() + 0.5 * 20 * off.squaredNorm();
         ASSERT_NEAR(energy, 0.5 * 20 * 0.15 * 0.15 * n, 1e-11) << "step " << k;
@@ -121,7 +122,7 @@ TEST_P(ProxyAmongThings, BalancesEnergyNeverIsPulledAndStaysFinite) {
     ProxyDrive<kAnyDof> drive = no_drive(n);
     drive.constant = 10 * (goal - proxy.x());
     drive.damping = 0.013 + 10 * T / 2;
-    // As the proposed coupling gives f2 back: phi^T/eta - I with a small phi.
+    // The proposed coupling returns f2 with the factor phi^T/eta - I, here with a small phi.
     drive.share = {ratio < 1 ? 0.001 : 0.5};
     const double before = proxy.kinetic_energy();
     const Vector x = proxy.x();
@@ -131,19 +132,19 @@ TEST_P(ProxyAmongThings, BalancesEnergyNeverIsPulledAndStaysFinite) {
     const double torques = proxy.tau().norm() + proxy.f().norm();
     ASSERT_NEAR(after - before, (proxy.tau() + proxy.f()).dot(dx),
                 1e-11 * std::max(before, after) + 1e-15 * torques * (x.norm() + 1));
-    // The torque is that of the forces, and no force pulls.
+    // The torque is the contact forces' sum, and no force pulls.
     Vector f2 = Vector::Zero(n);
     int pushing = 0;
     for (const auto& contact : proxy.contacts().list()) {
       ASSERT_GE(contact.force, 0);
       f2 -= contact.force * contact.gradient;
       pushing += contact.force > 0 ? 1 : 0;
-      // At the midpoint, the depth there.
+      // The force follows from the depth at the midpoint.
       const double middle = contact.depth + contact.gradient.dot(dx) / 2;
       ASSERT_NEAR(contact.force, contact.force > 0 ? contact.material.stiffness * middle : 0, 1e-8);
     }
     ASSERT_LT((f2 - proxy.f()).norm(), 1e-12 * (1 + f2.norm()));
-    // What the drive gives, share of the contacts included.
+    // Torque of the drive, share of the contacts included.
     const Vector tau =
         drive.constant - drive.damping * proxy.vbar() + (drive.share.direct - 1) * proxy.f();
     ASSERT_LT((tau - proxy.tau()).norm(), 1e-9 * (1 + torques));
@@ -156,7 +157,7 @@ TEST_P(ProxyAmongThings, BalancesEnergyNeverIsPulledAndStaysFinite) {
 }
 
 TEST(ProxyInContact, RestsWhereSpringAndSurfaceBalance) {
-  // A stop of 20 N m/rad against a spring of 10: two thirds of the way back.
+  // A stop of 20 N m/rad against a spring of 10: the proxy rests two thirds of the way back.
   constexpr int n = 3;
   Random random(56);
   const Vector x = random.vector(n, 1);

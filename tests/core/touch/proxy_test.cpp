@@ -43,7 +43,7 @@ TEST_P(ProxyOfJoints, BalancesEnergyAndWorkAtEveryStepOfAThousand) {
     const Vector dx = proxy.x() - x;
     const Vector torque = proxy.tau() + proxy.f();
     const double after = proxy.kinetic_energy();
-    // What positions of the size of x can say of a motion dx.
+    // Error of the work from the rounding of positions of the size of x.
     const double resolution = 1e-15 * torque.norm() * x.norm();
     EXPECT_NEAR(after - before, torque.dot(dx), 1e-11 * std::max(before, after) + resolution)
         << "step " << k;
@@ -120,7 +120,7 @@ TEST(Proxy, ConvergesToTheContinuousMotion) {
     };
     const double coarse = error(800), fine = error(1600);
     EXPECT_LT(fine, 0.02 * (x_exact - x).norm()) << n;
-    EXPECT_LT(fine, 0.6 * coarse + 1e-12) << n;  // first order: half, at the least
+    EXPECT_LT(fine, 0.6 * coarse + 1e-12) << n;  // first order: at least half
   }
 }
 

@@ -1,4 +1,4 @@
-// The force of grooves and corners over a tick against the work that their potential loses.
+// The force of grooves and corners over a tick against the work from their potential.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ using test::Random;
 
 using test::T;
 constexpr double kRadius = 0.005;
-constexpr double kParts = 32;  // of a segment on which planes come or go
+constexpr double kParts = 32;  // segments of the way in which planes come or go
 
 // A surface of flat faces around the origin, open upwards: the room above is convex. Its rays are
-// the directions in which one can leave along it.
+// the directions that leave along the surface.
 struct Pit {
   test::Triangles faces;
   std::vector<Vec3> rays;
@@ -54,7 +54,7 @@ Pit corner(Random& random) {
   return pit;
 }
 
-// A ball that came to c from above.
+// A ball that has come from above to c.
 MeshTouch touch_at(const Pit& pit, const Vec3& c) {
   MeshTouch touch(test::obstacle(pit.faces), kRadius);
   const Vec3 from = c + Vec3(0, 0, 0.1);
@@ -82,24 +82,24 @@ RoomTick some_tick(Random& random, const Vec3& c) {
   t.T = T;
   t.center = c;
   t.a = std::pow(10, random.between(-5, -2.5)) * random.direction();
-  // A force of the spring takes off it up to twice what it pulls for.
+  // A force of the spring reduces its own pull by up to twice that pull.
   t.W = std::pow(10, random.between(-2, 0.3)) / t.K * random.positive_definite(3, 0.05, 1);
   return t;
 }
 
 struct Case {
-  double given;      // by the spring, beyond what its potential loses [J]
+  double given;      // by the spring, beyond its potential's loss [J]
   double bound;      // that the subdivision allows [J]
   double size;       // of the terms [J]
-  bool same_planes;  // all over the tick
+  bool same_planes;  // during the whole tick
 };
 Case balance(const MeshTouch& touch, const RoomTick& t, const Vec3& F) {
   const Vec3 D = t.a + t.W * F;
   const Held before = held(touch, t.center), after = held(touch, t.center + D);
   const double stored = 0.5 * t.K * (after.pull.squaredNorm() - before.pull.squaredNorm());
-  // In a part where the planes change the pull is not linear. It moves no further than the centre
-  // does, so that its mean there is wrong by no more than a quarter of the part's length, and no
-  // set of planes holds twice along a line: of n planes at most 2^n - 1 parts are so.
+  // In a part where the planes change, the pull is not linear. The pull moves no further than the
+  // centre, so its mean there is wrong by at most a quarter of the part's length. No set of planes
+  // holds twice along a line: with n planes at most 2^n - 1 parts are affected.
   const double parts = std::pow(2, touch.space().count()) - 1;
   const bool same = before.by == after.by;
   const double length = D.norm() / kParts;
@@ -199,8 +199,8 @@ TEST(RoomForce, OfOnePlaneIsAWalls) {
       ++kept;
       ASSERT_NEAR(F.z(), wanted, 1e-9 * (1e-3 + wanted)) << round;
     } else {
-      // Of the part in which it is made or breaks a quarter of the spring's, and half of the
-      // damper's.
+      // Bound: in the part where the contact is made or breaks, a quarter of the spring's force and
+      // half of the damper's.
       if (wanted > 0) ++changed;
       const double way = std::abs(end - d), part = way / kParts;
       const double bound = t.K * part / 4 + t.B / T * part;
@@ -212,8 +212,8 @@ TEST(RoomForce, OfOnePlaneIsAWalls) {
 }
 
 TEST(RoomForce, DampsAlongAGroovesFacesAndNotAcrossItsCrease) {
-  // Two faces that rise by an angle share the depth h beneath the crease: each has h cos(angle), of
-  // which 1/(2 cos^2(angle)) is its own, so that they damp up and down as one wall and sideways by
+  // Two faces that rise by an angle share the depth h beneath the crease: each has h cos(angle),
+  // and 1/(2 cos^2(angle)) of that is its own. So they damp up and down as one wall and sideways by
   // tan^2(angle); at right angles they are two walls.
   for (const double rise : {0.02, 0.3, 0.7, std::numbers::pi / 4}) {
     const Vec3 c(0, 0, 0.3 * kRadius);
@@ -234,7 +234,8 @@ TEST(RoomForce, DampsAlongAGroovesFacesAndNotAcrossItsCrease) {
 }
 
 TEST(RoomForce, OfAnAnchorIsALinearSpring) {
-  // Pressed deep beneath a sheet and out over its edge, the ball hangs on an anchor that follows.
+  // The ball is pressed deep beneath a sheet and out over its edge: it hangs on an anchor that
+  // follows.
   MeshTouch touch(test::obstacle(test::sheet(4, 0.2)), kRadius);
   Vec3 c(0.09, 0.01, 0.02);
   touch.place(c);

@@ -61,10 +61,10 @@ Vec3 center_of(const Object& object) { return mass_properties(object).center; }
 TEST(Body, HasItsCentreOfMassWhereItsShapesBalance) {
   const BodyPart beside{pose_at(Vec3(0.1, 0, 0)), Box{Vec3::Constant(0.02)}};
   EXPECT_EQ(center_of(body_of(Box{Vec3::Constant(0.02)})), Vec3::Zero());
-  // Two of the same size balance in the middle.
+  // Two bodies of the same size balance in the middle.
   const Vec3 between = center_of(body_of(Box{Vec3::Constant(0.02)}, {beside}));
   EXPECT_NEAR((between - Vec3(0.05, 0, 0)).norm(), 0, 1e-12);
-  // A ball whose volume is half of the cube's draws the centre to itself with a third.
+  // A ball with half of the cube's volume shifts the centre towards itself by a third.
   const double radius = 0.02 * std::cbrt(0.5 * 3 / (4 * std::numbers::pi));
   const BodyPart ball{pose_at(Vec3(0, 0.09, 0)), Sphere{radius}};
   const Vec3 drawn = center_of(body_of(Box{Vec3::Constant(0.02)}, {ball}));

@@ -1,4 +1,4 @@
-// What is nearest and what is in the way, against asking every triangle.
+// Nearest points and crossings of a mesh, against a search of every triangle.
 #include "core/touch/triangle_mesh.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::Triangles;
 
 constexpr double kFarthestFloat = std::numeric_limits<float>::max();
 
-// The nearest point by what is nearest on the plane if it lies inside, else on the three edges.
+// The nearest point: the plane's, if it lies inside, otherwise the nearest on the three edges.
 Vec3 nearest_by_parts(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a).normalized();
   const Vec3 q = p - n.dot(p - a) * n;
@@ -45,11 +45,11 @@ double distance_to_all(const Triangles& soup, const Vec3& middle, const Vec3& p)
 }
 
 struct Hit {
-  double part = std::numeric_limits<double>::infinity();  // of the way
-  double least = 1;  // how clearly any triangle was hit or missed, in barycentric coordinates
+  double part = std::numeric_limits<double>::infinity();  // part of the way
+  double least = 1;  // margin by which any triangle was hit or missed, in barycentric coordinates
 };
 
-// Moeller and Trumbore, every triangle.
+// The first hit by Moeller and Trumbore over every triangle.
 Hit first_hit(const Triangles& soup, const Vec3& middle, const Vec3& from, const Vec3& to) {
   Hit hit;
   const Vec3 d = to - from;
@@ -99,7 +99,7 @@ TEST_P(TrianglesOfEverySize, AreFoundNearestAsByAskingEachOfThem) {
       EXPECT_NEAR(found.distance, wanted, 2e-7 * mesh->radius());
       EXPECT_NEAR((found.point - p).norm(), found.distance, 1e-14 * (size + p.norm()));
       EXPECT_NEAR(found.normal.norm(), 1, 1e-14);
-      // Within a little more it is found, within a little less nothing is.
+      // A limit a little larger finds the point; a little smaller finds none.
       MeshPoint again;
       EXPECT_TRUE(mesh->nearest(p, found.distance * (1 + 1e-9), MeshPoint::kNone, again));
       EXPECT_FALSE(mesh->nearest(p, found.distance * (1 - 1e-9), MeshPoint::kNone, again));
@@ -135,7 +135,7 @@ TEST_P(TrianglesOfEverySize, AreInTheWayAsByAskingEachOfThem) {
   for (int round = 0; round < 1000; ++round) {
     const Vec3 from = random_.point(2 * size), to = random_.point(2 * size);
     const Hit wanted = first_hit(triangles, mesh->middle(), from, to);
-    if (wanted.least < 1e-3) continue;  // a matter of rounding
+    if (wanted.least < 1e-3) continue;  // rounding decides
     MeshPoint found;
     const bool hit = mesh->crossing(from, to, found);
     EXPECT_EQ(hit, wanted.part <= 1);
@@ -149,7 +149,7 @@ TEST_P(TrianglesOfEverySize, AreInTheWayAsByAskingEachOfThem) {
 }
 
 TEST(NearestOnTriangle, OfSliversIsOnThem) {
-  // However thin: a point of the triangle, and none is nearer.
+  // Even in a very thin triangle the result lies on it, and no point is nearer.
   Random random(302);
   for (int round = 0; round < 20000; ++round) {
     const double thin = std::pow(10.0, random.between(-8.5, 0));
@@ -177,7 +177,8 @@ TEST(NearestOnTriangle, IsBeneathAPointOverASliver) {
     const double height = random.between(-1, 1) * std::pow(10.0, random.between(-3, 1));
     const Vec3 beneath = a + u * (b - a) + v * (c - a);
     const Vec3 q = nearest_on_triangle(beneath + height * n, a, b, c);
-    // Where in a sliver is unsure by what its corners' last digits make of it; how far away is not.
+    // In a sliver the place is uncertain by its corners' last digits over its width; the distance
+    // is not.
     ASSERT_LT((q - beneath).norm(), 1e-14 * (1 + std::abs(height)) / thin) << thin;
     ASSERT_NEAR((q - beneath - height * n).norm(), std::abs(height),
                 1e-13 * (1 + std::abs(height)) + 1e-16 / thin);
@@ -212,7 +213,7 @@ TEST(Behind, IsInsideOfAClosedBody) {
     for (int round = 0; round < 3000; ++round) {
       const Vec3 p = random.point(1.6);
       const double depth = test::bumpy_radius(p.normalized(), bump) - p.norm();
-      if (std::abs(depth) < 0.02) continue;  // as far as the facets are from the body
+      if (std::abs(depth) < 0.02) continue;  // the distance of the facets from the body
       EXPECT_EQ(mesh->behind(p - mesh->middle()), depth > 0);
       inside += depth > 0 ? 1 : 0;
     }

@@ -67,7 +67,7 @@ Pose random_pose(Random& random) {
   return pose;
 }
 
-// `spacing`: no point of the surface is further from one of the samples [m].
+// Samples of the surface; each of its points is within `spacing` of one of them [m].
 template <class S>
 void expect_distance(const S& shape, double spacing) {
   Random random(11);

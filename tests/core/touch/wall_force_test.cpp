@@ -14,7 +14,7 @@ double spread(Random& random, double low, double high) {
   return std::exp(random.between(std::log(low), std::log(high)));
 }
 
-// From soft to far stiffer than a tick can follow, from light to heavy.
+// A random tick: from soft to far stiffer than a tick can follow, from light to heavy.
 WallTick some_tick(Random& random) {
   WallTick w{};
   w.K = spread(random, 1, 1e5);
@@ -28,7 +28,7 @@ WallTick some_tick(Random& random) {
 }
 
 struct Balance {
-  double given;  // by the wall's spring and taken by its damper, F D minus both [J]
+  double given;  // F D less the energy to spring and damper [J]
   double size;   // of the terms [J]
 };
 
@@ -64,7 +64,7 @@ TEST(WallForce, DoesTheWorkThatTheSpringLosesAndTheDamperTakesInAllCases) {
       ASSERT_LT(std::abs(b.given), 1e-14 * b.size)
           << now << ": d " << w.d << " a " << w.a << " c " << w.c << " K " << w.K << " B " << w.B;
     } else {
-      // Let go because the damper would hold it back: what the spring had left is lost.
+      // The contact opens as the damper would hold it: the spring's remaining energy is lost.
       ASSERT_LE(b.given, 1e-14 * b.size) << now;
     }
   }
@@ -101,7 +101,8 @@ TEST(WallForce, PushesOnlyWhatIsInOrWouldCome) {
   }
 }
 
-// Along a line of depths and motions: follows the largest jump into ever smaller parts of it.
+// Along a line of depths and motions, follows the largest jump of the force into ever smaller
+// parts.
 double largest_jump(const WallTick& from, const WallTick& to) {
   const auto at = [&](double s) {
     WallTick w = from;
@@ -137,27 +138,27 @@ TEST(WallForce, NeverJumpsAcrossTheBordersOfItsCases) {
     to.d = std::abs(from.d) * random.between(-2, 2);
     to.a = std::abs(from.a) * random.between(-2, 2);
     const double way = std::abs(from.d) + std::abs(from.a) + std::abs(to.d) + std::abs(to.a);
-    // No force is steeper than that of an explicit spring and damper and of a stop that answers at
+    // The force is never steeper than an explicit spring and damper and a stop that answers at
     // once, 1/c.
     const double steepest = std::min(from.K + from.B / from.T, 1 / from.c) * way;
     ASSERT_LT(largest_jump(from, to), 1e-6 * steepest);
   }
 }
 
-// Asked the other way round, with the change of depth that came of the force.
+// The inverse: the force from the change of depth that it caused.
 TEST(WallPush, IsTheSameForceWhereTheChangeOfDepthIsKnown) {
   Random random(16);
   std::array<int, kCases> met{};
   for (int round = 0; round < 100000; ++round) {
     WallTick w = some_tick(random);
     w.T = 1e-3;
-    w.B = std::min(w.B, 0.2 * w.T / w.c);  // a damper that pushes back no more than it is met with
+    w.B = std::min(w.B, 0.2 * w.T / w.c);  // bounded: the damper pushes back no more than its share
     const double F = wall_force(w), D = w.a - w.c * F;
     ++met[case_of(w, F)];
     WallTick known = w;
     known.a = D;
     const double size = w.K * (std::abs(w.d) + std::abs(D)) + w.B / w.T * std::abs(D);
-    // D is a difference of what may be much larger.
+    // D is a difference of numbers that may be much larger.
     const double lost = 1e-13 * (std::abs(w.a) + w.c * F) * (w.K + w.B / w.T);
     ASSERT_NEAR(wall_push(known).force, F, 1e-7 * size + lost) << round;
   }
@@ -192,7 +193,7 @@ TEST(WallForce, OfWhatNoForceMovesIsTheMeanOfSpringAndDamper) {
     w.c = 1e-6 * spread(random, 1e-14, 1) / (w.K + w.B / w.T);
     const double end = w.d + w.a;
     const double before = std::max(w.d, 0.0), after = std::max(end, 0.0);
-    // Over the part of the way that is inside.
+    // The mean over the part of the way that is inside.
     const double b = w.B / w.T;
     const double mean =
         (0.5 * w.K * (after * after - before * before) + b * w.a * (after - before)) / w.a;

@@ -119,7 +119,7 @@ TEST(Planar2, BendsInThePlane) {
   for (const Joint& joint : arm.joints) EXPECT_EQ(joint.axis, Vec3::UnitZ());
 }
 
-// The service's axes: to the right, away from the user, who sits ahead of the origin, and up.
+// Axes of the service: to the right, away from the user, who sits ahead of the origin, and up.
 TEST(Inverse3, HasTheCursorOfItsServiceForJointsAndFeelsAlikeInAllDirections) {
   const ArmDescription description = read_urdf(test::assets() / "devices/inverse3.urdf");
   ASSERT_EQ(description.dof(), 3);

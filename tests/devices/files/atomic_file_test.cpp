@@ -20,7 +20,7 @@ std::span<const unsigned char> bytes(std::string_view text) {
   return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
 }
 
-// As /dev/stdout and /dev/null are for whoever may replace them.
+// A pipe stands for /dev/stdout and /dev/null, which a privileged program could replace.
 TEST(AtomicFile, WritesIntoAPipeInsteadOfReplacingIt) {
   const test::TempDir dir;
   const fs::path pipe = dir / "pipe";

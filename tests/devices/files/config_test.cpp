@@ -110,7 +110,7 @@ TEST(Setting, TakesTomlValuesAndBareWords) {
   EXPECT_FALSE(p.anti_windup);
 }
 
-// TOML knows neither; people write them, and every other option takes them.
+// TOML has no such numbers; people write them, and every other option takes them.
 TEST(Setting, TakesNumbersThatLackAZero) {
   for (const auto& [text, value] : {std::pair(".5", 0.5), {"5.", 5.0}, {"+.25", 0.25}}) {
     Parameters p;

@@ -29,7 +29,8 @@ TEST_F(FileUpdate, HandsOverWhatIsThereAndMakesTheFolder) {
   EXPECT_EQ(test::file_bytes(file_), "one\ntwo\n");
 }
 
-// Without the lock each reads before another one has written, and most lines are lost.
+// Without the lock each program would read before another one has written, and most lines would be
+// lost.
 TEST_F(FileUpdate, OfSeveralProgramsAtOnceLosesNothing) {
   constexpr int kPrograms = 4, kLines = 8;
   std::vector<pid_t> programs;
@@ -37,7 +38,7 @@ TEST_F(FileUpdate, OfSeveralProgramsAtOnceLosesNothing) {
     const pid_t id = fork();
     if (id == 0) {
       for (int line = 0; line < kLines; ++line) {
-        // On a slow disk the others may keep one waiting for too long.
+        // On a slow disk the wait for the others may exceed its limit.
         while (!test::refusal([&] { append(fmt::format("{} {}", program, line)); }).empty()) {
         }
       }

@@ -92,7 +92,7 @@ TEST_F(MeshNames, OfPackagesAreFoundAsRosFindsThem) {
   EXPECT_EQ(finder.find("package://three/d.stl"), installed);
 }
 
-// What lies nearer wins only if it has the file.
+// A nearer package wins only if it has the file.
 TEST_F(MeshNames, AreLookedForInEveryPackageOfTheName) {
   put("near/arm/other.stl");
   const fs::path there = put("install/share/arm/a.stl");

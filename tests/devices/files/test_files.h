@@ -1,4 +1,4 @@
-// What the tests of files share: a folder of their own, and refusals with their messages.
+// Folders, files and refusals for the tests of files.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ std::string refusal(Work work) {
 
 inline std::filesystem::path assets() { return LIMPID_ASSETS_DIR; }
 
-// Recordings that do not lie in the repository; empty if they are not on this computer.
+// Folder of recordings outside the repository; empty if this computer has none.
 inline std::filesystem::path shared_hands() {
   const char* named = getenv("LIMPID_SHARED");
   const std::filesystem::path folder =

@@ -1,4 +1,4 @@
-// Arms that are described in full and yet do not move, or not all of them.
+// Arms that are described in full but do not move, or only in part.
 #include "tests/devices/files/test_files.h"
 #include "tests/devices/files/urdf_pieces.h"
 
@@ -22,7 +22,7 @@ std::string at(const std::string& xyz) { return "<origin xyz='" + xyz + "'/>"; }
 std::string limit(const std::string& range, const std::string& effort) {
   return "<limit " + range + " effort='" + effort + "' velocity='1'/>";
 }
-// Fixed, a metre beside the axis x that joints have by default.
+// A link fixed a metre beside the axis x, the default of joints.
 std::string hand(const std::string& on) {
   return joint(on, "hand", "fixed", at("0 1 0")) + link("hand", "");
 }
@@ -39,7 +39,7 @@ TEST(UrdfMotion, EndsTheChainAtTheLastLinkThatHasMass) {
   ASSERT_EQ(arm.dof(), 1);
   EXPECT_EQ(arm.joints[0].name, "a_b");
   EXPECT_EQ(arm.tip_link, "tool") << "the tip stays the tip";
-  // b_c is held at 0.5 rad, the limit next to 0; c_d at 0.
+  // b_c is held at 0.5 rad, the limit nearest to 0; c_d at 0.
   const Vec3 there(3 * std::cos(0.5), 3 * std::sin(0.5), 2);
   EXPECT_LT((arm.tip.translation() - there).norm(), 1e-15);
   const auto tool = std::ranges::find(arm.frames, "tool", &NamedFrame::name);
@@ -57,7 +57,7 @@ TEST(UrdfMotion, EndsTheChainAtTheLastLinkThatHasMass) {
   EXPECT_EQ(parse_urdf(arm.urdf, "session", "").dof(), 1) << "its text gives the same arm";
 }
 
-// A mass without any inertia that sits on the axis of the last joint resists nothing, but weighs.
+// A mass without inertia on the axis of the last joint resists no motion, but has weight.
 TEST(UrdfMotion, KeepsTheMassThatTheEndCarries) {
   const ArmDescription arm = parse(
       link("a") + joint("a", "b") + link("b") + joint("b", "c", "revolute", kLimit + at("0 1 0")) +
@@ -130,7 +130,7 @@ TEST(UrdfMotion, AsksForATipWhereOnlyAGripperMoves) {
   EXPECT_EQ(parse(gripper, "left").dof(), 1);
 }
 
-// The square of such a length is no number any more.
+// The square of such a length overflows.
 TEST(UrdfMotion, TakesAnAxisOfAnyLengthThatIsOne) {
   const auto axis_of = [](const std::string& xyz) {
     return parse(link("a") +
@@ -151,7 +151,7 @@ TEST(UrdfMotion, SaysThatATipOnItsOnlyAxisCannotBeMoved) {
                             joint("b", "end", "fixed", at("0.3 0 0")) + link("end", "");
   EXPECT_THAT(parse(shaft).warnings,
               ElementsAre(AllOf(HasSubstr("'end'"), HasSubstr("'a_b'"), HasSubstr("--tip"))));
-  // Another joint about the same axis does not help; a link beside it is named.
+  // Another joint about the same axis does not help; the error names a link beside it.
   const std::string two = shaft + joint("end", "c") + link("c") +
                           joint("c", "crank", "fixed", at("0 0.2 0")) + link("crank", "");
   EXPECT_THAT(parse(two, "c").warnings, ElementsAre(HasSubstr("'crank'")));

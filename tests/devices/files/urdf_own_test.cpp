@@ -1,4 +1,4 @@
-// What a URDF says beyond its format.
+// Elements that Limpid reads beyond URDF.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(UrdfOwn, HasGravityDelayAndSprings) {
   EXPECT_EQ(arm.delay, 0.002);
   EXPECT_EQ(arm.joints[0].spring, 0.2);
   EXPECT_EQ(arm.joints[0].offset, -0.01);
-  // A slide has 10 cm where a joint has 1 rad: 30 N/m are 0.3 N m/rad, 2 N are 0.2 N m.
+  // For a slide 10 cm stand for 1 rad of a joint: 30 N/m are 0.3 N m/rad, 2 N are 0.2 N m.
   EXPECT_DOUBLE_EQ(arm.joints[1].spring, 0.3);
   EXPECT_DOUBLE_EQ(arm.joints[1].offset, 0.2);
 }

@@ -79,8 +79,8 @@ TEST(Urdf, MergesLinksBehindFixedJoints) {
   EXPECT_EQ(arm.frames[3].link, 0);
 }
 
-// A point mass m at r has the inertia m (r^2 1 - r r^T). Three of them, in a frame that is askew to
-// the link's, are what their inertia about their own centre, turned and moved, has to be.
+// A point mass m at r has the inertia m (r^2 1 - r r^T). Three of them, given in a frame tilted
+// against the link's, must have the inertia about their own centre, turned and moved.
 TEST(Urdf, TurnsAnInertiaThatIsGivenInAFrameAskew) {
   const std::array<double, 3> masses{0.2, 0.5, 0.3};
   const std::array<Vec3, 3> points{Vec3(0.3, -0.1, 0.2), Vec3(-0.2, 0.4, 0.1),
@@ -210,7 +210,7 @@ std::string often(int times, const std::string& text) {
   return all;
 }
 
-// The parser recurses into each element: whatever makes it open one has to be counted, as it sees
+// The parser recurses into each element, so every opened element must be counted as the parser sees
 // it.
 TEST(Urdf, RefusesNestingThatIsHiddenInQuotesCommentsAndOtherEncodings) {
   const auto said = [](const std::string& text) {
@@ -224,9 +224,9 @@ TEST(Urdf, RefusesNestingThatIsHiddenInQuotesCommentsAndOtherEncodings) {
   EXPECT_THAT(said("<r><![CDATA[<!--]]>" + often(kMany, "<a>")), HasSubstr("nested"));
   EXPECT_THAT(said(often(kMany, "</a>") + often(kMany, "<a>")), HasSubstr("nested"));
   EXPECT_THAT(said("<!DOCTYPE a '<!--'>" + often(kMany, "<a>")), HasSubstr("nested"));
-  // '>' in quotes does not end this declaration for the parser: the comment is none.
+  // The parser does not end this declaration at '>' in quotes, so the comment is none.
   EXPECT_THAT(said("<?xml version='><!--' ?>" + often(kMany, "<a>")), HasSubstr("x.urdf:1"));
-  // As UTF-8 the first byte of the value would take the quote behind it along.
+  // Read as UTF-8, the value's first byte would swallow the quote behind it.
   EXPECT_THAT(said("<?xml encoding='UTF-8'?><r a='\xF0' b='>" + often(kMany, "<a>") + "'"),
               HasSubstr("x.urdf"));
   std::string wide;
@@ -249,7 +249,7 @@ TEST(Urdf, RefusesTextsThatTakeForEver) {
   EXPECT_THAT(said(std::string(17 << 20, ' ')), HasSubstr("at most 16777216"));
 }
 
-// urdfdom lets go of a chain link by link, each within the one before.
+// urdfdom releases a chain link by link, each within the release of the one before.
 TEST(Urdf, RefusesEndlessChains) {
   constexpr int kMany = 100000;
   std::string chain;
@@ -275,11 +275,11 @@ TEST(Urdf, IsReadInTheEncodingItHas) {
     const ArmDescription arm = parse_urdf(other, "x.urdf", "");
     EXPECT_EQ(arm.dof(), 1);
     EXPECT_EQ(arm.tip_link, plain.tip_link);
-    EXPECT_EQ(arm.urdf, text);  // a recording has it as UTF-8
+    EXPECT_EQ(arm.urdf, text);  // recordings hold the text as UTF-8
   }
 }
 
-// What complains is one place of the whole program.
+// The parser reports errors through one place shared by the whole program.
 TEST(Urdf, IsReadByManyAtOnce) {
   const std::string good = test::robot(link("a") + joint("a", "b") + link("b"));
   const std::string bad = test::robot(link("a") + joint("a", "nowhere") + link("b"));

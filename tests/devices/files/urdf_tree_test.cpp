@@ -1,4 +1,4 @@
-// Arms that are part of more: grippers, brackets, other arms; and numbers that are left out.
+// Arms in larger trees, with grippers, brackets and other arms, and left out numbers.
 #include <fmt/format.h>
 
 #include "tests/devices/files/test_files.h"
@@ -31,7 +31,7 @@ std::vector<std::string> joints_of(const ArmDescription& arm) {
   return names;
 }
 
-// Two fingers that slide, each limited to 0.01 m and more, on a hand that turns.
+// A hand that turns, with two fingers that slide, limited to 0.01 m and more.
 std::string hand_with_fingers(const std::string& second) {
   return link("a") + joint("a", "b", "revolute", kLimit + at("0 0 1") + "<axis xyz='0 0 1'/>") +
          link("b") + joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
@@ -67,7 +67,7 @@ TEST(UrdfTree, TakesASlideAtTheEndOfTheChainForAJoint) {
       link("c"));
   ASSERT_THAT(joints_of(arm), ElementsAre("a_b", "b_c"));
   EXPECT_TRUE(arm.warnings.empty());
-  // As (5) has them: 1 unit of travel is 0.1 m, power is power.
+  // Units of (5): 1 unit of travel is 0.1 m, power is kept.
   const Joint& slide = arm.joints[1];
   EXPECT_EQ(slide.kind, Joint::Kind::prismatic);
   EXPECT_NEAR(slide.lower, -0.5, 1e-15);
@@ -86,7 +86,7 @@ TEST(UrdfTree, GoesToTheTipThatIsNamedAndHoldsTheOtherBranchStill) {
               testing::AllOf(HasSubstr("'l2'"), HasSubstr("'r3'"), HasSubstr("--tip")));
   EXPECT_THAT(joints_of(parse(two_arms, "l2")), ElementsAre("base_l1", "l1_l2"));
   EXPECT_THAT(joints_of(parse(two_arms, "r2")), ElementsAre("base_r1", "r1_r2"));
-  // r3 is carried along by the last of them.
+  // The last joint carries r3 along.
   EXPECT_NEAR(parse(two_arms, "r2").links[1].mass, 2, 1e-15);
   EXPECT_THAT(refusal([&] { parse(two_arms, "r9"); }),
               testing::AllOf(HasSubstr("'r9'"), HasSubstr("l2, r3")));
@@ -147,8 +147,8 @@ TEST(UrdfTree, PassesByWhatMovesWithoutAMass) {
   EXPECT_THAT(joints_of(fingers), ElementsAre("a_b", "b_c"));
 }
 
-// A frame without mass between two joints, as wrists have: M would not be positive definite where
-// the two axes are one.
+// A frame without mass between two joints, as in wrists: M would not be positive definite where the
+// two axes coincide.
 TEST(UrdfTree, GivesAFrameWithoutInertiaAThousandthOfWhatHangsOnIt) {
   const ArmDescription arm =
       parse(link("a") + joint("a", "b") + link("b", "") +
@@ -158,7 +158,7 @@ TEST(UrdfTree, GivesAFrameWithoutInertiaAThousandthOfWhatHangsOnIt) {
   EXPECT_EQ(arm.links[0].mass, 0);
   ASSERT_EQ(arm.warnings.size(), 1u);
   EXPECT_THAT(arm.warnings[0], testing::AllOf(HasSubstr("'b'"), HasSubstr("<inertial>")));
-  // A slide needs mass: a thousandth of it.
+  // A slide needs mass: it gets a thousandth as well.
   const ArmDescription slide = parse(link("a") + joint("a", "b", "prismatic") + link("b", "") +
                                      joint("b", "c") + link("c", kBall));
   EXPECT_NEAR(slide.links[0].mass, 2e-3, 1e-18);
@@ -218,7 +218,7 @@ TEST(UrdfTree, RefusesTreesTooDeepToFollow) {
   EXPECT_THAT(refusal([&] { parse(chain); }), HasSubstr("too many links"));
 }
 
-// The finger's axis is its joint's, and that is turned: x there points down here.
+// The finger's axis is given in its joint's turned frame: x there points down.
 TEST(UrdfTree, HoldsASlideStillAlongItsOwnAxis) {
   const ArmDescription arm =
       parse(link("a") + joint("a", "b", "revolute", kLimit + at("0 0 1")) + link("b") +

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 std::string visual(const std::string& geometry, const std::string& more = {}) {
   return "<visual>" + more + "<geometry>" + geometry + "</geometry></visual>";
 }
-// Beside the axis of the joint that moves it.
+// A fixed link beside the axis of the joint that moves it.
 const std::string kHand = joint("b", "hand", "fixed", "<origin xyz='0 1 0'/>") + link("hand", "");
 
 ArmDescription showing(const std::string& visuals, const std::string& more = {}) {
@@ -70,7 +70,7 @@ TEST(UrdfVisuals, HaveTheColoursOfTheirMaterials) {
   EXPECT_TRUE(arm.warnings.empty());
 }
 
-// Whatever is wrong with a picture, the arm is there, and one line says what.
+// With any fault of a picture, the arm is read, and one line names the fault.
 TEST(UrdfVisuals, ThatCannotBeShownAreAWarningAndAPlainShape) {
   const std::pair<std::string, std::string> cases[] = {
       {visual("<mesh filename='missing.glb'/>"), "missing.glb"},

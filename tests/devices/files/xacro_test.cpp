@@ -1,4 +1,4 @@
-// Against a program that stands in xacro's place: what it prints is the arm.
+// Reading of xacro files, with a program in xacro's place that prints the arm.
 #include <sys/stat.h>
 
 #include <cstdlib>
@@ -46,7 +46,7 @@ TEST_F(XacroFile, IsKnownByItsMacrosToo) {
   EXPECT_EQ(read_urdf(dir_ / "arm.urdf", {}, Xacro::expand).dof(), 1);
 }
 
-// Expanding runs code in the file: the program is not even started.
+// Expanding runs code in the file: without permission the program is not even started.
 TEST_F(XacroFile, IsNotExpandedUnlessSomebodySaysSo) {
   install("touch \"$(dirname \"$1\")/started\"\ncat \"$(dirname \"$1\")/arm.txt\"\n");
   EXPECT_THAT(refusal<XacroToExpand>([&] { read_urdf(dir_ / "arm.xacro"); }),

@@ -23,7 +23,7 @@ DeviceTraits traits(int joints) {
   return one;
 }
 
-// Joints that give way in proportion to their torque, by so much a newton metre.
+// Joints that move in proportion to their torque, by a given angle per newton metre.
 struct Springs {
   std::vector<double> give;
   std::vector<double> x = std::vector<double>(give.size());
@@ -64,7 +64,7 @@ TEST(AxisCheck, FindsTheSignAndTheGiveOfEachJoint) {
   EXPECT_LE(springs.time, 3 * 3.0);
 }
 
-// 2 N m is full force. A joint that takes all the time there is gives way too little.
+// Full force is 2 N m. A joint that takes all the time yields too little.
 TEST(AxisCheck, AsksForATenthOfFullForceAndThreeSecondsAtMost) {
   AxisCheck check(traits(1));
   Springs firm{{0.049}};
@@ -135,7 +135,7 @@ TEST(AxisCheck, KeepsWhatItHasFoundWhenCancelledAtItsEnd) {
   EXPECT_TRUE(check.passed());
 }
 
-// A joint that its motor turns by seven steps of its encoder.
+// The motor turns the joint by seven steps of its encoder.
 TEST(AxisCheck, WantsMoreThanTheNoiseOfACoarseEncoder) {
   DeviceTraits coarse = traits(1);
   coarse.resolution = {0.004};
@@ -158,7 +158,7 @@ TEST(AxisCheck, WaitsUntilTheDeviceIsAtRest) {
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::restless);
 }
 
-// Each push moves it, but always the same way: that was a hand.
+// Each push moves the joint, but always the same way: a hand did that.
 TEST(AxisCheck, BelievesOnlyWhatMovesBothWays) {
   AxisCheck check(traits(1));
   std::vector<double> x{0};
@@ -169,7 +169,7 @@ TEST(AxisCheck, BelievesOnlyWhatMovesBothWays) {
   EXPECT_FALSE(check.passed());
 }
 
-// Once pushed it goes on by itself, a radian a second, out of a way of one radian.
+// After a push the joint goes on by itself, at 1 rad/s, over a range of 1 rad.
 TEST(AxisCheck, GivesUpADeviceThatRunsOn) {
   AxisCheck check(traits(1));
   std::vector<double> x{0};
@@ -183,8 +183,8 @@ TEST(AxisCheck, GivesUpADeviceThatRunsOn) {
   EXPECT_LT(x[0], 0.16);
 }
 
-// By more than a hundredth of its way before it felt a fiftieth of the torque: its motor is too
-// strong, or that was something else.
+// The joint moves by more than a hundredth of its range before a fiftieth of the torque acts: its
+// motor is too strong, or something else moved it.
 TEST(AxisCheck, GivesUpADeviceThatMovesAtOnce) {
   AxisCheck check(traits(1));
   Springs springs{{10}};

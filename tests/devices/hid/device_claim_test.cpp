@@ -42,7 +42,7 @@ struct AClaim : testing::Test {
   const fs::path folder = dir / "";
 };
 
-// A process that has done something and waits to be killed.
+// A child process that has done something and waits to be killed.
 class Another {
  public:
   explicit Another(const std::function<void()>& first) {
@@ -115,7 +115,7 @@ TEST_F(AClaim, IsLetGoOfByTheKernelWhenItsHolderIsKilled) {
   EXPECT_EQ(claimed_by("hidraw:240:3", folder), "");
 }
 
-// As a guardian keeps it, which outlives the program.
+// The guardian keeps a claim like this, as it outlives the program.
 TEST_F(AClaim, IsKeptByWhoeverStillHasItsDescriptor) {
   pid_t child = 0;
   {
@@ -140,7 +140,7 @@ TEST_F(AClaim, CanBeTakenByEveryUserWhateverTheMask) {
   EXPECT_EQ(is.st_mode & 0777, 0666u);
 }
 
-// A file that another user made and that cannot be written to can still be locked.
+// A file of another user that cannot be written to can still be locked.
 TEST_F(AClaim, TakesAFileOfAnotherUser) {
   if (geteuid() != 0) GTEST_SKIP() << "only the superuser can be somebody else";
   { const DeviceClaim first = take(); }
@@ -195,7 +195,7 @@ TEST_F(AClaim, DoesNotTrustWhatTheFileSays) {
   close(locked);
 }
 
-// A lock on a file that is gone would hold nobody back.
+// A lock on a deleted file would hold nobody back.
 TEST_F(AClaim, IsTakenOnTheFileThatIsThere) {
   const DeviceClaim first = take();
   fs::remove(file());
@@ -220,7 +220,7 @@ TEST_F(AClaim, IsRefusedWhereNobodyCanTell) {
   }
 }
 
-// As two containers see it that share the node and no folder of claims.
+// Two containers may share the node without a common folder of claims.
 TEST_F(AClaim, OfANodeIsOneProgramsByWhateverNameItIsOpened) {
   const fs::path node = dir / "hidraw0", other = dir / "other name";
   std::ofstream(node) << "";

@@ -22,19 +22,19 @@ namespace {
 const std::vector<Report> kStop{{1, 0, 0}, {12, 3}};
 const Report kStopBytes{1, 0, 0, 12, 3};
 
-// The device is the writing end of a pipe.
+// The writing end of a pipe stands for the device.
 struct GuardedPipe : testing::Test {
   GuardedPipe() { EXPECT_EQ(pipe(ends), 0); }
   ~GuardedPipe() override { close(ends[0]); }
 
-  // All that was written until nobody could write any more.
+  // Reads all bytes until the last writer is gone.
   Report received() {
     Report bytes;
     std::uint8_t byte = 0;
     while (read(ends[0], &byte, 1) == 1) bytes.push_back(byte);
     return bytes;
   }
-  // In a process of its own, which this ends as it likes.
+  // Runs `life` in a child process, which may end it in any way.
   void in_another_process(const std::function<void(int device)>& life) {
     const pid_t child = fork();
     if (child == 0) {
@@ -77,7 +77,7 @@ TEST_F(GuardedPipe, GetsNothingAfterADismissal) {
   EXPECT_EQ(received(), Report{});
 }
 
-// Each has the other's socket at birth and must let go of it.
+// Each guardian inherits the other's socket and must close it.
 TEST_F(GuardedPipe, IsGuardedBesideOthers) {
   int other[2];
   ASSERT_EQ(pipe(other), 0);
@@ -104,11 +104,11 @@ TEST_F(GuardedPipe, SurvivesInterruptsSentToTheWholeGroup) {
   EXPECT_EQ(received(), kStopBytes);
 }
 
-// Whoever claims the device next must not be stopped by the guardian of the one before.
+// The next program with the device must not be stopped by the previous guardian.
 TEST_F(GuardedPipe, IsClaimedUntilItHasItsStopReports) {
   const test::TempDir dir;
   const auto claimed = [&] { return !claimed_by("device", dir / "").empty(); };
-  // More than a pipe holds: the guardian cannot get rid of it until somebody reads.
+  // More than a pipe holds: the guardian cannot finish until somebody reads.
   const std::vector<Report> long_stop(40, Report(4096, 7));
   in_another_process([&](int device) {
     const DeviceClaim claim("device", dir / "");
@@ -130,7 +130,7 @@ TEST(Guardian, SaysWhyItCannotOpenADevice) {
   }
 }
 
-// Out of a session of its own it would be killed with the rest.
+// Without a session of its own the guardian would be killed with the rest.
 TEST_F(GuardedPipe, GetsThemWhenTheWholeGroupIsKilled) {
   in_another_process([](int device) {
     setpgid(0, 0);
@@ -141,13 +141,13 @@ TEST_F(GuardedPipe, GetsThemWhenTheWholeGroupIsKilled) {
   EXPECT_EQ(received(), kStopBytes);
 }
 
-// A device that is busy for a while: only what is tried again gets through.
+// A device that is busy for a while: only repeated attempts get through.
 TEST_F(GuardedPipe, GetsThemWhenItIsBusyAtFirst) {
   fcntl(ends[1], F_SETFL, O_NONBLOCK);
   const Report junk(1 << 16, 0xEE);
   while (write(ends[1], junk.data(), junk.size()) > 0) {
   }
-  const std::vector<Report> many(400, Report(4096, 0x55));  // whole or not at all
+  const std::vector<Report> many(400, Report(4096, 0x55));  // a write is whole or nothing
   const pid_t child = fork();
   if (child == 0) {
     const Guardian guardian(ends[1], many);
@@ -160,7 +160,7 @@ TEST_F(GuardedPipe, GetsThemWhenItIsBusyAtFirst) {
   EXPECT_GE(std::count(bytes.begin(), bytes.end(), 0x55), 4096);
 }
 
-// It lives as long as the device is guarded: a pipe to somebody else must not stay open so long.
+// The guardian lives as long as the device is guarded: it must not hold other pipes open.
 TEST_F(GuardedPipe, KeepsNothingElseOpen) {
   int other[2];
   ASSERT_EQ(pipe(other), 0);
@@ -173,7 +173,7 @@ TEST_F(GuardedPipe, KeepsNothingElseOpen) {
   guardian.dismiss();
 }
 
-// Numbers below that of the device are let go as those above it are.
+// Descriptors below the device's are closed like those above it.
 TEST_F(GuardedPipe, KeepsNothingOpenBelowTheDevice) {
   int other[2];
   ASSERT_EQ(pipe(other), 0);

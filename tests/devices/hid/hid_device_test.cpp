@@ -18,12 +18,12 @@ namespace {
 using test::raw_command;
 using test::sealed;
 
-// A raw device of two joints that sends a reading every millisecond or so on a thread of its own.
+// A raw device of two joints whose thread sends a reading about every millisecond.
 struct LiveRawDevice : testing::Test {
   LiveRawDevice() { fake->features[0] = sealed(test::raw_feature(2)); }
   ~LiveRawDevice() override { freeze(); }
 
-  // `path`: of the file that a guardian writes to; none: nobody guards the device.
+  // Opens the device; a guardian writes to the file at `path`, if there is one.
   std::unique_ptr<HidDevice> connect(const std::string& path = "") {
     return std::make_unique<HidDevice>(std::make_unique<test::FakeTransport>(fake, true),
                                        std::make_unique<RawProtocol>(),
@@ -41,7 +41,7 @@ struct LiveRawDevice : testing::Test {
     frozen = true;
     if (player.joinable()) player.join();
   }
-  // Ticks until the device is pushed.
+  // Ticks until the device has force.
   void push(HidDevice& device) {
     std::atomic<bool> pushed = false;
     std::thread ticks([&] {

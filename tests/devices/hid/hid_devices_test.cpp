@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::Bytes;
 
-// A sysfs and a /dev of the test's own.
+// A system with a sysfs and a /dev of its own.
 struct FakeSystem : testing::Test {
   void plug_in(const std::string& node, const Bytes& descriptor, const std::string& uevent) {
     const fs::path device = roots.sysfs / node / "device";
@@ -64,7 +64,7 @@ TEST_F(FakeSystem, LeavesOutWhatIsNoHapticDevice) {
 
 TEST_F(FakeSystem, IsEmptyWithoutHidraw) { EXPECT_TRUE(list().empty()); }
 
-// It speaks PID, but it cannot be an arm.
+// A game pad speaks PID, but cannot be an arm.
 TEST_F(FakeSystem, SaysThatAGamePadIsNoArm) {
   Bytes pad = test::pid_joystick::whole();
   pad[3] = 0x05;  // the usage of its outermost collection
@@ -101,7 +101,7 @@ TEST_F(FakeSystem, DoesNotConnectToWhatIsNoHidDevice) {
   }
 }
 
-// Another device may have come to the same path since the list was made.
+// Another device may have appeared at the same path since the list was made.
 TEST_F(FakeSystem, OpensNothingButTheKindThatItFound) {
   plug_in("hidraw0", test::space_navigator(), "HID_NAME=SpaceNavigator\n");
   plug_in("hidraw1", test::pid_joystick::whole(), "HID_NAME=Stick\n");
@@ -133,7 +133,7 @@ TEST_F(FakeSystem, OpensNothingButTheKindThatItFound) {
   EXPECT_EQ(opened(found[1], mouse), "Stick: it has been unplugged");
 }
 
-// One of the same kind, too: what is remembered is the other one's.
+// Holds for devices of the same kind, too: stored settings belong to the other one.
 TEST_F(FakeSystem, OpensNothingButTheDeviceThatItFound) {
   plug_in("hidraw0", test::space_navigator(), "HID_ID=0003:0000046D:0000C626\nHID_UNIQ=A7\n");
   const auto found = list();

@@ -1,4 +1,4 @@
-// How much the exchange puts up with before it gives a device up.
+// Limits of the exchange's patience with a failing device.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// One joint, one byte a report.
+// A protocol of one joint and one byte a report.
 class OneByte final : public HidProtocol {
  public:
   OneByte() {
@@ -40,7 +40,7 @@ class OneByte final : public HidProtocol {
   DeviceTraits traits_;
 };
 
-// Sends as much as anybody reads, if it floods; takes writes as it is told.
+// Sends endless reports if it `floods`; takes writes if it `accepts`.
 class Endless final : public HidTransport {
  public:
   int read(std::span<std::uint8_t> report, int) noexcept override {
@@ -93,7 +93,7 @@ TEST_F(ExchangeLimits, ForgivesFailuresOnceAWriteGetsThrough) {
   EXPECT_TRUE(exchange.lost());
 }
 
-// One that does not understand the first may understand another.
+// A device that does not understand the first report may understand another.
 TEST_F(ExchangeLimits, EndsWithEveryStopReportWhicheverFails) {
   protocol.stops = {{0}, {1}, {2}};
   transport.accepts = false;
@@ -102,7 +102,7 @@ TEST_F(ExchangeLimits, EndsWithEveryStopReportWhicheverFails) {
   EXPECT_EQ(transport.newest, 2);
 }
 
-// Else whoever floods the bus would keep the force on for ever.
+// Otherwise a flood on the bus would keep the force on for ever.
 TEST_F(ExchangeLimits, SendsInTheMidstOfAnEndlessFlood) {
   transport.floods = true;
   const std::array<double, 1> torque{0.5};

@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 using test::raw_reading;
 using test::sealed;
 
-// A raw device of two joints, a clock that the test turns, and no threads.
+// A raw device of two joints, a clock that the test advances, and no threads.
 struct RawExchange : testing::Test {
   RawExchange() {
     device->features[0] = sealed(test::raw_feature(2));
@@ -27,7 +27,7 @@ struct RawExchange : testing::Test {
   void reading_arrives(std::vector<float> x = {0.1f, 0.2f}, std::uint8_t status = 7) {
     device->send(sealed(raw_reading(++sequence, x, status)));
   }
-  // The command that the device hears in a turn.
+  // Makes a turn; returns the command that the device receives in it.
   test::RawCommand turn(nanoseconds later = milliseconds(1)) {
     now += later;
     device->forget_received();
@@ -35,18 +35,18 @@ struct RawExchange : testing::Test {
     const auto received = device->received();
     return received.empty() ? test::RawCommand{.right = false} : test::raw_command(received.back());
   }
-  // As the haptic thread does.
+  // Acts as the haptic thread does.
   void tick() {
     exchange->read(newest);
     exchange->write(torque);
   }
-  // A device that is being pushed.
+  // Brings a force onto the device.
   void push() {
     reading_arrives();
     tick();
     ASSERT_EQ(turn().torque[0], 0.25f);
   }
-  // A turn with all well, but for what the test has changed.
+  // A turn in good condition, apart from the test's changes.
   test::RawCommand healthy_turn() {
     reading_arrives();
     tick();
@@ -251,12 +251,12 @@ TEST_F(RawExchange, GivesUpADeviceThatTakesNoReports) {
   EXPECT_FALSE(exchange->lost()) << "failures before a success do not count";
   healthy_turn();
   EXPECT_TRUE(exchange->lost());
-  // The last word may get through all the same.
+  // The final report may get through all the same.
   device->refuse_writes(false);
   EXPECT_TRUE(exchange->finish());
 }
 
-// What the loop does not know of it cannot mend: it would go on from the torque it had.
+// The loop cannot correct a stall it does not know of: it would go on from its last torque.
 TEST_F(RawExchange, GivesNoTorqueAfterAStallUntilTheLoopHasHeardOfIt) {
   for (const int stall : {9, 20, 100, 1000}) {
     push();
@@ -267,7 +267,7 @@ TEST_F(RawExchange, GivesNoTorqueAfterAStallUntilTheLoopHasHeardOfIt) {
       turn();
     }
     reading_arrives();
-    exchange->write(torque);  // worked out before the stall
+    exchange->write(torque);  // computed before the stall
     EXPECT_FALSE(turn().pushes()) << stall;
     exchange->read(newest);
     EXPECT_EQ(newest.lapses, before + 1) << stall;
@@ -287,7 +287,7 @@ TEST_F(RawExchange, GivesNoTorqueAfterItHasStoodStillItself) {
   }
 }
 
-// Whose endpoint is asked for a report only every few milliseconds.
+// The device's endpoint takes a report only every few milliseconds.
 TEST_F(RawExchange, PushesADeviceThatTakesItsReportsSlowly) {
   push();
   device->while_writing = [this] { now += microseconds(4500); };
@@ -297,7 +297,7 @@ TEST_F(RawExchange, PushesADeviceThatTakesItsReportsSlowly) {
   EXPECT_EQ(newest.lapses, before);
 }
 
-// As when the whole program is stopped meanwhile: what the device has had is old then.
+// The whole program may be stopped during a write: the report that the device got is old then.
 TEST_F(RawExchange, GivesNoTorqueAfterAWriteThatStoodStill) {
   for (const int stall : {6, 20, 1000}) {
     push();
@@ -345,7 +345,7 @@ TEST_F(RawExchange, EndsWithAStop) {
   EXPECT_EQ(device->received(), protocol.stop_reports());
 }
 
-// One joint, no motors; reports are buttons, or a reading if there are none.
+// A protocol of one joint without motors; reports are buttons, or a reading if there are none.
 struct PlainProtocol final : HidProtocol {
   PlainProtocol() { traits_.dof = 1; }
   void open(HidTransport&) override {}

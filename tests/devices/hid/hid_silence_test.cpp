@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A PID joystick that says nothing while nothing moves.
+// A PID joystick that sends nothing while nothing moves.
 struct SilentJoystick : testing::Test {
   SilentJoystick() {
     device->features[6] = {6, 1, 1, 0, 0};

@@ -1,4 +1,4 @@
-// The Inverse3 as the loop has it, over a real connection, against a stand-in of its service.
+// The Inverse3 as the loop uses it, over a real connection, against a stand-in of its service.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ std::unique_ptr<Device> open(const ServiceAddress& address, const std::string& i
   return open_device(found.back());
 }
 
-// The loop's part: a tick about every millisecond, until the condition holds.
+// Takes the loop's part: a tick about every millisecond, until the condition holds.
 bool turn(Device& device, const std::vector<double>& torque,
           const std::function<bool(const DeviceReading&, bool here)>& until) {
   const auto end = std::chrono::steady_clock::now() + 60s;
@@ -38,7 +38,7 @@ bool turn(Device& device, const std::vector<double>& torque,
   }
 }
 
-// Ticks for so many milliseconds as if nothing had happened; whether the condition held.
+// Ticks for so many milliseconds as if nothing had happened; returns whether the condition held.
 bool turn_for(Device& device, int ticks, const std::function<bool()>& holds) {
   for (int i = 0; i < ticks; ++i) {
     DeviceReading reading;
@@ -51,7 +51,7 @@ bool turn_for(Device& device, int ticks, const std::function<bool()>& holds) {
 }
 
 struct AnInverseService : testing::Test {
-  // A force is on it when this returns.
+  // Returns when a force is on the device.
   void push(Device& device) {
     bool any = false;
     std::thread listener([&] {
@@ -127,7 +127,7 @@ TEST_F(AnInverseService, ThatTalksNonsenseHasAZeroForce) {
   }
 }
 
-// The loop with its safety, one tick after the other; a stop pushes its first axis back.
+// The loop with its safety, tick by tick; a stop pushes the device's first axis back.
 TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   service.tell("spring 400");
   const auto device = open(service.address());
@@ -151,7 +151,7 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
                        std::chrono::seconds most = 60s) {
     const auto end = std::chrono::steady_clock::now() + most;
     while (!until() && std::chrono::steady_clock::now() < end) {
-      // A busy machine stands still for more than 5 ms now and then.
+      // A busy machine sometimes stands still for more than 5 ms.
       const ForceState why = rig.force_state();
       const bool late = why == ForceState::stale || why == ForceState::stalled;
       if (late && rig.force().state() == Arming::tripped) wish = ForceRequest::arm;
@@ -166,7 +166,8 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   EXPECT_TRUE(run(ForceRequest::as_it_is, [&] {
     return ++ticks > 2000 && rig.force().gain() > 0.5;
   })) << "it is held still, but gives way as its force fades";
-  // What it repeats may be of a moment at which the force had faded: then it is asked again.
+  // The repeated cursor may date from a moment at which the force had faded: then another try is
+  // made.
   const auto tripped = [&] {
     return rig.force_state() == ForceState::frozen && rig.force().state() == Arming::tripped;
   };
@@ -187,7 +188,7 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   EXPECT_EQ(rig.force().gain(), 0);
 }
 
-// One that answers after 20 ms must not have a queue of forces before it.
+// A service that answers after 20 ms must not get a queue of forces.
 TEST_F(AnInverseService, ThatIsSlowIsNotFlooded) {
   const auto device = open(service.address());
   EXPECT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
@@ -202,7 +203,7 @@ TEST_F(AnInverseService, ThatIsSlowIsNotFlooded) {
   service.tell("count");
   const std::string second =
       service.wait_for([](const auto& l) { return l.starts_with("messages"); });
-  // One command an answer, but for zeros that do not wait for it.
+  // Each answer allows one command; zeros do not wait for it.
   EXPECT_LE(std::stoi(second.substr(9)) - std::stoi(first.substr(9)), 2 * 20 + 10);
 }
 
@@ -240,7 +241,7 @@ TEST_F(AnInverseService, ThatIsToldAnotherFrameMeanwhileHasAZeroForce) {
   EXPECT_FALSE(turn_for(*device, 100, [&] { return service.heard(pushes); }));
 }
 
-// Whatever a name leads to: a second stream of forces would pull it to and fro.
+// Any name of the address counts: a second stream of forces would pull the device to and fro.
 TEST_F(AnInverseService, IsHadByOneAndHearsNothingOfAnother) {
   const auto device = open(service.address());
   push(*device);
@@ -255,7 +256,7 @@ TEST_F(AnInverseService, IsHadByOneAndHearsNothingOfAnother) {
       EXPECT_THAT(error.what(), testing::HasSubstr("in use by process"));
     }
   }
-  // It says "session" of each connection that sends something.
+  // The service says "session" for each connection that sends something.
   EXPECT_FALSE(turn_for(*device, 100, [&] {
     return service.heard(
         [](const std::string& line) { return line == "session" || line == "end"; });

@@ -45,7 +45,7 @@ TEST(InverseDevices, AreThoseOfTheService) {
   EXPECT_EQ(found[0].missing, "");
   service.tell("devices 049D 04BA");
   service.tell("count");
-  service.wait_for("messages 0");  // looking says nothing
+  service.wait_for("messages 0");  // listing sends no message
   found = list_inverse_devices({}, service.address());
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[1].place.name, "Haply Inverse3 04BA (" + place + ")");
@@ -70,7 +70,7 @@ TEST(InverseDevices, ThatAreWantedAndNotThereAreListedWithWhatTheyLack) {
   EXPECT_THAT(found[0].missing, testing::StartsWith("no Haply Inverse Service at 127.0.0.1:1"));
 }
 
-// Other programs have that port too.
+// Other programs may use that port too.
 TEST(InverseDevices, AreNoneWhereSomebodyListensAndSaysNothing) {
   const int listener = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in place{};

@@ -1,5 +1,5 @@
-// What is said to the Haply Inverse Service, and what is taken of its answers, against the messages
-// that its documentation shows.
+// Messages to the Haply Inverse Service and readings from its answers, against the messages in its
+// documentation.
 #include "devices/hid/inverse_protocol.h"
 
 #include <gmock/gmock.h>
@@ -52,7 +52,7 @@ struct AnInverse3 : testing::Test {
   void open() { open(message({device("049D", 0, -0.12, 0.16)})); }
   Decoded decode(const Report& bytes) { return protocol->decode(bytes, reading); }
   Decoded decode(const json& value) { return decode(report(value)); }
-  // The forces sent for this torque at this time.
+  // Messages sent for this torque at this time.
   std::vector<json> encode(const Vec3& torque, nanoseconds now) {
     std::vector<json> sent;
     protocol->encode({torque.data(), 3}, now, [&](std::span<const std::uint8_t> bytes) {
@@ -164,7 +164,7 @@ TEST_F(AnInverse3, TakesNothingFromMessagesThatMakeNoSense) {
       cursor(true),
       cursor(1e300),
       cursor(-1.5),
-      cursor(0.2),  // 20 cm since the reading before
+      cursor(0.2),  // 20 cm from the reading before
       patched({{"state", nullptr}}),
       patched({{"state", 3}}),
       patched({{"device_id", 1181}}),
@@ -220,7 +220,7 @@ TEST_F(AnInverse3, GetsItsTorqueAsAForceOnTheCursor) {
   EXPECT_THAT(encode(Vec3(0.1, -0.25, 0.4), 0ms), testing::ElementsAre(force("049D", 1, -2.5, 4)));
 }
 
-// Else a slow service would have a queue of old forces before it.
+// Otherwise a slow service would get a queue of old forces.
 TEST_F(AnInverse3, GetsNoFurtherForceBeforeItHasAnswered) {
   open();
   const json answer = message({device("049D", 0, -0.12, 0.16)});
@@ -285,7 +285,7 @@ TEST_F(AnInverse3, IsAtFaultWhileAMessageSaysAnotherFrame) {
   }
 }
 
-// In another frame the cursor may be too far from where it was for a position that is believed.
+// The other frame may move the cursor too far for a believable position.
 TEST_F(AnInverse3, IsAtFaultAtOnceWhereTheOtherFrameMovesIt) {
   open();
   EXPECT_EQ(decode(message({device("049D", 0, -0.12, 0.16)})), Decoded::reading);
@@ -309,7 +309,7 @@ TEST_F(AnInverse3, RepeatsAZeroThatDidNotLeaveAtTheNextChance) {
   EXPECT_TRUE(encode({0, 0, 0}, 4ms).empty());
 }
 
-// Two of them could queue up behind a slow service.
+// Two forces could queue up at a slow service.
 TEST_F(AnInverse3, RepeatsNoForceThatDidNotLeave) {
   open();
   EXPECT_EQ(encode({0.1, 0, 0}, 0ms).size(), 1u);

@@ -63,7 +63,7 @@ struct OpenPidJoystick : testing::Test {
   DeviceReading reading;
 };
 
-// Reports as the PID specification has them, laid out by this descriptor.
+// Reports as in the PID specification, laid out by this descriptor.
 const Report kReset{12, 4}, kStopAll{12, 3}, kEnable{12, 1}, kDisable{12, 2}, kContinue{12, 6},
     kGain{13, 255};
 const Report kForce1Zero{5, 1, 0, 0}, kForce2Zero{5, 2, 0, 0};
@@ -99,7 +99,7 @@ TEST_F(OpenPidJoystick, ReadsItsAxes) {
   EXPECT_NEAR(reading.x[0], 0, 0.001);
 }
 
-// Its 10-bit numbers go from -256 to 255 here; all else says that it does not know.
+// The joystick's 10-bit numbers go from -256 to 255 here; others mean "unknown".
 TEST(PidJoystick, UsesNoNumberOutsideOfItsRange) {
   Bytes narrow = parts::whole();
   const Bytes range{0x16, 0x00, 0xFE, 0x26, 0xFF, 0x01};
@@ -138,7 +138,7 @@ TEST_F(OpenPidJoystick, HearsOfItsSafetySwitchAndItsPower) {
   EXPECT_TRUE(reading.hand);
 }
 
-// OpenFFBoard says that it is paused when it makes an effect, and never closes its safety switch.
+// OpenFFBoard reports a pause when it makes an effect, and never closes its safety switch.
 TEST_F(OpenPidJoystick, TakesABitThatNeverSaidThatAllIsWellForNothing) {
   for (const int state : {+kPaused, kPaused | kPower, 0}) {
     joystick.decode(Report{2, static_cast<std::uint8_t>(state), 0}, reading);
@@ -180,7 +180,7 @@ TEST_F(OpenPidJoystick, SendsOnlyWhatChanges) {
   EXPECT_THAT(encode({0, 0}, milliseconds(100)), ElementsAre());
 }
 
-// The zero of an axis while the other one pushes, whose effects start both anew.
+// An axis' zero got lost while the other axis pushes, whose effects start both anew.
 TEST_F(OpenPidJoystick, SendsAForceThatGotLostAgain) {
   encode({0.5, 0.25}, milliseconds(0));
   EXPECT_THAT(encode({0, 0.25}, milliseconds(1)), ElementsAre(kForce1Zero));
@@ -189,7 +189,7 @@ TEST_F(OpenPidJoystick, SendsAForceThatGotLostAgain) {
   EXPECT_THAT(encode({0, 0.25}, milliseconds(3)), ElementsAre());
 }
 
-// Else the device would drop the force; and if we die, it does.
+// Otherwise the device would end the force; if the program dies, it does.
 TEST_F(OpenPidJoystick, StartsItsEffectsAgainBeforeTheyEnd) {
   encode({0.5, 0}, milliseconds(0));
   EXPECT_THAT(encode({0.5, 0}, milliseconds(3)), ElementsAre());
@@ -225,7 +225,7 @@ TEST(PidJoystick, CanBeTurnedRound) {
   EXPECT_EQ(first, (Report{5, 1, 255, 0}));
 }
 
-// What its check finds and stores is counted in joints.
+// The check finds and stores its results by joint.
 TEST(PidJoystick, CanBeTurnedRoundWhereOnlyYCanBePushed) {
   const Bytes enable_x{0x09, 0x55, 0xA1, 0x02, 0x05, 0x01, 0x09, 0x30};
   Bytes descriptor = parts::whole();
@@ -276,7 +276,7 @@ TEST(PidJoystick, SaysWhenTheDeviceDoesNotAnswer) {
   EXPECT_THAT(complaint(device), HasSubstr("does not say where"));
 }
 
-// Blocks count from 1; 0 is that of no effect.
+// Blocks count from 1; 0 stands for no effect.
 TEST(PidJoystick, TakesNoBlockZero) {
   PidDevice device;
   device.first_block = 0;
@@ -316,7 +316,7 @@ TEST(PidJoystick, NamesWhatTheDeviceLacks) {
               HasSubstr("Set Constant Force"));
 }
 
-// An adapter for pads with motors that shake: two axes, constant force, and a game pad.
+// An adapter for pads with motors that shake has two axes, constant force, and a game pad.
 TEST(PidJoystick, TakesAGamePadForNoArm) {
   Bytes pad = parts::whole();
   ASSERT_EQ(pad[3], 0x04);  // Joystick

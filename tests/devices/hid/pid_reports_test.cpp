@@ -18,7 +18,7 @@ using test::Bytes;
 using test::operator+;
 using testing::HasSubstr;
 
-// `text` with the one place where `old` stands replaced.
+// `text` with its only occurrence of `old` replaced by `news`.
 Bytes with(const Bytes& text, const Bytes& old, const Bytes& news) {
   const auto at = std::search(text.begin(), text.end(), old.begin(), old.end());
   EXPECT_NE(at, text.end());
@@ -41,7 +41,7 @@ PidReports with_force(const Bytes& old, const Bytes& news) {
       joystick_with(parts::set_effect(), with(parts::set_constant_force(), old, news))));
 }
 
-// Bytes 3 and 4: the duration.
+// The duration in bytes 3 and 4 of a report.
 int duration(const PidReports& reports, double seconds) {
   const Report report = reports.set_effect(1, 0, seconds);
   return report[3] + 256 * report[4];
@@ -59,13 +59,13 @@ TEST(PidDuration, IsInTheUnitsOfTheDevice) {
   EXPECT_EQ(count({0x65, 0x00, 0x55, 0x00}), 20);         // no unit: milliseconds
 }
 
-// The smallest number that is not "for ever", which 0 means.
+// The smallest number above 0, which means "for ever".
 TEST(PidDuration, IsNeverForEver) {
   EXPECT_EQ(duration(with_effect(kMilliseconds, kMilliseconds), 6e-4), 1);
   EXPECT_EQ(duration(with_effect(kMilliseconds, {0x66, 0x03, 0x10, 0x55, 0xFE}), 0.006), 1);
 }
 
-// A force that nobody renews would stay for so long.
+// A force that nobody renews would last that long.
 TEST(PidDuration, ThatADeviceCannotHaveShortEnoughIsRefused) {
   const Bytes seconds{0x66, 0x03, 0x10, 0x55, 0x00}, tenths{0x66, 0x03, 0x10, 0x55, 0xFF},
       hundredths{0x66, 0x03, 0x10, 0x55, 0xFE};
@@ -98,13 +98,13 @@ TEST(PidMagnitude, FillsTheRangeOfTheDevice) {
   EXPECT_EQ(fine.force_level(1, 0), 0);
 }
 
-// Both ways the same force, however lopsided the range: the loop counts on it.
+// The force is the same in both directions even with a lopsided range: the loop relies on it.
 TEST(PidMagnitude, IsTheSameBothWays) {
   const PidReports more = with_force(kMagnitude, {0x16, 0x38, 0xFF, 0x26, 0x64, 0x00});
-  EXPECT_EQ(more.force_level(1, 1), 100);  // of -200..100
+  EXPECT_EQ(more.force_level(1, 1), 100);  // in a range of -200..100
   EXPECT_EQ(more.force_level(1, -1), -100);
   const PidReports less = with_force(kMagnitude, {0x15, 0x9C, 0x26, 0xC8, 0x00});
-  EXPECT_EQ(less.force_level(1, 1), 100);  // of -100..200
+  EXPECT_EQ(less.force_level(1, 1), 100);  // in a range of -100..200
   EXPECT_EQ(less.force_level(1, -1), -100);
   // 16 bits hold one number more below zero than above.
   const PidReports whole = with_force(kMagnitude, {0x16, 0x00, 0x80, 0x26, 0xFF, 0x7F});
@@ -118,7 +118,7 @@ TEST(PidMagnitude, OfOneSignIsRefused) {
   }
 }
 
-// Direction Enable, then 5 bits of padding, then the two directions: bytes 9, 10 and 11.
+// Direction Enable, 5 bits of padding and the two directions: bytes 9, 10 and 11.
 Bytes tail(const Report& effect) { return {effect.begin() + 9, effect.end()}; }
 
 const Bytes kDirections{0x15, 0x00, 0x26, 0xFF, 0x00, 0x35, 0x00, 0x47,
@@ -170,7 +170,7 @@ TEST(PidDirection, IsAnAngleInTheRangeOfTheDevice) {
   }
 }
 
-// -360 to 0 degrees: from the right is a quarter of the way, from the far side is the end.
+// In -360 to 0 degrees, from the right is a quarter of the way, from the far side the end.
 TEST(PidDirection, IsAnAngleInARangeThatIsNegative) {
   const PidReports reports =
       with_effect(kDirections, {0x15, 0x00, 0x26, 0xFF, 0x00, 0x37, 0x60, 0x73, 0xFF, 0xFF, 0x45,
@@ -179,7 +179,7 @@ TEST(PidDirection, IsAnAngleInARangeThatIsNegative) {
   EXPECT_EQ(tail(reports.set_effect(1, 1, 0.01)), (Bytes{4, 255, 255}));
 }
 
-// The second of three may be that of a third axis.
+// The second of three directions may be a third axis'.
 TEST(PidDirection, IsOnlyTheFirstOfThree) {
   Bytes three = kDirections;
   three.back() = 3;
@@ -214,7 +214,7 @@ TEST(PidDirection, GoesOnlyAlongAxesThatCanBePushed) {
   EXPECT_EQ(tail(reports.set_effect(1, 0, 0.01)), (Bytes{4, 64, 64}));
 }
 
-// No axis can be enabled: the angle says it all.
+// No axis can be enabled: the angle alone gives the direction.
 TEST(PidDirection, NeedsNoAxisBits) {
   Bytes no_axes = kEnableX;
   no_axes[1] = 0x5A;  // any other collection
@@ -225,7 +225,7 @@ TEST(PidDirection, NeedsNoAxisBits) {
   EXPECT_EQ(reports.force_level(0, 1), -255);
 }
 
-// Device control as OpenFFBoard has it: a bit a command, and three bits for the last usage.
+// Device control of OpenFFBoard: a bit for each command, and three bits for the last usage.
 TEST(PidDeviceControl, IsABitWhereEachCommandHasOne) {
   const Bytes array{0x15, 0x01, 0x25, 0x06, 0x75, 0x08, 0x95, 0x01, 0x91, 0x00};
   const Bytes bits{0x15, 0x01, 0x25, 0x06, 0x75, 0x01, 0x95, 0x08, 0x91, 0x02};

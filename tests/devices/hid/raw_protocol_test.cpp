@@ -59,7 +59,7 @@ TEST_F(OpenRawProtocol, KnowsWhatTheDeviceIs) {
   EXPECT_FLOAT_EQ(static_cast<float>(traits.resolution.at(1)), 1e-4f);
 }
 
-// Byte for byte; the CRC is zlib's.
+// The report was made byte for byte by another program; the CRC is zlib's.
 TEST_F(OpenRawProtocol, ReadsAReportThatAnotherProgramMade) {
   Report report(65);
   const Report start{0,    0x4C, 1,    2,   0b0110, 7, 0,    0,    0,    0x40, 0xE2,
@@ -134,7 +134,7 @@ TEST_F(OpenRawProtocol, HearsOfTheHandAndOfFaults) {
   EXPECT_TRUE(reading.fault) << "not calibrated";
 }
 
-// As long as it says so: a command may be lost on the way as well.
+// Each report with that flag counts: a command may be lost on the way as well.
 TEST_F(OpenRawProtocol, TakesItForALapseWhenItsWatchdogHasCut) {
   constexpr std::uint8_t kWell = test::kRawHand | test::kRawCalibrated, kCut = 1 << 4;
   decode(sealed(raw_reading(1, {0, 0}, kWell)));

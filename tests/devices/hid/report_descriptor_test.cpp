@@ -106,7 +106,7 @@ TEST(ReportDescriptor, TakesTheFirstOfAlternativeUsages) {
   EXPECT_FALSE(d.find(ReportKind::input, make_usage(1, 0x31)));
 }
 
-// One set of alternatives a value: X or Y, Z or Rx, and Ry alone.
+// Each value has a set of alternatives: X or Y, Z or Rx, and Ry alone.
 TEST(ReportDescriptor, TakesTheFirstOfEachSetOfAlternatives) {
   const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x03,              //
                     0xA9, 0x01, 0x09, 0x30, 0x09, 0x31, 0xA9, 0x00,  //
@@ -123,7 +123,7 @@ TEST(ReportDescriptor, TakesTheFirstOfEachSetOfAlternatives) {
   }
 }
 
-// A range among alternatives is one of them as a whole: it must not shift those that follow.
+// A range among alternatives is a single alternative: it must not shift the following ones.
 TEST(ReportDescriptor, TakesNoRangeBesideAnAlternative) {
   const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x02, 0xA9, 0x01, 0x09, 0x30,
                     0x19, 0x33, 0x29, 0x35, 0xA9, 0x00, 0x09, 0x31, 0x81, 0x02};
@@ -133,7 +133,7 @@ TEST(ReportDescriptor, TakesNoRangeBesideAnAlternative) {
   EXPECT_EQ(d.fields[1].usages, std::vector<Usage>{make_usage(1, 0x31)});
 }
 
-// More values than usages: the last usage is that of all which remain.
+// More values than usages: the last usage has all the remaining values.
 TEST(ReportDescriptor, GivesTheLastUsageAllValuesThatRemain) {
   const Bytes bytes{0x05, 0x01, 0x75, 0x04, 0x95, 0x05, 0x09, 0x30, 0x09, 0x31,
                     0x81, 0x02, 0x75, 0x08, 0x95, 0x01, 0x09, 0x32, 0x81, 0x02};
@@ -152,7 +152,7 @@ TEST(ReportDescriptor, GivesTheLastUsageAllValuesThatRemain) {
   EXPECT_EQ(get_field(report, d.fields[2]), 0x76);
 }
 
-// Fewer values than usages: those without a value are none.
+// Fewer values than usages: usages without a value make no field.
 TEST(ReportDescriptor, HasNoFieldForAUsageWithoutAValue) {
   const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x01, 0x09, 0x30, 0x09, 0x31, 0x81, 0x02};
   const ReportDescriptor d = parse_report_descriptor(bytes);
@@ -160,7 +160,7 @@ TEST(ReportDescriptor, HasNoFieldForAUsageWithoutAValue) {
   EXPECT_FALSE(d.find(ReportKind::input, make_usage(1, 0x31)));
 }
 
-// Each range by its own minimum: a maximum is signed only where that is below 0.
+// Each range follows its own minimum: a maximum is signed only where the minimum is below 0.
 TEST(ReportDescriptor, ReadsTheSignOfEachMaximumFromItsOwnMinimum) {
   struct Case {
     Bytes range;
@@ -173,7 +173,7 @@ TEST(ReportDescriptor, ReadsTheSignOfEachMaximumFromItsOwnMinimum) {
       {{0x15, 0x00, 0x25, 0xFF, 0x36, 0xD4, 0xFE, 0x45, 0x9C}, {0, 255, -300, -100}},
       {{0x15, 0x00, 0x25, 0xFF, 0x36, 0xF0, 0xD8, 0x46, 0x88, 0x13}, {0, 255, -10000, 5000}},
       {{0x16, 0x00, 0x80, 0x26, 0xFF, 0x7F, 0x35, 0x0A, 0x45, 0xC8}, {-32768, 32767, 10, 200}},
-      // No physical range is the logical one, not 0.
+      // Without a physical range the logical one holds, not 0.
       {{0x15, 0xF6, 0x25, 0x14, 0x35, 0x00, 0x45, 0x00}, {-10, 20, -10, 20}},
       {{0x15, 0xF6, 0x25, 0x14, 0x35, 0x00, 0x45, 0x01}, {-10, 20, 0, 1}},
   };
@@ -187,7 +187,7 @@ TEST(ReportDescriptor, ReadsTheSignOfEachMaximumFromItsOwnMinimum) {
   }
 }
 
-// Exponents are four bits by the letter, and a signed byte in many devices.
+// Exponents are four bits by the standard, and a signed byte in many devices.
 TEST(ReportDescriptor, ReadsExponentsAsDevicesWriteThem) {
   const std::pair<std::uint8_t, int> cases[] = {{0x00, 0},  {0x07, 7},  {0x08, -8},
                                                 {0x0D, -3}, {0x0F, -1}, {0xFD, -3}};
@@ -197,7 +197,7 @@ TEST(ReportDescriptor, ReadsExponentsAsDevicesWriteThem) {
   }
 }
 
-// What a main item used up is not there for the next.
+// Usages of a main item are not there for the next.
 TEST(ReportDescriptor, ForgetsUsagesAfterEachItem) {
   const Bytes bytes{0x05, 0x01, 0x75, 0x08, 0x95, 0x01, 0x09, 0x30, 0x81, 0x02, 0x81, 0x02};
   const ReportDescriptor d = parse_report_descriptor(bytes);

@@ -1,5 +1,4 @@
-// Devices that are programs, here the Python client as it is shipped, against what its springs must
-// do by Hooke's law.
+// Devices that are programs, here the shipped Python client, against Hooke's law for its springs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -29,9 +28,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kSpring = 0.5;  // of each of the client's joints [N m/rad]
+constexpr double kSpring = 0.5;  // spring of each of the client's joints [N m/rad]
 
-// Polls, as the machine may be busy; a condition that never comes fails.
+// Polls, as the machine may be busy; fails if the condition never holds.
 bool comes(const std::function<bool()>& condition) {
   const auto end = std::chrono::steady_clock::now() + 60s;
   while (!condition()) {
@@ -67,12 +66,12 @@ struct ASocketDevice : testing::Test {
   pid_t client = 0;
 };
 
-// The bare connection, as the program sees it.
+// The bare connection from the program's side.
 struct Connection {
   explicit Connection(const std::string& path) : transport(open_socket(path)) {
     protocol.open(*transport);
   }
-  // One command, or none, and what has come since.
+  // Sends one command, or none; reads what has arrived since.
   bool turn(const double* torque) {
     if (torque != nullptr) {
       protocol.encode({torque, 2}, {}, [&](auto report) { transport->write(report); });
@@ -95,7 +94,7 @@ TEST_F(ASocketDevice, IsListedWhileItsProgramRuns) {
   EXPECT_EQ(found.place.name, "springs");
   EXPECT_EQ(found.place.id, "socket:springs");
   EXPECT_EQ(found.missing, "");
-  const auto all = list_devices({.udev_rule = "rules"});  // whatever else is plugged in here
+  const auto all = list_devices({.udev_rule = "rules"});  // other devices may be plugged in here
   EXPECT_EQ(std::ranges::count(all, found.place.id, [](const auto& one) { return one.place.id; }),
             1);
   kill_client();
@@ -140,7 +139,7 @@ TEST_F(ASocketDevice, HasNoTorqueOnceTheConnectionEnds) {
     ASSERT_TRUE(comes([&] { return to.turn(torque) && to.reading.x[0] > 0.1; }));
   }
   std::optional<Connection> again;
-  ASSERT_TRUE(comes([&] {  // it may not have noticed yet
+  ASSERT_TRUE(comes([&] {  // the client may not have noticed yet
     try {
       again.emplace(found.place.path);
     } catch (const HidError&) {
@@ -159,7 +158,7 @@ TEST_F(ASocketDevice, SpeaksToOneProgramAtATime) {
   } catch (const HidError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("in use by process"));
   }
-  // By another name for the same socket, too.
+  // Another name of the same socket does not help.
   std::filesystem::create_symlink(found.place.path, dir / "link.device");
   FoundDevice linked = found;
   linked.place.path = (dir / "link.device").string();
@@ -193,7 +192,7 @@ TEST_F(ASocketDevice, IsListedWithWhoHasIt) {
   EXPECT_EQ(listed().in_use_by, "");
 }
 
-// Its first joint a little inside a stop, which pushes it back against its spring.
+// The first joint is a little inside a stop, which pushes it back against its spring.
 TEST_F(ASocketDevice, IsDrivenByTheLoopAndLostWithoutForceWhenItsProgramIsKilled) {
   const std::unique_ptr<Device> device = open_device(find());
   ArmDescription arm = test::random_arm(2, 7);
@@ -206,7 +205,7 @@ TEST_F(ASocketDevice, IsDrivenByTheLoopAndLostWithoutForceWhenItsProgramIsKilled
   start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(2);
   rig.start(p, start);
   test::Rows rows(rig.layout());
-  // Whenever the client came too late for the limits, which hold for it as for any device.
+  // Arms again when the client was too late for the limits, which hold as for any device.
   const auto step = [&] {
     const Arming now = rig.force().state();
     const bool arm_it = now == Arming::off || now == Arming::tripped;

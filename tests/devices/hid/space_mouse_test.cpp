@@ -14,7 +14,7 @@ SpaceMouse make(const test::Bytes& descriptor) {
   return SpaceMouse(parse_report_descriptor(descriptor));
 }
 
-// As recorded from the device: 175 = 0x00AF, -350 = 0xFEA2.
+// Reports recorded from the device: 175 = 0x00AF, -350 = 0xFEA2.
 TEST(SpaceMouse, ReadsTheSplitReportsOfASpaceNavigator) {
   SpaceMouse mouse = make(test::space_navigator());
   DeviceReading reading;
@@ -71,7 +71,7 @@ TEST(SpaceMouse, MissesAnAxis) {
   EXPECT_TRUE(SpaceMouse::describes(parse_report_descriptor(test::space_navigator())));
 }
 
-// From -300 to 350: what is full to the nearer end is full to the other one as well.
+// In a range of -300 to 350, full deflection to the nearer end counts as full to the other as well.
 TEST(SpaceMouse, TakesTheNearerEndOfItsRangeForFull) {
   for (const bool low_is_nearer : {true, false}) {
     test::Bytes descriptor = test::space_navigator();

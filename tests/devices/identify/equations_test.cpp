@@ -1,4 +1,4 @@
-// Which moments of a record are used.
+// Choice of the moments of a record that are used.
 #include <gtest/gtest.h>
 
 #include "devices/identify/fit.h"
@@ -25,8 +25,8 @@ bool used(const MotionRecord& record, double time) {
   return equations_of(test::random_arm(1, 7), record, Vec3::Zero(), window, times).A.rows() == 1;
 }
 
-// Friction has the sign of the velocity all through a window only where the joint moves all
-// through it: three deviations to either side.
+// Friction has one sign throughout a window only if the joint moves throughout it: three deviations
+// to either side.
 TEST(Equations, AreOfMomentsAboutWhichTheJointMovesAllAlong) {
   for (const double direction : {-1.0, 1.0}) {
     const MotionRecord record = one_stroke(direction);

@@ -1,4 +1,4 @@
-// What ends the motion, and that nothing leaves from then on.
+// Ends of the motion, and no torque from then on.
 #include "devices/identify/excitation.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 class AnExcitation : public testing::Test {
  protected:
-  // One tick; the torque that left.
+  // Makes one tick; returns its torque.
   Eigen::VectorXd step(const DeviceHealth& health = {.guarded = true}) {
     const DeviceReading now = reading();
     const auto sent = motion_.step({std::span(now.x).first(3), 0.001, health});
@@ -107,7 +107,7 @@ TEST_F(AnExcitation, EndsWhenTheWindowThatShowsItIsSilent) {
   expect_nothing_leaves_after(ExcitationEnd::limit);
 }
 
-// A hand that does not let a joint go: a stiff spring to where it is.
+// A hand that holds a joint firmly: a stiff spring to its place.
 TEST_F(AnExcitation, EndsWhenAHandHoldsOn) {
   run(4);
   const DeviceReading held = reading();
@@ -133,7 +133,7 @@ TEST_F(AnExcitation, EndsWhenSomethingThrowsIt) {
   expect_nothing_leaves_after(motion_.end());
 }
 
-// Its controller then pushes it away from where it should go.
+// The motion's controller then pushes the joint away from its target.
 TEST_F(AnExcitation, EndsWhereAnAxisIsTheWrongWayRound) {
   for (int i = 0; i < 10000 && motion_.end() == ExcitationEnd::running; ++i) {
     const DeviceReading now = reading();
@@ -155,7 +155,7 @@ TEST_F(AnExcitation, NeedsMotorsAndAnArmOfAsManyJoints) {
   EXPECT_THROW(Excitation(arm_, traits, plan_), std::invalid_argument);
 }
 
-// A pose at rest need not be in the middle: here there is a stop a tenth of a radian beside it.
+// A pose at rest need not be in the middle: here a stop lies a tenth of a radian beside it.
 TEST(Excitation, KeepsOffAStopNearItsMiddleOnWhicheverSide) {
   for (const double side : {-1.0, 1.0}) {
     const ArmDescription free = test::omni();
@@ -182,7 +182,7 @@ TEST(Excitation, KeepsOffAStopNearItsMiddleOnWhicheverSide) {
   }
 }
 
-// Nothing but where the last joint is: led aside by 0.07 rad, where 0.058 are too far.
+// Only the last joint deviates: led aside by 0.07 rad, where 0.058 are too far.
 class AJointAside : public testing::Test {
  protected:
   AJointAside() {

@@ -1,4 +1,4 @@
-// Devices that are not what their file says are found out by moving them.
+// Identification of devices that differ from their file, by moving them.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -31,7 +31,7 @@ Eigen::VectorXd weight_at(const ArmDescription& description, const Vec<kAnyDof>&
   return regressor(Arm<kAnyDof>(description), x, zero, zero, gravity) * parameters_of(description);
 }
 
-// Inertia and weight in poses that were moved through, friction, delay.
+// Expects the true inertia and weight in poses of the motion, friction and delay.
 void expect_found(const ArmDescription& truth, const Unlikeness& bench, const Identified& found,
                   const MotionRecord& record, Random& random) {
   double heaviest = 0, wrong = 0;
@@ -45,7 +45,7 @@ void expect_found(const ArmDescription& truth, const Unlikeness& bench, const Id
         EXPECT_NEAR(got(i, j), M(i, j), 0.05 * std::sqrt(M(i, i) * M(j, j))) << i << ", " << j;
       }
     }
-    // What a spring and an offset take over of the weight is as good.
+    // Weight may be attributed to a spring and an offset instead.
     Eigen::VectorXd weight = weight_at(truth, x, bench.gravity);
     Eigen::VectorXd said = weight_at(found.arm, x, bench.gravity);
     for (Eigen::Index j = 0; j < x.size(); ++j) {
@@ -86,7 +86,7 @@ TEST(Identify, FindsADevicesInertiaWeightFrictionAndDelay) {
   expect_found(test::omni(), {.gravity = kDown, .encoder_step = 1e-4, .delay = 4}, 502);
 }
 
-// About 1000 steps over a joint's range.
+// An encoder of about 1000 steps over a joint's range.
 TEST(Identify, FindsThemThroughCoarseEncoders) {
   expect_found(test::omni(), {.gravity = kDown, .encoder_step = 2e-3, .delay = 3}, 503);
   expect_found(test::omni(), {.gravity = kDown, .encoder_step = 2e-3, .delay = 1}, 504);
@@ -128,8 +128,8 @@ TEST(Identify, SaysWhichJointMovedTooLittle) {
   }
 }
 
-// A known motion of one joint with the torques that its equation of motion wants, each as late as
-// the delay, and noise of these.
+// A known motion of one joint with the torques of its equation of motion, late by the delay and
+// with noise.
 MotionRecord swung(const ArmDescription& arm, double delay, double noise, unsigned seed) {
   using std::numbers::pi;
   Random random(seed);
@@ -149,7 +149,7 @@ MotionRecord swung(const ArmDescription& arm, double delay, double noise, unsign
   };
   for (Eigen::Index i = 0; i < record.rows(); ++i) {
     record.x(i, 0) = motion(record.T * double(i), 0)[0];
-    const double t = record.T * (double(i) + 0.5) + delay;  // the middle of its acting
+    const double t = record.T * (double(i) + 0.5) + delay;  // middle of the torque's action
     record.torque(i, 0) =
         (regressor(model, motion(t, 0), motion(t, 1), motion(t, 2), kDown) * links)[0] +
         random.between(-noise, noise);
@@ -157,8 +157,8 @@ MotionRecord swung(const ArmDescription& arm, double delay, double noise, unsign
   return record;
 }
 
-// Misses in standard deviations have a mean square of 1, to within three of its own deviations. The
-// noise is weak beside how the torque changes with the delay, as it is in the formula.
+// Errors in standard deviations have a mean square of 1, to within three of its own deviations. The
+// noise is weak beside the torque's change with the delay, as the formula assumes.
 TEST(Identify, SaysHowFarItsDelayMayBeOff) {
   const ArmDescription arm = test::random_arm(1, 41);
   constexpr double kDelay = 3e-3;

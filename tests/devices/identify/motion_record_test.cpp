@@ -25,7 +25,7 @@ TEST(MotionAt, GivesASinesDerivativesDampedByTheWindow) {
   }
 }
 
-// A torque that is held for a tick is half a tick late, besides its delay.
+// A torque held for a tick is half a tick late, besides its delay.
 TEST(TorqueAt, GivesWhatActedDampedByTheWindow) {
   const double w = 2 * std::numbers::pi * 3, delay = 2.7e-3;
   const Smoothing window{0.01};
@@ -54,7 +54,7 @@ TEST(EncoderSteps, AreTheLeastMotionSeen) {
   EXPECT_NEAR(encoder_steps(record)[1], 1e-4, 1e-12);
 }
 
-// What an encoder counts is a multiple of its step, but for the last bits of the multiplication.
+// An encoder's readings are multiples of its step, apart from the last bits of the multiplication.
 TEST(EncoderSteps, AreNotWhatRoundingLeaves) {
   MotionRecord record;
   record.x.resize(1000, 1);

@@ -8,7 +8,7 @@
 
 namespace limpid::test {
 
-// To the end of `motion`, which somebody may look at.
+// Runs `motion` to its end; the caller may inspect it.
 inline MotionRecord moved(Device& device, Excitation& motion) {
   const Eigen::Index n = device.traits().dof;
   MotionRecord record;

@@ -21,7 +21,7 @@ TEST(PlausibleLink, IsTheGuessWhereNothingIsKnown) {
   }
 }
 
-// Principal moments that obey the triangle inequality, of a mass: a body.
+// Principal moments that obey the triangle inequality, with a mass, make a body.
 TEST(PlausibleLink, IsABodyWhateverTheNumbers) {
   Random random(402);
   const PlausibleLink link(parameters_of(test::random_arm(1, 403).links[0]));

@@ -1,5 +1,4 @@
-// A device whose motors give something else than what they are told is found out by something
-// known in kilograms.
+// Identification of the scale of a device's torques by a load of known mass.
 #include "devices/identify/torque_scale.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +41,7 @@ TEST(TorqueScale, IsFoundByALoadAtTheTip) {
   expect_found_by_load(
       omni, {.gravity = kDown, .encoder_step = 1e-4, .delay = 1, .torque_scale = 1.3}, 0.05, 602);
   const ArmDescription paddle = read_urdf(test::assets_dir() / "devices/paddle.urdf");
-  // Nothing of the load's weight is seen by an axis that stands upright, but its inertia.
+  // An upright axis sees nothing of the load's weight, but its inertia.
   expect_found_by_load(paddle, {.encoder_step = 1e-4, .delay = 1, .torque_scale = 1.2}, 0.02, 603);
 }
 

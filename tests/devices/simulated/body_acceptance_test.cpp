@@ -1,5 +1,4 @@
-// What bodies that move have to keep to, whatever the scene: figures that were set before they were
-// built.
+// Bounds for moving bodies in every scene, set before bodies were built.
 #include <gtest/gtest.h>
 
 #include "core/dynamics/random.h"
@@ -30,7 +29,7 @@ TEST_P(BodyScenes, GiveNothingAndAreQuietWithExactEncoders) {
         EXPECT_LE(r.beyond, 5e-5);
         EXPECT_LE(r.gain, 1e-6);
         EXPECT_LE(r.chatter, 1e-4);
-        EXPECT_GT(r.moved, 0.004);  // it did what it is there for
+        EXPECT_GT(r.moved, 0.004);  // the scene did happen
       }
     }
   }
@@ -63,8 +62,8 @@ TEST_P(BodyScenes, LeaveTheLedgerAsItWasWhenABlockFalls) {
 
 INSTANTIATE_TEST_SUITE_P(Stiffnesses, BodyScenes, testing::Values(600, 2000, 5000));
 
-// Between tip and wall its forces depend on each other most; the motors meet their limit. All ticks
-// have a solution, or hardly any has not.
+// Between tip and wall a light body's forces depend on each other most, and the motors meet their
+// limit. All but a few ticks have a solution.
 TEST(LightBody, IsSqueezedWithoutTheProxyStandingStill) {
   for (const double step : {0.0, 1e-4}) {
     for (const double mass : {0.0005, 0.005}) {
@@ -86,8 +85,8 @@ TEST(LightBody, HangsOnAStiffMagnet) {
   EXPECT_GT(r.moved, 0.01);
 }
 
-// Of the hand's force along y, which it pushes along, or of all of it; beside the same program at
-// 20 kHz, of which every 20 ticks are one [N].
+// Rms difference of the hand's force from the same program's at 20 kHz, averaged over 20 of its
+// ticks [N]: along y, the direction of the push, or of the whole force.
 double off_a_fast_run(const BodyBench& bench, bool along_y) {
   const Parameters p = predictive(1);
   Parameters fast = p;
@@ -103,8 +102,8 @@ double off_a_fast_run(const BodyBench& bench, bool along_y) {
   return std::sqrt(sum / static_cast<double>(r.hand.size()));
 }
 
-// What sticks across a push depends on how it came there, so across it nothing is compared; the
-// door swings up to its stop at once where it rubs, so it does not.
+// Bodies that stick across a push depend on their history, so nothing is compared across it. The
+// door has no friction, as it would swing up to its stop at once.
 TEST(HandsForce, IsThatOfALoopOf20Kilohertz) {
   const BodyKind rough{.mass = 0.05, .stiffness = 2000},
       smooth{.mass = 0.05, .stiffness = 2000, .friction = 0};
@@ -139,9 +138,9 @@ TEST(RandomBodies, AreStableAndMakeNothing) {
   }
 }
 
-// Motors that answer late, whether the law knows of it or not, up to walls about as stiff as are
-// named for so late a device, and beyond where it knows. There the governors cut the hand's force;
-// the proxy may then give bodies what the hand has not paid for, but the hand gets no more.
+// Late motors, known to the law or not: up to walls about as stiff as recommended for such a delay,
+// and beyond if it is known. There the governors cut the hand's force. The proxy may then give
+// bodies energy that the hand has not paid for, but the hand gets no more.
 TEST(LateMotorsWithBodies, GiveTheHandNoMoreThanTheLedgerAllows) {
   for (const int delay : {1, 3}) {
     for (const auto& [known, stiffness] :

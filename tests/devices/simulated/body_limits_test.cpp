@@ -1,4 +1,4 @@
-// What people do with bodies that no scene was made for.
+// Unusual uses of bodies that no scene was made for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 
 struct Books {
   double energy = 0;  // highest E_c [J]
-  double beyond = 0;  // most that the hand got beyond what bodies gave [J]
-  double gain = 0;    // most that the bodies' world made [J]
+  double beyond = 0;  // most energy to the hand beyond what bodies gave [J]
+  double gain = 0;    // most energy that the bodies' world made [J]
   void see(const Rows& rows, std::size_t k) {
     energy = std::max(energy, rows.at(k, Column::energy_total));
     beyond =
@@ -30,8 +30,8 @@ Parameters predictive() {
   return p;
 }
 
-// Everything that the panel can change is changed while the tip pushes: what is touched and what is
-// not, its stiffness, its mass and its shape; something comes and something goes.
+// The test changes everything that the panel can change while the tip pushes: stiffness, mass and
+// shape of touched and other objects; objects come and go.
 TEST(BodyLimits, SceneEditsWhileTouchingGiveNothingAndNeverJump) {
   const ArmDescription arm = omni();
   const BodyKind kind;
@@ -54,7 +54,7 @@ TEST(BodyLimits, SceneEditsWhileTouchingGiveNothingAndNeverJump) {
     if (step % 6 == 0) pushed.material.stiffness *= step % 12 == 0 ? 2 : 0.5;
     if (step % 6 == 1) beside.body->mass *= 1.1;
     if (step % 6 == 2) pushed.body->contact_stiffness *= step % 12 == 2 ? 2 : 0.5;
-    if (step % 6 == 3) pushed.body->mass = step % 12 == 3 ? 0.08 : 0.05;  // it begins anew
+    if (step % 6 == 3) pushed.body->mass = step % 12 == 3 ? 0.08 : 0.05;  // the body begins anew
     if (step % 6 == 4) beside.parts.push_back({pose_at({0, 0, 0.02}), Sphere{0.01}});
     if (step % 6 == 5) beside.parts.clear();
     worlds.push_back(std::make_unique<TouchWorld>(arm, scene));
@@ -83,7 +83,7 @@ TEST(BodyLimits, SceneEditsWhileTouchingGiveNothingAndNeverJump) {
   EXPECT_LT(books.beyond, 1e-3);
 }
 
-// A body between the tip and the table, pressed as hard as the hand can, and let go again.
+// The hand presses a body between the tip and the table as hard as it can, and lets go.
 TEST(BodyLimits, ABodyIsPressedOntoTheTableAndGivesNothing) {
   const ArmDescription arm = omni();
   for (const double stiffness : {600.0, 2000.0, 5000.0}) {
@@ -119,7 +119,7 @@ TEST(BodyLimits, ABodyIsPressedOntoTheTableAndGivesNothing) {
   }
 }
 
-// A ring of a hundred thousand triangles: the tip feels the model, the table its hull.
+// A ring of a hundred thousand triangles: the tip touches the model, the table its hull.
 TEST(BodyLimits, ALargeModelFallsIsPushedAndGivesNothing) {
   const ArmDescription arm = omni();
   Scene scene;

@@ -34,7 +34,7 @@ Parameters of(CouplingKind kind) {
   return p;
 }
 
-// A second and a half in a hand that moves to and fro, in the middle of which it may let go.
+// Rows of a second and a half in a hand that moves to and fro and may let go in the middle.
 Rows moved(const ArmDescription& arm, const Parameters& p, double amplitude, double grip = 1) {
   Rig rig(arm, Scene{});
   rig.start(p, rest_at(arm, kHome));
@@ -71,7 +71,7 @@ TEST_P(CompensatedRig, HoldsAnArmThatWouldFall) {
   };
   EXPECT_GT(away(fallen), 0.3);
   EXPECT_LT(away(held), 0.01);
-  // The motors give just that; the law has nothing to do.
+  // The motors bear just these loads; the law has nothing to do.
   const Arm<kAnyDof> any(arm);
   Arm<kAnyDof>::Frames f;
   const Vec<kAnyDof> x = held.vec(1499, Column::device_position);
@@ -81,7 +81,7 @@ TEST_P(CompensatedRig, HoldsAnArmThatWouldFall) {
   EXPECT_LT((held.vec(1499, Column::motor_torque) - loads).norm(), 2e-3 * loads.norm());
 }
 
-// In a hand it moves, and feels, as one that has nothing of it.
+// In a hand the arm moves, and is felt, like an arm without weight and springs.
 TEST_P(CompensatedRig, MovesAsAnArmWithoutWeightAndSprings) {
   const ArmDescription arm = sprung();
   Parameters p = of(GetParam());
@@ -110,7 +110,7 @@ TEST_P(CompensatedRig, TakesFrictionOffTheHandAndGivesLessThanItTakes) {
     return std::sqrt(sum);
   };
   EXPECT_LT(effort(without), 0.6 * effort(with));
-  // Of E_c all but the compensation's part is what a coupling without friction has.
+  // E_c less the compensation's part is that of a coupling without friction.
   double path = 0;
   for (std::size_t k = 1; k < without.size(); ++k) {
     path += (without.vec(k, Column::device_position) - without.vec(k - 1, Column::device_position))
@@ -159,7 +159,7 @@ TEST(Compensated, GoesOnFromARecordingsFirstRowBitForBit) {
   EXPECT_EQ(test::first_difference(recorded, again), -1);
 }
 
-// A guarded device that stands still, played by the test; its arm is held by the motors.
+// A guarded device that stands still, played by the test; the motors hold its arm.
 struct HeldDevice : testing::Test {
   HeldDevice() : rig(arm, Scene{}, nullptr), rows(rig.layout()) {
     p.holds_weight = true;
@@ -174,7 +174,7 @@ struct HeldDevice : testing::Test {
   void step(int ticks = 1) {
     for (int i = 0; i < ticks; ++i) {
       ++device.reading.count;
-      // Nothing in a hand stands still to the last bit; what does gets no force.
+      // A reading trembles in its last bit, as in a real hand: a constant one gets no force.
       if (std::isfinite(device.reading.x[0])) {
         device.reading.x[0] = x0[0] + (device.reading.count % 2 == 0 ? 1e-13 : 0);
       }
@@ -196,7 +196,7 @@ struct HeldDevice : testing::Test {
     EXPECT_TRUE(told().isZero(0));
   }
 
-  // Heavier than the built-in arm, and out of balance.
+  // An arm heavier than the built-in one, and out of balance.
   static ArmDescription heavy() {
     ArmDescription arm = test::omni();
     for (Link& link : arm.links) {

@@ -22,7 +22,7 @@ Vec3 after_a_second(const DeviceReading& reading) {
   return hand.goal();
 }
 
-// Of the cap X points right, Y to the user, Z down; of the arm x away, y left, z up.
+// On the cap X points right, Y to the user, Z down; on the arm x away, y left, z up.
 TEST(GuidedHand, GoesWhereTheCapIsPushed) {
   EXPECT_LT((after_a_second(cap(1, 0, 0)) - Vec3(0, -kFastest, 0)).norm(), 1e-9);
   EXPECT_LT((after_a_second(cap(0, 1, 0)) - Vec3(-kFastest, 0, 0)).norm(), 1e-9);

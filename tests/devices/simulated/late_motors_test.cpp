@@ -1,5 +1,5 @@
-// Motors whose torque comes late, known or not: what the predictive law gives to the hand then, in
-// free motion and at the walls that it names.
+// Motors with a delay, known or not: energy that the predictive law gives to the hand in free
+// motion and at the walls that it recommends.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,11 +18,11 @@ using test::Rows;
 
 struct Late {
   int delay = 0;         // [ticks]
-  bool known = false;    // to the law
-  bool bounded = false;  // it is told of 3 ticks at most
+  bool known = false;    // the law knows the delay
+  bool bounded = false;  // the law is given a bound of 3 ticks
   double eta = 1;
   double grip = 300, damping = 2;  // [N/m, N s/m]
-  double step = 0;                 // of the encoders [rad]
+  double step = 0;                 // step of the encoders [rad]
   double wall = 0;                 // 0: free motion [N/m]
 
   Parameters parameters() const {
@@ -69,7 +69,7 @@ class LateMotors : public testing::Test {
         .stiffness;
   }
 
-  // The most that the hand is given [J]: a tap that is held, or a free motion that ends.
+  // Most energy that the hand is given [J]: in a tap that is held, or a free motion that ends.
   double given(const Late& l) const {
     constexpr double kAbove = 0.02, kSpeed = 0.15, kPress = 4;  // [m, m/s, N]
     const Parameters p = l.parameters();
@@ -99,7 +99,7 @@ class LateMotors : public testing::Test {
     return most;
   }
 
-  // Of all etas, grips and delays.
+  // Calls `use` for all etas, grips and delays.
   template <class Use>
   static void each(const Use& use) {
     for (const bool known : {false, true}) {
@@ -153,7 +153,7 @@ TEST_F(LateMotors, GiveTheHandNoMoreThanThePromiseAtWallsThatAreNamed) {
   });
 }
 
-// What is not there does not cost: with a bound of 3 ms and no delay nothing is held back.
+// An absent delay costs nothing: with a bound of 3 ms and no delay no torque is held back.
 TEST_F(LateMotors, ThatAreNotLateAreNotHeldBack) {
   for (const double eta : {0.3, 1.0, 5.0}) {
     Late late;

@@ -17,7 +17,8 @@ using test::Rows;
 
 constexpr std::size_t kTicks = 4000;
 
-// Down through the table and along it, and up again; the grip gives way now and then.
+// Input of a hand that goes down through the table, along it and up again; its grip gives way at
+// times.
 RigInput input_at(const Vec3& home, std::size_t k) {
   const double t = 1e-3 * static_cast<double>(k);
   const Vec3 way(0.02 * std::sin(2 * t), 0.02 * std::sin(3 * t), -0.08 * std::sin(1.5 * t));

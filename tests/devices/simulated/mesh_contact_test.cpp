@@ -1,4 +1,4 @@
-// The whole loop against meshes: as against planes, boxes and balls; repetition and exchange.
+// The whole loop against meshes: compared with planes, boxes and balls; repetition and exchange.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class MeshInEveryCoupling : public testing::TestWithParam<CouplingKind> {
   static Parameters parameters() {
     Parameters p;
     p.kind = GetParam();
-    // Of two predictors that are as good the smallest difference says which leads: here is one.
+    // Disables the second predictor: between equally good ones the smallest difference decides.
     p.hand_mass = 0;
     return p;
   }
@@ -47,7 +47,7 @@ TEST_P(MeshInEveryCoupling, ThatIsFlatIsFeltAsAPlane) {
   Scene plane;
   plane.tip_radius = kTip;
   plane.add({"", pose_at(Vec3(0, 0, kTop)), Plane{Vec3::UnitZ()}, 600});
-  // A mesh finds to a thousandth of the tick when contact is made: so much of the damper's force,
+  // A mesh finds the moment of contact to a thousandth of the tick: so much of the damper's force,
   // 2.5 N s/m at 0.1 m/s and 0.2 m from the joints.
   const double bound = GetParam() == CouplingKind::predictive ? 5e-5 : 1e-10;
   for (const int cells : {1, 37}) {
@@ -68,7 +68,7 @@ TEST_P(MeshInEveryCoupling, OfABoxIsFeltAsThatBox) {
   const Vec3 size(0.05, 0.04, 0.06), at(kHome.x(), 0, kTop - 0.03);
   box.add({"", pose_at(at), Box{size}});
   const Scene mesh = with_mesh(test::box(size, 3), at);
-  const Path path = stroke(kTop + 0.0025, 0.035);  // over the edges, in by less than the tip
+  const Path path = stroke(kTop + 0.0025, 0.035);  // across the edges, in by less than the tip
   const Rows a = run(box, parameters(), path, 4), b = run(mesh, parameters(), path, 4);
   const double most = largest(a, Column::contact_torque);
   EXPECT_GT(most, 0.04);
@@ -88,11 +88,11 @@ TEST_P(MeshInEveryCoupling, OfABallIsFeltAsThatBall) {
   const Rows a = run(ball, parameters(), path, 4), b = run(mesh, parameters(), path, 4);
   const double most = largest(a, Column::contact_torque);
   EXPECT_GT(most, 0.04);
-  // Facets of half a millimetre, askew by up to a hundredth.
+  // Facets of half a millimetre, tilted by up to a hundredth.
   EXPECT_LT(largest_difference(a, b, Column::contact_torque), 0.03 * most);
 }
 
-const Vec3 kBody(0.18, 0, -0.1);  // its middle
+const Vec3 kBody(0.18, 0, -0.1);  // middle of the body
 constexpr double kBodySize = 0.05, kBump = 0.1;
 
 Scene link_over_a_body() {
@@ -103,13 +103,13 @@ Scene link_over_a_body() {
   return scene;
 }
 
-// How far a point is outside of the body the mesh was made from, along its radius [m].
+// Distance of a point outside of the body that the mesh approximates, along its radius [m].
 double outside(const Vec3& p) {
   const Vec3 from = p - kBody;
   return from.norm() - kBodySize * test::bumpy_radius(from.normalized(), kBump);
 }
 
-// Out of that body.
+// Outward normal of that body.
 Vec3 normal_of_body(const Vec3& p) {
   constexpr double h = 1e-6;
   Vec3 slope;
@@ -133,7 +133,8 @@ TEST(MeshContact, IsMadeByCapsulesInSeveralPlacesAtOnce) {
     most = std::max(most, touches.size());
     for (const Rows::Touch& touch : touches) {
       ASSERT_TRUE(touch.force.allFinite());
-      // On the surface, facets a millimetre across, and straight out of it.
+      // The point lies on the surface, with facets a millimetre across; the force is straight out
+      // of it.
       EXPECT_NEAR(outside(touch.point), 0, 1e-4);
       EXPECT_GT(touch.force.dot(normal_of_body(touch.point)), 0.99 * touch.force.norm());
     }
@@ -173,7 +174,8 @@ TEST_P(MeshInEveryCoupling, IsRepeatedToTheLastBit) {
 
 TEST_P(MeshInEveryCoupling, GoesOnWhenTheWorldIsExchangedForTheSame) {
   const ArmDescription arm = test::omni();
-  const Scene scene = with_mesh(landscape(), Vec3(kHome.x(), 0, kTop));  // open: a side to forget
+  // The mesh is open: it has a side to forget.
+  const Scene scene = with_mesh(landscape(), Vec3(kHome.x(), 0, kTop));
   const Path path = stroke(kTop - 0.01, 0.02);
   const Parameters p = parameters();
   Rig left(arm, scene), right(arm, scene);
@@ -205,7 +207,7 @@ TEST_P(MeshInEveryCoupling, GetsToAnotherStiffnessWithoutAJump) {
     if (k == 1200) rig.exchange(stiffer);
     rig.step(p, {{path(1e-3 * k), 1}}, rows.add());
   }
-  // From no torque to the limit in a tenth of a second.
+  // The torque rises to its limit in a tenth of a second.
   for (int joint = 0; joint < 3; ++joint) {
     const double limit = arm.joints[static_cast<std::size_t>(joint)].effort;
     const double jump =

@@ -1,4 +1,4 @@
-// What meshes give and take of energy in the whole loop.
+// Energy given and taken by meshes in the whole loop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ INSTANTIATE_TEST_SUITE_P(Couplings, MeshEnergy,
                          testing::Values(CouplingKind::standard, CouplingKind::proposed,
                                          CouplingKind::predictive));
 
-// What the contacts' work in a tick may miss while the same planes push: they push along straight
-// lines, while joints turn the proxy by arcs.
+// Bound of the error of the contacts' work in a tick while the same planes push: forces act along
+// straight lines, while joints move the proxy along arcs.
 double bend(const ArmDescription& arm, const Rows& rows, std::size_t k, double stiffness) {
   const double turn =
       (rows.vec(k, Column::proxy_position) - rows.vec(k - 1, Column::proxy_position)).lpNorm<1>();
@@ -47,7 +47,7 @@ double bend(const ArmDescription& arm, const Rows& rows, std::size_t k, double s
   return 0.5 * force * reach(arm) * turn * turn;
 }
 
-// Where the proxy's tip is in each row [m].
+// Positions of the proxy's tip [m].
 std::vector<Vec3> proxy_tips(const ArmDescription& description, const Rows& rows) {
   const Arm<3> arm(description);
   Arm<3>::Frames f;
@@ -59,7 +59,8 @@ std::vector<Vec3> proxy_tips(const ArmDescription& description, const Rows& rows
   return tips;
 }
 
-// Of every contact in the predictive coupling: 0.2 m_n/T, the tip's mass at most 12.5 g [N s/m].
+// Damping of every contact in the predictive coupling: 0.2 m_n/T, the tip's mass at most 12.5 g [N
+// s/m].
 constexpr double kDamper = 2.5;
 
 TEST_P(MeshEnergy, KeepsItsEnergyWhileTheSamePlanesPush) {
@@ -69,7 +70,7 @@ TEST_P(MeshEnergy, KeepsItsEnergyWhileTheSamePlanesPush) {
   for (const bool flat : {true, false}) {
     const Scene scene = flat ? with_mesh(test::sheet(7, 0.5), Vec3(kHome.x(), 0, kTop))
                              : with_mesh(groove, Vec3(kHome.x(), 0, kTop - 0.005));
-    const Path path = [&](double t) {  // along the groove and deeper and less deep
+    const Path path = [&](double t) {  // along the groove, with varying depth
       Vec3 at = stroke(kTop - 0.008, 0)(t);
       const double u = std::max(0.0, t - 0.5);
       return Vec3(at + Vec3(0, 0.02 * std::sin(7 * u), 1e-3 * std::sin(31 * u)));
@@ -94,7 +95,7 @@ TEST_P(MeshEnergy, KeepsItsEnergyWhileTheSamePlanesPush) {
 
 TEST_P(MeshEnergy, GivesNoMoreEnergyThanOfOneStepWhereItIsMadeBrokenAndSlidOver) {
   const ArmDescription arm = test::omni();
-  const Path path = [](double t) {  // up and down all the time
+  const Path path = [](double t) {  // up and down throughout
     return Vec3(stroke(kTop, 0.03)(t) + Vec3(0, 0, 0.004 * std::sin(11 * t)));
   };
   for (const double stiffness : {600.0, 3000.0}) {
@@ -103,8 +104,8 @@ TEST_P(MeshEnergy, GivesNoMoreEnergyThanOfOneStepWhereItIsMadeBrokenAndSlidOver)
     const std::vector<Vec3> tips = proxy_tips(arm, rows);
     int made = 0;
     for (std::size_t k = 2; k < rows.size(); ++k) {
-      // A spring met within a step of length s is K s^2 / 2 off; a surface of curvature 1/r that
-      // pushes with K d, K d s^2 / r.
+      // Error of a spring met within a step of length s: K s^2 / 2; on a surface of curvature 1/r
+      // that pushes with K d: K d s^2 / r.
       const double s = std::max((tips[k] - tips[k - 1]).norm(), (tips[k - 1] - tips[k - 2]).norm());
       const double U = std::max(rows.at(k, Column::contact_potential),
                                 rows.at(k - 1, Column::contact_potential));
@@ -116,13 +117,13 @@ TEST_P(MeshEnergy, GivesNoMoreEnergyThanOfOneStepWhereItIsMadeBrokenAndSlidOver)
               rows.at(k, Column::contact_potential) > 0;
     }
     EXPECT_GT(made, 10);
-    // Over all it takes more than it gives.
+    // In total the mesh takes more energy than it gives.
     EXPECT_LT(rows.at(rows.size() - 1, Column::contact_gain), 0);
   }
 }
 
 TEST_P(MeshEnergy, IsLostOverHillsOnlyByALittleOfWhatIsStored) {
-  // Pressed all the while, over hill after hill and back.
+  // The hand presses throughout, over hill after hill and back.
   const Path path = [](double t) {
     const double u = std::max(0.0, t - 0.5);
     return Vec3(stroke(kTop - 0.008, 0)(t) +

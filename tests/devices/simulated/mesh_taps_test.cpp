@@ -1,4 +1,4 @@
-// Meshes of several shapes as a tapping hand feels them in the predictive coupling.
+// Meshes of several shapes under a tapping hand in the predictive coupling.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Tapped {
   const char* name;
   Scene scene;
   Spot spot;
-  bool slips = false;  // a soft grip does not stay there
+  bool slips = false;  // a soft grip slides off
 };
 
 Tapped ball(double wall) {
@@ -47,7 +47,7 @@ Tapped bowl(double wall) {
            [=](const Vec3& tip) { return (tip - middle).norm() + kTip - kRadius; }}};
 }
 
-// Two faces that the tip rests on, and beneath which it is pulled back to the crease.
+// Two faces meet in a crease: the tip rests on both, and beneath it is pulled back to the crease.
 Tapped valley(double slope, double wall) {
   const auto triangles =
       test::height_field(8, 0.1, [=](double x, double) { return slope * std::abs(x); });
@@ -55,7 +55,7 @@ Tapped valley(double slope, double wall) {
           test::flat_spot(kAt + kTip * std::hypot(1, slope) * Vec3::UnitZ(), Vec3::UnitZ())};
 }
 
-// Of a box that stands on its edge.
+// A box that stands on its edge.
 Tapped edge(double wall) {
   constexpr double kSize = 0.04;
   Scene scene = with_mesh(test::box(Vec3::Constant(kSize), 2), Vec3::Zero(), wall);
@@ -97,7 +97,7 @@ TEST_P(MeshTaps, AreFeltAsTheyAreSetAndGiveTheHandNoEnergy) {
           p.hand_stiffness = grip;
           Taps taps;
           taps.wall = wall;
-          taps.press = wall < 1000 ? 2 : 4;  // by less than the tip's radius
+          taps.press = wall < 1000 ? 2 : 4;  // in by less than the tip's radius
           const Felt felt = taps.felt(test::omni(), shape.scene, shape.spot, p);
           SCOPED_TRACE(testing::Message() << shape.name << ", " << wall << " N/m, hand " << mass
                                           << " kg, grip " << grip << " N/m");

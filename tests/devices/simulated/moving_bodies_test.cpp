@@ -24,10 +24,10 @@ Object block(double mass, const Vec3& at, double friction, double stiffness) {
 
 struct Outcome {
   double energy = 0;        // highest E_c [J]
-  double beyond = 0;        // most that the hand got beyond what bodies gave [J]
-  double gain = 0;          // most that the bodies' world made [J]
-  double force = 0;         // hardest contact [N]
-  Vec3 end = Vec3::Zero();  // of the last body's centre
+  double beyond = 0;        // most energy to the hand beyond what bodies gave [J]
+  double gain = 0;          // most energy that the bodies' world made [J]
+  double force = 0;         // largest contact force [N]
+  Vec3 end = Vec3::Zero();  // end of the last body's centre
 };
 
 Outcome run(const Scene& scene, double eta, double grip, int ticks,
@@ -73,7 +73,7 @@ TEST_P(MovingBodies, ArePushedWithoutEnergyFromContact) {
       EXPECT_LE(r.energy, 5e-5) << mass;
       EXPECT_LE(r.beyond, 5e-5) << mass;
       EXPECT_LE(r.gain, 1e-6) << mass;
-      EXPECT_GT(r.end.y(), 0.04) << mass;  // it went
+      EXPECT_GT(r.end.y(), 0.04) << mass;  // the body moved
     }
   }
 }
@@ -88,20 +88,20 @@ TEST_P(MovingBodies, FallOnTheTipAndGiveNoMoreThanTheyHad) {
   EXPECT_LE(r.gain, 1e-6);
 }
 
-// What the hand wanted leads a recording again: what was held would not, where it broke.
+// The hand's wish, as recorded, leads a run again. The held body would not do, as the hold broke.
 TEST(MagnetThatBreaks, IsWantedAgainAsTheHandDid) {
   Scene scene;
   scene.tip_radius = 0.004;
   Object o = block(0.05, {0.18, 0.018, 0}, 0, 2000);
   o.body->magnet = true;
-  BodyJoint& joint = o.body->joint.emplace();  // held back by a strong spring
+  BodyJoint& joint = o.body->joint.emplace();  // a strong spring holds it back
   joint.axis = Vec3::UnitY();
   joint.force.spring = 1000;
   scene.add(o);
   const ArmDescription arm = omni();
   Parameters p;
   p.kind = CouplingKind::predictive;
-  p.torque_limit = 5;  // so strong that it breaks
+  p.torque_limit = 5;  // strong enough to break the hold
   Rig first(arm, scene), second(arm, scene);
   const RigStart start = rest_at(arm, Vec3(0.18, -0.002, 0));
   first.start(p, start);
@@ -141,11 +141,11 @@ TEST_P(MovingBodies, HangOnTheMagnetHoweverLight) {
     EXPECT_LE(r.energy, 5e-5) << mass;
     EXPECT_LE(r.beyond, 5e-5) << mass;
     EXPECT_LE(r.gain, 1e-6) << mass;
-    EXPECT_GT((r.end - Vec3(0.18, 0.018, 0)).norm(), 0.005) << mass;  // it was moved
+    EXPECT_GT((r.end - Vec3(0.18, 0.018, 0)).norm(), 0.005) << mass;  // the tip moved it
   }
 }
 
-// A body that is pulled against the tip gives the hand no more than it was given.
+// A body pulled against the tip gives the hand no more energy than it got.
 TEST_P(MovingBodies, ArePulledAgainstTheTip) {
   Scene scene;
   scene.tip_radius = 0.004;
@@ -168,7 +168,7 @@ TEST_P(MovingBodies, ArePulledAgainstTheTip) {
       input.hand.pull = {0, {0.005, 0, 0.005}, {0.18, 0.05 - 0.1 * std::sin(0.01 * k), 0.005}};
     }
     first.step(p, input, row);
-    // As it is run again from its recording.
+    // The second run takes its input from the first one's row, as from a recording.
     input.hand.pull.body = static_cast<int>(at(Column::hand_pull)[0]) - 1;
     for (int i = 0; i < 3; ++i) {
       const auto j = static_cast<std::size_t>(i);
@@ -201,7 +201,7 @@ TEST(Magnet, PicksUpAModel) {
     hand.magnet = true;
     return hand;
   });
-  EXPECT_GT(r.end.z(), 0);  // lifted by 2 cm: as far as the hand went, less what it weighs
+  EXPECT_GT(r.end.z(), 0);  // lifted by 2 cm, the hand's way, less the sag by its weight
   EXPECT_LE(r.energy, 5e-5);
   EXPECT_LE(r.gain, 1e-6);
 }

@@ -1,5 +1,5 @@
-// Nothing in a tick allocates or takes a lock: malloc and its family, and the mutexes, are watched
-// in the whole program while a flag of the thread is up.
+// A tick without allocations and locks: malloc and its family, and the mutexes, are watched in the
+// whole program while a flag of the thread is up.
 #include <dlfcn.h>
 #include <errno.h>
 #include <gtest/gtest.h>
@@ -20,66 +20,17 @@
 #include "tests/support/random_arm.h"
 #include "tests/support/wisher.h"
 
+namespace limpid {
 namespace {
+
+using test::Random;
+using test::random_arm;
 
 thread_local bool watching = false;
 thread_local int allocations = 0;
 thread_local int locks = 0;
 
 void count_allocation() { allocations += watching ? 1 : 0; }
-
-}  // namespace
-
-extern "C" {
-void* __libc_malloc(size_t);
-void* __libc_calloc(size_t, size_t);
-void* __libc_realloc(void*, size_t);
-void* __libc_memalign(size_t, size_t);
-void __libc_free(void*);
-
-void* malloc(size_t size) {
-  count_allocation();
-  return __libc_malloc(size);
-}
-void* calloc(size_t count, size_t size) {
-  count_allocation();
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, size_t size) {
-  count_allocation();
-  return __libc_realloc(old, size);
-}
-void* memalign(size_t alignment, size_t size) {
-  count_allocation();
-  return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(size_t alignment, size_t size) {
-  count_allocation();
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** result, size_t alignment, size_t size) {
-  count_allocation();
-  *result = __libc_memalign(alignment, size);
-  return *result != nullptr ? 0 : ENOMEM;
-}
-void free(void* memory) {
-  if (memory != nullptr) count_allocation();
-  __libc_free(memory);
-}
-
-int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
-  using Lock = int (*)(pthread_mutex_t*);
-  static const Lock lock = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
-  locks += watching ? 1 : 0;
-  return lock(mutex);
-}
-}
-
-namespace limpid {
-namespace {
-
-using test::Random;
-using test::random_arm;
 
 class Watch {
  public:
@@ -131,7 +82,7 @@ Scene crowd(const ArmDescription& description, const Vec3& tip) {
   return scene;
 }
 
-// All joints at zero, at rest; the rig as well.
+// Starts the rig at rest with all joints at zero; returns that start.
 RigStart start_at_zero(Rig& rig, int joints) {
   RigStart start;
   start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(joints);
@@ -189,7 +140,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       ring.push(row);
       std::copy(row.begin(), row.end(), snapshots.back().begin());
       snapshots.publish();
-      if (k % 333 == 332) {  // as a recording begins
+      if (k % 333 == 332) {  // as at the start of a recording
         crowded.restart_here(p, present, goal);
       }
     }
@@ -200,8 +151,8 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   EXPECT_FALSE(crowded.diverged());
 }
 
-// Of every shape, falling on each other, on a plane, a mesh and the tip; on every kind of joint, of
-// the world and of each other, two on a spring, one that the magnet takes.
+// Bodies of every shape fall on each other, on a plane, a mesh and the tip. They hang on every kind
+// of joint, of the world and of each other; two are on a spring, and the magnet takes one.
 Scene heap(const Vec3& tip) {
   Random random(152);
   Scene scene;
@@ -222,7 +173,7 @@ Scene heap(const Vec3& tip) {
     o.body->mass = random.log_between(0.002, 0.1);
     o.body->magnet = true;
     if (i % 4 == 3) o.body->joint.emplace().kind = static_cast<BodyJoint::Kind>(i / 4);
-    if (i == 5 || i == 9) {  // on one that moves as well
+    if (i == 5 || i == 9) {  // on another body that moves
       BodyJoint& joint = o.body->joint.emplace();
       joint.kind = i == 5 ? BodyJoint::Kind::slider : BodyJoint::Kind::hinge;
       joint.to = "body " + std::to_string(i - 1);
@@ -248,7 +199,7 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksWithBodiesThatMove) {
   Rig heaped(arm, heap(rig.tip()));
   heaped.start(Parameters{}, start);
   RigStart present = start;
-  heaped.present(present);  // of the sizes that it needs
+  heaped.present(present);  // sizes it to the scene's needs
   const RowLayout& layout = heaped.layout();
   std::vector<double> row(static_cast<std::size_t>(layout.stride()));
   double moved = 0, held = 0;
@@ -296,3 +247,48 @@ TEST(NoWaiting, NeitherAllocatesNorLocksWhileAxesAreChecked) {
 
 }  // namespace
 }  // namespace limpid
+
+extern "C" {
+void* __libc_malloc(size_t);
+void* __libc_calloc(size_t, size_t);
+void* __libc_realloc(void*, size_t);
+void* __libc_memalign(size_t, size_t);
+void __libc_free(void*);
+
+void* malloc(size_t size) {
+  limpid::count_allocation();
+  return __libc_malloc(size);
+}
+void* calloc(size_t count, size_t size) {
+  limpid::count_allocation();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, size_t size) {
+  limpid::count_allocation();
+  return __libc_realloc(old, size);
+}
+void* memalign(size_t alignment, size_t size) {
+  limpid::count_allocation();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+  limpid::count_allocation();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** result, size_t alignment, size_t size) {
+  limpid::count_allocation();
+  *result = __libc_memalign(alignment, size);
+  return *result != nullptr ? 0 : ENOMEM;
+}
+void free(void* memory) {
+  if (memory != nullptr) limpid::count_allocation();
+  __libc_free(memory);
+}
+
+int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
+  using Lock = int (*)(pthread_mutex_t*);
+  static const Lock lock = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
+  limpid::locks += limpid::watching ? 1 : 0;
+  return lock(mutex);
+}
+}

@@ -27,13 +27,13 @@ std::vector<ArmDescription> arms() {
   return out;
 }
 
-// At rest in the middle of its range; few joints do not reach every place.
+// A start at rest in the middle of the range; arms of few joints do not reach every place.
 RigStart in_the_middle(const ArmDescription& arm) {
   const Eigen::VectorXd x = rest_pose(arm), zero = Eigen::VectorXd::Zero(arm.dof());
   return {x, zero, x, zero, zero, Arm<kAnyDof>(arm).tip_at(x), true};
 }
 
-// Where the tip moves most easily.
+// Direction in which the tip moves most easily.
 Vec3 easiest(const ArmDescription& description, const RigStart& start) {
   const Arm<kAnyDof> arm(description);
   Arm<kAnyDof>::Frames f;
@@ -49,7 +49,7 @@ TEST(PredictiveArms, FeelWallsAsTheyAreSetAndWithoutEnergy) {
   for (const ArmDescription& arm : arms()) {
     const RigStart start = in_the_middle(arm);
     Taps taps;
-    taps.above = arm.dof() < 3 ? 0.005 : 0.02;  // so that few joints stay near the line
+    taps.above = arm.dof() < 3 ? 0.005 : 0.02;  // arms of few joints stay near the line
     const Vec3 out = easiest(arm, start);
     const Spot spot = test::flat_spot(start.target - taps.above * out, out);
     for (const double wall : {600.0, 5000.0}) {
@@ -90,7 +90,7 @@ TEST(PredictiveArms, GiveNoEnergyInFreeMotionAndComeToRestWhereTheHandDoes) {
       rig.start(p, start);
       Rows rows(rig.layout());
       test::Random random(5);
-      double moving = 0, later = 0;  // fastest [rad/s]
+      double moving = 0, later = 0;  // fastest joint speed [rad/s]
       for (std::size_t k = 0; k < 5000; ++k) {
         const double t = static_cast<double>(k) * p.tick;
         const double swing = 0.01 * std::min(1.0, 4 * t) * std::clamp(4 * (2 - t), 0.0, 1.0);
@@ -103,15 +103,15 @@ TEST(PredictiveArms, GiveNoEnergyInFreeMotionAndComeToRestWhereTheHandDoes) {
         ASSERT_LE(rows.at(k, Column::energy_total), 1e-6) << arm.name << ' ' << arm.dof();
         ASSERT_LE(rows.at(k, Column::energy_port), 1e-6) << arm.name << ' ' << arm.dof();
       }
-      // Joints that the hand does not hold by the tip are damped as the others are.
+      // Joints that the hand does not hold by the tip are damped like the others.
       EXPECT_GT(moving, 0.5) << arm.name << ' ' << arm.dof();
       EXPECT_LT(later, 1e-3) << arm.name << ' ' << arm.dof();
     }
   }
 }
 
-// Links so light that their motion dies out within a tick, which the predictor's rule foretells to
-// go to and fro.
+// The links are so light that their motion dies out within a tick, which the predictor's rule takes
+// for oscillation.
 TEST(PredictiveArms, GiveNoEnergyWhereLinksAreLight) {
   for (const int dof : {5, 8, 15}) {
     ArmDescription arm = test::random_arm(dof, 3);

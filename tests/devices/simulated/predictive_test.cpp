@@ -1,4 +1,4 @@
-// What the predictive coupling promises, in the full nonlinear loop.
+// Properties of the predictive coupling in the full nonlinear loop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ Parameters predictive(double eta) {
   Parameters p;
   p.kind = CouplingKind::predictive;
   p.eta = eta;
-  p.torque_limit = 100;  // motors that bear it all
+  p.torque_limit = 100;  // strong motors
   return p;
 }
 
@@ -93,8 +93,9 @@ TEST(PredictiveTaps, BeyondTheMotorsLimitGiveNoEnergyAndDoNotBuzz) {
         SCOPED_TRACE(testing::Message() << wall << " N/m, eta " << eta << ", hand " << mass);
         EXPECT_LE(felt.energy, 0.05e-3);
         EXPECT_LE(felt.port, 0.05e-3);
-        EXPECT_GT(felt.torque, kLimit);  // it was pushed that far
-        // The proxy rests where the wall pushes as the motor does; a light hand barely overshoots.
+        EXPECT_GT(felt.torque, kLimit);  // the hand pushed that far
+        // The proxy rests where the wall's force equals the motor's; with a light hand it barely
+        // overshoots.
         if (mass == 0) {
           EXPECT_LE(felt.torque, 1.3 * kLimit);
           EXPECT_LE(felt.chatter, 0.1e-3);
@@ -138,11 +139,11 @@ Scene corner(int planes, const Material& material) {
 
 struct Pressed {
   double energy = 0, port = 0;  // highest [J]
-  double gain = -1;             // most that pressed contacts gave in a tick [J]
-  std::size_t touched = 0;      // most planes at a time
+  double gain = -1;             // most energy given by pressed contacts in a tick [J]
+  std::size_t touched = 0;      // most planes touched at a time
 };
 
-// The hand presses into the corner and goes round there.
+// Rows of a hand that presses into the corner and circles there.
 Pressed press_into(const Scene& scene, const Parameters& p) {
   const ArmDescription arm = test::omni();
   Rig rig(arm, scene);
@@ -191,7 +192,7 @@ TEST(PredictiveFriction, NeverGivesEnergyInATick) {
   constexpr double kFriction = 0.5, kWall = 3000;
   const ArmDescription description = test::omni();
   const Arm<3> arm(description);
-  const auto hand = [](double t) {  // pressed more and less, and led to and fro
+  const auto hand = [](double t) {  // pressed with varying force and led to and fro
     return Vec3(kTable + Vec3(0.01 * std::sin(9 * t), 0.01 * std::sin(14 * t),
                               0.005 - 0.02 * std::min(1.0, 4 * t) + 0.005 * std::sin(23 * t)));
   };
@@ -205,14 +206,14 @@ TEST(PredictiveFriction, NeverGivesEnergyInATick) {
       rig.step(p, {{hand(static_cast<double>(k) * p.tick), 1}}, rows.add());
     }
     const auto tip = [&](std::size_t k) { return arm.tip_at(rows.vec(k, Column::proxy_position)); };
-    // Across the table over the tick, and the limit that the push sets [N].
+    // Friction force across the table in the tick, and its limit by the push [N].
     const auto across = [&](std::size_t k, double& limit) {
       Vec3 force = Vec3::Zero();
       for (const Rows::Touch& touch : rows.touches(k)) force += touch.force;
       limit = kFriction * force.z();
       return Vec3(force.x(), force.y(), 0);
     };
-    // Of the spring that friction is [J].
+    // Energy in the spring that stands for friction [J].
     const auto stretched = [](const Vec3& force) {
       return force.squaredNorm() / (2 * friction_stiffness({kWall}));
     };
@@ -267,11 +268,11 @@ TEST(PredictiveInertia, MayChangeAtAnyTimeInFreeMotion) {
   }
 }
 
-// A hand that moves the base joint by a quarter of a millimetre at 3 Hz.
+// Result of a hand that moves the base joint by a quarter of a millimetre at 3 Hz.
 struct Swung {
-  double inertia = 0;   // felt at that frequency [kg m^2]
-  double reserve = 1;   // least, once it swings evenly [J]
-  double governor = 1;  // least share of damping that may be cancelled [-]
+  double inertia = 0;   // effective inertia at that frequency [kg m^2]
+  double reserve = 1;   // lowest, once it swings evenly [J]
+  double governor = 1;  // lowest share of damping that may be cancelled [-]
 };
 
 Swung swung(double eta, double encoder_step) {
@@ -302,7 +303,7 @@ Swung swung(double eta, double encoder_step) {
   return out;
 }
 
-// A reading's step is no energy: nothing that moved did that work.
+// A step of the reading is no energy: no motion did that work.
 TEST(PredictiveInertia, IsFeltThroughAnEncoderAsWithoutOne) {
   for (const double eta : {5.0, 3.0, 0.6}) {
     const Swung exact = swung(eta, 0), read = swung(eta, 1e-4);

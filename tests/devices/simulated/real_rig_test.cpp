@@ -16,7 +16,7 @@
 namespace limpid {
 namespace {
 
-// Held 0.05 rad inside a stop of its first joint: it is pushed back.
+// A device held 0.05 rad inside a stop of its first joint: it is pushed back.
 struct RealRig : testing::Test {
   RealRig() : rig(arm, stop_at(x0[0]), nullptr), rows(rig.layout()) {
     for (Eigen::Index i = 0; i < 3; ++i) device.reading.x[static_cast<std::size_t>(i)] = x0[i];
@@ -38,7 +38,7 @@ struct RealRig : testing::Test {
   ForceState step(int ticks = 1) {
     for (int i = 0; i < ticks; ++i) {
       if (alive) ++device.reading.count;
-      // As the last bit of any encoder that is well does now and then.
+      // The last bit of every working encoder changes at times.
       if (trembles) device.reading.x[2] = x0[2] + (device.reading.count % 2 == 0 ? 1e-9 : 0);
       input.hand = {rig.tip(), 1};
       input.force = wisher.at(armed);
@@ -52,7 +52,7 @@ struct RealRig : testing::Test {
     ASSERT_LT(device.told[0], -0.1);
   }
   bool pushes() const { return device.told != std::array<double, kMaxDof>{}; }
-  // After what made it so is over.
+  // Expects no force after the end of the fault, until the device is armed again.
   void expect_stays_off(ForceState reason) {
     EXPECT_EQ(step(2000), reason);
     EXPECT_FALSE(pushes());
@@ -66,7 +66,7 @@ struct RealRig : testing::Test {
   test::FakeDevice device{3};
   bool armed = false, alive = true, trembles = true;
   test::Wisher wisher;
-  RigInput input;  // what else a tick is told
+  RigInput input;  // the other input of a tick
   Rig rig;
   test::Rows rows;
 };
@@ -185,7 +185,7 @@ TEST_F(RealRig, IsWithoutForceAtAJumpOfItsAngle) {
   EXPECT_FALSE(pushes());
 }
 
-// Steps as late as the stall made them, and the next ones after it.
+// The tick after the stall is as long as the stall; normal ones follow.
 TEST_F(RealRig, StartsFromNothingAfterAStallAndFadesIn) {
   const double limit = arm.joints[0].effort;
   for (const int stall : {6, 9, 20, 100, 1000}) {
@@ -216,7 +216,7 @@ TEST_F(RealRig, StartsFromNothingWhenTheDeviceWasWithoutTorque) {
   EXPECT_LE(std::abs(device.told[0]), 0.25 * full);
 }
 
-// Whatever it counted before: what the new one heard nobody knows.
+// The new device's count of lapses may have any value: nobody knows what it received.
 TEST_F(RealRig, StartsFromNothingWithAnotherDevice) {
   push();
   const double full = std::abs(device.told[0]);
@@ -268,7 +268,7 @@ TEST_F(RealRig, SaysAfterAStallThatItIsAtRest) {
   EXPECT_NEAR(rows.at(last, Column::time) - rows.at(last - 1, Column::time), 0.02, 1e-12);
 }
 
-// The way through a stall is nobody's work.
+// The motion during a stall is nobody's work.
 TEST_F(RealRig, BooksNoEnergyForTheTimeOfAStall) {
   Parameters p;
   p.damping = 0.1;
@@ -286,7 +286,7 @@ TEST_F(RealRig, BooksNoEnergyForTheTimeOfAStall) {
   EXPECT_NEAR(rows.at(last, Column::energy_total), rows.at(last - 1, Column::energy_total), 1e-6);
 }
 
-// What the proxy did meanwhile did not happen: it goes on as if there had been one tick.
+// The proxy goes on as if the stall had been one tick.
 TEST_F(RealRig, MovesItsProxyByOneTickHoweverLongAStallWas) {
   const auto moved_after = [&](int periods) {
     for (int i = 0; i < 200; ++i) {
@@ -308,7 +308,7 @@ TEST_F(RealRig, MovesItsProxyByOneTickHoweverLongAStallWas) {
   EXPECT_NEAR(moved_after(20), one, 0.05 * one);
 }
 
-// Two ticks that come right after one another move it no further than the time between them does.
+// Two ticks in close succession move the torque no further than the time between them allows.
 TEST_F(RealRig, MovesItsTorqueAtABoundedRateInWallTime) {
   test::Random random(50);
   const double limit = arm.joints[0].effort;
@@ -329,7 +329,7 @@ TEST_F(RealRig, IsOffAfterItWasStartedOver) {
   RigStart start;
   start.x1 = start.x2 = x0;
   start.v1 = start.v2 = start.f1_hat = Eigen::Vector3d::Zero();
-  start.armed = true;  // whoever asks
+  start.armed = true;  // whatever asks for it
   rig.start({}, start);
   EXPECT_EQ(step(1000), ForceState::off);
   EXPECT_FALSE(pushes());
@@ -359,7 +359,7 @@ TEST_F(RealRig, FadesAndTripsWhenTheWindowIsSilent) {
   expect_stays_off(ForceState::unwatched);
 }
 
-// New readings keep coming, and all say the same.
+// New readings keep coming with the same values.
 TEST_F(RealRig, FadesAndStaysOffWhereItsReadingsStandStill) {
   push();
   const double full = std::abs(device.told[0]);
@@ -380,7 +380,7 @@ TEST_F(RealRig, FadesAndStaysOffWhereItsReadingsStandStill) {
   expect_stays_off(ForceState::frozen);
 }
 
-// It is the torque that left that counts, and not what the law asks for.
+// The torque sent to the motors counts, not the law's.
 TEST_F(RealRig, MayStandStillForEverWithoutForce) {
   trembles = false;
   EXPECT_EQ(step(2000), ForceState::off);
@@ -389,8 +389,8 @@ TEST_F(RealRig, MayStandStillForEverWithoutForce) {
   EXPECT_TRUE(pushes());
 }
 
-// A hand that holds still against a wall, and an encoder of so coarse steps that it says the same
-// for seconds: 300 N/m at 0.13 m, a stick of 2e-3 kg m^2 without and with dry friction.
+// A hand that holds still against a wall, and an encoder so coarse that it reads the same for
+// seconds: 300 N/m at 0.13 m, a stick of 2e-3 kg m^2 without and with dry friction.
 TEST_F(RealRig, PushesOnWhereAHandHoldsACoarseEncoderStill) {
   constexpr double kStep = 5e-4, kInertia = 2e-3, kHand = 5, kHandDamping = 0.1, kDry = 0.004;
   for (const double dry : {0.0, kDry}) {
@@ -436,13 +436,13 @@ TEST_F(RealRig, ObeysLowerLimits) {
   Jacobian<3> J;
   model.point_jacobian(frames, 2, model.tip(frames), J);
   const Eigen::Vector3d tau(device.told[0], device.told[1], device.told[2]);
-  // Of all forces at the tip that would make this torque the smallest: J is square here.
+  // The smallest tip force with this torque; J is square here.
   const Eigen::Matrix3d square = J;
   EXPECT_NEAR((square.transpose().inverse() * tau).norm(), 0.2, 1e-3);
 }
 
-// Whoever pulls a body against the tip with the mouse arms nothing, and its limits hold; a window
-// that hangs meanwhile leaves the pull as it is, and the force fades.
+// A body pulled with the mouse against the tip arms nothing, and the limits hold. A window that
+// hangs meanwhile leaves the pull unchanged, and the force fades.
 TEST_F(RealRig, IsPushedByABodyThatIsPulledOnlyWhileItIsArmedAndWithinItsLimits) {
   Scene scene;
   scene.gravity.setZero();
@@ -497,8 +497,8 @@ TEST_F(RealRig, IsPushedByABodyThatIsPulledOnlyWhileItIsArmedAndWithinItsLimits)
   EXPECT_GT(contact(), 0.1) << "it is pulled all the while";
 }
 
-// One joint with a stop at zero, pressed in by a radian: the spring and the limit of 10 N at the
-// tip store some joules.
+// A single joint is pressed by a radian into a stop at zero: the spring and the limit of 10 N at
+// the tip store some joules.
 TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackAtOnce) {
   ArmDescription arm = test::random_arm(1, 52);
   arm.joints[0].lower = -4;
@@ -533,10 +533,10 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
     return work;
   };
   rig.step(p, {.hand = {rig.tip(), 1}, .force = ForceRequest::arm}, row);
-  go(-0.3, 0.3);  // fades in meanwhile
+  go(-0.3, 0.3);  // the force fades in meanwhile
   go(0, 1);
   ASSERT_EQ(rig.force_state(), ForceState::on);
-  const double rate = 1.5 / lever;  // the tip at 1.5 m/s
+  const double rate = 1.5 / lever;  // for 1.5 m/s at the tip
   EXPECT_LT(go(2.4, rate), -4) << "the hand puts in so many joules";
   EXPECT_EQ(rig.force_state(), ForceState::on);
   const double given = go(0, rate);
@@ -545,8 +545,7 @@ TEST(RealRigOfOneJoint, TakesEnergyFromTheHandAndGivesUpWhenTheMotorsGiveItBackA
   EXPECT_LT(given, 1.8);
 }
 
-// Whatever comes: the motors of a device that nobody armed are off, and no torque grows faster than
-// it may.
+// In every run, the motors of an unarmed device are off, and no torque grows faster than allowed.
 TEST_F(RealRig, NeverPushesUnarmedNorJumpsInAMillionTicks) {
   test::Random random(51);
   const auto chance = [&](double p) { return random.between(0, 1) < p; };

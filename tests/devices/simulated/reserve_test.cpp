@@ -1,5 +1,5 @@
-// What laws that account for energy have left for the hand of a real device: only somebody who arms
-// the force fills it up again.
+// The hand's energy reserve of a real device, under laws that account for it: only arming the force
+// fills it up again.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kE0 = 0.005;  // [J]
 
-// A device in a wall that is shaken faster than any law foresees, until not much is left.
+// A device in a wall, shaken faster than any law expects until little reserve is left.
 class Reserve : public testing::TestWithParam<CouplingKind> {
  public:
   Reserve() : rig(arm, wall(), &device), rows(rig.layout()) {
@@ -98,7 +98,7 @@ TEST_P(Reserve, StaysAsItIsWithoutForceAndIsFullOnceForceIsArmedAnew) {
     step();
     EXPECT_NEAR(left(), before, 2e-5) << "as it goes on";
   }
-  // Whatever has tripped, off it goes and on again.
+  // After any trip, force is switched off and on again.
   armed = false;
   step(100);
   EXPECT_LT(left(), 0.7 * kE0) << "not yet";
@@ -107,7 +107,7 @@ TEST_P(Reserve, StaysAsItIsWithoutForceAndIsFullOnceForceIsArmedAnew) {
   EXPECT_NEAR(left(), kE0, 2e-5);
 }
 
-// Which law is in force when it is armed does not matter.
+// Any law may be in force when the device is armed.
 TEST_P(Reserve, IsFullForALawThatTakesOverAfterForceWasArmedAnew) {
   ASSERT_LT(left(), 0.6 * kE0);
   const CouplingKind kind = p.kind;

@@ -1,4 +1,4 @@
-// What the paper promises, in the full nonlinear loop.
+// Promises of the paper in the full nonlinear loop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,8 @@ using Vector = Eigen::VectorXd;
 const Vec3 kHome(0.19, 0, 0);
 constexpr double kTableTop = -0.04;
 
-// The hand goes from kHome to `depth` below the table top in a second and stays `rest` seconds.
+// Rows of a hand that goes from kHome to `depth` below the table top in a second and stays `rest`
+// seconds.
 Rows press(const Parameters& p, double depth, double rest) {
   const ArmDescription arm = test::omni();
   Rig rig(arm, test::omni_scene("table.toml"));
@@ -35,7 +36,7 @@ Rows press(const Parameters& p, double depth, double rest) {
   return rows;
 }
 
-// The hand follows a recorded path.
+// Rows of a hand that follows a recorded path.
 Rows follow(const Parameters& p, const Scene& scene, const HandPath& hand) {
   const ArmDescription arm = test::omni();
   Rig rig(arm, scene);
@@ -110,7 +111,7 @@ TEST(HumanTorque, OfTheSameFreeMotionIsProportionalToEta) {
   const auto effort = [&](double eta) {
     Parameters p;
     p.eta = eta;
-    p.hand_stiffness = 3000;  // the same motion for all
+    p.hand_stiffness = 3000;  // gives all the same motion
     const Rows rows = follow(p, nothing, hand);
     double sum = 0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -153,7 +154,7 @@ TEST(ForceEstimate, DoesNotWindUpInASaturatedContactIfItIsFedWhatTheMotorsGave) 
     const std::size_t last = rows.size() - 1;
     const Vector f1 = rows.vec(last, Column::hand_torque);
     const Vector command = rows.vec(last, Column::commanded_torque);
-    EXPECT_GT(command.cwiseAbs().maxCoeff(), 0.05);  // saturated
+    EXPECT_GT(command.cwiseAbs().maxCoeff(), 0.05);  // the motor was at its limit
     return (rows.vec(last, Column::hand_torque_estimate) - f1).norm() / f1.norm();
   };
   EXPECT_LT(off(true), 0.01);
@@ -172,8 +173,8 @@ TEST(ForceEstimate, OfAStaticPressIsTheHandsTorque) {
 
 constexpr double kStiffGrip = 3000;  // [N/m]
 
-// A hand of pure stiffness holds the tip and is nudged: how much faster than at first does it swing
-// after three seconds?
+// Growth of a nudged swing in a hand of pure stiffness: its speed after three seconds over its
+// first.
 double growth(double eta) {
   const ArmDescription arm = test::omni();
   Parameters p;
@@ -209,13 +210,13 @@ TEST(EtaMin, OfAStiffUndampedGripIsWhereTheLoopTurnsUnstable) {
   const double limit = eta_min_grip((1 + p.inertia_ratio) * M, Vector::Constant(3, 0.024), p.alpha,
                                     K, Eigen::MatrixXd::Zero(3, 3));
   EXPECT_NEAR(limit, 0.56, 0.03);
-  // The theory knows nothing of sampling, which costs a little.
+  // The theory ignores sampling, which costs a little.
   EXPECT_LT(growth(1.1 * limit), 0.1);
   EXPECT_GT(growth(0.97 * limit), 10);
 }
 
 TEST(Loop, ThatIsUnstableSaysSoAndGivesNoMoreTorque) {
-  // A spring beyond anything a tick of 10 ms can hold, and motors without limits.
+  // A spring too stiff for a tick of 10 ms, and motors without limits.
   const ArmDescription arm = test::omni();
   Parameters p;
   p.k_vc = 1e4;

@@ -1,4 +1,4 @@
-// The loop around a virtual device: repeatable to the last bit, whoever starts it where.
+// The loop around a virtual device: repeatable to the last bit from any start.
 #include "devices/simulated/rig.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using test::Random;
 using test::random_arm;
 using test::Rows;
 
-// Something to bump into for any arm: a plane just below the tip, a ball, a stop.
+// Objects in the way of any arm: a plane just below the tip, a ball, a stop.
 Scene things(const ArmDescription& description) {
   const Arm<kAnyDof> arm(description);
   Arm<kAnyDof>::Frames f;
@@ -35,7 +35,7 @@ Scene things(const ArmDescription& description) {
   return scene;
 }
 
-// A hand on its way around the tip's place, that lets go and whose force is cut now and then.
+// A hand on its way around the tip's place, which lets go at times; force is cut at times.
 class Script {
  public:
   explicit Script(const Vec3& home) : home_(home) {}
@@ -96,12 +96,12 @@ TEST_P(RigOfJoints, GivesTheSameBitsTwice) {
   two.start(Script::parameters(0), rest_at(arm_, home_));
   const Rows a = run(one, script_, 0, 3000);
   EXPECT_EQ(first_difference(a, run(two, script_, 0, 3000)), -1);
-  // Also when it has been used before.
+  // Also in a rig that was used before.
   one.start(Script::parameters(0), rest_at(arm_, home_));
   EXPECT_EQ(first_difference(a, run(one, script_, 0, 3000)), -1);
 }
 
-// Nobody asks what kind of device it is.
+// The rig does not depend on the type of the device.
 TEST_P(RigOfJoints, DrivesASimulatedDeviceThatIsPluggedInAsItDoesItsOwn) {
   Rig own(arm_, scene_);
   own.start(Script::parameters(0), rest_at(arm_, home_));
@@ -118,8 +118,8 @@ TEST_P(RigOfJoints, DrivesASimulatedDeviceThatIsPluggedInAsItDoesItsOwn) {
 }
 
 TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {
-  // A loop in motion is restarted where it stands, as when a recording begins; its first row then
-  // is all that another rig needs to give the same rows.
+  // A loop in motion is restarted at its present state, as when a recording begins. Its first row
+  // then suffices for another rig to give the same rows.
   Rig live(arm_, scene_);
   live.start(Script::parameters(0), rest_at(arm_, home_));
   run(live, script_, 0, 777);
@@ -192,7 +192,7 @@ TEST(Rig, RecordsTheContactsThatPush) {
   EXPECT_NEAR(touches[0].point.z(), -0.04 - touches[0].force.z() / 600, 1e-5);
 }
 
-// What the contacts do at their points is what they do at the joints: a plane at the tip, a ball at
+// The contact forces at their points make the torque at the joints: a plane at the tip, a ball at
 // the middle of the last link.
 TEST(Rig, RecordsContactForcesThatMakeTheContactTorque) {
   const ArmDescription description = test::omni();

@@ -1,5 +1,5 @@
-// Motors at their limit while the tip is between walls: what the predictive law promises there, in
-// runs that nobody chose.
+// Motors at their limit while the tip is between walls: promises of the predictive law, in random
+// runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,10 +20,10 @@ LimitedCorner random_corner(unsigned seed, const CornerWidth& width) {
 
 struct Outcome {
   double energy = 0;   // highest E_c, from torques and positions [J]
-  double torque = 0;   // largest of the contacts on a joint, by the motor's limit [-]
-  double jump = 0;     // farthest that the proxy's joints go in a tick [rad]
-  double reserve = 1;  // least [J]
-  double port = 0;     // most that the hand is given [J]
+  double torque = 0;   // largest contact torque on a joint, over the motor's limit [-]
+  double jump = 0;     // largest step of the proxy's joints in a tick [rad]
+  double reserve = 1;  // lowest [J]
+  double port = 0;     // most energy given to the hand [J]
   int limited = 0;     // ticks with a motor at its limit
   int unsettled = 0;   // ticks without a solution
   int ticks = 0;
@@ -63,7 +63,7 @@ Outcome run(const LimitedCorner& c) {
 }
 
 struct Worst {
-  Outcome of;  // the worst of each
+  Outcome of;  // worst of each value
   int over_energy = 0, over_torque = 0, over_jump = 0, below = 0, limited_runs = 0;
 
   void add(unsigned seed, const Outcome& o) {
@@ -106,7 +106,7 @@ TEST(MotorsAtTheirLimit, BetweenWallsGiveNoEnergyAndLetTheProxyNotJump) {
   EXPECT_LE(worst.of.unsettled, 1e-4 * worst.of.limited);
 }
 
-// Other arms, more walls, more friction, other eta.
+// Random arms, with more walls, more friction and other eta.
 TEST(MotorsAtTheirLimit, OfOtherArmsInMoreWallsGiveNoEnergyEither) {
   Worst worst;
   for (unsigned seed = 1000; seed < 1150; ++seed)

@@ -1,5 +1,5 @@
 // Friction and damping of surfaces, under every coupling law and through a link: against Coulomb's
-// law, the damper's law and the balance of energy, each worked out from the rows alone.
+// law, the damper's law and the balance of energy, computed from the rows alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct Case {
   Parameters p;
 };
 
-// All laws; those that know a link also with a delay of 3 ms each way.
+// All laws; laws that know a link also with a delay of 3 ms each way.
 std::vector<Case> laws() {
   std::vector<Case> cases;
   for (std::uint8_t i = 0; i < kLaws; ++i) {
@@ -77,7 +77,7 @@ Vec3 force(const Rows& rows, std::size_t k) {
   return all;
 }
 
-// Down by 12 mm in half a second, then 25 mm/s along y.
+// Path 12 mm down in half a second, then at 25 mm/s along y.
 Vec3 stroke(double t) {
   const double down = std::min(1.0, 2 * t), along = std::max(0.0, t - 1);
   return kTable + Vec3(0, 0.025 * along, 0.005 - 0.017 * down);
@@ -100,7 +100,8 @@ TEST(Surfaces, SlipWithTheirKineticFrictionAgainstTheMotionUnderEveryLaw) {
 }
 
 TEST(Surfaces, HoldAHandThatPullsWithLessThanTheirStaticFrictionUnderEveryLaw) {
-  const auto lean = [](double t) { return stroke(std::min(t, 1.04)); };  // 1 mm to the side
+  // The hand stays 1 mm to the side.
+  const auto lean = [](double t) { return stroke(std::min(t, 1.04)); };
   for (const Case& c : laws()) {
     SCOPED_TRACE(c.name);
     const Rows rows = run(c.p, table(0, 1, 1), 4, lean);
@@ -128,7 +129,7 @@ TEST(Surfaces, DampWhatIsPressedInAndLetOutUnderEveryLaw) {
       const double after = kTable.z() - proxy_tip(damped, k + 1).z();
       ASSERT_GT(std::min(d, after), 0) << k;
       const double damper = kDamping * (after - d) / c.p.tick;
-      // The predictive law's walls have a damper of their own besides.
+      // The predictive law's walls have their own damper in addition.
       const double F = force(damped, k).z() - kStiffness * (d + after) / 2;
       if (c.p.kind == CouplingKind::predictive) {
         ASSERT_GE(F * damper, damper * damper - 1e-6) << k;
@@ -142,7 +143,7 @@ TEST(Surfaces, DampWhatIsPressedInAndLetOutUnderEveryLaw) {
 }
 
 struct Books {
-  double most_gain = 0, lost = 0;  // of a tick in contact, and of all [J]
+  double most_gain = 0, lost = 0;  // most in a tick, and the total loss [J]
   int touched = 0;
   double unsettled = 0;  // ticks for which the proxy stood still
 };
@@ -159,7 +160,7 @@ Books books(const Rows& rows) {
 }
 
 TEST(Surfaces, ThatRubAndDampGiveNoEnergyUnderAnyLaw) {
-  const auto hand = [](double t) {  // pressed more and less, let go, and led to and fro
+  const auto hand = [](double t) {  // pressed with varying force, let go, and led to and fro
     return Vec3(kTable + Vec3(0.01 * std::sin(9 * t), 0.01 * std::sin(14 * t),
                               0.005 - 0.02 * std::min(1.0, 4 * t) + 0.012 * std::sin(23 * t)));
   };
@@ -174,7 +175,7 @@ TEST(Surfaces, ThatRubAndDampGiveNoEnergyUnderAnyLaw) {
   }
 }
 
-// One contact alone, and without friction, though the scene has some elsewhere.
+// A single contact without friction, in a scene with friction elsewhere.
 TEST(Surfaces, ThatAreSmoothBesideRoughOnesPushAsEver) {
   for (const Case& c : laws()) {
     SCOPED_TRACE(c.name);

@@ -1,4 +1,4 @@
-// Energy tanks on both sides of a link: what they promise, whatever the link does.
+// Energy tanks on both sides of a link, and their promises under any behaviour of the link.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using test::Rows;
 struct Tapping {
   ArmDescription arm;
   Parameters p{};
-  double wall = 600;   // 0: none [N/m]
+  double wall = 600;   // 0: no wall [N/m]
   double press = 4;    // [N]
   double shaking = 5;  // [rad/s]
   double seconds = 2;
@@ -46,7 +46,7 @@ struct Tapping {
       const double t = static_cast<double>(k) * p.tick;
       const double way = (kAbove + press / p.hand_stiffness) * (1 - std::cos(shaking * t)) / 2;
       const Vec3 aside(0.01 * std::sin(1.7 * shaking * t), 0.01 * std::sin(0.6 * shaking * t), 0);
-      const bool rests = t > 0.7 * seconds;  // where it now is
+      const bool rests = t > 0.7 * seconds;  // at its present place
       if (!rests) start.target = home + aside - way * Vec3::UnitZ();
       rig.step(q, {{start.target, 1}}, rows.add());
     }
@@ -96,7 +96,7 @@ TEST(Tanks, GiveNoMoreThanTheyHeldWhateverTheLinkDoes) {
   EXPECT_GT(most, 1e-4) << "nothing was tried";
 }
 
-// What is left in them and between them is what they held, less E_c, to round-off.
+// The energy left in the tanks and between them is their initial one, less E_c, to round-off.
 TEST(Tanks, HoldWhatTheEnergyBooksSay) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     Tapping t = at_random(seed);
@@ -112,7 +112,7 @@ TEST(Tanks, HoldWhatTheEnergyBooksSay) {
   }
 }
 
-// A torque that comes late is not seen in readings; the largest account of all delays counts.
+// Readings do not show that a torque comes late; the largest account of all delays counts.
 TEST(Tanks, KeepTheirPromiseWithLateMotors) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     Tapping t = at_random(seed);
@@ -123,7 +123,7 @@ TEST(Tanks, KeepTheirPromiseWithLateMotors) {
   }
 }
 
-// Within what they hold they change nothing: a slow hand in free space, and a press.
+// Tanks with enough energy change nothing: a slow hand in free space, and a press.
 TEST(Tanks, ThatAreFullLeaveTheStandardCouplingAsItIs) {
   Tapping t{.arm = test::omni()};
   t.p.tank_damping = 0;
@@ -144,7 +144,7 @@ TEST(Tanks, ThatAreFullLeaveTheStandardCouplingAsItIs) {
   EXPECT_LT(cut, rows.size() / 100);
 }
 
-// What was left of an earlier part of a run is all that the next part starts with.
+// The next part of a run starts with the energy left by the one before.
 TEST(Tanks, AreNotFilledByStartingAnew) {
   Tapping t{.arm = test::omni()};
   RigStart start;

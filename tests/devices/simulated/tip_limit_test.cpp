@@ -1,4 +1,5 @@
-// The limit of force at the tip of a real device, under laws that reckon with what the motors give.
+// The limit of force at the tip of a real device, under laws that take the motors' limits into
+// account.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,12 +15,12 @@ namespace {
 
 struct Outcome {
   double energy = 0;           // highest E_c, from torques and positions [J]
-  double given = 0;            // most that the hand was given since the start [J]
-  double reserve = 1, at = 0;  // least, and at the end [J]
+  double given = 0;            // most energy given to the hand since the start [J]
+  double reserve = 1, at = 0;  // lowest, and at the end [J]
   double contact = 0;          // share of the contact force at the end [-]
-  double force = 0;            // largest at the tip [N]
+  double force = 0;            // largest force at the tip [N]
   int unsettled = 0, limited = 0;
-  Vec3 tip = Vec3::Zero();  // of the device at the end [m]
+  Vec3 tip = Vec3::Zero();  // place of the device's tip at the end [m]
 };
 
 class Pressed {
@@ -74,7 +75,7 @@ class Pressed {
   test::Rows rows;
 
  private:
-  static constexpr double kDamping = 0.012;  // of each joint, as its file has it [N m s/rad]
+  static constexpr double kDamping = 0.012;  // damping of each joint in its file [N m s/rad]
   Arm<3> model;
   Parameters p;
   Vec<3> x_;
@@ -83,7 +84,7 @@ class Pressed {
 
 const Vec3 kTable(0.2, 0, -0.04);
 
-// A hand that presses with 4 N, and then with 1 N, into a wall.
+// A hand presses into a wall with 4 N, then with 1 N.
 struct Press {
   double tip = 1.5, K = 3000;  // [N, N/m]
   double eta = 1, torque_limit = kFromArm;
@@ -93,9 +94,9 @@ struct Press {
 
   struct Both {
     Outcome all;
-    double deep, end;  // how far the tip is in the wall while it is pressed with 4 N and 1 N [m]
-    double force;      // at the tip at the end [N]
-    double given;      // to the hand at most, until it presses with 1 N [J]
+    double deep, end;  // depth of the tip in the wall when pressed with 4 N and 1 N [m]
+    double force;      // force at the tip at the end [N]
+    double given;      // most energy to the hand, until it presses with 1 N [J]
   };
   Both run() const {
     const ArmDescription arm = test::omni();
@@ -123,7 +124,7 @@ struct Press {
     const double deep = go(4, 2), given = run.all.given, end = go(1, 5);
     return {run.all, deep, end, run.force(), given};
   }
-  // Where a hand that presses with so much rests, if the motors give no more than `most` [m, N].
+  // Depth of rest of a hand that presses with `newton`, if the motors give at most `most` [m, N].
   double depth(double newton, double most) const {
     const double whole = newton / grip + newton / K;
     return newton <= most ? newton / K : whole - most / grip;
@@ -135,7 +136,7 @@ struct Press {
   }
 };
 
-// E_c, what the hand is given and the reserve are as core/README.md has them without such a limit.
+// E_c, the hand's energy and the reserve are those that core/README.md states without such a limit.
 TEST(TipLimit, IsKnownToThePredictiveLawWhichLosesNoReserveToIt) {
   for (const bool rubs : {false, true}) {
     for (const double tip : {0.2, 0.5, 0.7, 1.5, 3.0}) {
@@ -159,8 +160,8 @@ TEST(TipLimit, IsKnownToThePredictiveLawWhichLosesNoReserveToIt) {
   }
 }
 
-// Grips that damp nothing leave the account with a debt that no motion pays, since the damping of a
-// real device is in no book.
+// Grips without damping leave the account with a debt that no motion pays, as no book has the
+// damping of a real device.
 TEST(TipLimit, LeavesNoDebtThatAHandAtRestCannotPay) {
   for (const double tip : {1.5, 10.0}) {
     for (const double limit : {kFromArm, 0.28}) {
@@ -193,7 +194,7 @@ TEST(TipLimit, LeavesTheTanksAsTheyAre) {
   }
 }
 
-// Corners of planes that nobody chose: with the limit they are no worse than without.
+// Random corners of planes: the limit makes them no worse.
 TEST(TipLimit, MakesNoEnergyBetweenWalls) {
   const auto worst = [](bool limited) {
     Outcome all;

@@ -1,5 +1,5 @@
-// A device that says for a moment what cannot be, with the arm that comes along in a grip: what the
-// motors get then and afterwards.
+// A device with impossible readings for a moment, while its arm follows the hand: torque of the
+// motors then and afterwards.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kT = 1e-3;
 
-// Pressed a centimetre into a wall by a hand that holds still.
+// A device pressed a centimetre into a wall by a hand that holds still.
 class LyingDevice : public testing::TestWithParam<CouplingKind> {
  protected:
   LyingDevice() : rig(arm, wall(), &device), rows(rig.layout()) {
@@ -94,7 +94,7 @@ TEST_P(LyingDevice, IsWithoutForceAtOnceAndForGoodAfterOneWrongReading) {
   }
 }
 
-// A jump that a hand could make is no fault: force is gone for its speed and comes back by itself,
+// A jump within a hand's ability is no fault. Force is gone for its speed and comes back by itself,
 // with a law that has forgotten the jump.
 TEST_P(LyingDevice, PushesNoHarderAfterAJumpThatAHandCouldMake) {
   for (const double off : {0.1, 0.3, 0.5, -0.5}) {
@@ -111,7 +111,7 @@ TEST_P(LyingDevice, PushesNoHarderAfterAJumpThatAHandCouldMake) {
         ASSERT_LT(torque(), 2 * full * faded / 500 + 0.02) << k;
       }
       EXPECT_TRUE(rig.force().armed());
-      armed = false;  // an account that took the jump for a way lets no force through until then
+      armed = false;  // an account that counted the jump lets no force through until then
       step();
       armed = true;
       step(2000);
@@ -128,8 +128,8 @@ TEST_P(LyingDevice, ComesBackWithItsProxyOnTheDevice) {
   EXPECT_EQ(torque(), 0);
   EXPECT_GT(apart(rows.size() - 1), 1e-3);
   while (torque() == 0) step();
-  // The first torque is that of the tick in which they were in one place, or of the next: a spring
-  // between two that are in one place pulls on neither.
+  // The first torque dates from the tick in which device and proxy coincided, or the next: a spring
+  // of zero length pulls on neither.
   const std::size_t k = rows.size() - 1;
   EXPECT_LT(std::min(apart(k), apart(k - 1)), 1e-12);
 }

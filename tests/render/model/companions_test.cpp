@@ -1,4 +1,4 @@
-// The files beside a model, which are limited all together.
+// Files beside a model, which are limited all together.
 #include "render/model/companions.h"
 
 #include <gmock/gmock.h>

@@ -21,7 +21,7 @@ using Eigen::Vector3f;
 const std::array<Vector3f, 6> kSoup = {Vector3f(0, 0, 0), Vector3f(1, 0, 0), Vector3f(0, 2, 0),
                                        Vector3f(0, 0, 5), Vector3f(1, 0, 5), Vector3f(0, 4, 6)};
 
-// Whatever order and number of vertices a codec leaves: the triangles' corners, sorted.
+// Corners of all triangles, sorted: codecs change the order and number of vertices.
 std::vector<std::array<float, 9>> triangles(const Model& model) {
   std::vector<std::array<float, 9>> out;
   for (std::size_t i = 0; i < model.indices.size(); i += 3) {
@@ -48,7 +48,7 @@ std::vector<std::array<float, 9>> soup() {
   return triangles(model);
 }
 
-// Where a codec put the corner that was at `place`, by triangle.
+// The vertex of a triangle at `place`, wherever the codec put it.
 const Vertex& corner_of(const Model& model, std::size_t triangle, const Vector3f& place) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vertex& v = model.vertices[model.indices[3 * triangle + k]];
@@ -129,7 +129,7 @@ TEST(GltfCompressed, ReadsDracoWithASeam) {
     file.more = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
     const Model model = parse_gltf(file.binary(), "part.glb");
     ASSERT_EQ(model.indices.size(), 6u);
-    // Which of the two comes first is the codec's business.
+    // The codec may give the two faces in either order.
     const auto far_one = [&](std::size_t t) {
       for (std::size_t k = 0; k < 3; ++k)
         if (model.vertices[model.indices[3 * t + k]].position == places[3]) return true;
@@ -222,8 +222,8 @@ TEST(GltfCompressed, ReadsMeshoptNormalsOfEitherWidth) {
   }
 }
 
-// The compressed bytes lie in the second of two files beside it, at an odd place, and the third
-// buffer is the one that is not there.
+// The compressed bytes lie in the second of two companion files, at an odd offset. The third buffer
+// does not exist.
 TEST(GltfCompressed, PacksMeshoptWithFilesBesideIt) {
   const test::TempDir dir;
   Bytes data(meshopt_encodeVertexBufferBound(6, sizeof(Vector3f)));
@@ -275,7 +275,7 @@ TEST(GltfCompressed, RefusesMeshoptThatIsBroken) {
   }
   const std::string odd = R"("count":5)";
   std::string text(bytes.begin(), bytes.end());
-  text.replace(text.rfind(R"("count":6)"), odd.size(), odd);  // of triangles
+  text.replace(text.rfind(R"("count":6)"), odd.size(), odd);  // number of triangles' corners
   EXPECT_THROW(parse_gltf(Bytes(text.begin(), text.end()), "part.glb"), std::runtime_error);
 }
 

@@ -1,4 +1,4 @@
-// What a glTF file may hold, and what becomes of it.
+// Contents of glTF files, and their effect on the model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ TEST(GltfContent, ReadsZerosWhereThereIsNoData) {
   for (const Vertex& v : model.vertices) EXPECT_TRUE(v.color.isZero(0) && v.uv.isZero(0));
 }
 
-// 3.7.2.1: without normals it is drawn flat.
+// 3.7.2.1: without normals the model is drawn flat.
 TEST(GltfContent, IsFlatWithoutNormals) {
   GltfBuilder file;
   file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -174,7 +174,7 @@ TEST(GltfContent, ReadsAMaterialWithItsTextures) {
   EXPECT_FLOAT_EQ(m.cutoff, 0.25f);
   EXPECT_FLOAT_EQ(m.glow[2], 0.3f);
   EXPECT_FLOAT_EQ(m.bump, 2);
-  // Once as colours, once as numbers.
+  // The same picture is kept once as colours, once as numbers.
   ASSERT_EQ(model.images.size(), 2u);
   EXPECT_EQ(m.color, m.emission);
   EXPECT_EQ(m.surface, m.normal);
@@ -193,7 +193,7 @@ TEST(GltfContent, MovesTextureCoordinates) {
                R"("KHR_texture_transform":{"offset":[0.5,0.25],"scale":[2,4],)"
                R"("rotation":1.57079632679}}}}}])";
   const Model model = parse_gltf(file.binary(), "part.glb");
-  // (1, 1), scaled to (2, 4), turned against the clock where v points down, then moved.
+  // (1, 1), scaled to (2, 4), turned counterclockwise with v pointing down, then moved.
   EXPECT_TRUE(model.vertices[1].uv.isApprox(Eigen::Vector2f(4.5f, -1.75f), 1e-5f));
 }
 
@@ -237,12 +237,12 @@ TEST(GltfContent, CanBeDrawnCoarselyWhereItIsLarge) {
   add_coarse(model);
   EXPECT_GT(model.coarse.size() / 3, 10'000u);
   EXPECT_LT(model.coarse.size() / 3, 100'000u);
-  // A flat sheet stays one without holes, but for half a cell at its edges.
+  // A flat sheet stays one without holes, except for half a cell at its edges.
   model.indices = model.coarse;
   EXPECT_NEAR(area(model) / (2.0f * kSide * kSide), 1, 0.02);
 }
 
-// Each primitive numbers its vertices anew, whatever one before it left.
+// Each primitive numbers its vertices anew, independently of the one before.
 TEST(GltfContent, HasPrimitivesThatShareTheirVertices) {
   GltfBuilder file;
   file.positions({0, 0, 0, 1, 0, 0, 0, 2, 0, 3, 3, 1});
@@ -261,7 +261,7 @@ TEST(GltfContent, HasPrimitivesThatShareTheirVertices) {
   }
 }
 
-// A colour of whole numbers is one between 0 and 1, though some files do not say so.
+// Integer colours stand for numbers between 0 and 1, though some files do not say so.
 TEST(GltfContent, TakesColoursOfWholeNumbersForParts) {
   GltfBuilder file;
   file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});

@@ -1,4 +1,4 @@
-// Files that are too large, broken, or reach for what is not theirs.
+// Files that are too large, broken, or name files they must not read.
 #include <gtest/gtest.h>
 
 #include <atomic>

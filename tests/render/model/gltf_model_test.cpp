@@ -35,7 +35,7 @@ Bytes glb(std::string json, Bytes binary) {
   return bytes;
 }
 
-// One triangle in the xy plane: 36 bytes of positions, then three 16-bit indices.
+// A triangle in the xy plane: 36 bytes of positions, then three 16-bit indices.
 Bytes triangle_data(std::uint16_t last_index = 2) {
   const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   const std::uint16_t indices[] = {0, 1, last_index};

@@ -1,4 +1,4 @@
-// Where the vertices of a glTF file are that is made to move: at rest.
+// Vertices at rest of glTF files that are made to move.
 #include <gtest/gtest.h>
 
 #include "render/model/gltf_model.h"
@@ -45,7 +45,7 @@ TEST(GltfRest, LeavesMorphTargetsOutWithoutWeights) {
   EXPECT_TRUE(places(morphed(R"({"mesh":0})"))[1].isApprox(Vector3f(1, 0, 0)));
 }
 
-// The first vertex on joint 1, the second on joint 2, the third between the two.
+// A skin with the first vertex on joint 1, the second on joint 2, the third between the two.
 GltfBuilder skinned(const std::string& more_of_skin) {
   GltfBuilder file = corner();
   file.attribute(
@@ -56,7 +56,7 @@ GltfBuilder skinned(const std::string& more_of_skin) {
       "WEIGHTS_0",
       file.accessor(file.view(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, .5f, .5f, 0, 0}), 5126,
                     "VEC4", 3));
-  // What the mesh's own node says about its place does not count.
+  // The place of the mesh's own node does not count.
   file.nodes = R"({"mesh":0,"skin":0,"translation":[99,99,99]},{"translation":[0,0,2]},)"
                R"({"translation":[0,0,4]})";
   file.roots = "0,1,2";
@@ -88,7 +88,7 @@ TEST(GltfRest, RefusesAJointThatDoesNotExist) {
   EXPECT_THROW(parse_gltf(file.binary(), "part.glb"), std::runtime_error);
 }
 
-// Half to one joint and a quarter to the other are two thirds and one third.
+// Weights of a half on one joint and a quarter on the other become two thirds and one third.
 TEST(GltfRest, BringsWeightsToOne) {
   GltfBuilder file = corner();
   file.attribute(

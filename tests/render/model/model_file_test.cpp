@@ -1,4 +1,4 @@
-// Models of other kinds than glTF, which a program of its own reads.
+// Models of other formats than glTF, which a program of its own reads.
 #include "render/model/model_file.h"
 
 #include <fmt/format.h>
@@ -101,7 +101,7 @@ TEST(ModelFile, ReadsTheSameBodyFromEveryKind) {
                                                                 {"d.ply", bytes_of(ply())}}) {
     const Model model = parse_model(bytes, name);
     EXPECT_EQ(model.indices.size(), 12u) << name;
-    EXPECT_EQ(model.vertices.size(), 4u) << name;  // those of STL are put together
+    EXPECT_EQ(model.vertices.size(), 4u) << name;  // STL's equal corners are joined
     EXPECT_FLOAT_EQ(volume(model), 6) << name;
     EXPECT_TRUE(model.parts[0].material.flat) << name;
     EXPECT_EQ(model.unit, 0) << name;
@@ -130,7 +130,7 @@ std::string dae(const std::string& encoding = "utf-8") {
          "</COLLADA>";
 }
 
-// With such a first coordinate, and perhaps elements that mean nothing here.
+// A tetrahedron as PLY, with this first coordinate, and perhaps elements without a meaning here.
 Bytes binary_ply(float first, const std::string& element = "", const Bytes& its_data = {}) {
   Bytes out = bytes_of("ply\nformat binary_little_endian 1.0\n" + element +
                        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -159,12 +159,12 @@ Bytes wide(const std::string& text, bool big) {
   return out;
 }
 
-// Each of them is right, and the library refuses it or crashes.
+// Each of these files is valid, and the library refuses it or crashes.
 TEST(ModelFile, ReadsWhatItsLibraryDoesNot) {
   const std::string empty = "solid two\nendsolid two\n";
   std::string small = obj();
   small.replace(small.find("v 0 0 0"), 7, "v .0e-1 -.0\t.0");
-  // As some programs write them; its length alone says that it is no text.
+  // Some programs write binary STL like this; only its length shows that it is no text.
   const std::string_view title = "solid one\nendsolid one\nsolid two\nendsolid two\n";
   Bytes titled = binary_stl();
   std::ranges::copy(title, titled.begin());
@@ -200,7 +200,7 @@ TEST(ModelFile, KeepsTheColoursOfVertices) {
     EXPECT_TRUE(v.color.isApprox(Vector3f(1, 0, 0)));
 }
 
-// In a folder with materials and a picture, as OBJ has them.
+// An OBJ file in a folder with materials and a picture.
 class ModelFolder : public testing::Test {
  protected:
   void SetUp() override {
@@ -242,7 +242,7 @@ TEST_F(ModelFolder, CanBeCarriedAway) {
     EXPECT_EQ(there.vertices[i].position, here.vertices[i].position);
 }
 
-// Programs that write physically based materials write how far a highlight is drawn out.
+// Programs with physically based materials write an anisotropy of highlights.
 TEST_F(ModelFolder, MayHaveMaterialsWithAnisotropy) {
   write("a.mtl",
         "newmtl red\nKd 1 0 0\naniso 0.5\nanisor .1\nnewmtl seen\nKd 0 0 0\nmap_Kd red.png\n");
@@ -277,7 +277,7 @@ TEST(ModelFile, SaysWhatCannotBeRead) {
             std::string::npos);
 }
 
-// Whatever the library makes of it: a model, or one line that names the file.
+// The result is a model, or an error of one line that names the file.
 TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
   const std::map<std::string, Bytes> all{
       {"a.stl", binary_stl()}, {"a.obj", bytes_of(obj())}, {"a.ply", bytes_of(ply())}};
@@ -292,14 +292,14 @@ TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
   }
 }
 
-// Without a look at the header first it took seconds of processor time.
+// Without a check of the header first this took seconds.
 TEST(ModelFile, SaysThatAPlyIsCutOffInItsHeader) {
   const std::string text = ply();
   EXPECT_EQ(refusal(bytes_of(text.substr(0, text.find("end_header"))), "a.ply"),
             "a.ply: is cut off: its header has no end_header");
 }
 
-// Forty nodes, each of which stands for two of the one before.
+// Forty nodes, each with two references to the one before.
 TEST(ModelFile, SaysThatItWouldTakeTooMuch) {
   std::string nodes = "<library_nodes><node id=\"n0\"><instance_geometry url=\"#g\"/></node>";
   for (int i = 1; i < 40; ++i) {
@@ -340,7 +340,7 @@ TEST(ModelFile, SaysHowItsReaderEnded) {
             "takes more than 3 s to be read, which is all that a model of its size gets");
 }
 
-// A count that no file of its size can have: memory for it must not be looked for here.
+// The count exceeds any file of this size: no memory for it must be requested.
 TEST(ModelFile, OutlivesAPlyOfFourBillionVertices) {
   std::string text = ply();
   text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
@@ -372,7 +372,7 @@ std::string collada(const std::string& asset) {
          R"(</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
-// Which axis is up and what a coordinate of 1 is, of every format that says so.
+// The axis that is up and the unit of length, in every format that has them.
 TEST(ModelFile, KnowsTheUnitAndTheAxisThatAFileSays) {
   GltfBuilder gltf;
   gltf.positions(kSquare);

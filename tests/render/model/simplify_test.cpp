@@ -1,4 +1,4 @@
-// The coarse version of a large model, of which the library decides each triangle.
+// The coarse version of a large model; the library chooses its triangles.
 #include "render/model/simplify.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A square of side 1 of 2 side^2 triangles, each of vertices of its own where they are `apart`.
+// A square of side 1 made of 2 side^2 triangles, with vertices of their own if `apart`.
 void add_square(Model& model, const Vector3f& corner, const Vector3f& u, const Vector3f& v,
                 std::uint32_t side, bool apart = false) {
   const auto at = [&](std::uint32_t x, std::uint32_t y) {
@@ -32,7 +32,7 @@ void add_square(Model& model, const Vector3f& corner, const Vector3f& u, const V
   model.parts.push_back(part);
 }
 
-// Of the triangles, counted negative where they face away from their first vertex' normal.
+// Area of the triangles, negative where they face away from their first vertex' normal.
 float area(const Model& model, const std::vector<std::uint32_t>& indices) {
   float twice = 0;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {

@@ -1,4 +1,4 @@
-// Writes a HID report descriptor and knows where each field came to lie.
+// Writes a HID report descriptor and returns the place of each field.
 #pragma once
 
 #include <map>
@@ -25,7 +25,7 @@ class DescriptorWriter {
   }
   DescriptorWriter& begin(Collection kind) { return item(0xA0, kind, 1); }
   DescriptorWriter& end() { return item(0xC0, 0, 0); }
-  // The reports' fields from here on are in this report.
+  // Puts the following fields into report `id`.
   DescriptorWriter& report(std::uint8_t id) {
     id_ = id;
     return item(0x84, id, 1);
@@ -35,15 +35,15 @@ class DescriptorWriter {
     max_ = max;
     return signed_item(0x14, min).signed_item(0x24, max);
   }
-  // Both 0: none.
+  // Physical range; 0 and 0 stand for none.
   DescriptorWriter& physical(std::int32_t min, std::int32_t max) {
     return signed_item(0x34, min).signed_item(0x44, max);
   }
-  // Exponent of ten, -8 to 7.
+  // Unit and its exponent of ten, -8 to 7.
   DescriptorWriter& unit(std::uint16_t unit, int exponent) {
     return item(0x64, unit, wide(unit)).item(0x54, static_cast<std::uint32_t>(exponent) & 0xFU, 1);
   }
-  // `count` fields; returns the first of them.
+  // Adds `count` fields; returns the first of them.
   Field field(Kind kind, int bits, int count, Flags flags = kVariable) {
     item(0x74, static_cast<std::uint32_t>(bits), 1);
     item(0x94, static_cast<std::uint32_t>(count), 1);
@@ -59,7 +59,7 @@ class DescriptorWriter {
   }
 
   const Report& descriptor() const { return bytes_; }
-  // Empty but for its id, which is its first byte, 0 included.
+  // An empty report; its first byte is `id`, even 0.
   Report blank(Kind kind, std::uint8_t id) const {
     Report report(static_cast<std::size_t>(1 + (used_.at({kind, id}) + 7) / 8));
     report[0] = id;

@@ -1,4 +1,4 @@
-// Every torque that a reference device was told or that began to act, with its time.
+// Every torque that a reference device received or that began to act, with its time.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ inline constexpr std::size_t kAxes = 6;
 using Torque = std::array<double, kAxes>;  // [N m]
 
 enum class ForceCause {
-  told,      // the host said so, the same value again included
+  told,      // the host sent it, possibly the same value again
   expired,   // an effect came to its end
   watchdog,  // the device missed the host and cut the torque by itself
   power,     // plugged in or out
@@ -22,7 +22,7 @@ enum class ForceCause {
 
 struct ForceSample {
   Time time{};
-  Torque torque{};  // that acts from then on
+  Torque torque{};  // acts from this time on
   ForceCause cause = ForceCause::told;
 };
 
@@ -32,12 +32,12 @@ class ForceLog {
     samples_.push_back({time, torque, cause});
   }
   void clear() { samples_.clear(); }
-  // For long runs: while it grows the device would fall behind.
+  // Reserves memory for long runs: growing would delay the device.
   void expect(std::size_t samples) { samples_.reserve(samples); }
   std::span<const ForceSample> samples() const { return samples_; }
   Torque newest() const { return samples_.empty() ? Torque{} : samples_.back().torque; }
 
-  // How long after `failure` the last torque acted; 0 if none did, nothing if one still acts.
+  // Time from `failure` to the end of the last torque: 0 if none acted, nothing if one still does.
   std::optional<Time> zero_after(Time failure) const;
   // The largest |torque| of any axis that acted at or after `from` [N m].
   double largest(Time from = Time::min()) const;

@@ -5,7 +5,7 @@
 namespace limpid::test {
 namespace {
 
-// A step of an encoder changes one of its two pins.
+// Pins of the encoder at a count; one step changes one of the two.
 std::uint8_t pins_of(long count) {
   constexpr std::array<std::uint8_t, 4> gray{0, 1, 3, 2};
   return gray[static_cast<std::size_t>(count & 3)];
@@ -56,7 +56,7 @@ void PaddleModel::see(std::uint8_t pins) {
 void PaddleModel::run(Time now) {
   hand_.run(now, [&](Time step) {
     turn_encoder();
-    if (at_end_) {  // it is laid there and back, faster than a step
+    if (at_end_) {  // the move to the end and back is faster than a step
       for (long at = count_; at > 0; --at) paddle_turn(&firmware_, pins_of(at - 1));
       paddle_inputs(&firmware_, true, hand_.held(), driver_fault_);
       for (long at = 0; at < count_; ++at) paddle_turn(&firmware_, pins_of(at + 1));

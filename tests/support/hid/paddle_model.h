@@ -12,16 +12,16 @@ class PaddleModel final : public ReferenceDevice {
  public:
   explicit PaddleModel(const AxisPhysics& physics = paddle_axis());
 
-  // As assets/devices/paddle.urdf has it.
+  // Physics of the paddle as in assets/devices/paddle.urdf.
   static AxisPhysics paddle_axis();
 
   SprungHand& hand() { return hand_; }
   Paddle& firmware() { return firmware_; }
   void set_driver_fault(bool fault) { driver_fault_ = fault; }
-  void lay_at_its_end() { at_end_ = true; }  // as one does after switching it on
+  void lay_at_its_end() { at_end_ = true; }  // as a person does after switching it on
   void swap_the_motors_wires() { swapped_ = true; }
   void skip_steps(int steps) { skipping_ = steps; }
-  // Bit 0 line A, bit 1 line B: stays as it is.
+  // Freezes encoder lines: bit 0 for line A, bit 1 for line B.
   void break_lines(std::uint8_t lines) { broken_ = lines; }
   int rejected() const { return rejected_; }
 
@@ -39,7 +39,7 @@ class PaddleModel final : public ReferenceDevice {
   SprungHand hand_;
   Paddle firmware_{};
   Time start_{};
-  long count_ = 0;  // of the encoder's steps, as they are
+  long count_ = 0;  // encoder steps without faults
   int skipping_ = 0, rejected_ = 0;
   std::uint8_t broken_ = 0;
   bool at_end_ = false, driver_fault_ = false, swapped_ = false;

@@ -198,7 +198,7 @@ std::int64_t PidJoystickModel::allowed(ReportView report, const Field& field, co
 
 PidEffect* PidJoystickModel::effect(std::int64_t index) {
   if (!reports_.create_type && index >= 1 && index <= options_.capacity) {
-    return &effects_[static_cast<int>(index)];  // the host chooses
+    return &effects_[static_cast<int>(index)];  // the host chooses the index
   }
   const auto found = effects_.find(static_cast<int>(index));
   if (found != effects_.end()) return &found->second;
@@ -228,7 +228,7 @@ void PidJoystickModel::set_effect(ReportView report) {
   say_state();
 }
 
-// Where a force of this effect pushes.
+// Direction in which a force of this effect pushes, as the firmware reads the report.
 std::pair<double, double> PidJoystickModel::direction(ReportView report) {
   const bool enabled = get(report, reports_.direction_enable) != 0;
   const bool x = get(report, *reports_.axes) != 0, y = get(report, reports_.axes->at(1)) != 0;
@@ -277,7 +277,7 @@ void PidJoystickModel::set_constant(ReportView report) {
   if (effect->type != 0 && effect->type != kConstant) violation("not an effect of constant force");
   const auto magnitude = allowed(report, reports_.magnitude, "the magnitude");
   effect->magnitude = share(magnitude, reports_.magnitude);
-  // To the joystick itself a number of 7 bits goes on.
+  // The adapter passes the magnitude on to the joystick as a number of 7 bits.
   if (options_.firmware == PidFirmware::adapt) {
     effect->magnitude = static_cast<double>(magnitude / 2) / 127;
   }
@@ -318,7 +318,7 @@ void PidJoystickModel::control(int what) {
   switch (options_.firmware) {
     case PidFirmware::arduino: break;
     case PidFirmware::fino: break;
-    case PidFirmware::open_ffboard:  // either it plays or it does not
+    case PidFirmware::open_ffboard:  // the effect either plays or does not
       paused_ = false;
       actuators_ = what == kEnable || what == kContinue;
       break;
@@ -339,7 +339,7 @@ bool PidJoystickModel::on_set_feature(ReportView report, Time) {
   if (options_.fails_to_load) return true;
   const int first = options_.first_block;
   for (int index = first + options_.capacity - 1; index >= first; --index) {
-    if (!effects_.contains(index)) created_ = index;  // the lowest that is free
+    if (!effects_.contains(index)) created_ = index;  // the lowest free index
   }
   if (created_ == 0) return true;
   if (options_.firmware == PidFirmware::open_ffboard) say_state();

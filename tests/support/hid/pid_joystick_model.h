@@ -15,9 +15,8 @@
 
 namespace limpid::test {
 
-// Products read the same reports in their own ways; worked out from their published sources. They
-// differ in how the angle of an effect and its axis bits become a force and in what they say of
-// themselves.
+// Firmwares of products, after their published sources. They read the same reports differently: in
+// how an effect's angle and axis bits become a force, and in the states they report.
 enum class PidFirmware {
   standard,
   arduino,       // the Arduino joystick library with force feedback
@@ -33,22 +32,22 @@ struct PidJoystickOptions {
   PidLayout layout{};
   int capacity = 4;            // effects at a time, at most 40
   int first_block = 1;         // the lowest index of an effect
-  bool fails_to_load = false;  // it makes no effect and says so
+  bool fails_to_load = false;  // makes no effect and reports that
   double torque_limit = 1;     // of each axis, at full magnitude and gain [N m]
   AxisPhysics physics{};       // of both axes
-  bool only_changes = false;   // it says nothing while nothing moves
+  bool only_changes = false;   // sends nothing while nothing moves
   Time period = std::chrono::milliseconds(1);
 
   static PidJoystickOptions of(PidFirmware firmware);
 };
 
 struct PidEffect {
-  std::uint8_t type = 0;     // usage
+  std::uint8_t type = 0;     // usage of its type
   double magnitude = 0;      // -1 to 1
   double gain = 1;           // 0 to 1
   double x = 0, y = 0;       // direction of its force
   Time delay{}, duration{};  // duration 0: for ever
-  bool parameters = false;   // "set effect" has come
+  bool parameters = false;   // "set effect" has been received
   bool playing = false;
   Time start{};
   int loops = 1;
@@ -56,24 +55,23 @@ struct PidEffect {
 
 class PidJoystickModel : public ReferenceDevice {
  public:
-  // Whether a host that follows the standard pushes it the wrong way along X and Y.
+  // Whether it pushes a host that follows the standard the wrong way along X and Y.
   static constexpr std::array<bool, 2> kReversed{};
   static constexpr int kTorqueLevels = 10000;  // from none to full torque, at least
 
   explicit PidJoystickModel(const PidJoystickOptions& options = {});
 
-  // Its safety switch and its power, as it says if it says so at all.
+  // Safety switch and power, for firmwares that report them.
   void let_go(bool off) { let_go_ = off; }
   void lose_power(bool off) { powerless_ = off; }
   SprungHand& hand() { return hand_; }
   const SprungHand& hand() const { return hand_; }
   void press(std::uint8_t buttons) { buttons_ = buttons; }
-  // By their index.
   static PidJoystickOptions usual_options() { return {}; }
   const std::map<int, PidEffect>& effects() const { return effects_; }
   bool actuators() const { return actuators_; }
   double device_gain() const { return device_gain_; }
-  // What the motors do at this moment [N m]; axes X and Y.
+  // Torque of the motors of axes X and Y at this moment [N m].
   Torque acting(Time now) const;
 
  private:
@@ -94,7 +92,7 @@ class PidJoystickModel : public ReferenceDevice {
   std::pair<double, double> direction(ReportView report);
   std::pair<double, double> standard_direction(ReportView report);
   void say_state() { said_.push_back(state()); }
-  // The effect of this index; nullptr, and a violation, if there is none.
+  // Returns the effect of this index; without one, notes a violation and returns nullptr.
   PidEffect* effect(std::int64_t index);
   bool complete(ReportView report, const Field& field, DescriptorWriter::Kind kind);
   std::int64_t allowed(ReportView report, const Field& field, const char* name);
@@ -110,12 +108,12 @@ class PidJoystickModel : public ReferenceDevice {
   double device_gain_ = 1;
   std::uint8_t buttons_ = 0;
   bool let_go_ = false, powerless_ = false;
-  int created_ = 0;  // index; 0: the pool was full
+  int created_ = 0;  // index of the new effect; 0: the pool was full
   Report sent_stick_, sent_state_;
   std::vector<Report> said_;  // states that wait to be sent
 };
 
-// The same as types, for typed tests.
+// The same, with the firmware as its type, for typed tests.
 template <PidFirmware kFirmware>
 class PidJoystickOf final : public PidJoystickModel {
  public:

@@ -32,7 +32,7 @@ struct Builder {
     writer.page(kPid).usage(0x22).logical(1, kEffects).physical(0, 0).unit(0, 0);
     return writer.field(kind, 8, 1);
   }
-  // One of several usages, by its place.
+  // Field that chooses one of several usages, by its position among them.
   Field choice(Kind kind, std::uint8_t usage, const std::vector<std::uint8_t>& usages) {
     begin(usage);
     writer.logical(1, static_cast<int>(usages.size())).physical(0, 0).unit(0, 0);
@@ -51,7 +51,7 @@ struct Builder {
     writer.physical(0, 0).unit(0, 0);
     return first;
   }
-  // One value a usage, all of the same signed range.
+  // Fields of the same signed range, one for each usage.
   Field levels(std::initializer_list<std::uint8_t> usages, int min) {
     const int max = layout.magnitude_max;
     writer.page(kPid).usages(usages).logical(min ? -max : 0, max).physical(min, 10000);

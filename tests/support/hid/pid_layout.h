@@ -1,5 +1,5 @@
-// The reports of a USB PID (physical interface device, force feedback) joystick of two axes: the
-// report descriptor and where its fields are. Layouts differ as products do; a host that reads the
+// Reports of a USB PID (physical interface device, force feedback) joystick of two axes: the report
+// descriptor and the places of its fields. Layouts differ as products do; a host that reads the
 // descriptor copes with all of them.
 #pragma once
 
@@ -14,18 +14,18 @@ struct PidLayout {
   std::vector<std::uint8_t> effect_types = {0x26, 0x31, 0x40};  // constant, sine, spring
   std::uint8_t first_id = 1;                                    // of the output and feature reports
   int magnitude_max = 10000;                                    // 16 bits; below 128: 8 bits
-  bool enables_axes = true;              // else forces have a direction and nothing else
-  int direction_max = 255;               // of a whole turn; above 255: 16 bits
-  bool direction_in_hundredths = false;  // of degrees, the unit left out; else degrees
+  bool enables_axes = true;              // otherwise forces have a direction only
+  int direction_max = 255;               // for a whole turn; above 255: 16 bits
+  bool direction_in_hundredths = false;  // [0.01 degrees] without a unit; otherwise [degrees]
   bool physical_axes = true;             // the stick's axes tell their angle [mrad]
   bool control_in_report = false;        // device control inside a collection of its own
-  bool control_in_bits = false;          // device control has a bit a command, else their numbers
-  bool override_switch = true;           // among the device's states
-  bool creates_effects = true;           // else the host chooses the effects' indices
+  bool control_in_bits = false;  // device control has one bit per command; otherwise numbers
+  bool override_switch = true;   // among the device's states
+  bool creates_effects = true;   // otherwise the host chooses the effects' indices
 
-  // As in the examples of the standard.
+  // Layout of the standard's examples.
   static PidLayout standard() { return {}; }
-  // Everything a host might take for granted is different.
+  // A layout that differs in everything a host might take for granted.
   static PidLayout unusual();
 };
 

@@ -101,7 +101,7 @@ std::vector<Report> RawDeviceModel::next_input(Time now) {
 }
 
 void RawDeviceModel::on_output(ReportView report, Time now) {
-  const ReportView message = report.empty() ? report : report.subspan(1);  // after the id, 0
+  const ReportView message = report.empty() ? report : report.subspan(1);  // without the id, 0
   if (report.empty() || report[0] != 0 || !well_formed(message) || !follows(message)) {
     ++rejected_;
     return;
@@ -137,13 +137,13 @@ bool RawDeviceModel::well_formed(ReportView message) const {
   return true;
 }
 
-// In mode 1 the sequence has to go up; mode 0 is always obeyed.
+// Whether the command is obeyed: in mode 1 the sequence has to increase, mode 0 always is.
 bool RawDeviceModel::follows(ReportView message) const {
   const auto number = read_at<std::uint32_t>(message, 4);
   return message[3] == 0 || !addressed_ || static_cast<std::int32_t>(number - command_) > 0;
 }
 
-// What a device has to bear but a good host does not do.
+// Notes what a device has to tolerate but a good host does not send.
 void RawDeviceModel::check_manners(ReportView message) {
   if (message[3] > 1) violation("mode " + std::to_string(message[3]));
   if (!all_zero(message.subspan(44, 16))) violation("reserved bytes are not zero");

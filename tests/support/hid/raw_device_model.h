@@ -1,5 +1,5 @@
-// An arm that speaks the open raw-HID protocol, version 1: up to six joints with motors, encoders
-// and a watchdog of its own, led by springy hands.
+// An arm that speaks the open raw-HID protocol, version 1: up to six joints with motors, encoders,
+// a watchdog of its own and springy hands.
 #pragma once
 
 #include <deque>
@@ -15,9 +15,9 @@ struct RawDeviceLayout {
   bool pushes = true;
   Time watchdog = std::chrono::milliseconds(10);
   Time period = std::chrono::milliseconds(1);
-  double resolution = 1e-4;   // of the encoders [rad]; 0: none but that of a float
+  double resolution = 1e-4;   // of the encoders [rad]; 0: that of a float
   double torque_limit = 1.5;  // [N m]
-  Time lag{};                 // from a command to its torque
+  Time lag{};                 // from a command's arrival to its torque
   AxisPhysics physics{};      // of each joint; paths may be set later
 };
 
@@ -30,10 +30,10 @@ class RawDeviceModel : public ReferenceDevice {
   void set_motors(bool powered, Time now);
   void set_unwell(bool unwell) { unwell_ = unwell; }  // the fault bit of its status
   void set_calibrated(bool calibrated) { calibrated_ = calibrated; }
-  int commands() const { return commands_; }  // good ones received
-  int rejected() const { return rejected_; }  // bad ones received
+  int commands() const { return commands_; }  // good commands received
+  int rejected() const { return rejected_; }  // bad commands received
   int gaps() const { return gaps_; }          // commands that were lost on the way
-  // Its own watchdog has cut the torque; the next good command ends that.
+  // Whether its own watchdog has cut the torque; the next good command ends that.
   bool cut() const { return cut_; }
 
  private:

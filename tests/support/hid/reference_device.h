@@ -22,16 +22,16 @@ struct HidIdentity {
   std::string serial;
 };
 
-// What can go wrong with a device that stays plugged in.
+// Faults of a device that stays plugged in.
 enum class Fault {
   none,
-  silent,        // sends nothing, answers no question, but hears
-  frozen,        // the firmware hangs: sends nothing, hears nothing, the motors keep their torque
-  deaf,          // hears nothing, but says where it is
+  silent,        // sends nothing, answers no question, but receives
+  frozen,        // the firmware hangs: neither sends nor receives, the motors keep their torque
+  deaf,          // receives nothing, but sends its position
   stuck,         // sends its newest report again and again
   garbage,       // random bytes
   cut_short,     // half of each report
-  not_a_number,  // NaN, or where a format has none, numbers outside their range
+  not_a_number,  // NaN, or in formats without it numbers outside their range
 };
 
 class ReferenceDevice {
@@ -45,36 +45,37 @@ class ReferenceDevice {
   Time period() const { return period_; }  // between two calls of input()
   const ForceLog& forces() const { return forces_; }
   ForceLog& forces() { return forces_; }
-  // What the host did against the protocol, a line each; the first hundred.
+  // Violations of the protocol by the host, the first hundred, one line each.
   const std::vector<std::string>& violations() const { return violations_; }
 
-  // Plugged in or out. A device begins unplugged and forgets everything when unplugged.
+  // Plugs the device in or out. It begins unplugged and forgets everything when unplugged.
   void power(bool on, Time now);
   bool powered() const { return powered_; }
   void set_fault(Fault fault) { fault_ = fault; }
   Fault fault() const { return fault_; }
 
-  // The reports that are due now, for every period. A time before one already given counts as that.
+  // Returns the reports that are due now, for every period. A time before an earlier call's counts
+  // as that one's.
   std::vector<Report> input(Time now);
   // The host sent a report.
   void output(ReportView report, Time now);
-  // The host asks for a feature; nothing if there is no such.
+  // The host asks for a feature; nothing if it does not exist.
   std::optional<Report> feature(std::uint8_t id, Time now);
-  // The host sets a feature; false if there is no such.
+  // The host sets a feature; false if it does not exist.
   bool set_feature(ReportView report, Time now);
-  // The host asks for an input report; nothing if there is no such.
+  // The host asks for an input report; nothing if it does not exist.
   std::optional<Report> ask(std::uint8_t id, Time now);
-  // How often a host has asked for a feature or set one.
+  // Number of features that a host has read or set.
   int features_used() const { return features_used_; }
-  // Else the host waits for an answer in vain.
+  // Whether the device answers; if not, the host waits in vain.
   bool answers() const { return powered_ && fault_ != Fault::silent && fault_ != Fault::frozen; }
 
  protected:
   ReferenceDevice(HidIdentity identity, Report descriptor, Time period)
       : identity_(std::move(identity)), descriptor_(std::move(descriptor)), period_(period) {}
 
-  virtual void restart(Time now) = 0;  // as it is after it was plugged in
-  virtual void run(Time now) = 0;      // its physics and timers until now
+  virtual void restart(Time now) = 0;  // to its state after plugging in
+  virtual void run(Time now) = 0;      // advances its physics and timers to `now`
   virtual std::vector<Report> next_input(Time now) = 0;
   virtual void on_output(ReportView report, Time now) = 0;
   virtual std::optional<Report> on_get_feature(std::uint8_t id) = 0;

@@ -14,19 +14,19 @@ namespace limpid::test {
 using Report = std::vector<std::uint8_t>;
 using ReportView = std::span<const std::uint8_t>;
 
-// A number in a report whose first byte is its id: where it is and what it may be.
+// Place and range of a number in a report whose first byte is its id.
 struct Field {
   std::uint8_t id = 0;
   int offset = 0;  // from the report's beginning [bit]
   int bits = 0;
   std::int32_t min = 0, max = 0;
 
-  // The same field of the neighbour, `n` fields on.
+  // The field `n` places on, of the same size and range.
   Field at(int n) const { return {id, offset + n * bits, bits, min, max}; }
   bool allows(std::int64_t value) const { return value >= min && value <= max; }
 };
 
-// What stands there, signed if the field has negative values; 0 if the report ends before it.
+// Reads the field, signed if its range has negative values; 0 if the report ends before it.
 inline std::int64_t get(ReportView report, const Field& field) {
   const auto end = static_cast<std::size_t>(field.offset + field.bits);
   if (end > report.size() * 8) return 0;
@@ -51,7 +51,7 @@ inline void put(Report& report, const Field& field, std::int64_t value) {
   }
 }
 
-// Little-endian numbers at a byte, as they are in memory here.
+// Little-endian numbers at a byte, stored as in memory here.
 static_assert(std::endian::native == std::endian::little);
 
 template <class T>

@@ -11,7 +11,7 @@ namespace {
 
 using Kind = DescriptorWriter::Kind;
 
-// As real ones have it, axes marked as relative although they are not.
+// Descriptor of real ones: the axes are marked as relative although they are not.
 Report describe(bool joined) {
   DescriptorWriter writer;
   writer.page(0x01).usage(0x08).begin(DescriptorWriter::kApplication);

@@ -10,7 +10,7 @@ namespace limpid::test {
 struct SpaceMouseLayout {
   HidIdentity identity{"3Dconnexion SpaceMouse Compact", 0x256F, 0xC635, "SM-1"};
   bool joined = false;          // all six axes in one report, as newer ones; else two of three
-  bool silent_at_rest = false;  // as real ones: nothing but one last report of zeros
+  bool silent_at_rest = false;  // like real ones: only one last report of zeros
   Time period = std::chrono::milliseconds(1);
 };
 
@@ -21,9 +21,9 @@ class SpaceMouseModel : public ReferenceDevice {
 
   explicit SpaceMouseModel(const SpaceMouseLayout& layout = {});
 
-  // Where the cap is, by the time since it was plugged in [s].
+  // Leads the cap along `path`, by the time since it was plugged in [s].
   void move(std::function<Cap(double)> path) { path_ = std::move(path); }
-  void press(std::uint16_t buttons) { buttons_ = buttons; }  // one bit each
+  void press(std::uint16_t buttons) { buttons_ = buttons; }  // one bit for each button
 
  private:
   void restart(Time now) override;

@@ -1,5 +1,5 @@
-// The physical side of a reference device: each axis a small mass which the motor turns and a
-// springy hand leads along a path. So a loop can be closed through it.
+// The physical side of a reference device, to close a loop through it: each axis is a small mass
+// that the motor turns and a springy hand leads along a path.
 #pragma once
 
 #include <functional>
@@ -27,23 +27,24 @@ class SprungHand {
 
   explicit SprungHand(std::vector<AxisPhysics> axes) : axes_(std::move(axes)) { begin(Time{}); }
 
-  // At rest where the hand is, at the time which the paths count from.
+  // Starts at rest with the hand; the paths' time counts from `now`.
   void begin(Time now);
-  // Steps until now; `torque_at(time)` gives the Torque which acts for the next step.
+  // Advances to `now`; `torque_at(time)` gives the torque of the next step.
   void run(Time now, const std::function<Torque(Time)>& torque_at);
 
   int size() const { return static_cast<int>(axes_.size()); }
   double position(int axis) const { return states_[static_cast<std::size_t>(axis)].x; }  // [rad]
-  // As the encoder has it: where it was when its wire broke, so much off [rad].
+  // Angle that the encoder reports: that at which its wire broke, if it did, plus its miscount
+  // [rad].
   double encoder(int axis) const {
     return off_ + (broken_.empty() ? position(axis) : broken_[static_cast<std::size_t>(axis)].x);
   }
   double velocity(int axis) const { return states_[static_cast<std::size_t>(axis)].v; }  // [rad/s]
   AxisPhysics& axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
   const AxisPhysics& axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
-  void hold(bool held) { held_ = held; }  // or let go
+  void hold(bool held) { held_ = held; }  // false lets go
   void break_encoders(bool broken) { broken_ = broken ? states_ : std::vector<State>{}; }
-  void miscount(double off) { off_ = off; }  // what the encoders say is off by this [rad]
+  void miscount(double off) { off_ = off; }  // error of the encoders [rad]
   bool held() const { return held_; }
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Above every thread of the program under test: a real device does not wait for the host.
+// Higher than every thread of the program under test: a real device does not wait for the host.
 constexpr int kPriority = 95;
 constexpr auto kKernelAnswers = std::chrono::seconds(2);
 

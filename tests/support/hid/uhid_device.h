@@ -1,5 +1,5 @@
-// Plays a reference device to the kernel through /dev/uhid: a thread of its own sends its reports
-// at absolute deadlines and answers the host as a device on the bus does.
+// Plays a reference device to the kernel through /dev/uhid: its own thread sends the reports at
+// absolute deadlines and answers the host as a device on the bus does.
 #pragma once
 
 #include <atomic>
@@ -13,18 +13,18 @@ namespace limpid::test {
 
 struct UhidCounts {
   int sent = 0;    // reports
-  int missed = 0;  // periods without, because the thread came too late
-  Time latest{};   // the worst delay of a report behind its deadline
-  int opened = 0;  // times that a program opened it
+  int missed = 0;  // periods without a report, as the thread came too late
+  Time latest{};   // the longest delay of a report after its deadline
+  int opened = 0;  // number of times a program opened it
 };
 
-// The time of reports and logs: of the steady clock.
+// Time of reports and logs, from the steady clock.
 Time steady_now();
 
 class UhidDevice {
  public:
-  // Plugs it in and returns when the kernel has it. The model belongs to the thread from then on:
-  // use it through with(). Throws std::system_error if there is no /dev/uhid.
+  // Plugs the model in and returns when the kernel has it. From then on the model belongs to the
+  // thread: use it through with(). Throws std::system_error if there is no /dev/uhid.
   explicit UhidDevice(ReferenceDevice& model);
   ~UhidDevice();
   UhidDevice(const UhidDevice&) = delete;
@@ -42,7 +42,7 @@ class UhidDevice {
   UhidCounts counts() {
     return with([&](Time) { return counts_; });
   }
-  // Its /dev/hidrawN; empty if the kernel has none for it (yet).
+  // Path of its /dev/hidrawN; empty if the kernel has none for it (yet).
   std::filesystem::path path() const;
 
  private:

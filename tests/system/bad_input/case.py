@@ -1,4 +1,4 @@
-"""What a case of bad input is, and the good input it spoils."""
+"""A case of bad input, and the good input it spoils."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import arms
 
 @dataclass(frozen=True)
 class Good:
-    """A set of inputs that is in order, and the folder for those that are not."""
+    """A set of good inputs, and the folder for the bad ones."""
 
     directory: Path
     arm: arms.ArmFiles
     session: Path
 
     def run(self, option: str = "", value: str | Path = "") -> list[str | Path]:
-        """`limpid run` with everything in order but one option, added or replaced."""
+        """`limpid run` with good options, but for one that is added or replaced."""
         words: dict[str, str | Path] = {
             "--device": self.arm.urdf,
             "--scene": self.arm.scene,

@@ -1,4 +1,4 @@
-"""Arms that have no chain of joints with masses."""
+"""Arms without a chain of joints with masses."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ def _urdf_edit(name: str, old: str, new: str, *names: str) -> Case:
 
 
 def _without_inertia(good: Good) -> str:
-    """No link has any mass. (Where only the last ones have none, the chain ends before them.)"""
+    """Removes the mass of every link. (If only the last ones had none, the chain would end
+    earlier.)"""
     return re.sub(r"<inertial>.*?</inertial>", "", good.arm.urdf.read_text(), flags=re.S)
 
 

@@ -19,7 +19,7 @@ _HEADER = "time_s,x_m,y_m,z_m\n"
 
 
 def _csv_rows(name: str, third: str, *names: str) -> Case:
-    """A path of which the fourth line, row three, is bad."""
+    """A path whose fourth line, row three, is bad."""
 
     def words(good: Good) -> list[str | Path]:
         lines = good.arm.hand.read_text().splitlines()
@@ -79,7 +79,7 @@ def _bad_time(file: h5py.File) -> None:
 
 
 def _bad_change(file: h5py.File) -> None:
-    """A setting that was never allowed, as changed on the way."""
+    """A setting that was never allowed, among the changes of a session."""
     for name, value in (("row", 3), ("setting", b"coupling.eta = -5")):
         file[f"/events/{name}"].resize((1,))
         file[f"/events/{name}"][0] = value

@@ -1,4 +1,4 @@
-"""Command lines that ask for what there is not."""
+"""Command lines that ask for absent things."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from .case import Case
 
 
 def _option(option: str, value: str) -> Case:
-    """A complaint may name the option or the key it is short for, both hold the option's word."""
+    """The option's word: a complaint may name the option or the key it is short for."""
     return Case(f"{option} {value}", lambda good: good.run(option, value), [option[2:]])
 
 

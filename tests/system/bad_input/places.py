@@ -1,4 +1,4 @@
-"""Files that are not there, and places that cannot be written."""
+"""Files that do not exist, and places that cannot be written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Configurations and scenes that say something wrong."""
+"""Configurations and scenes with a wrong statement each."""
 
 from __future__ import annotations
 

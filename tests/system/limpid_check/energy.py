@@ -39,7 +39,7 @@ def check_controller_energy(s: Session) -> list[Check]:
 
 
 def _compensation_check(s: Session) -> list[Check]:
-    """What of E_c was for the device's own forces, while force is on and no delay shifts it."""
+    """Part of E_c for the device's own forces, while force is on and no delay shifts it."""
     theirs, torque = s["/energy/compensation"], s["/device/compensation_torque"]
     if not np.any(torque):
         return []

@@ -24,7 +24,7 @@ STILL_PULLED = 0.02  # of the limit: a spring that pulls more keeps the next tic
 
 @dataclass(frozen=True)
 class Proxy:
-    """Of every row: M2 at x2, C2 and S2 at (x2, v2)."""
+    """M2 at x2, C2 and S2 at (x2, v2) of every row."""
 
     m: Array
     c: Array
@@ -63,7 +63,7 @@ class Law:
     """tau1 = tE + tL and tau2 of the sheet."""
 
     authority: Array  # share of tau1 that leaves for the motors (N, 1)
-    shared: Affine  # C_LE v_E + u_N - K_N w, of which each side gets a part
+    shared: Affine  # C_LE v_E + u_N - K_N w, shared between the sides
     spring: Affine  # tE
     locked: Affine  # tL
     proxy: Affine  # tau2
@@ -100,18 +100,18 @@ def law(s: Session, p: Prediction, proxy: Proxy, r: Reserve) -> Law:
 
 @dataclass(frozen=True)
 class Solved:
-    """Of every row."""
+    """Solution of every row."""
 
     w: Array
     u: Array
     f2: Array
-    tau1: Array  # as it leaves for the motors
+    tau1: Array  # torque that leaves for the motors
     tau2: Array
     over: Array  # (N,) bool: a motor would have to pass its limit
-    on: Array  # (N,) bool: after this the next tick has limits as well, if this one has
+    on: Array  # (N,) bool: the next tick has limits as well, if this one has
 
 
-# of z0's u (N, n) and Z's u (N, n, n), what a unit of each torque makes of it: f2 (N, n)
+# z0's u (N, n) and Z's u (N, n, n), the motion by a unit of each torque -> f2 (N, n)
 ContactSolve = Callable[[Array, Array], Array]
 
 
@@ -134,7 +134,7 @@ def _system(p: Prediction, proxy: Proxy, the: Law, drive: Array, momentum: Array
 
 
 def solve(s: Session, p: Prediction, proxy: Proxy, the: Law, contact: ContactSolve) -> Solved:
-    """(6) to (8) as without limits: everything a tick does, from what was before it."""
+    """(6) to (8) without limits: everything that a tick computes from the state before it."""
     n, limit = s.dof, s.law_limit
     drive, momentum = p.drive, 2 / s.tick * apply(proxy.m, s["/proxy/velocity"])
     a, b, h = _system(p, proxy, the, drive, momentum, s.tick)
@@ -149,8 +149,8 @@ def solve(s: Session, p: Prediction, proxy: Proxy, the: Law, contact: ContactSol
 
 
 def solve_limited(s: Session, p: Prediction, the: Law, u: Array, f2: Array) -> Solved:
-    """A tick with motors at their limit, law_mend.md 1, from the torque that left and the proxy's motion: the torques
-    have to be those that they started from."""
+    """A tick with motors at their limit, law_mend.md 1, from the torque that left and the proxy's
+    motion: the torques must reproduce those they started from."""
     limit, none = s.law_limit, 0 * f2
     k_vc, b_vc, b_v = (s.number(f"coupling.{name}") for name in ("k_vc", "b_vc", "b_v"))
     w = np.linalg.solve(p.d0, (p.drive + s["/device/commanded_torque"])[:, :, None])[:, :, 0]

@@ -1,4 +1,4 @@
-"""A delay between device and proxy: of which row the state is that each side goes by."""
+"""A delay between device and proxy: the row whose state each side knows."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class Known:
         return values[self.row]
 
     def moving(self, values: Array) -> Array:
-        """The same of what is zero at rest (N, n)."""
+        """`values` at the known rows, zero at rest (N, n)."""
         return np.where(self.resting[:, None], 0.0, values[self.row])
 
 
 def _mixed(z: int) -> int:
-    """One output of SplitMix64 from the state before it."""
+    """Output of SplitMix64 after its state."""
     z = (z + 0x9E3779B97F4A7C15) & _WORD
     z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & _WORD
     z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & _WORD
@@ -50,7 +50,7 @@ def linked(s: Session) -> Array:
 
 
 def known(s: Session, direction: int) -> Known:
-    """What one side knows of the other at every row. Packets are counted anew with every law."""
+    """Row of the other side known to one side at every row. Each law counts packets anew."""
     kind, on = s["/coupling/kind"].astype(int), linked(s)
     delay, jitter, seed = (s.number(f"link.{key}")[:, 0].astype(int) for key in ("delay", "jitter", "seed"))
     loss = s.number("link.loss")[:, 0]

@@ -1,8 +1,6 @@
-"""How long the predictors remember: what a step of an encoder does to the tip through a wall asks for
-long, the wall itself for short. And the damper of a wall, which an encoder's step drives as well.
-
-SI; stacks over rows.
-"""
+"""Memory of the predictors: an encoder's steps, which reach the tip through a wall, ask for a long
+one, the wall itself for a short one. Also the damper of a wall, which an encoder's steps excite as
+well. SI; stacks over rows."""
 
 from __future__ import annotations
 
@@ -16,28 +14,28 @@ from .session import Session
 from .urdf import Array
 
 _SURFACES = ("plane", "sphere", "box", "mesh")
-_STIFFNESS = 600.0  # of a surface that does not say [N/m]
-_PUSH = 0.05  # that a wall's damper may make of an encoder's step [N]
-_LONGEST = 0.85  # memory that is chosen
-_QUIET = 1e-4  # change of the tip's velocity that an encoder's step may make [m/s]
-_LIGHT, _FULL = 0.02, 0.04  # masses from which on that counts at all, and whole [kg]
+_STIFFNESS = 600.0  # default of a surface [N/m]
+_PUSH = 0.05  # bound of a wall damper's force by an encoder's step [N]
+_LONGEST = 0.85  # longest memory that is chosen
+_QUIET = 1e-4  # bound of the change of the tip's velocity by an encoder's step [m/s]
+_LIGHT, _FULL = 0.02, 0.04  # masses at which the effect begins, and is complete [kg]
 
 
 def jump(p: Array, step: Array, tick: float) -> Array:
-    """Of a joint's predicted velocity, when its encoder makes a step [rad/s]."""
+    """Jump of a joint's predicted velocity at a step of its encoder [rad/s]."""
     return 1.5 * (1 - p) ** 2 * (1 + p) * step / tick
 
 
 def own_damper(stiffness: float, mass: Array, part: Array, jump_there: Array, tick: float) -> Array:
-    """What a wall has by itself [N s/m]: a part of m_n/T, less where that is much, and no more than
-    pushes with _PUSH where the velocity jumps."""
+    """A wall's own damper [N s/m]: a part of m_n/T, reduced where that is large, so that a jump of
+    the velocity pushes with _PUSH at most."""
     damper = np.minimum(part * mass / tick, np.sqrt(stiffness * mass))
     with np.errstate(divide="ignore"):
         return np.minimum(damper, np.where(jump_there > 0, _PUSH / jump_there, np.inf))
 
 
 def stiffest(s: Session) -> float:
-    """Of the scene's surfaces, 0 without any [N/m]."""
+    """Largest stiffness of the scene's surfaces, 0 without any [N/m]."""
     return _stiffest(s.attributes["scene"])
 
 
@@ -49,7 +47,7 @@ def _stiffest(text: str) -> float:
 
 
 def _largest(symmetric: Array) -> Array:
-    """The 8-norm of the eigenvalues (N,): as good as the largest one, and smooth."""
+    """The 8-norm of the eigenvalues (N,): nearly the largest one, and smooth."""
     values = np.linalg.eigvalsh(symmetric)
     size = np.sum(values, axis=1)
     return size * np.sum((values / size[:, None]) ** 8, axis=1) ** (1 / 8)
@@ -63,7 +61,7 @@ def _with_jump(share: Array) -> Array:
 
 @dataclass(frozen=True)
 class Tip:
-    """Of every row: its mass along the easiest direction [kg] and its longest lever [m]."""
+    """Mass along the easiest direction [kg] and longest lever [m] of every row."""
 
     mass: Array
     lever: Array
@@ -79,7 +77,7 @@ def chosen(stiffness: float, tip: Tip, step: Array, least: Array, part: Array, t
     """p of the tick after each row (N,), from `least` on."""
     if stiffness <= 0:
         return least
-    # without memory: the force that a step makes, and what that makes of the tip in a tick
+    # without memory: the force by a step, and the tip's motion by that force in a tick
     force = stiffness * tick / 2 + own_damper(stiffness, tip.mass, part, 0 * step, tick)
     force = force * jump(0 * least, step, tick) * tip.lever
     shaken = force * tick / tip.mass

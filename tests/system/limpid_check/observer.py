@@ -14,13 +14,11 @@ _TOLERANCE = 0.03  # rms error over rms torque
 
 
 def expected_input(s: Session) -> Array:
-    """What an ideal observer converges to, tick by tick (N - 1, n) [N m].
-
-    With the right model and the true torque that is f1 (/hand/torque) itself. A model wrong by a
-    factor e sees e (M a + C v) - tau instead of M a + C v - tau = f1, and an observer without the
-    saturation remedy takes the commanded torque for tau; what is late it takes for prompt. Held weight
-    and springs cancel.
-    """
+    """Limit of an ideal observer's estimate, tick by tick (N - 1, n) [N m]. With the right model
+    and the true torque it is f1 (/hand/torque) itself. A model wrong by a factor e sees e (M a + C
+    v) - tau instead of M a + C v - tau = f1. An observer without the saturation remedy takes the
+    commanded torque for tau, and a late torque for a prompt one. Compensated weight and springs
+    cancel."""
     own = s.damping[:-1] * np.diff(s["/device/position"], axis=0) / s.tick
     motor = (s["/device/motor_torque"] - s["/device/compensation_torque"])[:-1]
     remedy = np.array(s.settings["observer.anti_windup"], dtype=bool)[:-1, None]

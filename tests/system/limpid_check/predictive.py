@@ -28,10 +28,10 @@ from .urdf import Array
 from .wall import Wall, contact_solve, known_force, only_wall
 
 KIND = 2
-_TOLERANCE = 1e-9  # of the largest of its kind: round-off, fed on through the recursion
-_HARDLY = 1e4  # by how much the tolerance of what it hardly touches grows with an unknown predictor
+_TOLERANCE = 1e-9  # relative to the largest of its kind: round-off, amplified by the recursion
+_HARDLY = 1e4  # factor of the tolerance of quantities that an unknown predictor hardly affects
 _ROUNDS = 12
-_LEAST_DAMPING = 1e-4  # of the coupling, that the motion can be told by [N m s/rad]
+_LEAST_DAMPING = 1e-4  # least damping of the coupling that reveals the motion [N m s/rad]
 
 
 @dataclass(frozen=True)
@@ -42,11 +42,11 @@ class Replayed:
     wall: Wall | None
     forces: Solved | None  # with the wall's force as the law has it
     limited: Solved  # as a tick with motors at their limit
-    sure: Array  # bool (N,): rows that a predictor has just taken over are not
+    sure: Array  # bool (N,): false in rows that a predictor has just taken over
 
 
 def _motion(s: Session) -> Array:
-    """The proxy's mean velocity over the tick of every row; nobody knows the last one's."""
+    """Mean velocity of the proxy over the tick of every row; unknown for the last one."""
     return np.concatenate([mean_proxy_velocity(s), np.zeros((1, s.dof))])
 
 
@@ -67,7 +67,7 @@ def _seen(s: Session, p: Prediction, proxy: Proxy, r: Reserve, the: Law) -> Seen
 
 
 def _followed(s: Session, p: Prediction, proxy: Proxy) -> bool:
-    """The predictors, run over the whole session, are still where the torques say."""
+    """Whether predictions that ran over the whole session agree with the torques."""
     the = law(s, p, proxy, balance(s, p, proxy.m, proxy.c, _motion(s)))
     u, tau1, f2 = _motion(s), s["/device/commanded_torque"], s["/proxy/contact_torque"]
     usual = solve(s, p, proxy, the, lambda u0, per_torque: f2)
@@ -79,11 +79,11 @@ def _followed(s: Session, p: Prediction, proxy: Proxy) -> bool:
 
 
 def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array] | None:
-    """And which rows they are sure of; nothing where no row would be."""
+    """Predictions and the rows in which they are sure; nothing if there is no such row."""
     p, stepped = predict(s, proxy.m), np.any(s.number("device.encoder_step") > 0)
     if not stepped or _followed(s, p, proxy):
         return p, np.ones(len(s), dtype=bool)
-    if np.any(s.number("model.delay") > 0):  # what the torques say is of a tick to come
+    if np.any(s.number("model.delay") > 0):  # the torques tell of a tick to come
         return None
     p = unseen(s, proxy.m)
     for _ in range(_ROUNDS):
@@ -96,8 +96,8 @@ def _predictions(s: Session, proxy: Proxy) -> tuple[Prediction, Array] | None:
 
 
 def _sure(p: Prediction, known: Array) -> Array:
-    """Rows that say something and whose predictor is known: it is the one of the row before, and
-    has been seen twice where it should be since it last was not known."""
+    """Rows that tell the motion and whose predictor is known. It is the one of the row before, and
+    was confirmed twice since it was last unknown."""
     changed = np.diff(p.heavy.astype(int), prepend=0) != 0
     sure, seen = np.zeros(len(known), dtype=bool), 2
     for k in range(len(known)):
@@ -134,7 +134,8 @@ def _compare(name: str, mine: Array, theirs: Array, scale: float, what: str) -> 
 
 
 def _reserve_checks(s: Session, r: Reserve, sure: Array) -> list[Check]:
-    """The ledger's network sees the predictor by the inertia where that is: hardly."""
+    """Checks of the reserve. The ledger's network depends on the predictor only by the inertia's
+    place: hardly."""
     reserve, gf, gb, ga = (s[path] for path in (
         "/energy/ledger", "/coupling/governor", "/coupling/damping_governor",
         "/coupling/torque_governor"))
@@ -181,7 +182,7 @@ def _wall_checks(s: Session, done: Replayed) -> list[Check]:
 
 
 def _which_are_limited(s: Session, done: Replayed) -> Check:
-    """A tick has limits if a motor would pass its own, or the tick before, which had, goes on."""
+    """Ticks with limits: a motor would pass its own, or the tick before had limits and goes on."""
     limited = s["/coupling/solved"] == LIMITED
     asked = done.forces.over | np.concatenate([[False], (limited & done.limited.on)[:-1]])
     wrong = np.sum((asked != limited)[done.sure])

@@ -1,10 +1,8 @@
-"""Where the predictive coupling takes the device to be: its two predictors, step (1) and (8).
-
-Both run on the readings and on the torques as applied, alone: nothing of the proxy enters. The
-model's M1 and C1 are taken where the active predictor is, which is known only after the recursion;
-so the recursion is repeated with the model at its own last answer until nothing changes. With a
-delay that is known the device is foretold on from there, to where the coming torque meets it.
-"""
+"""The device as the predictive coupling predicts it: its two predictors, step (1) and (8). Both run
+on the readings and on the applied torques alone: nothing of the proxy enters. The model's M1 and C1
+are taken at the active predictor's place, which is known only after the recursion; so the recursion
+is repeated with the model at its own last answer until nothing changes. With a known delay the
+device is predicted further, to where the coming torque meets it."""
 
 from __future__ import annotations
 
@@ -20,37 +18,37 @@ from .session import Session
 from .urdf import Array
 
 _COARSE = 1.5e-4  # encoders coarser than this take the coarse preset [rad]
-_FORGETTING = 0.05  # of the predictors' errors [s]
+_FORGETTING = 0.05  # time constant of the predictors' errors [s]
 _PRESETS = {"fine": (0.2, 1.0, 0.2), "coarse": (0.45, 0.5, 0.1)}
 _ROUNDS = 20
-# Ticks that are brought to agree with their model at a time. Between two encoder steps nothing
-# corrects a predictor, and what it is off by grows: rounds over the whole session need not settle.
+# Number of ticks that are brought to agree with their model at a time. Between two encoder steps
+# nothing corrects a predictor, and its error grows: rounds over the whole session need not settle.
 _WINDOW = 32
 _SETTLED = 1e-15  # [rad]
-_SAME = 1e-9  # a predictor this near to what was seen was the active one [rad]
+_SAME = 1e-9  # a predictor this near to the observed place was the active one [rad]
 
 
 @dataclass(frozen=True)
 class Gains:
-    """Of every row (N,)."""
+    """Gains of every row (N,)."""
 
-    p: Array  # the least
-    own: Array  # bool: it is set, and no other is chosen
+    p: Array  # lowest memory
+    own: Array  # bool: memory is set, and no other is chosen
     mu: Array
     wall: Array  # damper of a wall, as a part of m_n / T
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """Of the active predictor at t_k (N, ...), and of the tick that follows."""
+    """The active predictor at t_k (N, ...), and the tick that follows."""
 
     x: Array
     v: Array
     f: Array  # external torque [N m]
-    w: Array  # mean velocity over the tick, with the torque as applied
+    w: Array  # mean velocity over the tick, with the applied torque
     met_x: Array  # x and v where the coming torque meets the device
     met_v: Array
-    heavy: Array  # bool (N,): the one with a hand's mass
+    heavy: Array  # bool (N,): the predictor with a hand's mass
     memory: Array  # p (N,)
     ahead: Array  # theta^-1 (N, n): 2 by the midpoint rule
     jacobian: Array  # of the tip (N, 3, n)
@@ -59,16 +57,16 @@ class Prediction:
     mt: Array  # inertia of the predictor over the tick it takes, Mp theta^-1/T
     d0: Array  # Mp theta^-1/T + C1 + b_d
     surprise: Array  # delta_k = y_k - y_{k-1} - T w_{k-1}
-    confirmed: Array  # bool (N,): it is where it was seen
+    confirmed: Array  # bool (N,): the torques confirm its place
 
     @property
     def drive(self) -> Array:
-        """What moves the device besides the motors, in the tick that the torque meets."""
+        """Torque on the device besides the motors', in the tick that the torque meets."""
         return apply(self.mt, self.met_v) + self.f
 
 
 def gains(s: Session) -> Gains:
-    """The preset's where nothing else is set."""
+    """Gains of the settings, or of the preset where nothing is set."""
     steps = s.number("device.encoder_step")[:, 0]
     named = [
         _PRESETS[name if name in _PRESETS else "coarse" if step > _COARSE else "fine"]
@@ -88,7 +86,7 @@ def _model(s: Session, x: Array, v: Array) -> tuple[Array, Array]:
 
 @dataclass
 class _Pair:
-    """Light and heavy predictor, in this order: (2, n)."""
+    """The light and the heavy predictor, in this order: (2, n)."""
 
     x: Array  # predicted
     v: Array
@@ -97,7 +95,7 @@ class _Pair:
     active: int = 0
 
     def correct(self, e: Array, p: float, tick: float, keep: float, both: bool) -> None:
-        """All but f, whose inertia belongs to where the active one then is."""
+        """Corrects all but f, whose inertia depends on the next active predictor's place."""
         self.x = self.x + (1 - p**3) * e
         self.v = self.v + 1.5 * (1 - p) ** 2 * (1 + p) / tick * e
         self.error = keep * self.error + np.sum(e * e, axis=1)
@@ -111,13 +109,12 @@ class _Pair:
 
 
 def _decays(s: Session, m1: Array) -> Array:
-    """a = T b_d (M^-1)_jj: how much of a joint's motion, the others free, dies in a tick (N, n)."""
+    """a = T b_d (M^-1)_jj: part of a joint's motion that dies in a tick, the others free (N, n)."""
     return s.tick * s.damping * np.diagonal(np.linalg.inv(m1), axis1=1, axis2=2)
 
 
 def _quick(s: Session) -> Array:
-    """Whether the motion of some joint dies within a tick, as it was judged when b_d last changed
-    (N,)."""
+    """Whether some joint's motion dies within a tick, as judged when b_d last changed (N,)."""
     y = s["/device/measured_position"]
     now = np.any(_decays(s, _model(s, y, 0 * y)[0]) > 1, axis=1)
     fresh = np.any(np.diff(s.damping, axis=0, prepend=0) != 0, axis=1)
@@ -126,9 +123,9 @@ def _quick(s: Session) -> Array:
 
 
 def _ahead(s: Session, m1: Array, quick: Array) -> Array:
-    """1/theta (N, n): by how much of w - v the velocity changes over a tick, w the mean. By the
-    midpoint rule twice; with a motion that dies as exp(-a t/T), which ends at v exp(-a) and has the
-    mean v (1 - exp(-a))/a, so that the velocity does."""
+    """1/theta (N, n): change of the velocity over a tick per w - v, with the mean w. It is 2 by the
+    midpoint rule. A motion that dies as exp(-a t/T) ends at v exp(-a) and has the mean v (1 -
+    exp(-a))/a; its 1/theta follows from these."""
     a = _decays(s, m1)
     safe = np.where(a > 1e-3, a, 1.0)
     lost = -np.expm1(-safe)
@@ -145,7 +142,7 @@ def _masses(s: Session, jacobian: Array, m1: Array, mu: Array) -> Array:
 
 @dataclass(frozen=True)
 class Seen:
-    """What the rows' torques say of the active predictor: where it was and what it foretold."""
+    """Place and prediction of the active predictor, as far as the rows' torques tell them."""
 
     x: Array  # (N, n) [rad]
     w: Array
@@ -154,7 +151,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class _Model:
-    """The device as both predictors have it, of every row."""
+    """The device as both predictors model it, for every row."""
 
     m1: Array
     c1: Array
@@ -164,11 +161,11 @@ class _Model:
     d0: Array
     ahead: Array  # theta^-1 (N, n)
     memory: Array  # p (N,)
-    after: float  # p of the row that follows
+    after: float  # p of the next row
 
 
 def _model_at(s: Session, x: Array, v: Array, m2: Array, quick: Array, p0: float) -> _Model:
-    """With the device there; M2 of the proxy and p of the first row are given."""
+    """The model with the device at `x`; M2 of the proxy and p of the first row are given."""
     g = gains(s)
     m1, c1 = _model(s, x, v)
     jacobian, ahead = tip_jacobian(s.chain, x), _ahead(s, m1, quick)
@@ -183,21 +180,21 @@ def _model_at(s: Session, x: Array, v: Array, m2: Array, quick: Array, p0: float
 
 @dataclass(frozen=True)
 class _Input:
-    """What the recursion is fed with, of every row."""
+    """Input of the recursion, for every row."""
 
     y: Array
-    tau: Array  # as it left for the motors
-    delay: Array  # that is known (N,) [ticks]
-    half: Array  # of an encoder's step (N,) [rad]
-    both: Array  # bool (N,): there is a heavy one
+    tau: Array  # torque that left for the motors
+    delay: Array  # known delay (N,) [ticks]
+    half: Array  # half an encoder's step (N,) [rad]
+    both: Array  # bool (N,): the heavy predictor exists
     quick: Array  # bool (N,)
     tick: float
     seen: Seen | None
     confirmed: Array  # filled in
 
     def recur(self, pair: _Pair, rows: range, model: _Model) -> tuple[Array, ...]:
-        """x, v, f, w, x and v where the torque meets the device, and which one, of the active
-        predictor at these rows; `pair` goes on."""
+        """x, v, f, w, x and v where the torque meets the device, and the number of the active
+        predictor at these rows; advances `pair`."""
         t, keep = self.tick, float(np.exp(-self.tick / _FORGETTING))
         inverse = np.linalg.inv(model.d0)
         out = np.zeros((6, len(rows), self.y.shape[1]))
@@ -237,12 +234,12 @@ class _Input:
         return *out, heavy
 
     def _off(self, k: int, x: Array, w: Array) -> Array:
-        """How far each is from what was seen (2,) [rad]."""
+        """Distance of each predictor from the observed place (2,) [rad]."""
         return np.max(np.abs(x - self.seen.x[k]) + self.tick * np.abs(w - self.seen.w[k]), axis=1)
 
     def _believe(self, k: int, pair: _Pair, w: Array, mt: Array, d0: Array) -> None:
-        """Takes over what was seen. x and w are; of v and f only the sum is, mt v + f, and of
-        the sum's error each gets half: then both are right after two rows."""
+        """Takes over the observed state. It tells x and w, but of v and f only mt v + f; each gets
+        half of the sum's error, so both are right after two rows."""
         a = pair.active
         half = d0 @ (self.seen.w[k] - w[a]) / 2
         pair.f[a] += half
@@ -251,7 +248,7 @@ class _Input:
 
 
 def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
-    """And the pair at the first row."""
+    """Input of the recursion, and the pair at the first row."""
     given = _Input(s["/device/measured_position"], s.law_torque,
                    s.number("model.delay")[:, 0].astype(int),
                    s.number("device.encoder_step")[:, 0] / 2,
@@ -278,7 +275,7 @@ def _fields(model: _Model, moved: tuple[Array, ...]) -> _Fields:
 def _window(s: Session, m2: Array, given: _Input, pair: _Pair, rows: range, p0: float) -> (
     tuple[_Pair, float, _Fields]
 ):
-    """The pair and p after these rows, and what they have."""
+    """The pair and p after these rows, and the fields of the rows."""
     which = slice(rows.start, rows.stop)
     part = s.rows(which)
     x, v = given.y[which], np.tile(pair.v[pair.active], (len(rows), 1))
@@ -300,8 +297,8 @@ def _prediction(s: Session, fields: _Fields, w: Array, confirmed: Array) -> Pred
 
 
 def predict(s: Session, m2: Array) -> Prediction:
-    """Both predictors over the whole session, which the law is in force in from the first row; M2
-    of the proxy (N, n, n)."""
+    """Both predictors over a whole session with this law from the first row on; M2 of the proxy (N,
+    n, n)."""
     given, pair = _input(s)
     parts, p0 = [], float(gains(s).p[0])
     for begin in range(0, len(s), _WINDOW):
@@ -313,14 +310,14 @@ def predict(s: Session, m2: Array) -> Prediction:
 
 
 def unseen(s: Session, m2: Array) -> Prediction:
-    """Something to begin with: the model where the readings are, at rest."""
+    """A first guess: the model at the readings, at rest."""
     y = s["/device/measured_position"]
     return _from(s, m2, y, 0 * y, Seen(y, y, np.zeros(len(s), dtype=bool)))
 
 
 def predict_seen(s: Session, m2: Array, model: Prediction, seen: Seen) -> tuple[Prediction, float]:
-    """Every row from what was seen until the row before, with the model where `model` is; and how
-    far from there it leads."""
+    """Predicts every row from the observed state of the row before, with the model at `model`; also
+    returns how far from there the prediction leads."""
     p = _from(s, m2, model.x, model.v, seen)
     return p, _apart(s, (p.x, p.v), (model.x, model.v))
 

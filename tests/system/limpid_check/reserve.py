@@ -1,8 +1,6 @@
-"""What the predictive coupling has stored and may still give: inertia network, ledger, governors.
-
-Steps (3) to (5) of the design sheet. The network runs on the readings alone, the ledger on the
-readings, the torques as applied and the proxy's recorded state.
-"""
+"""Energy that the predictive coupling has stored and may still give: inertia network, ledger,
+governors. Steps (3) to (5) of the design sheet. The network runs on the readings alone, the ledger
+on the readings, the applied torques and the proxy's recorded state."""
 
 from __future__ import annotations
 
@@ -19,10 +17,11 @@ from .urdf import Array
 _A1, _A2, _A3, _R, _R1 = 1.0081, 1.4799, 0.344, 1.3198, 0.05
 _FASTEST, _SLOWEST = 2 * np.pi * 25, 2 * np.pi * 2  # w_g of the added mass [rad/s]
 _GHOST_DAMPING = 0.7  # zeta
-# of beta, the added mass's damping for its inertia, times how late it is
+# relative to beta, the added mass's damping for its inertia, times its delay
 _OWN, _LATE = 0.9, 0.35
-LIMITED = 1  # in /coupling/solved: motors at their limit and contacts were solved in one
-# of ledger.energy: the largest reserve; where the damping is whole and gone; where all torque is
+LIMITED = 1  # value of /coupling/solved: motors at their limit and contacts were solved together
+# relative to ledger.energy: the largest reserve, and where damping is whole, damping is gone and
+# all torque is gone
 _CAP, _FULL, _EMPTY, _NOTHING = 4, 0.8, 0.35, 0.25
 _CONTACT_RECOVERY, _DAMPING_RECOVERY = 0.05, 0.2  # [s]
 _PUSHED, _MOST_SURPRISE = 4e-4, 0.5  # of a hand in a tick [N s], what it makes of velocity [rad/s]
@@ -30,30 +29,30 @@ _PUSHED, _MOST_SURPRISE = 4e-4, 0.5  # of a hand in a tick [N s], what it makes 
 
 @dataclass(frozen=True)
 class Reserve:
-    """Of every row (N, ...)."""
+    """Results of every row (N, ...)."""
 
     reserve: Array  # H [J]
-    stored: Array  # V + S + W2 [J], what H is small beside
+    stored: Array  # V + S + W2 [J], large beside H
     governor: Array  # gf
     damping_governor: Array  # gb
     torque_governor: Array  # ga
     b_w: Array  # [N m s/rad]
-    u_n: Array  # inertia torque without what damps the coming tick [N m]
+    u_n: Array  # inertia torque without the part that damps the coming tick [N m]
     k_n: Array  # K_N (N, n, n)
 
 
 class _Network:
-    """Of all joints, in the coordinates that R_N turns a velocity into."""
+    """State of all joints, in the coordinates into which R_N turns a velocity."""
 
     def __init__(self, tick: float, joints: int) -> None:
         self.tick = tick
         self.side = 0.0  # -1 below eta 1, 1 above
         self.q = np.zeros((3, joints))  # (s, w', s2) or (s, g, -)
-        self.r = np.zeros((joints, joints))  # R_N of the tick just ended, and its edge
+        self.r = np.zeros((joints, joints))  # R_N of the last tick, and its edge
         self.edge = 0.0
 
     def advance(self, moved: Array) -> None:
-        """Over the tick just ended, in which the reading changed by `moved`."""
+        """Advances over the last tick, in which the reading changed by `moved`."""
         t, edge, nu = self.tick, self.edge, self.r.T @ moved / self.tick
         if self.side < 0:
             a = np.array([[0, -1 / _A1, 0], [1 / _A2, -_R1 / _A2, -1 / _A2],
@@ -67,13 +66,14 @@ class _Network:
             self.q = np.stack([s + h * d, 2 * (nu - d) - g, 0 * s])
 
     def lose(self, energy: float) -> None:
-        """What a motor at its limit did not take: the ladder loses it from all of its states, the added mass from its spring."""
+        """Loses what a motor at its limit did not take: the ladder from all of its states, the
+        added mass from its spring."""
         own = self.q[0] @ self.q[0] / 2 if self.side > 0 else self.stored
         if energy > 0 and own > 0:
             self.q[: 1 if self.side > 0 else 3] *= np.sqrt(max(0.0, 1 - energy / own))
 
     def turn(self, eta: float) -> None:
-        """To the side of 1 that eta is on now."""
+        """Turns to eta's present side of 1."""
         if np.sign(eta - 1) != self.side:
             self.q[:] = 0
             self.side = float(np.sign(eta - 1))
@@ -104,7 +104,7 @@ class _Network:
 
 def _added_mass(s: Session) -> tuple[Array, Array]:
     """eta and w_g of every row (N,), where eta is above 1. Above w_g the added mass is a damper of
-    beta = 2 zeta (eta - 1) w_g; how late that may be bounds beta, and so w_g, or at last eta."""
+    beta = 2 zeta (eta - 1) w_g. Its delay bounds beta, and so w_g, or at last eta."""
     eta, t = s["/coupling/eta"], s.tick
     _, most = s.possible_delays
     with np.errstate(divide="ignore"):
@@ -116,7 +116,7 @@ def _added_mass(s: Session) -> tuple[Array, Array]:
 
 
 class _Account:
-    """What may be given, by the delay between command and motor: the least of them counts."""
+    """Energy that may be given, by the delay from command to motor: the least account counts."""
 
     def __init__(self) -> None:
         self.delays = range(1)
@@ -124,12 +124,12 @@ class _Account:
         self.on_its_way = 0.0  # what torques that may not have acted yet would put out if all goes on
 
     def expect(self, delays: range) -> None:
-        """What is known when other delays become possible is the least."""
+        """Sets the possible delays; newly possible ones begin with the least account."""
         if delays != self.delays:
             self.delays, self.energy = delays, np.full(len(delays), self.least)
 
     def add(self, sent: Array, k: int, along: Array, damped: float) -> None:
-        """The tick before row k, of torques as they were sent at each row."""
+        """Adds the tick before row k, with the torques sent at each row."""
         ticks = k - 1 - np.array(self.delays)
         acted = np.where(ticks[:, None] < 0, 0, sent[np.maximum(ticks, 0)])
         self.energy = self.energy + damped - acted @ along
@@ -146,13 +146,13 @@ class _Account:
 
 
 class _Clock:
-    """Ticks since each reading changed last."""
+    """Ticks since the last change of each reading."""
 
     def __init__(self, joints: int) -> None:
         self.still = np.zeros(joints)
 
     def changed(self, moved: Array, step: float) -> Array:
-        """n_i of the tick just ended."""
+        """n_i of the last tick."""
         self.still += 1
         counted = np.where(step > 0, self.still, 1.0)
         self.still[moved != 0] = 0
@@ -160,7 +160,7 @@ class _Clock:
 
 
 def spring_energy(x_e: Array, k_vc: Array, limit: Array) -> Array:
-    """V of every row (N,) [J]: a spring that pulls no harder than the motors can."""
+    """V of every row (N,) [J]: a spring limited to the motors' torque."""
     x, limit = np.abs(x_e), np.broadcast_to(limit, x_e.shape)
     with np.errstate(invalid="ignore"):
         beyond = limit * x - limit**2 / (2 * k_vc)
@@ -168,8 +168,8 @@ def spring_energy(x_e: Array, k_vc: Array, limit: Array) -> Array:
 
 
 def _leaks(s: Session, p: Prediction, locked: Array) -> Array:
-    """The most that the contact force may give away in the tick, as assumed (N,) [J]: by joints
-    where the device is not where it was foretold, and by what a push makes of its velocity."""
+    """Bound of the energy given away by the contact force in the tick (N,) [J]: for the
+    prediction's error, joint by joint, and for a push's effect on the velocity."""
     y, f2 = s["/device/measured_position"], s["/proxy/contact_torque"]
     off = 2 * np.abs(p.surprise[1:]) + 0.1 * np.abs(np.diff(y, axis=0))
     moved = np.linalg.solve(locked, transposed(p.jacobian))
@@ -187,15 +187,15 @@ def _between(value: float, nothing: float, whole: float) -> float:
 
 
 def _share_cancelled(s: Session) -> Array:
-    """c_eta times 2/3: the part of b_d + b_v that is taken away in free motion (N,)."""
+    """c_eta times 2/3: cancelled part of b_d + b_v in free motion (N,)."""
     as_eta = 2 / 3 * np.clip(2 * (1 - s["/coupling/eta"]), 0, 1)
     felt = s.number("coupling.damping")[:, 0]
     return np.where(np.isnan(felt), as_eta, 1 - felt)
 
 
 def _springs(s: Session) -> Array:
-    """V of every row (N,) [J]. After a tick with motors at their limit it gives back what a constant torque does, from
-    where they came to it on."""
+    """V of every row (N,) [J]. After a tick with motors at their limit it returns the work of a
+    constant torque, from where the motors reached it."""
     x, limit = s["/device/measured_position"] - s["/proxy/position"], s.law_limit
     spring, pulled = spring_energy(x, s.number("coupling.k_vc"), limit), np.sum(limit * np.abs(x), axis=1)
     before, out = 0.0, spring.copy()
@@ -208,7 +208,7 @@ def _springs(s: Session) -> Array:
 
 
 class _Cut:
-    """What the motors' limit takes off tE + tL: tau2 and the motion tell it."""
+    """Torque that the motors' limit takes off tE + tL: tau2 and the motion tell it."""
 
     def __init__(self, s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> None:
         self.s, self.p, self.u = s, p, u
@@ -217,7 +217,7 @@ class _Cut:
         self.drive, self.b_v, self.limit = p.drive, s.number("coupling.b_v"), s.law_limit
 
     def possible(self, k: int, ga: float) -> bool:
-        """A motor is at its limit, or nobody knows because none is asked."""
+        """Whether a motor is at its limit; unknown, so true, where no torque is asked."""
         asked = np.abs(self.s["/device/commanded_torque"][k])
         return bool(np.any(asked >= ga * self.limit[k] * (1 - 1e-12)))
 
@@ -250,12 +250,12 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
     along = np.diff(path, axis=0, prepend=path[:1])
     held = _springs(s) + s["/energy/proxy_kinetic"] + s["/energy/contact_potential"]
     leak, cancelled = _leaks(s, p, locked), _share_cancelled(s)
-    held_now = s["/objects/held"] > 0  # by the magnet: a contact as long as it lasts
+    held_now = s["/objects/held"] > 0  # the magnet: a contact as long as it lasts
     pushed = np.any(s["/proxy/contact_torque"][:-1] != 0, axis=1) & ~(held_now[:-1] & ~held_now[1:])
     touching = (s["/energy/contact_potential"] > 0) | np.concatenate([[False], pushed]) | held_now
     b_v, energy = (s.number(key)[:, 0] for key in ("coupling.b_v", "ledger.energy"))
     least, most = s.possible_delays
-    to_objects = s["/energy/to_objects"]  # they are a second port
+    to_objects = s["/energy/to_objects"]  # bodies are a second port
 
     network, clock, account = _Network(t, n), _Clock(n), _Account()
     out = np.zeros((5, rows))
@@ -273,7 +273,7 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
             account.energy -= to_objects[k] - to_objects[k - 1]
         network.turn(eta[k])
         stored = held[k] + network.stored
-        if k == 0:  # as an earlier part of the run has left it
+        if k == 0:  # from an earlier part of the run
             account.energy += s["/energy/ledger"][0] + stored
         account.keep(stored + _CAP * energy[k])
         h = account.least - stored
@@ -285,6 +285,6 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
         less = 0.0 if touching[k] else gb * cancelled[k]
         b_w[k] = b_v[k] - less * (damping[k] + b_v[k])
         u_n[k], k_n[k] = network.torque(eta[k], gb, locked[k], edge[k])
-        if least[k] > 0:  # it damps by the velocity that there is, not by the one foretold
+        if least[k] > 0:  # it damps by the actual velocity, not by the predicted one
             u_n[k], k_n[k] = u_n[k] - k_n[k] @ p.v[k], 0
     return Reserve(*out, b_w, u_n, k_n)

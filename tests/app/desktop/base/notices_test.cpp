@@ -24,7 +24,7 @@ TEST(Notices, AreThereOnceHoweverOftenTheyAreSaid) {
   EXPECT_EQ(notices.all().back().text, "kept") << "the last one that was said";
 }
 
-// What fails in every frame would fill the window.
+// A failure in every frame would fill the window.
 TEST(Notices, AreNotRepeatedWhileTheyAreSaid) {
   Notices notices;
   for (int frame = 0; frame < 3; ++frame) notices.say_once("no room on the disk", true);

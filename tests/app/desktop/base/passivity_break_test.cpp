@@ -85,7 +85,7 @@ TEST(PassivityBreak, PutsEverythingOfBothRunsBackWhateverWasMovedMeanwhile) {
     run.alpha = 0.02;
     run.eta = 0.3;
     s.parameters.hand_mass = 0.1;
-    break_passivity(s, test::omni());  // as if the button were pressed once more
+    break_passivity(s, test::omni());  // like another press of the button
     end_passivity_break(s);
     EXPECT_TRUE(s.parameters == before.parameters);
     EXPECT_TRUE(s.twin.parameters == before.twin.parameters);

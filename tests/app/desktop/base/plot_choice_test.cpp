@@ -37,7 +37,7 @@ TEST_P(PlotChoiceOfJoints, ShowsOnlyChannelsThatThereAre) {
   }
 }
 
-// Whatever a plot shows, and of however many runs: without force it is not what it seems.
+// Without force a plot is not what it seems, with any content and number of runs.
 TEST(PlotChoice, MarksWhereTheForceWasOffInEveryPlot) {
   const TraceChannels channels{RowLayout(3)};
   for (const RunNames& names : {RunNames{}, kTwin, kRerun}) {
@@ -68,8 +68,8 @@ TEST(PlotChoice, SetsTheErrorOfBothRunsAgainstTheirOwnTorque) {
   EXPECT_EQ(spec.x.unit, "N m");
 }
 
-// Of a twin each run has its law's colour where it is one curve, and where both runs have the same
-// law, or things their colours, the second one is lighter and has signs on it.
+// In a twin a single curve of each run has its law's colour. With equal laws, or channels with
+// colours of their own, the second run is lighter and has signs on it.
 TEST(PlotChoice, DrawsTheRunsOfATwinByTheirLaws) {
   const TraceChannels channels{RowLayout(3)};
   RunNames names = kTwin;
@@ -112,7 +112,7 @@ TEST(PlotChoice, TintsTheBandOfLawsByTheirColours) {
   EXPECT_EQ(spec.bands.front().names.size(), kLaws);
 }
 
-// Of two runs in one plot no two curves look alike, whatever is in it.
+// Two runs in one plot never have curves that look alike.
 TEST(PlotChoice, TellsCurvesApartByTheirColours) {
   const TraceChannels channels{RowLayout(7)};
   std::vector<PlotChoice> choices = default_plots();

@@ -1,4 +1,4 @@
-// What the 3D view shows of a row, live or recorded.
+// The 3D view of a row, live or recorded.
 #include "app/desktop/base/row_view.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::vector<ContactMark> marks(const RowView& rows, ViewMemory& memory, const Ro
   return view.contacts;
 }
 
-// The middle of the last link against a ball, over the table.
+// A plan in which the middle of the last link meets a ball, over the table.
 RunPlan link_against_a_ball() {
   RunPlan plan = test::plan("table.toml", "touch.csv", 3);
   const Arm<kAnyDof> arm(plan.arm);
@@ -66,7 +66,7 @@ TEST(RowView, ShowsTheRecordedContactsOfALinkAsTheyWereLive) {
   EXPECT_GT(on_link, 100);
 }
 
-// The torque of one contact, at the tip, is as good as its point and force.
+// With one contact, at the tip, the torque determines point and force.
 TEST(RowView, ShowsOneForceAtTheTipWhereOnlyTheTorqueWasRecorded) {
   const RunPlan plan = test::plan("table.toml", "touch.csv", 3);
   const RowView view(plan.arm);
@@ -101,7 +101,7 @@ TEST(RowView, ShowsWhereTheHandWantsTheTip) {
   EXPECT_FALSE(view.hand_grips);
 }
 
-// Its row has the centre of mass, the picture the object's own frame.
+// A row has the centre of mass, the picture the object's own frame.
 TEST(RowView, PlacesWhatMovesByItsCentreOfMass) {
   RunPlan plan = test::plan("table.toml", "touch.csv", 1);
   Object lever{.name = "lever", .pose = pose_at(Vec3(0.2, 0, 0)), .shape = Box{}, .body = Body{}};
@@ -110,7 +110,7 @@ TEST(RowView, PlacesWhatMovesByItsCentreOfMass) {
   const RowLayout layout = plan.layout();
   ASSERT_EQ(layout.bodies(), 1);
   std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
-  // A quarter of a turn to the left, of a quaternion of another length.
+  // A quarter turn to the left, as a quaternion of another length than 1.
   std::ranges::copy(std::array{0.1, 0.2, 0.3, 2.0, 0.0, 0.0, 2.0},
                     layout.in(std::span(row), Column::body_pose).begin());
   const ViewState view = RowView(plan.arm, plan.document.scene).view(layout, row);
@@ -119,7 +119,7 @@ TEST(RowView, PlacesWhatMovesByItsCentreOfMass) {
   EXPECT_NEAR((frame * *lever.body->center - Vec3(0.1, 0.2, 0.3)).norm(), 0, 1e-12);
   EXPECT_NEAR((frame.linear() * Vec3::UnitX() - Vec3::UnitY()).norm(), 0, 1e-12);
   EXPECT_NEAR((frame.translation() - Vec3(0.1, 0.18, 0.3)).norm(), 0, 1e-12);
-  // Of a row without bodies, and of a scene that has fewer, there is nothing to place.
+  // A row without bodies, or a scene with fewer, places nothing.
   const RowLayout none(plan.arm.dof(), 0);
   EXPECT_TRUE(RowView(plan.arm, plan.document.scene).bodies(none, row).empty());
   EXPECT_TRUE(RowView(plan.arm).bodies(layout, row).empty());

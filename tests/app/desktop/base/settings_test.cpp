@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Gives an environment variable back what it was.
+// Restores an environment variable at its end.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -118,7 +118,7 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   EXPECT_EQ(again.plot_choices, s.plot_choices);
 }
 
-// Settings of before hints were ticked off one by one: their user has seen them.
+// Settings date from before hints were ticked off one by one: their user has seen them.
 TEST_F(SettingsFile, OfAnEarlierLimpidNeedNoHints) {
   fs::create_directories(file().parent_path());
   for (const bool seen : {false, true}) {
@@ -199,7 +199,7 @@ TEST_F(SettingsFile, WithAParameterOutOfRangeNamesIt) {
   EXPECT_EQ(s.parameters.eta, 1);
 }
 
-// A person has lowered what the motors give; a newer program has added a key.
+// A person has lowered the motors' limit; a newer program has added a key.
 TEST_F(SettingsFile, WithAKeyThatIsUnknownKeepsALoweredLimitAndEverythingElse) {
   write(
       "[parameters]\ncoupling.later = 1\nledger.energy = 0.001\nobserver.alpha = 0.02\n"
@@ -215,7 +215,7 @@ TEST_F(SettingsFile, WithAKeyThatIsUnknownKeepsALoweredLimitAndEverythingElse) {
   EXPECT_EQ(load().parameters.torque_limit, 0.1) << "and is written again";
 }
 
-// Nobody knows how low it was: the least is 1e-6 N m.
+// Nobody knows how low the limit was: the strictest is 1e-6 N m.
 TEST_F(SettingsFile, WithALimitThatCannotBeUnderstoodHasTheStrictestOne) {
   for (const char* wrong :
        {"[parameters]\ndevice.torque_limit = \"0.1\"\n", "[parameters]\ndevice.torque_limit = -1\n",
@@ -239,7 +239,7 @@ TEST_F(SettingsFile, ThatIsTooLongToBeReadHasTheStrictestLimits) {
   EXPECT_NE(complaint_, "");
 }
 
-// Both were started with the same file; each knows only what was done in it.
+// Both windows started with the same file; each knows only its own changes.
 TEST_F(SettingsFile, OfTwoWindowsHasWhatWasChangedInEither) {
   Settings began;
   began.parameters.eta = 0.7;
@@ -254,7 +254,7 @@ TEST_F(SettingsFile, OfTwoWindowsHasWhatWasChangedInEither) {
   remember_recent(first, "/a/first.h5");
   second.width = 1555;
   second.parameters.eta = 1;
-  second.twin.parameters.damping = std::numeric_limits<double>::quiet_NaN();  // the arm's own
+  second.twin.parameters.damping = std::numeric_limits<double>::quiet_NaN();  // the arm's own value
   remember_recent(second, "/a/second.h5");
   ASSERT_EQ(save_settings(first, began), "");
   ASSERT_EQ(save_settings(second, began), "");
@@ -314,8 +314,7 @@ TEST_F(SettingsFile, StandsBesideAFolderForSessions) {
   EXPECT_TRUE(fs::is_directory(folder));
 }
 
-// While the window runs: whatever ends the program, they are there.
-
+// The file is written while the window runs, so changes survive any end of the program.
 TEST_F(SettingsFile, HasWhatWasChangedOnceThatStands) {
   KeptSettings kept(load());
   Settings now = kept.kept();

@@ -34,7 +34,7 @@ TEST(Thumbnails, TheOldestGoAndOtherFilesStay) {
     EXPECT_EQ(fs::exists(folder / fmt::format("{}.png", i)), i < 3) << i;
   }
   EXPECT_TRUE(fs::exists(folder / "notes.txt"));
-  keep_newest(folder / "none", 3);  // nothing there, nothing done
+  keep_newest(folder / "none", 3);  // an absent folder is no error
 }
 
 }  // namespace

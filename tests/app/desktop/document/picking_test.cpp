@@ -1,4 +1,4 @@
-// What a click in the picture meets.
+// Objects that a click in the picture meets.
 #include "app/desktop/document/picking.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ struct Shapes {
   }
 };
 
-// The signed distance of a point in a shape's frame, by its definition [m].
+// Signed distance of a point in a shape's frame, by the shape's definition [m].
 double distance(const Shape& shape, const Vec3& p) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() - sphere->radius;
   if (const auto* box = std::get_if<Box>(&shape)) return (p.cwiseAbs() - box->size / 2).maxCoeff();
@@ -81,7 +81,7 @@ TEST(Picking, GraspsABodyByThePointUnderTheMouse) {
   EXPECT_FALSE(under({0.5, 0, 1}, {0, 0, -1})) << "nothing is there";
 }
 
-// Against a walk along the ray in steps of a tenth of a millimetre.
+// Compared with a walk along the ray in steps of a tenth of a millimetre.
 TEST(Picking, MeetsAShapeWhereTheRayGoesIntoIt) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -101,7 +101,7 @@ TEST(Picking, MeetsAShapeWhereTheRayGoesIntoIt) {
     for (double s = 0; s < 1; s += 1e-4) {
       least = std::min(least, distance(shape, pose.inverse() * (from + s * way)));
     }
-    if (std::abs(least) < 2e-4) continue;  // a near miss, which the walk cannot tell
+    if (std::abs(least) < 2e-4) continue;  // a near miss, which the walk cannot decide
     EXPECT_EQ(all.under(from, at).has_value(), least < 0) << i;
     met += least < 0 ? 1 : 0;
   }
@@ -124,8 +124,8 @@ TEST(Picking, TakesTheNearestOfWhatIsThere) {
 TEST(Picking, MeetsAMeshByItsTrianglesAtItsScale) {
   Shapes all;
   all.add("model", Mesh{.model = "m", .scale = 2, .unit = 1e-3}, pose_at({0.1, 0, 0}));
-  // Along a face, x + y - z = 20 mm: below it there is the body, above it an empty corner of the
-  // box around it.
+  // Rays along a face, x + y - z = 20 mm: below it is the body, above it an empty corner of the
+  // bounding box.
   for (const double part : {0.2, 0.3, 0.36, 0.8}) {
     const Vec3 through = Vec3(0.1, 0, 0) + 0.02 * part * Vec3(1, 1, -1);
     const Vec3 from = through + 0.3 * Vec3(1, -1, 0);
@@ -149,7 +149,7 @@ TEST(Picking, LooksForWhatMovesWhereItIs) {
   EXPECT_EQ(all.under({0.5, 0, 0}, {0, 0, 0}), 1u) << "where it starts, as long as nobody knows";
 }
 
-// Along a line through their middles, whose way into each is known.
+// Lines through the objects' middles, whose way into each is known.
 TEST(Covered, IsWhatLiesBehindAnObjectAndNotWhatLiesBeforeIt) {
   const std::pair<Shape, double> shapes[] = {{Sphere{.radius = 0.03}, 0.03},
                                              {Box{.size = Vec3::Constant(0.04)}, 0.02},
@@ -167,7 +167,7 @@ TEST(Covered, IsWhatLiesBehindAnObjectAndNotWhatLiesBeforeIt) {
   }
 }
 
-// The triangles that are touched and those of the model are the same ones.
+// The touched triangles are those of the model.
 TEST(Covered, SeesMeshesWhereTheyAreMet) {
   const auto model = tetrahedron();
   std::vector<Eigen::Vector3f> corners;

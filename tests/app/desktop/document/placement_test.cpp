@@ -68,8 +68,8 @@ TEST(Place, IsInReachAndNeverAroundATipOrAnotherObject) {
   }
 }
 
-// A cube of 4 cm stands 1.2 cm clear of a tip at rest: its middle is 3.2 cm from it, in front,
-// which is nearer to 1 cm in front of the tip than anything beside or behind it.
+// A cube of 4 cm stands 1.2 cm clear of a tip at rest: its middle is 3.2 cm in front of the tip.
+// This is nearer to the wanted point, 1 cm in front of the tip, than any place beside or behind.
 TEST(Place, IsInFrontOfTheTipWhicheverWayTheArmPoints) {
   for (const double angle : {0.0, 1.2, 3.0}) {
     const Vec3 forward(std::cos(angle), std::sin(angle), 0), left(-forward.y(), forward.x(), 0);
@@ -77,8 +77,8 @@ TEST(Place, IsInFrontOfTheTipWhicheverWayTheArmPoints) {
     at.reach = 0.5;
     at.rest = 0.2 * forward;
     const Vec3 place = find_place(Vec3::Constant(0.04), -0.04, at) - at.rest;
-    const double steps = (0.6 * 0.5 + 0.04) / 30;  // of what is tried
-    // Of a turned arm the corners of what is kept clear come first.
+    const double steps = (0.6 * 0.5 + 0.04) / 30;  // between the places that are tried
+    // Around a turned arm the corners of the free space are reached first.
     EXPECT_GT(place.dot(forward), angle == 0 ? 0.032 : 0.02) << angle;
     EXPECT_LT(place.head<2>().norm(), 0.032 * std::sqrt(2) + steps) << angle;
     EXPECT_LT(std::abs(place.dot(left)), angle == 0 ? 1e-9 : 0.03) << angle;
@@ -103,7 +103,7 @@ TEST(Place, LeavesAGapToOthersAndIsNotInTheArm) {
   }
 }
 
-// What is beyond the arm's reach cannot be touched, however much is in the way.
+// A place beyond the arm's reach is useless, even if the front is taken.
 TEST(Place, StaysInReachWhereTheFrontIsTaken) {
   Workplace at = desk();
   at.taken.push_back(Bounds(Vec3(0.2, -0.1, -0.05), Vec3(0.6, 0.1, 0.05)));
@@ -114,7 +114,7 @@ TEST(Place, StaysInReachWhereTheFrontIsTaken) {
 }
 
 TEST(Place, OfAModelIsUprightOnTheTable) {
-  // glTF's y is up: 10 m tall, 4 m deep, off its origin.
+  // glTF's y is up: 10 m tall, 4 m deep, away from its origin.
   const Bounds model(Vec3(3, 5, 1), Vec3(6, 15, 5));
   Object object{.shape = Mesh{.y_up = true}};
   place_mesh(object, model, table(-0.04), desk());

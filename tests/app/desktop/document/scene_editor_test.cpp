@@ -54,7 +54,7 @@ std::vector<std::string> names(const SceneEditor& editor) {
   return all;
 }
 
-// Where full() has them.
+// Numbers of the objects in full().
 constexpr std::size_t kTop = 0, kBall = 1, kBlock = 2, kGear = 3, kStop = 4;
 
 using testing::ElementsAre;
@@ -63,7 +63,7 @@ TEST(SceneEditor, ListsEveryKindOfObject) {
   EXPECT_THAT(names(full()), ElementsAre("top", "ball", "block", "gear", "stop"));
 }
 
-// In the order in which a file has them: a copy's place is the same once it was read again.
+// Objects are in the order of a file, so a copy keeps its place when the file is read again.
 TEST(SceneEditor, PutsWhatIsNewBehindThoseOfItsShape) {
   SceneEditor editor = full();
   const ArmDescription arm = test::random_arm(3, 2);
@@ -143,7 +143,7 @@ TEST(SceneEditor, KeepsFilesOfModelsAsLongAsAMeshHasThem) {
   EXPECT_TRUE(models().contains(name)) << "undone";
 }
 
-// A recording of both has to hold both.
+// A recording of both versions must hold both.
 TEST(SceneEditor, TellsApartWhatOneFileHeldAtTwoTimes) {
   SceneEditor editor = full();
   const ModelFile later{file("gear").path, file("changed gear").bytes};
@@ -240,7 +240,7 @@ TEST(SceneEditor, StepsThroughAllObjectsInACircle) {
   EXPECT_FALSE(empty.selected());
 }
 
-// Whatever is dragged or typed: a scene's file can say it, and says it to the last bit.
+// After any dragging or typing, a file can hold the scene to the last bit.
 TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
   const ArmDescription arm = test::random_arm(3, 2);
   test::Random random(9);
@@ -285,7 +285,7 @@ TEST(SceneEditor, AlwaysHoldsWhatAFileCanSay) {
   }
 }
 
-// Against many points of their surfaces.
+// Compared with many points of their surfaces.
 TEST(SceneEditor, KnowsHowMuchRoomCylindersAndCapsulesTake) {
   test::Random random(3);
   for (int round = 0; round < 20; ++round) {
@@ -328,7 +328,7 @@ Object body(const std::string& name, const std::string& to = "") {
   return out;
 }
 
-// A lid on a pot on the world, and a spring from each.
+// A lid on a pot that stands on the world, with a spring at each.
 SceneEditor kitchen() {
   SceneEditor editor = full();
   editor.add(body("pot"));
@@ -372,7 +372,7 @@ TEST(SceneEditor, ACopyHangsOnWhatTheFirstOneHangsOn) {
   EXPECT_EQ(editor.scene().springs.size(), 2u);
 }
 
-// What begins to move goes behind all that stands still, with its model, and comes back.
+// An object that begins to move goes behind all fixed ones, with its model, and comes back.
 TEST(SceneEditor, PutsWhatMovesBehindWhatStandsStill) {
   SceneEditor editor = kitchen();
   const SceneEditor::Version before = editor.version();
@@ -417,7 +417,7 @@ TEST(SceneEditor, WhatMovesComesBackFromItsText) {
   EXPECT_EQ(editor.last_change(), "") << "a step of its own";
 }
 
-// A file's numbers stay as it had them; what is edited is held, written, and undone at once.
+// Unedited numbers stay as in the file; edited ones are held, written, and undone at once.
 TEST(SceneEditor, PartsMomentsAndColoursComeFromTheTextAndGoBackIntoIt) {
   const ArmDescription arm = test::random_arm(3, 2);
   const std::string text = R"([[body]]

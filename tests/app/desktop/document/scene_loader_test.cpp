@@ -47,7 +47,7 @@ TEST(LoadModel, RefusesInOneLineThatNamesTheFile) {
   }
 }
 
-// STL without a unit is taken for metres where its numbers are small, for millimetres otherwise.
+// STL without a unit is read in metres if its numbers are small, otherwise in millimetres.
 TEST(LoadModel, WarnsOfSizesThatAreLikelyAnotherUnit) {
   test::TempDir dir;
   const auto stl = [&](double size) {
@@ -65,12 +65,13 @@ TEST(LoadModel, WarnsOfSizesThatAreLikelyAnotherUnit) {
   EXPECT_THAT(stl(2e-5), testing::ElementsAre(HasSubstr("0.02 mm long")));
 }
 
-// The way the window, `limpid check` and a recording's arm read pictures.
+// The window, `limpid check` and a recording's arm read pictures this way.
 TEST(LoadArm, KnowsByItsCollisionShapesWhichWayUpItsPicturesAre) {
   test::TempDir dir;
   fs::copy_file(test::assets() / "devices/omni/forearm.glb", dir / "forearm.glb");
   const Model model = load_model_file(dir / "forearm.glb");
-  // A collision box around the picture as it is in its file, which has y up, or turned to z up.
+  // An arm with a collision box around the picture, either as in the file, which has y up, or
+  // turned to z up.
   const auto arm = [&](bool as_it_is) {
     const Eigen::AlignedBox3d box = model.bounds();
     const Vec3 c = box.center(), s = box.sizes();
@@ -130,7 +131,7 @@ TEST(SceneLoader, OpensScenes) {
   EXPECT_EQ(std::get<LoadedScene>(*loaded).urdf, arm.urdf);
 }
 
-// Behind an arm, as when both are dropped on the window at once.
+// The scene waits behind an arm, as when both are dropped on the window at once.
 TEST(SceneLoader, ReadsASceneForTheArmThatIsThereWhenItsTurnComes) {
   ArmDescription there = read_urdf((test::assets() / "devices/joystick.urdf").string());
   SceneLoader loader;

@@ -1,4 +1,4 @@
-// What the mouse makes of an object.
+// Effects of the mouse on an object.
 #include "app/desktop/document/transform.h"
 
 #include <gtest/gtest.h>
@@ -47,11 +47,11 @@ TEST(Transform, MovesAlongOneAxisToWhereTheMouseIsNearestToIt) {
   const Seen seen;
   const Vec3 middle = seen.object.pose.translation();
   for (int axis = 0; axis < 3; ++axis) {
-    // The mouse goes along the axis as it is seen: the point follows it exactly.
+    // The mouse goes along the axis on the screen: the point follows it exactly.
     const Vec3 there = middle + 0.037 * Vec3::Unit(axis);
     const Object moved = seen.to(TransformKind::move, axis, seen.pixel(middle), seen.pixel(there));
     EXPECT_TRUE(moved.pose.translation().isApprox(there, 1e-9)) << axis;
-    // In whole steps of 5 mm.
+    // Steps are whole multiples of 5 mm.
     const Object stepped =
         seen.to(TransformKind::move, axis, seen.pixel(middle), seen.pixel(there), true);
     EXPECT_TRUE(stepped.pose.translation().isApprox(middle + 0.035 * Vec3::Unit(axis), 1e-9));
@@ -77,7 +77,7 @@ TEST(Transform, TurnsByTheAngleOfTheMouseAboutThePivot) {
     return Eigen::Vector2d(middle + 80 * Eigen::Vector2d(std::cos(angle), -std::sin(angle)));
   };
   for (const double angle : {0.4, -1.2, 3.0}) {
-    // Against the clock on the screen: about the direction to the eye.
+    // A motion counterclockwise on the screen turns the object about the direction to the eye.
     const Object turned = seen.to(TransformKind::turn, {}, at(0.3), at(0.3 + angle));
     const Mat3 expected = Eigen::AngleAxisd(angle, -seen.camera.forward()).toRotationMatrix();
     EXPECT_TRUE(turned.pose.linear().isApprox(expected, 1e-9)) << angle;

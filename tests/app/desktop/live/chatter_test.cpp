@@ -15,7 +15,7 @@ namespace limpid {
 namespace {
 
 struct Seen {
-  double first = -1;  // when chatter was seen first [s]; -1: never
+  double first = -1;  // time of the first chatter [s]; -1: never
   double power = 0, frequency = 0;
 };
 
@@ -37,7 +37,7 @@ Seen look_at(RunPlan plan) {
   return seen;
 }
 
-// The hand goes down to `deep` above the middle of the arm's room [m] and stays there.
+// A plan whose hand goes down to the height `deep` [m] and stays there.
 RunPlan pressing(const char* scene, const Vec3& at, double deep, CouplingKind kind) {
   RunPlan plan = test::plan(scene, "free.csv", 5);
   plan.hand = parse_hand_csv(
@@ -56,7 +56,7 @@ RunPlan pressing_a_table(double stiffness, CouplingKind kind) {
   return plan;
 }
 
-// Under the proposed law 5000 N/m are far beyond what it holds, 1500 N/m.
+// The proposed law is stable up to 1500 N/m; 5000 N/m are far beyond.
 TEST(Chatter, IsSeenWhereTheProposedLawTouchesATooStiffTable) {
   const Seen seen = look_at(pressing_a_table(5000, CouplingKind::proposed));
   EXPECT_GT(seen.first, 1.5) << "not before it is touched";
@@ -105,7 +105,7 @@ TEST(Chatter, IsNotSeenInAHandThatShakes) {
   }
 }
 
-// Of all scenes with their own hands. Under the proposed law a scene may be stiffer than it holds.
+// All scenes with their own hands; a scene may be too stiff for the proposed law.
 TEST(Chatter, IsNotSeenWhereHandsAreCalm) {
   for (const std::string scene :
        {"cradle", "cup",     "dial",    "dominoes", "drawer_door", "free",     "gears",

@@ -1,4 +1,4 @@
-// A gamepad as a hand: what sticks, triggers and buttons ask for.
+// A gamepad as a hand: effects of sticks, triggers and buttons.
 #include "app/desktop/live/pad_hand.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(PadPush, IsWholeAtTheEndOfAStickInEveryDirection) {
 }
 
 TEST(PadPush, GrowsFasterThanTheStickSoThatItLeadsFinely) {
-  const double half = pad_push({.left_x = 0.575}).x();  // half of the way beyond the rest
+  const double half = pad_push({.left_x = 0.575}).x();  // half of the way beyond the dead zone
   EXPECT_NEAR(half, 0.25, 1e-12);
 }
 
@@ -94,19 +94,19 @@ TEST(PadHand, LetsGoWhenItIsUnpluggedOfWhatItHeldAlone) {
   held.lead({.left_x = 1});
   held.hand.lose(held.controls);
   EXPECT_FALSE(held.controls.grab);
-  held.controls.grab = true;  // the mouse
+  held.controls.grab = true;  // the mouse takes hold
   held.hand.lose(held.controls);
   EXPECT_TRUE(held.controls.grab);
 }
 
-// Whoever let go of what the pad had taken has ended its hold: what is held later is theirs.
+// Anyone else's letting go ends the pad's hold; a later hold is not the pad's.
 TEST(PadHand, LeavesTheHandToWhoTookItAfterSomebodyLetGo) {
   Held held;
   held.lead({.left_x = 1});
   ASSERT_TRUE(held.controls.grab);
-  held.controls.grab = false;  // by the mouse, or a loop that started over
+  held.controls.grab = false;  // the mouse lets go, or the loop has started over
   held.lead({});
-  held.controls.grab = true;  // the mouse
+  held.controls.grab = true;  // the mouse takes hold
   held.lead({});
   held.hand.lose(held.controls);
   EXPECT_TRUE(held.controls.grab);
@@ -114,7 +114,7 @@ TEST(PadHand, LeavesTheHandToWhoTookItAfterSomebodyLetGo) {
 
 TEST(PadHand, HoldsAloneWhatItTookFromTheMouseByPushing) {
   Held held;
-  held.controls.grab = true;  // the mouse
+  held.controls.grab = true;  // the mouse takes hold
   held.controls.goal = kTip;
   held.lead({.left_x = 1});
   held.hand.lose(held.controls);
@@ -126,14 +126,14 @@ TEST(PadHand, LetsGoOfWhatTheMouseHoldsByItsButtonToo) {
   held.controls.grab = true;
   held.lead({.a = true});
   EXPECT_FALSE(held.controls.grab);
-  held.controls.grab = true;  // the mouse once more
+  held.controls.grab = true;  // the mouse takes hold again
   held.hand.lose(held.controls);
   EXPECT_TRUE(held.controls.grab) << "the pad holds nothing";
 }
 
 TEST(PadHand, TakesHoldWhereTheTipIsByItsButtonAndHeldDownDoesNothingMore) {
   Held held;
-  held.controls.goal = kTip + Vec3(0.05, 0, 0);  // of an earlier hold
+  held.controls.goal = kTip + Vec3(0.05, 0, 0);  // from an earlier hold
   held.lead({.a = true});
   EXPECT_TRUE(held.controls.grab);
   EXPECT_EQ(held.controls.goal, kTip);
@@ -144,7 +144,7 @@ TEST(PadHand, TakesHoldWhereTheTipIsByItsButtonAndHeldDownDoesNothingMore) {
   EXPECT_FALSE(held.controls.grab);
 }
 
-// One that comes back with a stick pushed takes hold as a new one does.
+// A pad that comes back with a stick pushed takes hold like a new one.
 TEST(PadHand, ForgetsWithItsPlugThatItsStickHadToRest) {
   Held held;
   held.lead({.left_x = 1});

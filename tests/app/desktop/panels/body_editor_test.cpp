@@ -1,4 +1,4 @@
-// The fields of a body, drawn frame by frame, clicked on and typed into.
+// Fields of a body, drawn frame by frame, clicked on and typed into.
 #include "app/desktop/panels/body_editor.h"
 
 #include "app/desktop/panels/parts_editor.h"
@@ -46,7 +46,7 @@ class BodyFields : public ImGuiFrames {
     }
     frames();
   }
-  // Into the middle one of three, or the only one.
+  // Types into the middle one of three fields, or the only one.
   void type(const char* label, const char* text) {
     click(label, 2);
     ImGui::GetIO().AddInputCharactersUTF8(text);
@@ -76,7 +76,7 @@ TEST_F(BodyFields, AddChangeAndRemoveParts) {
   EXPECT_EQ(changed_.back(), "part 2 place");
   type("Radius", "7");
   EXPECT_NEAR(std::get<Sphere>(object_.parts[1].shape).radius, 0.007, 1e-12);
-  type("Radius", "1e9");  // no more than a file may say
+  type("Radius", "1e9");  // limited to what a file may hold
   EXPECT_NEAR(std::get<Sphere>(object_.parts[1].shape).radius, 1, 1e-12);
   type("Rotation roll, pitch, yaw [\xC2\xB0]", "90");
   EXPECT_NEAR(object_.parts[1].pose.linear()(2, 0), -1, 1e-12);

@@ -17,7 +17,8 @@ TEST(DevicePanel, HandsNoLawMoreDelayThanItCanReckonWith) {
   EXPECT_EQ(reckoning_with(p, 0.012).delay, 20) << "120 ticks have no room in its ring";
 }
 
-// Numbers of a file that no float holds exactly: one that is only shown must come back as it was.
+// Numbers of a file that no float holds exactly: values that are only shown must come back
+// unchanged.
 TEST_F(ImGuiFrames, TheDevicePanelChangesNothingThatItOnlyShows) {
   DeviceNotes notes;
   notes.axes = {{.zero = 0.1, .scale = 0.3}};

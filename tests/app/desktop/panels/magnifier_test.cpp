@@ -40,7 +40,7 @@ bool overlap(ScreenRect a, ScreenRect b) {
   return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
 }
 
-// Wherever the tips are, and however much of the view's top words take.
+// Holds for all places of the tips, and any height of the words at the view's top.
 TEST_F(Lens, HidesNeitherTheTipsNorWordsAndStaysInTheView) {
   frame([&] {
     for (const ScreenRect view : {ScreenRect{{300, 24}, {990, 482}}, {{300, 24}, {900, 365}}}) {

@@ -20,7 +20,7 @@ TEST(PlotChooser, FindsChannelsByAnyWordsOfTheirs) {
   EXPECT_EQ(found("|f2|"), std::vector<std::string>{"proxy/contact_torque_norm"});
   EXPECT_EQ(found("x_e 3"), std::vector<std::string>{"coordination/error.3"});
   EXPECT_TRUE(found("velocity banana").empty());
-  // Words of people.
+  // Everyday words find channels, too.
   EXPECT_EQ(found("depth"), std::vector<std::string>{"coordination/gap"});
   EXPECT_EQ(found("penetration"), found("depth"));
   EXPECT_EQ(found("human torque |"), found("hand torque |"));

@@ -26,7 +26,7 @@ TEST(RecordedSettings, TellLawGripAndWhatIsNotAsUsual) {
   EXPECT_TRUE(std::ranges::any_of(plain, [](const RecordedSetting& each) {
     return each.value.find("450") != std::string::npos;
   }));
-  p.encoder_step = 1e-4;  // worth a line only now
+  p.encoder_step = 1e-4;  // listed only if it is not the default
   EXPECT_EQ(recorded_settings(p, nullptr).size(), plain.size() + 1);
 }
 

@@ -8,7 +8,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// Whoever holds a device with motors must not read that its ticks come in a burst after a stall.
+// A person who holds a device with motors must not read that its ticks come in a burst after a
+// stall.
 TEST(TimingPanel, SaysThatWithMotorsLateTicksAreGivenUpAtOnce) {
   const LateTicks words = late_ticks(true);
   EXPECT_THAT(words.missed, Not(HasSubstr("are caught up")));

@@ -1,4 +1,4 @@
-// The 3D view as it is drawn, frame by frame. Skipped where EGL gives no context.
+// The 3D view, drawn frame by frame. Skipped where EGL gives no context.
 #include "app/desktop/panels/view_panel.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class AView : public ImGuiFrames {
   void draw() {
     frame([&] { asked_ = panel_.draw(scene(), camera_, controls_, settings_, rect_, taken_); });
   }
-  // The mouse there, in the window, for a frame.
+  // Draws a frame with the mouse at `at` in the window.
   void point(const Eigen::Vector2d& at) {
     show_mouse({static_cast<float>(at.x()), static_cast<float>(at.y())});
     draw();
@@ -45,7 +45,7 @@ class AView : public ImGuiFrames {
     show_mouse_button(button, down);
     draw();
   }
-  // Ctrl and the left button down there.
+  // Presses Ctrl and the left button at `at`.
   void point_at_body(const Eigen::Vector2d& at) {
     show_modifiers(true, false, false);
     point(at);
@@ -75,7 +75,7 @@ class AView : public ImGuiFrames {
   Settings settings_;
 };
 
-// As in playback that is paused: the same row in every frame, with what moved before it behind it.
+// The row is the same in every frame, as in paused playback, after a motion.
 TEST_F(AView, IsNotDrawnAgainWhileARowStandsStill) {
   for (const double time : {0.0, 0.1, 0.2}) {
     layout_.in(std::span(row_), Column::time)[0] = time;
@@ -195,7 +195,7 @@ TEST_F(AView, LeavesTheHandWhereItIsWhenItIsLookedAtOtherwise) {
   press(0, true);
   point(at + Eigen::Vector2d(15, 10));
   const Vec3 goal = controls_.goal;
-  rect_ = {{60, 20}, {400, 300}};  // a panel came
+  rect_ = {{60, 20}, {400, 300}};  // a panel has appeared
   draw();
   EXPECT_TRUE(controls_.goal.isApprox(goal, 1e-9));
   camera_.look(Camera::View::side);

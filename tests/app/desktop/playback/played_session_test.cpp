@@ -1,4 +1,4 @@
-// What a second run of a recording's hand leaves beside it.
+// A second run with a recording's hand, shown beside the recording.
 #include "app/desktop/playback/played_session.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST_F(RunAgain, UnderTheSameSettingsIsTheSame) {
   EXPECT_EQ(progress_.part, 1);
 }
 
-// It flies apart long before its end: from then on it stays where it was last.
+// The second run diverges long before its end: from then on it keeps its last row.
 TEST_F(RunAgain, ThatDivergesHasItsLastRowToTheEnd) {
   chosen_.k_vc = 1e4;
   chosen_.torque_limit = 1e4;

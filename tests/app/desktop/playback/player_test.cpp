@@ -22,7 +22,7 @@ TEST(Player, ShowsTheRowOfItsTime) {
     p.seek(static_cast<double>(k) * 1e-3);
     EXPECT_EQ(p.index(), k);
     EXPECT_EQ(p.row_time(), static_cast<double>(k) * 1e-3);
-    p.seek(static_cast<double>(k) * 1e-3 + 0.9e-3);  // while it plays, between two rows
+    p.seek(static_cast<double>(k) * 1e-3 + 0.9e-3);  // between two rows, as during play
     EXPECT_EQ(p.index(), std::min<std::size_t>(k, 999));
     EXPECT_EQ(p.row_time(), static_cast<double>(k) * 1e-3);
     EXPECT_EQ(p.session().layout.in(p.row(), Column::time)[0], p.session().at(k, Column::time)[0]);
@@ -87,7 +87,7 @@ TEST(Player, GoesRoundWhenLooped) {
   p.advance(0.01);
   EXPECT_TRUE(p.playing());
   EXPECT_NEAR(p.time(), 0.0075, 1e-12);
-  p.advance(10.05);  // many times round
+  p.advance(10.05);  // several rounds
   EXPECT_LT(p.time(), p.duration());
 }
 
@@ -108,7 +108,7 @@ TEST(Player, PlaysAStretchToItsEnd) {
   for (int frame = 0; frame < 55; ++frame) p.advance(0.02);
   EXPECT_FALSE(p.playing());
   EXPECT_NEAR(p.time(), 3, 1e-9);
-  p.play();  // and on from there
+  p.play();  // play goes on from there
   for (int frame = 0; frame < 100; ++frame) p.advance(0.02);
   EXPECT_NEAR(p.time(), 5, 1e-9);
 }
@@ -123,7 +123,7 @@ TEST(Player, PlaysAStretchAgainAndAgainWhileLooping) {
     EXPECT_LT(p.time(), 3);
   }
   EXPECT_NEAR(p.time(), 2.5, 1e-6);
-  p.seek(1);  // which leaves the stretch
+  p.seek(1);  // leaves the selected stretch
   for (int frame = 0; frame < 125; ++frame) p.advance(0.02);
   EXPECT_NEAR(p.time(), 3.5, 1e-6);
 }

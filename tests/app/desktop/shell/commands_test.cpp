@@ -1,4 +1,4 @@
-// The table of commands by itself, and every key there is against what the help says of it.
+// The table of commands by itself, and every key against the help's list.
 #include "app/desktop/shell/commands.h"
 
 #include <GLFW/glfw3.h>
@@ -25,16 +25,16 @@ constexpr KeyOwner kOwners[] = {KeyOwner::view,      KeyOwner::playback, KeyOwne
                                 KeyOwner::question,  KeyOwner::text};
 
 struct Case {
-  const char* help;  // as the list of shortcuts writes it
+  const char* help;  // keys as written in the list of shortcuts
   int key;
   int modifiers;
   const char *live, *playback;  // ids of commands; empty: none
   bool repeats = false;
-  const char* selected = nullptr;  // with an object selected; null: as without
-  const char* following = "";      // while that follows the mouse
+  const char* selected = nullptr;  // id with an object selected; null: the same as without
+  const char* following = "";      // id while the object follows the mouse
 };
 
-// By hand from the help, not from the program's table.
+// Written by hand from the help, not from the program's table.
 const Case kCases[] = {
     {"1", GLFW_KEY_1, 0, "view.front", "view.front"},
     {"2", GLFW_KEY_2, 0, "view.side", "view.side"},
@@ -119,13 +119,13 @@ const Case* case_of(int key, int modifiers) {
   return nullptr;
 }
 
-// Empty: nothing acts.
+// Id of the command that a key runs; empty: none.
 std::string_view id_of(KeyOwner owner, int key, int modifiers, bool repeated) {
   const Command* command = command_of(owner, {key, modifiers, repeated});
   return command != nullptr ? command->id : "";
 }
 
-// "Ctrl+Z, Ctrl+Y" -> both.
+// Splits "Ctrl+Z, Ctrl+Y" into both.
 std::vector<std::string> split(std::string text) {
   std::vector<std::string> parts;
   for (std::size_t at = 0; (at = text.find(", ")) != std::string::npos;) {
@@ -137,10 +137,11 @@ std::vector<std::string> split(std::string text) {
 }
 
 TEST(Keys, HelpListsExactlyTheKeysThatAct) {
-  // What the mouse does, and Esc and Space, which have tests of their own.
+  // Keys of the help; it also lists mouse actions, and Esc and Space, which have tests of their
+  // own.
   std::set<std::string> listed;
   for (const Shortcut& shortcut : shortcuts(KeyLabels())) {
-    // "[, ]" and the like; what the mouse does is written in words.
+    // Texts such as "[, ]"; mouse actions are written in words.
     for (const std::string& key : split(shortcut.keys)) listed.insert(key);
   }
   for (const char* other : {"left drag at the tip", "Ctrl+left drag", "left drag elsewhere",
@@ -153,7 +154,7 @@ TEST(Keys, HelpListsExactlyTheKeysThatAct) {
   EXPECT_EQ(listed, expected);
 }
 
-// Who looks for a key reads headings first: each is there once, with all that belongs to it.
+// People look at headings first: each exists once, with all keys that belong to it.
 TEST(Keys, HelpGroupsThem) {
   std::vector<std::string_view> groups;
   std::map<std::string, std::string_view> group_of;
@@ -270,7 +271,7 @@ TEST(Commands, EachHasAnIdOfItsOwnATextAndSomethingToDo) {
     EXPECT_TRUE(
         std::regex_match(menu, std::regex("|(File|Edit|View|Session|Scene|Device|Help)(/.+)?")))
         << menu;
-    // Two of a menu cannot be told apart by its texts otherwise.
+    // Otherwise two commands of a menu could not be told apart by their texts.
     if (!menu.empty()) {
       EXPECT_TRUE(listed.insert(menu + "/" + command.text).second) << command.id;
     }
@@ -289,7 +290,7 @@ TEST(Commands, NoneHasTheKeyOfAnotherWhereBothAct) {
   }
 }
 
-// What is in no menu and has no key is a button of a panel, a dialog or a banner, which names it.
+// A command without a menu and a key is a button of a panel, a dialog or a banner, which names it.
 TEST(Commands, EachIsReachedAndPanelsNameNoOthers) {
   std::set<std::string> named;
   for (const char* folder : {"panels", "shell"}) {
@@ -309,7 +310,7 @@ TEST(Commands, EachIsReachedAndPanelsNameNoOthers) {
     EXPECT_TRUE(command.menu != nullptr || command.keys != nullptr || named.contains(command.id))
         << command.id;
   }
-  std::set<std::string> begins;  // some of settings, too: "coupling.eta"
+  std::set<std::string> begins;  // beginnings of ids, and of settings: "coupling.eta"
   for (const Command& command : commands()) {
     const std::string whole = command.id;
     begins.insert(whole.substr(0, whole.find('.')));

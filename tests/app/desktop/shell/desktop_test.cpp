@@ -1,4 +1,4 @@
-// The desktop without a window: what it does to the loop, to devices and to what is not saved.
+// The desktop without a window: its effects on the loop, on devices and on unsaved work.
 #include "app/desktop/shell/desktop.h"
 
 #include <fmt/format.h>
@@ -30,12 +30,12 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-// What a fake device says and hears, shared with the test.
+// State of a fake device, shared with the test.
 struct Wire {
-  std::atomic<double> angle{0};  // from where the arm rests [rad]
+  std::atomic<double> angle{0};  // from the arm's rest [rad]
   std::atomic<bool> here{true};
   std::atomic<std::uint32_t> buttons{0};
-  std::atomic<double> torque{0};  // the largest of the newest
+  std::atomic<double> torque{0};  // largest of the newest command [N m]
   std::atomic<int> closed{0};
 };
 
@@ -107,7 +107,7 @@ struct ADesktop : testing::Test {
       return notice.text.find(what) != std::string::npos;
     });
   }
-  // Asks for force until it is there: on a busy computer the window may have been silent meanwhile.
+  // Asks for force until it is on: on a busy computer the window may have been silent meanwhile.
   template <class Ask>
   bool until_on(Ask ask) {
     return until([&] {
@@ -121,8 +121,8 @@ struct ADesktop : testing::Test {
   bool armed() {
     return until_on([&] { loop().arm(); });
   }
-  // However late the loop's first tick with it is: a controller that did not connect it gives it no
-  // time.
+  // Waits for the loop's first tick with the device, without frames: a controller that did not
+  // connect it gets no time.
   void await_device() {
     while (!loop().snapshot().connected) {
       std::this_thread::sleep_for(1ms);
@@ -135,11 +135,11 @@ struct ADesktop : testing::Test {
     await_device();
     return wire;
   }
-  // A device in the loop, beside a stop that presses against it, armed.
+  // An armed device in the loop, pulled away from its proxy.
   std::shared_ptr<Wire> pushed() {
     auto wire = plug_in(3);
     EXPECT_TRUE(until([&] { return loop().snapshot().connected; }));
-    wire->angle = 0.1;  // pulled away from its proxy, whose coupling pulls back
+    wire->angle = 0.1;  // the coupling pulls it back
     EXPECT_TRUE(armed());
     return wire;
   }
@@ -207,7 +207,7 @@ TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
   expect_off("going back to live");
 }
 
-// What it would push in then is not on the screen.
+// The scene that the device would push into is not on the screen then.
 TEST_F(ADesktop, HasNoForceOnARealDeviceWhileARecordingIsShown) {
   const auto wire = pushed();
   desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
@@ -258,7 +258,7 @@ TEST_F(ADesktop, MakesNewScenesThatHaveFilesOfTheirOwnOnceTheyAreSaved) {
   EXPECT_EQ(document().own_file().filename(), "untitled-2.toml");
 }
 
-// The writer knows objects, not what somebody noted beside them.
+// The writer knows objects, not comments beside them.
 TEST_F(ADesktop, KeepsAFileWhoseCommentsItDoesNotWrite) {
   const fs::path file = dir / "mine.toml", kept = dir / "mine.toml~";
   ASSERT_TRUE(document().save_as(file));
@@ -275,7 +275,7 @@ TEST_F(ADesktop, KeepsAFileWhoseCommentsItDoesNotWrite) {
   EXPECT_TRUE(said("mine.toml~"));
 }
 
-// The tip rests in the box: it touches it.
+// The tip rests in the box and touches it.
 TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
   EXPECT_NE(run_command("hand.magnet", *desktop), "") << "a table cannot be picked up";
   const Vec3 tip = desktop->live.controls().goal;
@@ -299,7 +299,7 @@ TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
   EXPECT_TRUE(until([&] { return !held(); }));
 }
 
-// On the virtual arm, on a device that is plugged in, and on the virtual arm again.
+// Moving objects work on the virtual arm, on a plugged in device, and on the virtual arm again.
 TEST_F(ADesktop, HasWhatMovesWithADeviceAsWell) {
   const Vec3 tip = desktop->live.controls().goal;
   const fs::path file = dir / "die.toml";
@@ -328,7 +328,7 @@ TEST_F(ADesktop, TakesAButtonThatWasHeldWhilePluggingInForNothing) {
   wire->buttons = 2;
   desktop->world.open_device(std::make_unique<WiredDevice>(3, wire));
   await_device();
-  frames(120);  // also beyond the time in which a device settles
+  frames(120);  // longer than a device takes to settle
   EXPECT_EQ(arming(), Arming::off);
   wire->buttons = 0;
   frames(10);
@@ -359,7 +359,7 @@ TEST_F(ADesktop, RecordsAndClosesTheFileBesideTheWindow) {
     desktop->world.toggle_recording();
     ASSERT_TRUE(until([&] { return said("Recorded"); }));
     desktop->notices.clear();
-    std::this_thread::sleep_for(1100ms);  // names have seconds
+    std::this_thread::sleep_for(1100ms);  // file names have seconds
   }
   ASSERT_EQ(recordings().size(), 2u);
   for (const fs::path& file : recordings()) EXPECT_GT(read_session(file).size(), 100u);
@@ -407,7 +407,7 @@ TEST_F(ADesktop, SaysThatItCannotRecordAndGoesOn) {
   EXPECT_TRUE(until([&] { return loop().status().ticks > ticks + 50; }));
 }
 
-// With the device in the loop that it was recorded with.
+// The recording is made with the device in the loop.
 TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
   desktop->devices.hub().use("device");
   desktop->devices.hub().notes("device").limits.tip_force = 1.25;
@@ -421,7 +421,7 @@ TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
   EXPECT_NE(read_session(recordings()[0]).info.safety.find("tip_force = 1.25"), std::string::npos);
 }
 
-// The law goes by them: what was set to try the virtual arm with is its own again afterwards.
+// The law follows the device's resolution; the setting for the virtual arm comes back afterwards.
 TEST_F(ADesktop, TakesTheEncodersOfADeviceThatIsInTheLoop) {
   Parameters& p = desktop->settings.parameters;
   p.encoder_step = 2e-3;
@@ -443,8 +443,7 @@ TEST_F(ADesktop, TakesTheEncodersOfADeviceThatIsInTheLoop) {
   EXPECT_EQ(p.encoder_step, 2e-3);
 }
 
-// While a program leads, as on the control socket.
-
+// A program leads, as on the control socket.
 TEST_F(ADesktop, CutsTheForceOfADeviceWhenAProgramHasEndedAndSettingsComeBack) {
   Parameters& p = desktop->settings.parameters;
   p.eta = 0.8;
@@ -499,7 +498,7 @@ TEST_F(ADesktop, KeepsForTheNextStartWhatThePersonHasChosenWhileAProgramLeads) {
   p.eta = 0.5;
   desktop->settings.recent = {"/a.h5", "/own.h5"};
   desktop->lead.note_program();
-  p.hand_stiffness = 222;  // of the person
+  p.hand_stiffness = 222;  // the person's setting
   desktop->lead.follow_person();
   const Settings kept = desktop->lead.settings_to_keep();
   EXPECT_EQ(kept.parameters.eta, 0.8);
@@ -527,8 +526,8 @@ TEST_F(ADesktop, GoesBackToTheSceneWhenWhatIsRecordedIsComplete) {
   EXPECT_FALSE(has("rubber, 500 N/m"));
 }
 
-// What was set to try the virtual arm with is no damping of the device: the verdict and the
-// recording are of what the loop takes.
+// A damping set for the virtual arm is not the device's: verdict and recording follow the loop's
+// values.
 TEST_F(ADesktop, JudgesAndRecordsARealDeviceByWhatTheLoopTakes) {
   Parameters& p = desktop->settings.parameters;
   plug_in(2);
@@ -552,12 +551,12 @@ TEST_F(ADesktop, JudgesAndRecordsARealDeviceByWhatTheLoopTakes) {
   EXPECT_TRUE(std::isnan(recorded.damping));
 }
 
-// Another device is chosen while what the first one brought is changed and not saved.
+// Another device is chosen while the scene changed with the first one is not saved.
 TEST_F(ADesktop, KeepsADevicesLimitsWhileItAsksWhatBecomesOfChanges) {
   desktop->devices.hub().use("device");
   desktop->devices.hub().notes("device").limits.tip_force = 1.25;
   desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
-  const auto wire = plug_in(2);  // sets that scene aside
+  const auto wire = plug_in(2);  // sets the first scene aside
   desktop->world.add_object({"here", Pose::Identity(), Sphere{0.01}, {500}});
   ASSERT_TRUE(armed());
   desktop->devices.use("");
@@ -611,7 +610,7 @@ TEST_F(ADesktop, TakesADeviceForABuiltInArmWhateverIsOpenUntilSomebodyHasSaidWhi
   EXPECT_TRUE(said("is taken for the arm long"));
 }
 
-// Plugged in again with another full force, as its settings have it by then.
+// The device is plugged in again with another full force, from changed settings.
 TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
   desktop->devices.hub().use("device");
   desktop->devices.hub().say_arm(kBuiltInArm, "", nullptr);
@@ -633,7 +632,7 @@ TEST_F(ADesktop, TakesTheLimitsThatADeviceHasWhenItIsConnectedAnew) {
     await_device();
     EXPECT_EQ(efforts(), within(effort)) << effort;
     EXPECT_EQ(desktop->live.stage().arm().urdf, arm);
-    wire->angle = 0.3;  // its proxy pulls with all that there is
+    wire->angle = 0.3;  // the coupling pulls with the motors' full torque
     ASSERT_TRUE(armed());
     frames(80);
     EXPECT_LE(wire->torque, std::min(effort, *std::ranges::max_element(of_file)) + 1e-12);
@@ -667,7 +666,8 @@ TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
   fs::create_directories(sessions);
   const RunPlan plan = test::plan("table.toml", "touch.csv", 5);
   {
-    Recorder cut(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+    // The recording is never finished.
+    Recorder cut(sessions / "cut.h5", session_info(plan), Parameters{}, false);
     simulate(plan, {},
              [&](std::span<const double> row, LaneChanges) { return cut.push_waiting(row); });
   }
@@ -683,7 +683,8 @@ TEST_F(ADesktop, SaysThatALeftoverHasNothingToRecover) {
   RunPlan plan;
   plan.arm = test::omni();
   plan.hand.source = "mouse";
-  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);  // never finished
+  // The recording is never finished.
+  Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);
   desktop->playback.recover_leftovers(sessions);
   EXPECT_TRUE(said("nothing was recorded"));
   EXPECT_FALSE(fs::exists(sessions / "cut.h5"));
@@ -715,7 +716,7 @@ TEST_F(ADesktop, PutsASceneAsideForADeviceThatReachesNothingOfIt) {
   EXPECT_EQ(document().unsaved_set_aside(), nullptr);
 }
 
-// Only what the user had open is put aside, not what a device brought.
+// Only the user's scene is set aside, not one that came with a device.
 TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
   const std::string file = document().file();
   desktop->world.add_object({"mine", Pose::Identity(), Sphere{0.01}, {500}});
@@ -727,8 +728,8 @@ TEST_F(ADesktop, KeepsTheSceneThatWasPutAsideFromOneDeviceToTheNext) {
   EXPECT_EQ(document().file(), file);
 }
 
-// An arm of four joints, a scene that is at its fourth; a device sets both aside, and the arm's
-// file is not what it was when they are to come back.
+// An arm of four joints and a scene with a stop at the fourth. A device sets both aside, and the
+// arm's file has changed when they are to come back.
 struct ADesktopWithFourJoints : ADesktop {
   void expect_both_back(const std::function<void(const fs::path&)>& spoil);
 };
@@ -791,7 +792,7 @@ TEST_F(ADesktop, KeepsASceneWhoseFileHasVanished) {
 TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
   frames(10);
   desktop->tuning.next_law();
-  std::this_thread::sleep_for(250ms);  // a frame at high quality
+  std::this_thread::sleep_for(250ms);  // a slow frame at high quality
   frames(20);
   const History& history = desktop->live.stage().history;
   const int kind = static_cast<int>(Channel::kind);
@@ -814,7 +815,7 @@ TEST_F(ADesktop, RunsATwinWhoseSettingsAreItsOwnAndWhoseWorldIsNot) {
   twin.edited = true;
   EXPECT_EQ(&desktop->tuning.edited(), &twin.parameters);
   const CouplingKind first = desktop->settings.parameters.kind;
-  desktop->tuning.next_law();  // of the twin
+  desktop->tuning.next_law();  // changes the twin's law
   EXPECT_EQ(desktop->settings.parameters.kind, first);
   desktop->settings.parameters.hand_stiffness = 432;
   frames(20);
@@ -869,7 +870,7 @@ TEST_F(ADesktop, RunsCommandsByTheirIdsAndSaysWhyOneCannotBeRun) {
   EXPECT_FALSE(desktop->settings.twin.on);
 }
 
-// With ImGui, whose menus and text fields Esc may be meant for.
+// A desktop with ImGui, whose menus and text fields may use Esc.
 struct ADesktopWithKeys : ADesktop {
   void SetUp() override {
     ImGui::CreateContext();
@@ -893,7 +894,7 @@ TEST_F(ADesktopWithKeys, OnTheVirtualArmEscClosesWhatIsOpenAndOnlyThenCutsTheFor
     EXPECT_EQ(desktop->dialog.name(), "");
     EXPECT_TRUE(stays(Arming::on)) << dialog;
   }
-  ImGui::GetIO().WantTextInput = true;  // a number is typed over a slider
+  ImGui::GetIO().WantTextInput = true;  // a number is being typed over a slider
   ImGui::GetCurrentContext()->WantTextInputNextFrame = 1;
   ImGui::GetCurrentContext()->ActiveId = 1;
   ASSERT_TRUE(desktop->focus().text);
@@ -940,7 +941,7 @@ TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
   EXPECT_TRUE(desktop->banners()[0].bad);
   desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
-  // The recording says so where it is looked at, whatever the loop does meanwhile.
+  // Playback of the recording shows it, in any state of the loop.
   ASSERT_TRUE(armed());
   EXPECT_TRUE(desktop->banners().empty());
   run("session.play");
@@ -950,7 +951,7 @@ TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
   EXPECT_TRUE(desktop->banners()[0].buttons.empty());
 }
 
-// The map of a sweep has the whole window: what stands over the picture waits for it to close.
+// The map of a sweep takes the whole window: banners over the picture wait until it closes.
 TEST_F(ADesktop, SaysNothingOverADialogThatHasTheWholeWindow) {
   ASSERT_TRUE(until([&] { return arming() == Arming::on; }));
   desktop->cut_force();
@@ -963,7 +964,7 @@ TEST_F(ADesktop, SaysNothingOverADialogThatHasTheWholeWindow) {
   EXPECT_EQ(desktop->banners().size(), 1u);
 }
 
-// One press, two ways out of it.
+// The banner of a chattering wall offers two ways out.
 TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
   Controls& controls = desktop->live.controls();
   const auto chatters = [&] {
@@ -993,7 +994,7 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
               "It chatters: table top (5000 N/m) is stiffer than the proposed law holds here.");
     ASSERT_EQ(banner.buttons.size(), 3u);
     EXPECT_EQ(banner.buttons[0].label, "Predictive");
-    // What `analyze` names for the built-in arm, in two digits.
+    // The stiffness is that of `analyze` for the built-in arm, in two digits.
     EXPECT_EQ(banner.buttons[1].label, "Soften the wall to 1500 N/m");
     run(way);
     EXPECT_FALSE(desktop->chatter.found());
@@ -1007,7 +1008,7 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
   }
 }
 
-// Whatever is done next, the settings are what they were.
+// After any further action the settings are the former ones.
 TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   Settings& settings = desktop->settings;
   settings.parameters.hand_stiffness = 222;
@@ -1043,7 +1044,7 @@ TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   expect_whole("a preset, and what was before it");
   frames(2);
   broken();
-  settings.parameters.kind = CouplingKind::standard;  // by a click on it
+  settings.parameters.kind = CouplingKind::standard;  // by a click on the law
   frames(2);
   EXPECT_EQ(settings.parameters.kind, CouplingKind::standard);
   settings.parameters.kind = before.kind;
@@ -1074,10 +1075,10 @@ TEST_F(ADesktop, CountsBrokenPassivityAsNoStepOfUndo) {
   frames(2);
   const Parameters first = desktop->settings.parameters;
   desktop->tuning.edited().eta = 0.77;
-  frames(60);  // a step of its own
+  frames(60);  // a separate step of undo
   desktop->tuning.break_passivity();
   frames(5);
-  desktop->tuning.edited().eta = 0.2;  // moved meanwhile
+  desktop->tuning.edited().eta = 0.2;  // changed meanwhile
   frames(60);
   document().undo();
   EXPECT_EQ(desktop->tuning.edited().eta, 0.77);
@@ -1109,7 +1110,7 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
     player.seek(part * player.duration());
     return session.settings();
   };
-  // Against what the rows themselves say, forwards and backwards.
+  // Settings agree with the rows, forwards and backwards.
   for (const double part : {0.0, 0.3, 0.5, 0.7, 0.99, 0.5, 0.1, 0.8}) {
     const Parameters& then = at(part);
     const auto row = player.row();
@@ -1209,11 +1210,11 @@ TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
   EXPECT_TRUE(desktop->shown.automatic_view());
 }
 
-// What the panel says of energy follows the plots' newest row, whatever was before it.
+// The panel's energies follow the plots' newest row, whatever came before.
 TEST_F(ADesktop, AccountsForTheEnergyOfItsLoop) {
   const int energy = static_cast<int>(Channel::energy_total);
   const auto stage = [&]() -> const Stage& { return desktop->live.stage(); };
-  desktop->settings.parameters.eta = 0.3;  // not passive: there is energy to account for
+  desktop->settings.parameters.eta = 0.3;  // not passive, so that energy is given
   Controls& controls = desktop->live.controls();
   controls.goal = Vec3(0.17, 0.04, 0.03);
   controls.grab = true;

@@ -23,7 +23,7 @@ class KeyInputTest : public ImGuiFrames {
     tap(key, GLFW_MOD_CONTROL);
     keys_.key(GLFW_KEY_LEFT_CONTROL, GLFW_RELEASE, GLFW_MOD_CONTROL);
   }
-  // One frame: the keys it hands out.
+  // Draws a frame; returns the keys it hands out.
   std::vector<int> look(const Focus& focus = {}) {
     keys_.forget_pressed();
     keys_.deal(focus);
@@ -40,7 +40,7 @@ class KeyInputTest : public ImGuiFrames {
   }
 
   KeyInput keys_;
-  std::string written_;  // to ImGui in the last frame
+  std::string written_;  // characters given to ImGui in the last frame
   bool control_ = false, backspace_ = false;
 };
 
@@ -127,7 +127,7 @@ TEST_F(KeyInputTest, AKeyIsLetGoAsWhatItWasPressedAs) {
   keys_.set_labels(KeyLabels(french));
   keys_.key(GLFW_KEY_Q, GLFW_PRESS, 0);
   look();
-  keys_.set_labels(KeyLabels());  // another keyboard was chosen
+  keys_.set_labels(KeyLabels());  // a changed keyboard
   keys_.key(GLFW_KEY_Q, GLFW_RELEASE, 0);
   look();
   keys_.set_labels(KeyLabels(french));
@@ -147,7 +147,7 @@ TEST_F(KeyInputTest, AKeyKnowsWhatItWrote) {
   EXPECT_EQ(keys_.pressed().at(0).character, 0u);
 }
 
-// AltGr+E is a euro sign, and no E. The space bar stays what it is.
+// AltGr+E is a euro sign, not E. The space bar stays the same.
 TEST_F(KeyInputTest, WithAltGrAKeyIsNotItsLetter) {
   keys_.key(GLFW_KEY_RIGHT_ALT, GLFW_PRESS, 0);
   look();
@@ -159,7 +159,7 @@ TEST_F(KeyInputTest, WithAltGrAKeyIsNotItsLetter) {
   EXPECT_THAT(look(), ElementsAre(GLFW_KEY_E)) << "where it is an Alt as the other one";
 }
 
-// In a menu ImGui takes an item by its key for the space bar, which cuts the force.
+// ImGui takes a menu's item with the space bar, which cuts the force here.
 TEST_F(KeyInputTest, InAMenuEnterTakesAnItemAndTheSpaceBarDoesNot) {
   const Focus menu{.popup = true};
   const auto taken = [&](int key) {

@@ -1,4 +1,4 @@
-// Keyboards as X has them (xkb-data), by hand: what each key writes without Shift.
+// Characters of keyboards without Shift, as X has them (xkb-data), by hand.
 #include "app/desktop/shell/key_labels.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace limpid {
 namespace {
 
-// Four rows from the left, from the key below Esc on; "~": nothing.
+// Four rows from the left, beginning with the key below Esc; "~" stands for nothing.
 using Rows = std::vector<std::string>;
 
 const std::vector<std::vector<int>> kRows{

@@ -6,7 +6,7 @@ namespace {
 
 class MouseInputTest : public ImGuiFrames {
  protected:
-  // GLFW is asked at this time [ms].
+  // Asks GLFW at this time [ms].
   void ask(int at) { mouse_.ask(SteadyClock::time_point(std::chrono::milliseconds(1000 + at))); }
   void move(float x, float y) {
     mouse_.move(x, y);
@@ -21,7 +21,7 @@ class MouseInputTest : public ImGuiFrames {
     mouse_.deal(now_);
     frame([] {}, 0.5f);
   }
-  // So many clicks ImGui has seen as the next press comes to it, 0 without any.
+  // ImGui's count of clicks at the next press; 0 without one.
   int next_count() {
     while (mouse_.waiting()) {
       look();
@@ -89,7 +89,7 @@ TEST_F(MouseInputTest, ASecondPressThatIsComingIsWaitedFor) {
   EXPECT_LT(ImGui::GetIO().MouseDoubleClickTime, 0.5f);
 }
 
-// On a computer that draws seldom Ctrl is up again before its click is looked at.
+// On a computer that draws seldom, Ctrl is released before its click is processed.
 TEST_F(MouseInputTest, AClickKeepsTheModifiersThatWereHeld) {
   ask(0);
   move(100, 50);

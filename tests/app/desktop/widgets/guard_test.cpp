@@ -11,8 +11,7 @@ namespace {
 
 class Guard : public ImGuiFrames {
  protected:
-  // A frame in which `work` throws, and an ordinary one after it; ImGui asserts on a stack that
-  // does not match.
+  // Draws a frame in which `work` throws, and an ordinary one; ImGui asserts on unbalanced stacks.
   template <class Work>
   void survive(Work&& work) {
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Dialogs as they are drawn, frame by frame, and clicked on.
+// Dialogs drawn frame by frame and clicked on.
 #include "app/desktop/widgets/modal.h"
 
 #include "tests/app/plot/imgui_frames.h"
@@ -68,7 +68,7 @@ TEST_F(ADialog, IsClosedByItsButtonAlsoInAPartOfIt) {
 
 TEST_F(ADialog, ThatIsClosedOtherwiseIsGoneAndOpensAgain) {
   frames(true);
-  open_ = false;  // by Esc
+  open_ = false;  // as Esc does
   frames(true);
   EXPECT_FALSE(dialog_places());
   open_ = true;

@@ -1,4 +1,4 @@
-// Objects that move in files: what is read, what is refused, and what is written comes back.
+// Objects that move, in files: reading, refusals, and reading of what was written.
 #include "devices/files/scene/body_file.h"
 
 #include <fmt/format.h>

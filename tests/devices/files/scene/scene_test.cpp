@@ -213,7 +213,7 @@ TEST(Scene, HasTheModelsOfItsMeshesEachOnce) {
   const SceneFiles files = files_of(read);
   EXPECT_EQ(files.at("b.glb"), read.models.at("b.glb").bytes);
 
-  // What is handed in comes before what lies there, and only what the text names.
+  // Files handed in take precedence over those in the folder, and only named ones are kept.
   const SceneDocument again = parse_scene(mesh("b.glb"), "x.toml", dir / "", arm(), files);
   ASSERT_EQ(again.models.size(), 1u);
   EXPECT_EQ(again.models.at("b.glb").path, "");

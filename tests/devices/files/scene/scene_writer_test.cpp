@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 void expect_same(const Pose& a, const Pose& b) { EXPECT_EQ(a.matrix(), b.matrix()); }
 
-// Bit for bit, except where `files` moved.
+// Compares bit for bit, apart from paths moved by `files`.
 void expect_same(const SceneDocument& first, const SceneDocument& second) {
   EXPECT_EQ(first.title, second.title);
   EXPECT_EQ(first.about, second.about);
@@ -80,7 +80,8 @@ Material random_material(test::Random& random) {
   return out;
 }
 
-// As read from a file: normals are what normalizing leaves, rotations come from written angles.
+// A random scene with values that a file can give: normalized normals, rotations from written
+// angles.
 SceneDocument random_scene(const ArmDescription& arm, unsigned seed) {
   test::Random random(seed);
   const auto count = [&] { return static_cast<int>(random.between(0, 4)); };
@@ -104,7 +105,7 @@ SceneDocument random_scene(const ArmDescription& arm, unsigned seed) {
   for (int i = count(); i > 0; --i) {
     Object object{odd_name(random), random_pose(random), Mesh{}, random_material(random)};
     Mesh& mesh = std::get<Mesh>(object.shape);
-    // STL is taken for millimetres unless it says otherwise, all others for metres.
+    // STL is read in millimetres unless it says otherwise, other formats in metres.
     mesh.model = "models/" + std::to_string(i) + " \"of\" \xCE\xB7" +
                  (random.between(0, 1) < 0.5 ? ".stl" : ".glb");
     mesh.unit = std::array{1.0, 0.01, 0.001, 0.0254,
@@ -194,7 +195,7 @@ class SavedScene : public testing::Test {
     fs::create_directories(folder_ / "parts");
   }
 
-  // A scene with one mesh of a file that lies there.
+  // A scene with one mesh from a file at `model`.
   SceneDocument with_mesh(const fs::path& model, const std::string& content) {
     test::write_file(model, content);
     SceneDocument document;
@@ -202,7 +203,7 @@ class SavedScene : public testing::Test {
     document.models[model.string()] = {model.string(), bytes(content)};
     return document;
   }
-  // Where the first mesh's model is found when the scene is read again.
+  // Path of the first mesh's model when the scene is read again.
   std::string path_read_again() {
     const SceneDocument again = read_scene(file_, arm_);
     return again.models.at(test::shape<Mesh>(again.scene).model).path;
@@ -311,7 +312,7 @@ TEST_F(SavedScene, TakesAnObjAlongWithItsMaterialsAndPictures) {
   EXPECT_EQ(test::file_bytes(folder_ / "gear/two words.png"), "two");
   EXPECT_FALSE(fs::exists(folder_ / "gear/linked.png"));
   EXPECT_FALSE(fs::exists(folder_ / "key"));
-  // The same again is there already; another one of its name is not.
+  // The same file is there already and is used; another one of its name is not.
   EXPECT_EQ(test::shape<Mesh>(save_scene(scene, arm_, file_).scene).model, "gear/gear.obj");
   test::write_file(folder_ / "gear/gear.mtl", "somebody else's");
   EXPECT_EQ(test::shape<Mesh>(save_scene(scene, arm_, file_).scene).model, "gear-2/gear.obj");
@@ -329,7 +330,7 @@ TEST_F(SavedScene, TakesAnObjAlongThatStandsAlone) {
 TEST_F(SavedScene, LeavesNoPartOfAnObjBehindWhereItCannotBeWritten) {
   test::write_file(elsewhere_ / "gear.mtl", "newmtl a\n");
   SceneDocument scene = with_mesh(elsewhere_ / "gear.obj", "mtllib gear.mtl\n");
-  scene.scene.add({"", pose_at(Vec3(11, 0, 0)), Plane{}});  // further than a file may say
+  scene.scene.add({"", pose_at(Vec3(11, 0, 0)), Plane{}});  // beyond the limit of a file
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
   EXPECT_FALSE(fs::exists(folder_ / "gear"));
 }
@@ -350,7 +351,7 @@ TEST_F(SavedScene, LeavesEverythingAsItWasWhereItCannotBeWritten) {
               HasSubstr("is a folder"));
 
   test::write_file(file_, "title = \"before\"\n");
-  scene.scene.add({"", pose_at(Vec3(11, 0, 0)), Plane{}});  // further than a file may say
+  scene.scene.add({"", pose_at(Vec3(11, 0, 0)), Plane{}});  // beyond the limit of a file
   EXPECT_THAT(refusal([&] { save_scene(scene, arm_, file_); }), HasSubstr("plane.point"));
   EXPECT_EQ(test::file_bytes(file_), "title = \"before\"\n");
   EXPECT_FALSE(fs::exists(folder_ / "gear.glb"));

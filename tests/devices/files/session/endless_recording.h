@@ -17,7 +17,7 @@
 
 namespace limpid::test {
 
-// Writes for ever in a process of its own and tells through a pipe how many rows are handed over.
+// Writes for ever in a child process and reports through a pipe how many rows are handed over.
 class EndlessRecording {
  public:
   explicit EndlessRecording(const std::filesystem::path& out) {
@@ -32,7 +32,7 @@ class EndlessRecording {
   EndlessRecording(const EndlessRecording&) = delete;
   EndlessRecording& operator=(const EndlessRecording&) = delete;
 
-  // Rows handed over when it died.
+  // Kills the process after so many rows and a time; returns the rows handed over until then.
   std::uint64_t kill_after(std::uint64_t rows, std::chrono::microseconds more) {
     std::uint64_t handed = 0;
     while (handed < rows && read(told_, &handed, sizeof handed) == sizeof handed) {

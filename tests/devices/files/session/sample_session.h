@@ -1,4 +1,4 @@
-// A session with a different number in every place, so that nothing can be mixed up.
+// A session with a different number in every place, so that no two can be confused.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +26,8 @@ inline SessionInfo sample_info(int dof = 3) {
   return info;
 }
 
-// Row k starts at t = k * tick; every other number is noise that depends on k and place alone, but
-// that nothing is touched for two thirds of the time.
+// Rows from k = `from` on, at t = k * tick. The other numbers are noise that depends on k and place
+// alone; for two thirds of the time nothing is touched.
 inline std::vector<double> sample_rows(const RowLayout& layout, std::size_t from,
                                        std::size_t count) {
   std::vector<double> rows;

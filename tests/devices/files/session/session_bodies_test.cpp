@@ -27,7 +27,7 @@ SessionInfo info_of(std::vector<std::string> bodies) {
   return info;
 }
 
-// As many as the columns of bodies and of the joints take.
+// Sample rows with all columns of bodies and joints.
 std::vector<double> rows_of(const SessionInfo& info, std::size_t count) {
   return sample_rows(info.layout(), 0, count);
 }
@@ -49,8 +49,8 @@ TEST(RowLayout, HasRoomForWhatMoves) {
     EXPECT_FALSE(none.has(c));
     EXPECT_TRUE(two.has(c));
   }
-  // A pose and a velocity each; and what all bodies share: four energies, awake, sweeps, points
-  // left out, held, and of the hand its magnet and what it pulls: which body, where, where to.
+  // Each body has a pose and a velocity. All bodies share four energies, awake, sweeps, points left
+  // out, held, and the hand's magnet and pull: which body, where, where to.
   EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 9 + 1 + 3 + 3);
   EXPECT_EQ(none.offset(Column::body_pose), two.offset(Column::body_pose));
 }
@@ -156,8 +156,7 @@ TEST(SessionWithBodies, TakesNoMoreOfThemThanItGivesBack) {
               HasSubstr("65 objects that move"));
 }
 
-// Whose velocities are not there for eight seconds at a time: those of 64 bodies would be 3 kB
-// each.
+// Space for velocities is taken for eight seconds at a time; those of 64 bodies would be 3 kB each.
 TEST(SessionWithBodies, HasNoRoomForTheVelocitiesOfThoseThatSleep) {
   const test::TempDir dir;
   const SessionInfo info = info_of(std::vector<std::string>(64, ""));
@@ -167,7 +166,7 @@ TEST(SessionWithBodies, HasNoRoomForTheVelocitiesOfThoseThatSleep) {
     SessionWriter writer(dir / name, info, false);
     writer.append(rows);
     writer.close();
-    // As it is on the disk: what was announced and not written takes none.
+    // Size on the disk: announced but unwritten parts take none.
     const hid_t file = H5Fopen((dir / name).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     const hid_t data = H5Dopen2(file, "/objects/velocity", H5P_DEFAULT);
     const hsize_t stored = H5Dget_storage_size(data);
@@ -213,7 +212,7 @@ TEST(SessionWithBodies, NamesEachNumberOfTheirsInATable) {
             std::ranges::count(first.substr(0, first.find('\n')), ','));
 }
 
-// What another program, or damage, has made of a path.
+// Replaces a dataset, as another program or damage might.
 void replace(const fs::path& file, const char* path, hid_t type, std::vector<hsize_t> shape) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   H5Ldelete(opened, path, H5P_DEFAULT);

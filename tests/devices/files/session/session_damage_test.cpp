@@ -36,7 +36,7 @@ TEST(DamagedSession, IsRefusedWhereverItIsCut) {
     test::write_file(dir / "cut.h5", whole.substr(0, length));
     EXPECT_THAT(refusal([&] { read_session(dir / "cut.h5"); }), HasSubstr("cut.h5")) << length;
     test::write_file(dir / "cut.h5.part", whole.substr(0, length));
-    refusal([&] { read_session(dir / "cut.h5.part"); });  // rows or a refusal, never a crash
+    refusal([&] { read_session(dir / "cut.h5.part"); });  // gives rows or a refusal, never a crash
   }
 }
 
@@ -77,7 +77,7 @@ TEST(DamagedSession, SaysWhichRowsAreScrambled) {
   EXPECT_LE(read_session(dir / "a.h5.part").size(), 4321u);
 }
 
-// All columns longer by `rows` than what was written into them.
+// Extends all columns by `rows` beyond the written ones.
 void extend(const fs::path& file, hsize_t rows) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   for (const ColumnInfo& column : kColumnInfo) {
@@ -107,7 +107,7 @@ TEST(DamagedSession, DoesNotTakeRowsForRealThatWereNeverWritten) {
 
 TEST(DamagedSession, IsNoticedByASingleNumberThatIsAnother) {
   for (const ColumnInfo& column : kColumnInfo) {
-    if (!summed(RowLayout(3), column)) continue;  // how long ticks took
+    if (!summed(RowLayout(3), column)) continue;  // durations of ticks have no sum
     const test::TempDir dir;
     test::write_sample(dir / "a.h5", 1200);
     {
@@ -155,7 +155,7 @@ TEST(Session, SaysHowToSaveAFileThatWasRenamedInsteadOfRecovered) {
   EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }), HasSubstr("limpid recover"));
 }
 
-// What somebody else's program does to a good file, with HDF5 itself.
+// Changes a good file with HDF5 itself, as somebody else's program might.
 class Vandal {
  public:
   explicit Vandal(const fs::path& file) : file_(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)) {}
@@ -266,8 +266,8 @@ TEST(ForeignSession, IsRefusedWithWhatIsWrong) {
   }
 }
 
-// The first edition had no checksums of its own: what a killed recording of it had announced but
-// not written reads as a not-a-number that nothing else makes.
+// The first edition had no checksums. In a killed recording of it, announced but unwritten values
+// read as a not-a-number that nothing else makes.
 TEST(LeftoverOfTheFirstEdition, EndsWhereAColumnWasNeverWritten) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 1000);
@@ -324,7 +324,7 @@ TEST(ForeignSession, NeedNotHaveWhatTheContractDoesNotAskFor) {
     EXPECT_EQ(session.at(k, Column::hand_grip)[0], 1);
     EXPECT_EQ(session.at(k, Column::force_wanted)[0], 1);
     EXPECT_EQ(session.at(k, Column::contact_potential)[0], 0);
-    // Where it was touched, or that it was not, is not known.
+    // The file does not say where it was touched, nor that it was not.
     for (const Column c : {Column::contact_point, Column::contact_force}) {
       ASSERT_EQ(session.at(k, c).size(), 12u);
       EXPECT_TRUE(std::ranges::all_of(session.at(k, c), [](double x) { return std::isnan(x); }));

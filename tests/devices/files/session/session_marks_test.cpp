@@ -1,4 +1,5 @@
-// What people note at moments of a session, and that it survives what may happen to a file.
+// Marks that people set at moments of a session, and their survival of whatever happens to the
+// file.
 #include "devices/files/session/session_marks.h"
 
 #include <hdf5.h>
@@ -40,7 +41,8 @@ TEST(Marks, OfASessionWithoutAnyAreNone) {
   EXPECT_THAT(marks_of(dir / "a.h5"), IsEmpty());
 }
 
-// Programs that take every list with a unit for a channel would cut all channels to its length.
+// Programs that take every list with a unit for a channel would cut all channels to the marks'
+// length.
 TEST(Marks, HaveNoUnit) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 10);
@@ -51,7 +53,7 @@ TEST(Marks, HaveNoUnit) {
   }
 }
 
-// A killed recording has those that were on the disk with their rows.
+// A killed recording keeps the marks that were on the disk with their rows.
 TEST(Marks, AreRecoveredWithTheRowsTheyBelongTo) {
   const test::TempDir dir;
   {
@@ -84,7 +86,7 @@ TEST(Marks, AreReplacedInAWholeNewFile) {
   EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 2);
 }
 
-// Sessions of before had no marks; they get theirs.
+// Sessions of earlier editions have no list of marks; they get one.
 TEST(Marks, AreGivenToASessionThatHasNoListOfThem) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 10);
@@ -99,7 +101,8 @@ TEST(Marks, AreGivenToASessionThatHasNoListOfThem) {
   EXPECT_EQ(marks_of(dir / "a.h5"), some);
 }
 
-// As on a full disk: the limit of the shell stops the copy, the session stays as it was.
+// The shell's limit of file size stands for a full disk: it stops the copy, and the session stays
+// unchanged.
 TEST(Marks, ThatCannotBeWrittenLeaveTheSessionAsItIs) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 600);
@@ -131,7 +134,7 @@ TEST(Marks, OfTooLongATextAreRefused) {
   EXPECT_EQ(marks_of(dir / "a.h5"), longest);
 }
 
-// Two windows show one recording: what each of them notes stays.
+// Two windows show one recording: the marks of both stay.
 TEST(Marks, OfAnotherProgramStay) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 100);
@@ -159,7 +162,7 @@ TEST(Marks, OfManyProgramsAtATimeAreAllKept) {
   EXPECT_EQ(std::distance(fs::directory_iterator(dir / ""), {}), 1);
 }
 
-// Another recording has taken the name, a shorter one.
+// A shorter recording has taken the name.
 TEST(Marks, OfRowsThatAreNotThereAnyMoreAreRefused) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 10);
@@ -183,7 +186,7 @@ TEST(Marks, GoThroughALinkAndLeaveItOne) {
   EXPECT_EQ(fs::status(dir / "elsewhere/a.h5").permissions(), fs::perms(0640));
 }
 
-// As many as the reader takes; one more would make the recording unreadable.
+// The reader takes so many; one more would make the recording unreadable.
 TEST(Marks, AreNoMoreThanTheReaderTakes) {
   const test::TempDir dir;
   SessionWriter writer(dir / "a.h5", sample_info(3), false);
@@ -196,7 +199,7 @@ TEST(Marks, AreNoMoreThanTheReaderTakes) {
   EXPECT_THAT(refusal([&] { write_marks(dir / "a.h5", more, {}); }), HasSubstr("100001 marks"));
 }
 
-// Another program's file: marks behind the end, lists of another length or kind.
+// Another program's file has marks behind the end, lists of another length or type.
 TEST(Marks, OfAStrangersFileAreNotBelieved) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 10);

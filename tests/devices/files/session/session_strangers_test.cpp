@@ -1,5 +1,5 @@
 // Session files that name other files, or ask for more than they hold: a stranger's session must
-// not carry away what lies beside it.
+// not carry away files beside it.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <hdf5.h>
@@ -36,7 +36,7 @@ class StrangersSession : public testing::Test {
     H5Fclose(file);
   }
 
-  // In place of the model that the sample has.
+  // Puts a dataset in place of the sample's model.
   void put_model(hid_t file, hsize_t size, hid_t creation, hid_t type = H5T_STD_U8LE) {
     H5Ldelete(file, "/models/0", H5P_DEFAULT);
     add_model(file, 0, size, creation, type);
@@ -65,7 +65,7 @@ class StrangersSession : public testing::Test {
     H5Tclose(text);
   }
 
-  // What comes of reading it; never the key.
+  // The error of reading the session, if any; models must never contain the key.
   std::string said() {
     return refusal([this] {
       const Session session = read_session(a_);
@@ -118,8 +118,8 @@ TEST_F(StrangersSession, DoesNotBringAVirtualDataset) {
   EXPECT_THAT(said(), AllOf(HasSubstr("/models/0"), HasSubstr("other datasets")));
 }
 
-// HDF5 opens the other file while it looks whether there is something behind the link: a pipe would
-// make it wait for ever.
+// HDF5 opens the other file when it checks whether the link's target exists: a pipe would make it
+// wait for ever.
 TEST_F(StrangersSession, FollowsNoLinkToAnotherFile) {
   ASSERT_EQ(mkfifo((dir_ / "pipe").c_str(), 0600), 0);
   for (const char* path : {"/models", "/coupling/eta", "/twin", "/events", "/check"}) {
@@ -146,7 +146,7 @@ TEST_F(StrangersSession, FollowsNoSoftLink) {
   EXPECT_THAT(said(), AllOf(HasSubstr("/coupling/eta"), HasSubstr("a soft link")));
 }
 
-// A filter of a stranger is a library that HDF5 would look for, load and call.
+// HDF5 would look for a library of the stranger's filter, load it and call it.
 TEST_F(StrangersSession, LoadsNoFilterThatItNames) {
   change([&](hid_t file) {
     const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
@@ -171,7 +171,7 @@ TEST_F(StrangersSession, IsAFileAndNoPipe) {
   EXPECT_THAT(refusal([&] { write_marks(dir_ / "pipe.h5", {}, {}); }), HasSubstr("not a file"));
 }
 
-// Each of them alone is what gzip could have packed into the file; all of them are not.
+// Each dataset alone could be gzip's packing of the file; all of them together could not.
 TEST_F(StrangersSession, MayNotClaimTheSameBytesManyTimes) {
   change([&](hid_t file) {
     const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
@@ -192,7 +192,7 @@ TEST_F(StrangersSession, MayNotClaimTheSameBytesManyTimes) {
   EXPECT_THAT(said(), AllOf(HasSubstr("/models/"), HasSubstr("more than a file of its size")));
 }
 
-// Nothing was ever written into it, so it takes no room in the file and reads as zeros.
+// An unwritten dataset takes no room in the file and reads as zeros.
 TEST_F(StrangersSession, MayNotClaimAModelThatWasNeverWritten) {
   change([&](hid_t file) { put_model(file, hsize_t{1} << 30, H5P_DEFAULT); });
   EXPECT_THAT(said(), AllOf(HasSubstr("/models/0"), HasSubstr("more than a file of its size")));
@@ -227,7 +227,7 @@ TEST_F(StrangersSession, MayNotBeLargerThanTheMemory) {
               AllOf(HasSubstr("second"), HasSubstr("larger than this computer's memory")));
 }
 
-// What is packed well is read: gzip itself makes a thousand zeros one byte.
+// Well packed data is read: gzip makes a thousand zeros one byte.
 TEST_F(StrangersSession, MayBePackedByGzip) {
   change([&](hid_t file) {
     const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);

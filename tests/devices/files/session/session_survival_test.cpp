@@ -1,4 +1,4 @@
-// Sessions whose program was killed, whose disk was full.
+// Sessions whose program was killed, or whose disk was full.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -21,26 +21,33 @@
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
 
+namespace limpid {
 namespace {
+
+namespace fs = std::filesystem;
+using test::refusal;
+using test::sample_info;
+using test::sample_rows;
+using testing::HasSubstr;
 
 constexpr std::size_t kPage = 4096;
 
-// Pages this process still writes before it is killed; none: for ever.
+// Pages this process still writes before it is killed; none: it is never killed.
 std::optional<std::size_t> pages_left;
 
-// Once `wanted`, stops this process where a kill would do most harm: in the middle of the next
-// write that reaches over the end of a page, if there is one soon.
+// If `wanted`, stops this process where a kill would do most harm: in the middle of the next write
+// across a page's end, if there is one soon.
 struct Stopping {
   bool wanted = false;
   int patience = 0;  // writes to wait for one that can be cut
 };
 std::optional<Stopping> stopping;
 
-// Pages that still fit on the disk this process writes to; none: a disk without end.
+// Pages that still fit on the disk this process writes to; none: the disk has no end.
 std::optional<std::size_t> disk_left;
 std::set<std::size_t> disk_pages;
 
-// How much of a write still fits on the disk.
+// Part of a write that still fits on the disk [bytes].
 std::size_t room_on_disk(std::size_t begin, std::size_t size) {
   for (std::size_t page = begin / kPage; page * kPage < begin + size; ++page) {
     if (disk_pages.contains(page)) continue;
@@ -50,46 +57,6 @@ std::size_t room_on_disk(std::size_t begin, std::size_t size) {
   }
   return size;
 }
-
-}  // namespace
-
-// What HDF5 writes with. The kernel copies page by page and looks for a deadly signal in between,
-// so a killed program's last write can end where a page does, and nowhere else.
-extern "C" ssize_t pwrite(int file, const void* data, size_t size, off_t at) {
-  const auto begin = static_cast<std::size_t>(at);
-  if (disk_left) {
-    const std::size_t room = room_on_disk(begin, size);
-    if (room == 0) return errno = ENOSPC, -1;
-    size = room;
-  }
-  const std::size_t to_page_end = kPage - begin % kPage;
-  if (stopping && stopping->wanted && (size > to_page_end || --stopping->patience < 0)) {
-    stopping->wanted = false;
-    const std::size_t first = std::min(size, to_page_end);
-    syscall(SYS_pwrite64, file, data, first, at);
-    raise(SIGSTOP);
-    if (first == size) return static_cast<ssize_t>(size);
-    const ssize_t rest = syscall(SYS_pwrite64, file, static_cast<const char*>(data) + first,
-                                 size - first, begin + first);
-    return rest < 0 ? rest : static_cast<ssize_t>(first) + rest;
-  }
-  const std::size_t pages = (begin % kPage + size + kPage - 1) / kPage;
-  const bool dies = pages_left && *pages_left < pages;
-  if (dies) size = *pages_left == 0 ? 0 : *pages_left * kPage - begin % kPage;
-  const ssize_t written = syscall(SYS_pwrite64, file, data, size, at);
-  if (dies) raise(SIGKILL);
-  if (pages_left) *pages_left -= pages;
-  return written;
-}
-
-namespace limpid {
-namespace {
-
-namespace fs = std::filesystem;
-using test::refusal;
-using test::sample_info;
-using test::sample_rows;
-using testing::HasSubstr;
 
 void expect_sample(const Session& session) {
   const auto wanted = sample_rows(session.layout, 0, session.size());
@@ -120,7 +87,7 @@ TEST(KilledRecording, LacksAtMostTheLastSecondAndIsRecovered) {
   }
 }
 
-// Whether `work`, in a process of its own, is killed before it has written `pages` pages.
+// Whether `work`, in a child process, is killed before it has written `pages` pages.
 template <class Work>
 bool is_killed_after(std::size_t pages, Work work) {
   const pid_t child = fork();
@@ -137,7 +104,7 @@ bool is_killed_after(std::size_t pages, Work work) {
   return WIFSIGNALED(status);
 }
 
-// Every append is what is written at once, so that nothing waits for more: ticks of 0.64 s.
+// Rows of an append, which are written at once and wait for nothing more: ticks of 0.64 s.
 constexpr std::size_t kBlock = 64;
 
 void record(const fs::path& out, std::size_t rows, int tell) {
@@ -154,7 +121,7 @@ void record(const fs::path& out, std::size_t rows, int tell) {
 }
 
 TEST(KilledRecording, KeepsWhatWasWrittenWhereverTheLastWriteIsCut) {
-  constexpr std::size_t kStep = 11;  // of every page boundary one in so many
+  constexpr std::size_t kStep = 11;  // every 11th page boundary is tried
   bool killed = true;
   for (std::size_t pages = 0; killed; pages += kStep) {
     const test::TempDir dir;
@@ -177,8 +144,8 @@ TEST(KilledRecording, KeepsWhatWasWrittenWhereverTheLastWriteIsCut) {
   }
 }
 
-// Two hours at 10 Hz. How many pieces the file's columns have, and with them the size of every list
-// of HDF5's, depends on the time alone: as long is written at once, whatever the tick.
+// Two hours at 10 Hz. The number of pieces of the file's columns, and so the size of HDF5's lists,
+// depends on the time alone: a write covers the same time at any tick.
 constexpr std::size_t kTwoHours = 72000;
 constexpr std::size_t kSecond = 10;
 constexpr int kMoments = 200;
@@ -191,7 +158,7 @@ constexpr int kMoments = 200;
   const std::size_t stride = rows.size() / kTwoHours;
   std::mt19937 random(11);
   stopping.emplace();
-  // The end, where the lists are longest, is looked at more closely.
+  // Moments are denser at the end, where the lists are longest.
   auto next_moment = [&, moment = 0]() mutable {
     const int m = moment++;
     return m < kMoments / 2 ? 620 * static_cast<std::size_t>(m) + random() % 700
@@ -203,7 +170,7 @@ constexpr int kMoments = 200;
     writer.append(std::span(rows).subspan(k * stride, stride));
     handed = k + 1;
     if (k < next) continue;
-    // Of ten moments nine wait for a write that can be cut.
+    // Nine of ten moments wait for a write that can be cut.
     stopping->patience = static_cast<int>(random() % 10 == 0 ? random() % 80 : 500);
     stopping->wanted = true;
     next = next_moment();
@@ -232,7 +199,7 @@ TEST(KilledRecording, OfTwoHoursLacksAtMostTheLastSecond) {
       EXPECT_EQ(std::memcmp(left->rows.data(), rows.data(), left->rows.size() * sizeof(double)), 0)
           << handed;
     }
-    // Who is stopped has written what he would have written when killed: some really are.
+    // A stopped process has written the same as a killed one; some really are killed.
     if (moments % 50 == 0) {
       const test::TempDir elsewhere;
       fs::copy(part, elsewhere / "a.h5.part");
@@ -290,7 +257,7 @@ TEST(Recovery, RefusesWhatItCannotDo) {
   EXPECT_EQ(recover_session(dir / "a.h5.part", true).rows, 512u);
 }
 
-// Of `work` in a process of its own.
+// Exit status of `work` in a child process.
 template <class Work>
 int exit_status_of(Work work) {
   const pid_t child = fork();
@@ -301,16 +268,16 @@ int exit_status_of(Work work) {
     } catch (const std::exception&) {
     }
     const rlimit none{RLIM_INFINITY, RLIM_INFINITY};
-    setrlimit(RLIMIT_FSIZE, &none);  // what is printed may go to a file
+    setrlimit(RLIMIT_FSIZE, &none);  // the output may go to a file
     disk_left.reset();
-    exit(status);  // with everything that libraries do at exit
+    exit(status);  // with the exit handlers of libraries
   }
   int status = 0;
   waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-// The same where files may not grow beyond `bytes`.
+// Exit status if files may not grow beyond `bytes`.
 int exit_status_with_limit(rlim_t bytes, int (*work)(const fs::path&), const fs::path& out) {
   return exit_status_of([&] {
     const rlimit limit{bytes, RLIM_INFINITY};
@@ -333,8 +300,8 @@ int record_until_it_fails(const fs::path& out) {
 }
 
 TEST(FullDisk, IsAnErrorAndKeepsWhatWasFlushed) {
-  // The columns have room for eight seconds each before the first has more, so a limit of length
-  // ends the recording with the last of them that is whole.
+  // Each column takes room for eight seconds before the first takes more. A limit of length
+  // therefore ends the recording with the last complete eight seconds.
   for (const rlim_t bytes : {4'300'000, 10'000'001, 13'333'333}) {
     const test::TempDir dir;
     EXPECT_EQ(exit_status_with_limit(bytes, &record_until_it_fails, dir / "a.h5"), 0) << bytes;
@@ -380,8 +347,8 @@ TEST(FullDisk, KeepsAllButTheLastSecond) {
     EXPECT_EQ(exit_status_of(work), 0) << pages;
     const auto left = read_session(dir / "a.h5.part");
     expect_sample(left);
-    // A row takes at most 600 bytes, the contacts' part of it, 1536 kB, for eight seconds at once;
-    // before the rows come 400 kB, and a page may be half empty.
+    // A row takes at most 600 bytes, and its contacts 1536 kB for eight seconds at once. The rows
+    // are preceded by 400 kB, and a page may be half empty.
     EXPECT_GT(left.size() + 1000, (pages * 4096 - 600'000 - 1'536'000) / 600) << pages;
   }
 }
@@ -420,3 +387,35 @@ TEST(FullDisk, IsToldByTheSystemsOwnWords) {
 
 }  // namespace
 }  // namespace limpid
+
+// Replaces the function that HDF5 writes with. The kernel copies page by page and looks for a
+// deadly signal in between, so a killed program's last write can end only where a page does.
+extern "C" ssize_t pwrite(int file, const void* data, size_t size, off_t at) {
+  const auto begin = static_cast<std::size_t>(at);
+  if (limpid::disk_left) {
+    const std::size_t room = limpid::room_on_disk(begin, size);
+    if (room == 0) return errno = ENOSPC, -1;
+    size = room;
+  }
+  const std::size_t to_page_end = limpid::kPage - begin % limpid::kPage;
+  if (limpid::stopping && limpid::stopping->wanted &&
+      (size > to_page_end || --limpid::stopping->patience < 0)) {
+    limpid::stopping->wanted = false;
+    const std::size_t first = std::min(size, to_page_end);
+    syscall(SYS_pwrite64, file, data, first, at);
+    raise(SIGSTOP);
+    if (first == size) return static_cast<ssize_t>(size);
+    const ssize_t rest = syscall(SYS_pwrite64, file, static_cast<const char*>(data) + first,
+                                 size - first, begin + first);
+    return rest < 0 ? rest : static_cast<ssize_t>(first) + rest;
+  }
+  const std::size_t pages = (begin % limpid::kPage + size + limpid::kPage - 1) / limpid::kPage;
+  const bool dies = limpid::pages_left && *limpid::pages_left < pages;
+  if (dies)
+    size =
+        *limpid::pages_left == 0 ? 0 : *limpid::pages_left * limpid::kPage - begin % limpid::kPage;
+  const ssize_t written = syscall(SYS_pwrite64, file, data, size, at);
+  if (dies) raise(SIGKILL);
+  if (limpid::pages_left) *limpid::pages_left -= pages;
+  return written;
+}

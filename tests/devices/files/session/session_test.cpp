@@ -42,7 +42,7 @@ TEST_P(SessionOfJoints, ComesBackBitForBit) {
   auto rows = sample_rows(layout, 0, 1234);
   for (double& x : layout.in(std::span(rows).first(static_cast<std::size_t>(layout.stride())),
                              Column::hand_torque)) {
-    x = std::nan("");  // as of a real device
+    x = std::nan("");  // a real device's hand torque
   }
   {
     SessionWriter writer(dir / "a.h5", sample_info(dof), false);
@@ -88,7 +88,7 @@ TEST(Session, MayBeEmpty) {
   EXPECT_EQ(read_session(dir / "a.h5").size(), 0u);
 }
 
-// Worked out by another program: recordings of other editions have these sums.
+// Another program computed these sums; recordings of other editions have them.
 TEST(Session, KeepsTheSumsOfItsColumns) {
   const RowLayout layout(1);
   const auto stride = static_cast<std::size_t>(layout.stride());
@@ -101,7 +101,7 @@ TEST(Session, KeepsTheSumsOfItsColumns) {
   EXPECT_EQ(sums[static_cast<std::size_t>(Column::time)], 0x9f0d'5535'0614'3067u);
 }
 
-// 16 seconds of three joints, pushed at one point for 11 ticks from `from` on.
+// Rows of 16 seconds of three joints, pushed at one point for 11 ticks from `from` on.
 std::vector<double> touched_briefly(std::size_t from) {
   const RowLayout layout(3);
   const auto stride = static_cast<std::size_t>(layout.stride());
@@ -126,7 +126,7 @@ std::uintmax_t size_recorded(const fs::path& out, const std::vector<double>& row
 }
 
 // A row without contacts takes at most 60 numbers, its contacts 24, for eight seconds at a time.
-// Before the rows come 400 kB, of HDF5 1.14 half a megabyte.
+// The rows are preceded by 400 kB, with HDF5 1.14 by half a megabyte.
 TEST(Session, HasRoomForContactsOnlyAboutWhenSomethingTouches) {
   const test::TempDir dir;
   const auto never = size_recorded(dir / "never.h5", touched_briefly(16000));
@@ -144,7 +144,7 @@ TEST(Session, NamesEachNumberOfItsContactsInATable) {
               HasSubstr(",contact_point_4_y_m,contact_point_4_z_m,contact_force_1_x_N,"));
 }
 
-// The last block was full and is written already; a change comes after it.
+// The last block is full and written already; a change comes after it.
 TEST(Session, KeepsAChangeAfterItsLastBlock) {
   const test::TempDir dir;
   const SessionInfo info = sample_info();
@@ -244,7 +244,7 @@ TEST(Session, RefusesAPlaceThatIsTakenOrMissing) {
               HasSubstr("/proc/self/a.h5"));
 }
 
-// Nothing is forbidden to root, so these tests are somebody else then.
+// Another user runs these tests, as nothing is forbidden to root.
 class AsAnybody {
  public:
   AsAnybody() {
@@ -365,7 +365,7 @@ TEST(Session, IsAHandThatHoldsUntilTheSampleAtWhichItLetsGo) {
   for (const double t : {-1.0, 0.0, 0.0005, 0.001, 0.0019}) EXPECT_EQ(path.grip_at(t), 1) << t;
   for (const double t : {0.002, 0.0025, 0.0029}) EXPECT_EQ(path.grip_at(t), 0) << t;
   for (const double t : {0.003, 0.0035, 9.0}) EXPECT_EQ(path.grip_at(t), 1) << t;
-  // A loop of half the tick asks between the samples.
+  // A loop of half the tick reads between the samples.
   constexpr std::array<double, 8> wanted{1, 1, 1, 1, 0, 0, 1, 1};
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     EXPECT_EQ(path.grip_sample(k, 0.0005), wanted[k]) << k;
@@ -396,8 +396,8 @@ TEST(Session, IsAHandToFollowBitForBit) {
   }
 }
 
-// A column that is mostly zeros is left out where it is nothing else. What is no number, and what
-// is zero with a sign, is something else.
+// A column that is mostly zeros is left out where it is all zeros. Not-a-number and a zero with a
+// sign do not count as zero.
 TEST(Session, KeepsABlockWithoutASingleNumber) {
   const RowLayout layout(2);
   const auto stride = static_cast<std::size_t>(layout.stride());
@@ -418,7 +418,7 @@ TEST(Session, KeepsABlockWithoutASingleNumber) {
   }
 }
 
-// Both runs side by side, a few thousand rows at a time, whatever the length.
+// Reading takes both runs side by side, a few thousand rows at a time, at any length.
 TEST(Session, IsReadInPieces) {
   const test::TempDir dir;
   SessionInfo info = sample_info();

@@ -1,4 +1,4 @@
-// What session files have in SI, and that nothing of the rows is lost by it.
+// Session files in SI, and rows that lose nothing by the conversion.
 #include "devices/files/session/session_units.h"
 
 #include <hdf5.h>
@@ -58,7 +58,7 @@ TEST(SessionUnits, ScaleNothingButAnglesAndTorquesOfJoints) {
   }
 }
 
-// Work is what is left alone: a unit of effort over a unit of travel is the joule it was.
+// Work is not scaled: a unit of effort over a unit of travel is a joule.
 TEST(SessionUnits, KeepTheWorkOfEffortOverTravel) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> any(0, 3);
@@ -155,7 +155,7 @@ TEST_F(SlidingSession, ComesBackBitForBitFromWhatAKilledProgramLeft) {
   expect_same(session.rows);
 }
 
-// The number of a dataset in its first row.
+// First number of a dataset, that of the first row.
 template <class T>
 T first_number(const fs::path& file, const char* path, std::size_t at, hid_t type, const T* to) {
   const hid_t opened = H5Fopen(file.c_str(), to ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -213,7 +213,7 @@ TEST_F(SlidingSession, IsRefusedWhereItSaysAnotherKindOfJoint) {
 }
 
 TEST(SessionPoints, AreNoNumbersOnlyWhereNothingTouches) {
-  // Nothing; a touch at the origin; a touch without force; what an old recording does not know.
+  // Nothing; a touch at the origin; a touch without force; values that an old recording lacks.
   const double nan = std::nan("");
   const std::vector<double> before{0, 0, 0, 0, 0, 0, 1, 2, 3, nan, nan, nan};
   const std::vector<double> forces{0, 0, 0, 0, 0, 1, 0, 0, 0, nan, nan, nan};
@@ -238,7 +238,7 @@ TEST(Session, HasNoPlaceForContactsThatAreNotThere) {
   EXPECT_EQ(read_session(dir / "a.h5").at(0, Column::contact_point)[0], 0);
 }
 
-// How long ticks took is otherwise in every run: sums of it would make equal runs unequal.
+// Durations of ticks differ in every run: with their sums equal runs would be unequal.
 TEST(Session, HasSumsOfEverythingButTheTiming) {
   EXPECT_THAT(check_columns(RowLayout(3)),
               AllOf(HasSubstr("/time\n"), HasSubstr("/energy/compensation\n"),

@@ -1,5 +1,5 @@
-// What goes from limpid-session to limpid: the same numbers arrive, and nothing that a program
-// could say that a hostile file has taken over gets further than an error.
+// Transfer from limpid-session to limpid: the same numbers arrive, and a program taken over by a
+// hostile file achieves no more than an error.
 #include <sys/mman.h>
 #include <unistd.h>
 
