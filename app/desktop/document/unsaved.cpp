@@ -40,7 +40,11 @@ std::vector<fs::path> take_unsaved(const fs::path& folder) {
       kept.push_back(entry.path());
     }
   }
-  std::ranges::sort(kept);
+  const auto written = [](const fs::path& file) {
+    std::error_code gone;
+    return fs::last_write_time(file, gone);
+  };
+  std::ranges::sort(kept, {}, written);
   for (fs::path& file : kept) {
     const std::string stem = file.stem().string();
     const fs::path scene = free_name(folder, stem.substr(0, stem.find(kUnsaved)) + "-recovered");

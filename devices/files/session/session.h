@@ -165,6 +165,12 @@ void check_mark(const Mark& mark, const std::filesystem::path& file);
 void write_marks(const std::filesystem::path& session, std::span<const Mark> marks,
                  std::span<const Mark> known);
 
+// A leftover is whole, and has no rows.
+class NothingRecorded : public FileError {
+ public:
+  using FileError::FileError;
+};
+
 // Makes OUT.h5 (or `to`, where that is given) of OUT.h5.part (through a clean copy) and removes the
 // .part. Returns the new path and the rows saved. Errors: as read_session; FileError if the new
 // file exists and not `force`, or there are no rows; the .part stays then.

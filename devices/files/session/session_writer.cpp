@@ -233,7 +233,8 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
   const WriteLock lock(part, WriteLock::Make::no);
   const Session session = read_session(part);
   if (session.size() == 0) {
-    throw FileError(fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
+    throw NothingRecorded(
+        fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
   }
   SessionInfo info = session.info;
   info.arm = recorded_arm(info);

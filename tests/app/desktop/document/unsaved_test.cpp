@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 
 #include "app/base/folders.h"
@@ -43,6 +44,21 @@ TEST_F(Unsaved, EarlierOnesAreNeverReplaced) {
   keep_unsaved(document, arm, "table", folder);
   EXPECT_EQ(take_unsaved(folder).size(), 1u);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 3);
+}
+
+TEST_F(Unsaved, TheNewestIsLastWhateverTheirNames) {
+  const fs::path first = keep_unsaved(document, arm, "table", folder);
+  const fs::path older = keep_unsaved(document, arm, "walls", folder);
+  document.scene.add({"newest", pose_at({0.1, 0, 0.1}), Sphere{0.01}});
+  const fs::path last = keep_unsaved(document, arm, "table", folder);
+  const auto now = fs::file_time_type::clock::now();
+  fs::last_write_time(first, now - std::chrono::hours(2));
+  fs::last_write_time(older, now - std::chrono::hours(1));
+  fs::last_write_time(last, now);
+  const auto found = take_unsaved(folder);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(read_scene(found.back().string(), arm).scene.objects.back().name, "newest");
+  EXPECT_EQ(found[1].filename(), "walls-recovered.toml");
 }
 
 TEST_F(Unsaved, OtherScenesAreLeftAlone) {
