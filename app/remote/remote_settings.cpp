@@ -47,7 +47,7 @@ void set_by_remote(Parameters& p, const std::string& key, const json& value,
     throw RemoteError(fmt::format(
         "set: {}: stays as it is while the loop runs; it is chosen when the program starts", key));
   }
-  if (std::ranges::count(kLimits, key) == 0) return;
+  if (std::ranges::count(kMotorLimits, key) == 0) return;
   const double asked = parameter_number(p, info);
   const double most = parameter_number(highest, info);
   const double now = parameter_number(before, info);
@@ -77,7 +77,7 @@ Parameters with_limits_of(const ArmDescription& arm, Parameters p) {
 
 void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& arm) {
   const Parameters most = with_limits_of(arm, chosen);
-  for (const char* key : kLimits) {
+  for (const char* key : kMotorLimits) {
     const ParameterInfo& info = *find_parameter(key);
     if (parameter_number(p, info) <= parameter_number(most, info)) continue;
     set_parameter_number(p, info, parameter_number(chosen, info));

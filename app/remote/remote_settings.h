@@ -11,14 +11,9 @@
 
 namespace limpid {
 
-// Limits of motors and of their energy, which a program may lower and never raise. Other bounds are
-// the device's own settings, which cannot be reached from here at all.
-inline constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy",
-                                    "tank.most"};
-
 inline constexpr std::size_t kMostSettings = 200;  // that one request names
 
-// Sets `key` of `p` to a value. Limits of motors and of their energy are at most as they are in
+// Sets `key` of `p` to a value. Those of kMotorLimits are at most as they are in
 // `highest`, which is what a person has chosen; what is fixed while a loop runs stays. Errors,
 // after which `p` is as it was: RemoteError, ParameterError.
 void set_by_remote(Parameters& p, const std::string& key, const nlohmann::json& value,

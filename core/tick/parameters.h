@@ -153,6 +153,10 @@ int most_delay(const Parameters& p, std::optional<double> identified, bool real)
 using ParameterInfo = Setting<Parameters>;
 
 std::span<const ParameterInfo> parameter_table();
+
+// Keys of limits of motors and of their energy: less is stricter. A person alone raises them.
+inline constexpr std::array kMotorLimits{"device.torque_limit", "ledger.energy", "tank.energy",
+                                         "tank.most"};
 const ParameterInfo* find_parameter(std::string_view key);
 bool of_controller(const ParameterInfo& info);
 

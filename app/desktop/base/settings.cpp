@@ -90,10 +90,6 @@ void each(S& s, Visit&& visit) {
   visit("gamepad", s.gamepad);
 }
 
-// Limits of which less is stricter. A limit that a user has lowered stays lowered, even if the file
-// cannot be understood.
-constexpr std::array kLimits{"device.torque_limit", "ledger.energy", "tank.energy", "tank.most"};
-
 void complain(std::string& complaint, const std::string& why) {
   complaint += fmt::format("{}{}", complaint.empty() ? "settings not read: " : "; ", why);
 }
@@ -105,14 +101,15 @@ void lower(Parameters& p, const std::string& limit, std::string& complaint) {
            fmt::format("{} is {} {} until it is set", limit, parameter_number(p, info), info.unit));
 }
 
+// A limit that a user has lowered stays lowered, even if the file cannot be understood.
 void lower_all(Parameters& p, std::string& complaint) {
-  for (const char* limit : kLimits) lower(p, limit, complaint);
+  for (const char* limit : kMotorLimits) lower(p, limit, complaint);
 }
 
 // Lowers a limit as far as possible if its own line is wrong or an unknown key may mean it: nobody
 // knows how low it was.
 void lower_untaken(Parameters& p, const std::vector<UntakenKey>& untaken, std::string& complaint) {
-  const std::vector<std::string> limits(kLimits.begin(), kLimits.end());
+  const std::vector<std::string> limits(kMotorLimits.begin(), kMotorLimits.end());
   for (const UntakenKey& one : untaken) {
     const bool unknown = find_parameter(one.key) == nullptr;
     const auto meant = unknown ? nearest(one.key, limits) : std::nullopt;

@@ -32,7 +32,7 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
 
 std::string limits_of(const Parameters& p) {
   std::string text;
-  for (const char* key : kLimits) {
+  for (const char* key : kMotorLimits) {
     text += parameter_text(p, *find_parameter(key)) + " ";
   }
   return text;
