@@ -4,6 +4,7 @@
 // tooltips and help: key, unit, range and meaning.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <span>
