@@ -1,4 +1,4 @@
-// How much work a picture may be.
+// Levels of quality: how much work a picture may be.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,12 @@ struct Quality {
   double scale = 1;        // resolution of the 3D picture, which is scaled up where it is below 1
   std::size_t triangles = 8'000'000;  // in sight; above, large models are drawn coarsely
 
-  // From the best, 0, to the fastest, kLowest; other numbers are taken to the nearest of these.
+  // Levels run from the best, 0, to the fastest, kLowest; level() takes other numbers to the
+  // nearest of these.
   static constexpr int kLowest = 5;
   static Quality level(int level);
 
-  // What suits the renderer that GL_RENDERER names: a processor drawing in software gets less.
+  // Returns the level that suits the renderer named by GL_RENDERER: lower for drawing in software.
   static int automatic_level(std::string_view gl_renderer);
   static Quality automatic(std::string_view gl_renderer) {
     return level(automatic_level(gl_renderer));
@@ -36,10 +37,11 @@ class AutoQuality {
  public:
   explicit AutoQuality(int level = 0);
 
-  // The time one frame took [s], waiting for the screen included or not. True: a new level.
+  // Takes the time of one frame [s], waiting for the screen included or not. Returns true at a new
+  // level.
   bool frame(double seconds);
   int level() const { return level_; }
-  // Something else is drawn now: whatever was learnt about waiting is forgotten.
+  // Forgets what was learnt about waiting, as something else is drawn now.
   void reset();
 
  private:
