@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kInEachOther = 0.0005;  // less than this deep is touching [m]
 constexpr double kHurts = 0.2;           // [J]
-// Thickness of a thin body [m]: 50 g that fall 10 cm press a point in as deep. At more than half of
-// the thickness the other side is nearer.
+// Thickness below which a body is thin [m]: as deep as 50 g that fall 10 cm press a point in.
+// Deeper than half of the thickness the other side is nearer.
 constexpr double kThinBody = 0.004;
 constexpr double kFarFetched = 100;  // times the inertia of a solid
 
@@ -79,8 +79,7 @@ double floor_of(const Scene& scene, const ArmDescription& arm, const Vec3& up) {
   return up.dot(root_of(arm)) - farthest_tip(arm).distance;
 }
 
-// Returns how far a joint on the world lets a centre of mass sink; further bodies on that joint may
-// sink, too.
+// Returns how far a joint on the world lets a centre of mass sink; one on a body sinks with that.
 double sinks_on(const BodyJoint& joint, const Object& object, const Vec3& center, const Vec3& up) {
   const double along = joint.axis.dot(up);
   if (joint.kind == BodyJoint::Kind::slider) {

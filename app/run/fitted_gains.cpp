@@ -84,7 +84,7 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
     set(p, "device.damping", wanted_damping(arm, chosen.tick));
     b_d = p.damping;
   }
-  // Gains follow (3) for packets that are `old` and velocities that count `again`.
+  // Gains follow (3) for packets that are `old` [s], and velocities that count `again` times more.
   const double old = link.oldest() * chosen.tick, again = 0.5 * link.link_jitter;
   set(p, "coupling.b_vc", down(b_d / (12 + 6 * again)));
   set(p, "coupling.k_vc", down((b_d - (2 + again) * p.b_vc) / (chosen.tick + 1.5 * delay + old)));

@@ -28,7 +28,7 @@ class DivergenceWatch {
 
   bool wild() const { return !why_.empty(); }  // a row was, and the loop has not come back
   bool lost() const { return lost_; }
-  // Return the first of those wild rows; only while wild().
+  // Returns the first wild row of those that wild() is about; only while wild().
   std::uint64_t since_row() const { return since_row_; }
   double since() const { return since_; }          // [s]
   const std::string& why() const { return why_; }  // fault of that row, in words
