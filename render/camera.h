@@ -104,7 +104,7 @@ class Camera {
   Placement now_, from_, goal_;
   double progress_ = 1;  // of the transition from from_ to goal_, 0 to 1
   double width_ = 1280, height_ = 720;
-  double tan_y_;  // of half the vertical field of view
+  double tan_y_;  // tangent of half the vertical field of view
 };
 
 }  // namespace limpid

@@ -10,7 +10,7 @@ namespace limpid {
 
 namespace {
 
-constexpr double kSpan = 0.3;    // of a link: how far a turn moves its end [m]
+constexpr double kSpan = 0.3;    // length of a link, whose end turning moves [m]
 constexpr double kFlash = 0.25;  // a contact's first moment [s]
 
 // Compares values within a tolerance; a value that is not a number is never near.

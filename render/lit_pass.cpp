@@ -231,7 +231,7 @@ Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts)
 BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
                        double meters_per_pixel) {
   if (state.other_bodies.empty()) return {};
-  constexpr double kSpan = 0.03;  // of a body: how far a turn moves its edge [m]
+  constexpr double kSpan = 0.03;  // from a body's middle to its edge, which turns [m]
   BodyGhosts ghosts{body_links(state.other_bodies, starts),
                     {},
                     state.rerun ? palette::kRerun : palette::of_twin(palette::kProxy, state.theme)};

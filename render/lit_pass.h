@@ -81,10 +81,10 @@ class LitPass {
   LitPass(const std::filesystem::path& shaders, const Quality& quality);
 
   struct Look {
-    glm::vec4 tint{0};    // linear; w: how much of it
+    glm::vec4 tint{0};    // linear; w: amount
     bool matte = false;   // diffuse light only, computed at the vertices
     bool coarse = false;  // else coarse only where it looks the same
-    float pixels = 1e9f;  // that the view has
+    float pixels = 1e9f;  // number in the view
   };
   // Draws what hides things behind it; `view` is the world to clip space.
   void draw_solid(const std::vector<Drawable>& list, const Links& links, const glm::mat4& view,

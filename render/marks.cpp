@@ -9,9 +9,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeastForce = 0.02;    // [N], below it there is nothing to point at
+constexpr double kLeastForce = 0.02;    // smaller forces have no arrow [N]
 constexpr double kLeastError = 0.0001;  // [m]
-constexpr double kShadeHeight = 0.06;   // above it a tip leaves no shade [m]
+constexpr double kShadeHeight = 0.06;   // a tip above leaves no shade [m]
 constexpr double kFlashTime = 0.25;     // [s]
 
 glm::vec4 with_alpha(const palette::Rgb& c, float alpha) { return {c[0], c[1], c[2], alpha}; }
@@ -165,7 +165,7 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
 }
 
 void add_joints(const ArmDescription& arm, const ArmPose& pose, Theme theme, LineBatch& lines) {
-  constexpr double kHalf = 0.022;  // of what is drawn of an axis [m]
+  constexpr double kHalf = 0.022;  // half the length of a joint's axis [m]
   const auto colors = joint_colours(theme);
   const glm::vec4 edge = theme == Theme::dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
   for (std::size_t i = 0; i < std::min({arm.joints.size(), pose.links.size(), colors.size()});

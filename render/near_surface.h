@@ -10,8 +10,8 @@
 namespace limpid {
 
 struct NearSurface {
-  Vec3 point, normal;   // on the surface [m]; unit, out of the material as far as that is known
-  double distance = 0;  // of the point from it, not negative [m]
+  Vec3 point, normal;   // on the surface [m]; unit, out of the material if that is known
+  double distance = 0;  // from the point to the surface, not negative [m]
   Material material;
 };
 

@@ -42,7 +42,7 @@ namespace limpid {
 struct Lighting {
   glm::vec4 key, sky, earth, ground, top, bottom;
   glm::vec4 outline;      // around what is highlighted, sRGB
-  glm::vec4 object_tint;  // of what can be touched, linear; w: how much
+  glm::vec4 object_tint;  // for objects that can be touched, linear; w: amount
 };
 
 Lighting lighting_of(Theme theme);

@@ -11,7 +11,7 @@ struct Quality {
   int shadow_size = 2048;  // edge of the shadow map in texels; 0: no shadows
   bool soft = true;        // wide, soft shadow edges
   double scale = 1;        // resolution of the 3D picture, which is scaled up where it is below 1
-  std::size_t triangles = 8'000'000;  // in sight; above, large models are drawn coarsely
+  std::size_t triangles = 8'000'000;  // most in sight; with more, large models are drawn coarsely
 
   // Levels run from the best, 0, to the fastest, kLowest; level() takes other numbers to the
   // nearest of these.
@@ -49,7 +49,7 @@ class AutoQuality {
 
   int level_;
   double elapsed_ = 0;                    // of the second under way [s]
-  int frames_ = 0, slow_ = 0, fast_ = 0;  // in it
+  int frames_ = 0, slow_ = 0, fast_ = 0;  // in that second
   int good_seconds_ = 0;                  // in a row
   int wait_;                              // good seconds before a step up
 };

@@ -157,9 +157,9 @@ class ObjectItems {
   const ArmDescription& arm_;
   const std::vector<Bounds>& visuals_;
   SceneItems& items_;
-  Paint paint_ = kObject;  // of what is being added
+  Paint paint_ = kObject;  // of the object being added
   bool own_color_ = false;
-  int body_ = -1;  // number of the one that is being added; else -1
+  int body_ = -1;  // number of the body being added; else -1
 };
 
 std::vector<Bounds> add_visuals(std::span<const VisualPicture> seen, SceneItems& items) {

@@ -33,7 +33,7 @@ std::vector<Drawable> upload_all(const std::vector<Item>& items) {
 }
 
 constexpr float kMargin = 6;      // of outlines and soft edges [px]
-constexpr float kSoftTexels = 8;  // how far a shadow's soft edge reaches
+constexpr float kSoftTexels = 8;  // reach of a shadow's soft edge
 constexpr float kLeastLight = 0.1f;
 
 template <class T>

@@ -27,7 +27,7 @@ struct PlacedMesh {
   std::shared_ptr<const Model> model;
   glm::mat4 pose;
   bool highlighted;
-  int body;  // whose frame it is in; -1: the world
+  int body;  // body whose frame it is in; -1: the world
 };
 
 class ScenePainter {
@@ -93,12 +93,12 @@ class ScenePainter {
   GpuModel ball_, cone_, tube_, patch_;
   std::vector<Drawable> base_, moving_, world_, walls_, probes_, meshes_;
   std::vector<Drawable> bodies_, body_meshes_;  // `link` is the body's number
-  std::vector<Drawable> highlighted_;           // some of both kinds of meshes
+  std::vector<Drawable> highlighted_;           // some of meshes_ and body_meshes_
   // Uploaded models of meshes_; the keys keep the models' addresses from being used again.
   std::map<std::shared_ptr<const Model>, std::shared_ptr<const GpuModel>> uploaded_;
   Bounds bounds_;
   glm::mat4 view_{1.0f};        // world to clip space
-  glm::mat4 seen_{1.0f};        // the same for what is drawn in this frame
+  glm::mat4 seen_{1.0f};        // view_, cropped to the area drawn in this frame
   Damage shadow_damage_;        // in the shadow map
   bool still_shadows_ = false;  // the map holds the shadows of what does not move
   float ground_height_ = 0, pixel_scale_ = 1, pixels_ = 1;

@@ -135,7 +135,7 @@ struct SceneView::Impl {
   std::map<const Model*, Bounds> model_bounds;  // of those in `meshes`
   ScenePainter painter;
   std::array<DrawnSheet, 4> sheets;  // by SceneView::Sheet
-  std::uint64_t version = 1;         // of all that stands still
+  std::uint64_t version = 1;         // of everything that stands still
 };
 
 SceneView::SceneView(const std::filesystem::path& shaders, const ArmDescription& arm,

@@ -31,11 +31,11 @@ float scale_of(const FilmLook& look) {
   return static_cast<float>(look.text_scale > 0 ? look.text_scale : std::max(kLeastScale, fitting));
 }
 
-constexpr double kWhole = 30;          // the plots show all of what is no longer than that [s]
-constexpr double kPart = 10;           // of what is longer
+constexpr double kWhole = 30;          // longest stretch that the plots show whole [s]
+constexpr double kPart = 10;           // part of a longer stretch, shown at once [s]
 constexpr double kDrawingOfGif = 0.7;  // part of the work; the rest is colours
-constexpr double kCameraSlower = 3;    // than where somebody waits for it
-constexpr double kBefore = 1.0;  // what came before the first picture leaves its trail in it [s]
+constexpr double kCameraSlower = 3;    // than in the window, where somebody waits
+constexpr double kBefore = 1.0;        // time before the first picture whose trail is in it [s]
 
 std::string law_text(const RowLayout& layout, std::span<const double> row) {
   const auto at = [&](Column c) { return layout.in(row, c)[0]; };
@@ -237,7 +237,7 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
   if (beside) beside->theme = look_.theme;
   const bool overlaid = beside && look_.overlaid;
   if (overlaid) lay_over(view, *std::exchange(beside, std::nullopt));
-  stage.draw_at(0);  // there is time
+  stage.draw_at(0);  // at the best quality: there is time
   stage.picture.set_pixel_scale(scale_);
   draw_picture(at.picture, stage, view, camera, beside ? &*beside : nullptr);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();

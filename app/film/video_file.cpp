@@ -421,7 +421,7 @@ VideoFile::VideoFile(const fs::path& out, const VideoFormat& format, bool force)
   } else {
     check_place(impl_->out, force);
   }
-  av_log_set_level(AV_LOG_QUIET);  // as errors are thrown
+  av_log_set_level(AV_LOG_QUIET);  // errors are thrown
   impl_->remove_part();
   try {
     impl_->open();

@@ -15,18 +15,18 @@ namespace limpid {
 namespace {
 
 constexpr double kShortestTicks = 8;
-constexpr double kPlaybackPlace = 0.75;  // of the window, where playback runs when zoomed in
+constexpr double kPlaybackPlace = 0.75;  // part of the window at which playback runs when zoomed in
 
 constexpr double kNoticeTime = 4;        // [s]
 constexpr float kLeastHeight = 84;       // of curves and time axis under the legend [px]
-constexpr float kMostMargin = 0.3f;      // of the width, for values at the curves' ends
-constexpr int kFramesToCloseMenu = 2;    // so that the menu is not in the picture
+constexpr float kMostMargin = 0.3f;      // part of the width, for values at the curves' ends
+constexpr int kFramesToCloseMenu = 2;    // the menu must not be in the picture
 constexpr double kBetweenSpectra = 0.1;  // [s]
-constexpr double kNoValue = -9;          // decimal logarithm of amplitudes that are none
-constexpr double kDecades = 5;           // that a spectrum shows below its peak
+constexpr double kNoValue = -9;          // decimal logarithm that stands for an amplitude of 0
+constexpr double kDecades = 5;           // of a spectrum, shown below its peak
 
 constexpr double kWheelStep = 1.18;
-constexpr float kGrip = 5;  // how close to the playback line a drag takes it [px]
+constexpr float kGrip = 5;  // distance at which a drag takes the playback line [px]
 
 constexpr float kReach = 30;  // from the mouse to what it points at [px]
 

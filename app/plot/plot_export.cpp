@@ -319,7 +319,7 @@ class PlotDrawing {
   double column(double number) const { return x_at((number - first_column_) / columns_); }
 
   void bands() {
-    double line = 0;  // of names, from the top; each band has its own
+    double line = 0;  // line of the names, from the top; each band has its own
     for (const Band& each : spec_.bands) {
       double free_from = left_;
       const double y = top_ + 15 + 14 * line++;

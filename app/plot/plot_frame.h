@@ -34,9 +34,9 @@ struct PlotFrame {
   const Palette& palette;
   float scale;
   ScreenRect outer;    // the whole plot
-  ScreenRect area;     // where the curves are
+  ScreenRect area;     // of the curves
   PixelWindow window;  // the stretch of time
-  AxisMap x;           // over time, the window
+  AxisMap x;           // if over time: the window
   AxisMap y;           // in the channels' unit
 
   float x_of(double value) const {

@@ -14,7 +14,7 @@ namespace limpid {
 struct PlotNotice {
   std::string text;
   bool bad = false;
-  std::filesystem::path file = {};  // that was written, if any was
+  std::filesystem::path file = {};  // the file written, if any
 };
 
 struct PlotSaving {

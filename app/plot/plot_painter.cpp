@@ -87,10 +87,10 @@ void draw_across_axis(const PlotFrame& frame, const PlotSpec& spec) {
 
 constexpr float kThickness = 2;             // [px] at scale 1
 constexpr float kDotsFrom = 7;              // samples further apart than this get dots [px]
-constexpr float kTolerance = 0.2f;          // by which points may be left out [px]
+constexpr float kTolerance = 0.2f;          // error at which points may be left out [px]
 constexpr float kTallFrom = 6;              // height that neighbouring columns share [px]
 constexpr std::size_t kGroup = 12;          // columns looked at together
-constexpr std::size_t kLongestPath = 2000;  // what ImGui counts in 16 bits
+constexpr std::size_t kLongestPath = 2000;  // as ImGui counts in 16 bits
 constexpr float kSoftUpTo = 2.5f;           // wider bands need no soft rim [px]
 
 // A point on the screen with the upper and lower edge of the curve there.

@@ -9,7 +9,7 @@ namespace limpid {
 
 struct PlotPlaces {
   std::vector<ScreenRect> places;  // one for each plot, from (0, 0) on [px]
-  float width = 0;                 // that all of them need; more than the room: scroll
+  float width = 0;                 // needed by all; if it is more than the room, they scroll
 };
 
 // Places plots in one row while each has the width it needs, else in two where there is height for

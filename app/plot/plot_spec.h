@@ -62,7 +62,7 @@ struct PlotUnit {
 };
 
 struct PlotAxis {
-  std::string label = {};            // of the horizontal one
+  std::string label = {};            // of the horizontal axis
   std::string unit = {};             // after multiplication by factor
   double factor = 1;                 // from the channels' unit, such as 1000 from rad to mrad
   std::vector<PlotUnit> units = {};  // smallest first, to choose unit and factor from; or none

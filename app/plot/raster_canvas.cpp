@@ -86,7 +86,7 @@ class Coverage {
     left_ = std::min(left_, first);
     right_ = std::max(right_, last + 2);
     if (first == last) {
-      const auto right = static_cast<float>(0.5 * (x0 + x1) - first);  // what stays uncovered
+      const auto right = static_cast<float>(0.5 * (x0 + x1) - first);  // uncovered part
       row[first] += part * (1 - right);
       row[first + 1] += part * right;
       return;
@@ -97,7 +97,7 @@ class Coverage {
     for (int x = first; x <= last; ++x) {
       const double a = std::max(x0, static_cast<double>(x)), b = std::min(x1, x + 1.0);
       const double crossed = (b - a) / wide;
-      const double mean = x + 1 - 0.5 * (a + b);  // of the pixel right of the edge, where it is
+      const double mean = x + 1 - 0.5 * (a + b);  // part of the pixel right of the edge, on average
       const double reached = (a - x0) / wide;
       const auto now = static_cast<float>(reached + crossed * mean);
       row[x] += part * (now - before);

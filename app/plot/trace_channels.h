@@ -21,7 +21,7 @@ namespace limpid {
 // The first channels of one run, in this order; the joints' follow one by one, and after these all
 // columns of the row.
 enum class Channel : std::uint8_t {
-  kind,          // its number
+  kind,          // number of the law
   error,         // |x_E| [rad]; [m] of an arm that only slides
   energy_total,  // [J]
   energy_commanded,
@@ -123,7 +123,7 @@ class EnergyAccount {
   void start_over() { *this = EnergyAccount(); }
 
   SampleIndex next_ = 0;
-  double looked_until_ = -1;  // at the marks [s]
+  double looked_until_ = -1;  // time up to which marks were looked at [s]
   EnergyShares shares_;
 };
 

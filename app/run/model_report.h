@@ -14,7 +14,7 @@ namespace limpid {
 
 struct ModelAxes {
   double unit = 1;       // of the coordinates [m]
-  bool y_up = false;     // else z
+  bool y_up = false;     // y is up, else z
   bool guessed = false;  // the file does not say all of it
 };
 

@@ -24,7 +24,7 @@ std::filesystem::path scene_of_device(const ArmDescription& arm);
 // the joints' limits.
 struct SmallPath {
   HandPath hand;
-  RigStart start;  // at rest at its beginning
+  RigStart start;  // at rest at the path's beginning
 };
 SmallPath small_path(const ArmDescription& arm);
 

@@ -13,7 +13,7 @@
 namespace limpid {
 namespace {
 
-constexpr std::size_t kBlockRows = 4096;  // what SessionWriter writes at once
+constexpr std::size_t kBlockRows = 4096;  // rows that SessionWriter writes at once
 constexpr int kMostNaps = 10;             // of 2 ms, for a block to come together
 
 // Returns the rows of the ring: `room`, but never more than 64 MiB.

@@ -15,10 +15,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFadeIn = 1;                              // of the force, at rest [s]
-constexpr double kPress = 3, kFree = 6;                    // [s]
-constexpr double kStop = 0.05, kDepth = 0.15;              // beyond rest, and beyond that [rad]
-constexpr double kStopStiffness = 2;                       // [N m/rad]
+constexpr double kFadeIn = 1;                  // of the force, at rest [s]
+constexpr double kPress = 3, kFree = 6;        // [s]
+constexpr double kStop = 0.05, kDepth = 0.15;  // from rest to the stop, and from there on [rad]
+constexpr double kStopStiffness = 2;           // [N m/rad]
 constexpr double kSwing = 0.12, kSlow = 1.3, kFast = 4.1;  // [rad], [Hz]
 constexpr double kLeastSpeed = 0.05;                       // of motion [rad/s]
 constexpr double kTwoPi = 2 * 3.14159265358979323846;

@@ -65,7 +65,7 @@ struct RunEnd {
 RunEnd end_of(const Session& session);
 
 struct RunPace {
-  bool realtime = false;                    // paced at the tick rate by the haptic thread
+  bool realtime = false;                    // the haptic thread paces it at the tick rate
   const std::atomic<bool>* stop = nullptr;  // set it to end early
 };
 

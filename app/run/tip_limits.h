@@ -28,9 +28,9 @@ struct TipLimits {
   double every_hand;  // stiffest wall that a linear law can render passively in every hand [N/m]
   double scene;       // stiffest thing in the scene, 0 without any [N/m]
   FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
-  double w_f;         // of the observer there [rad/s]
+  double w_f;         // of the observer at the tip [rad/s]
   AddedMass added;    // of the predictive coupling: eta as the possible delay leaves it
-  int delay_most;     // that delay [ticks]
+  int delay_most;     // possible delay [ticks]
 };
 
 // Finds the limits at configuration x [rad].

@@ -31,7 +31,7 @@ struct WallTap {
   double judged = 0.2;  // last part of that time, in which it should rest [s]
 
   static constexpr double kSpeed = 0.15,
-                          kAbove = 0.005;  // of the hand, and where it starts [m/s, m]
+                          kAbove = 0.005;  // speed and starting height of the hand [m/s, m]
   static constexpr double kFast = 20;      // trembling is above this [Hz]
 };
 

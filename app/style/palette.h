@@ -44,7 +44,7 @@ enum class Ink : std::uint8_t {
   energy,
   neutral,
   rerun,    // all of a second run
-  joint_1,  // and so on, of one joint each
+  joint_1,  // and so on, one for each joint
   joint_7 = joint_1 + 6,
   count_
 };
@@ -73,7 +73,7 @@ struct Palette {
   Rgb axis;  // the zero line and ticks
   Rgb text;
   Rgb muted;
-  Rgb accent;  // what is switched on; no thing's own colour
+  Rgb accent;  // for what is switched on; no thing's own colour
   Rgb broken;
   Inks inks;
   bool dark = false;

@@ -10,7 +10,7 @@ namespace limpid {
 struct PictureLegend {
   const char* beside = nullptr;  // name of a second proxy, if there is one
   const char* cone = nullptr;    // meaning of the friction cone, if there is one
-  bool slips = false;            // and the colour of slipping
+  bool slips = false;            // shows the colour of slipping, too
   // Names of two runs in one picture; or none.
   std::string first = {}, second = {};
   bool compact = false;  // short words side by side, however much room there is

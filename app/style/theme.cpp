@@ -74,7 +74,7 @@ void set_colours(const Palette& p, ImVec4* colours) {
 
 constexpr float kRegularSize = 16;  // height of a line [px] at scale 1
 constexpr float kSmallSize = 14;
-constexpr float kDigitWidth = 0.51f;  // of that height, as wide as Inter's 0
+constexpr float kDigitWidth = 0.51f;  // part of that height, as wide as Inter's 0
 
 constexpr std::array<ImWchar, 3> kDigits{'0', '9', 0};
 constexpr std::array<ImWchar, 13> kGlyphs{

@@ -391,7 +391,7 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
                   : loader.LoadASCIIFromString(&out.gltf, &error, &warning,
                                                reinterpret_cast<const char*>(text.data()),
                                                static_cast<unsigned>(text.size()), "");
-  } catch (const std::logic_error&) {  // what tinygltf did not expect in the JSON
+  } catch (const std::logic_error&) {  // JSON that tinygltf did not expect
     error = "is not valid glTF";
   }
   if (!good) refuse(name, error.empty() ? "is not valid glTF" : first_line(error));

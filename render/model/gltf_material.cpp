@@ -132,7 +132,7 @@ const GltfMaterial& GltfMaterials::at(int index) {
 
 GltfMaterial GltfMaterials::read(const tinygltf::Material& from) {
   GltfMaterial to;
-  bool placed = false;  // whether a texture has said where its coordinates are
+  bool placed = false;  // a texture has named its coordinates
   const auto& pbr = from.pbrMetallicRoughness;
   if (pbr.baseColorFactor.size() == 4) {
     for (int i = 0; i < 3; ++i)

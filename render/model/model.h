@@ -56,7 +56,7 @@ struct Finish {
   float bump = 1;               // of the normal texture
   std::array<float, 3> glow{};  // light of its own, linear
   Alpha alpha = Alpha::opaque;
-  float cutoff = 0.5f;  // of Alpha::mask: less opaque is not there
+  float cutoff = 0.5f;  // for Alpha::mask: less opaque points are not drawn
   bool two_sided = false;
   bool flat = false;  // each triangle as it lies, not as the vertices' normals say
 
@@ -73,14 +73,14 @@ struct Model {
   enum class Up : std::uint8_t { unsaid, y, z };
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
-  std::vector<Part> parts;             // one a material, together all indices in order
+  std::vector<Part> parts;             // one for each material, together all indices in order
   std::vector<Image> images;
   // Coarse version of a large model, with fewer triangles over the same vertices; else empty.
   std::vector<std::uint32_t> coarse;
   std::vector<Part> coarse_parts;
-  double unit = 0;                    // of the coordinates, as the file says [m]; 0: it does not
+  double unit = 0;                    // of the coordinates, by the file [m]; 0: the file has none
   Up up = Up::unsaid;                 // the axis
-  std::vector<std::string> warnings;  // what was left out of the file, a line each
+  std::vector<std::string> warnings;  // parts of the file left out, a line each
 
   Eigen::AlignedBox3d bounds() const {
     Eigen::AlignedBox3d box;

@@ -133,7 +133,7 @@ std::string readable_obj(std::string_view text) {
 }
 
 std::string readable_stl(std::string_view text) {
-  std::string solid;  // as far as it has come
+  std::string solid;  // text of the present solid so far
   bool empty = true;
   std::string out = by_lines(text, [&](std::string_view line, std::string& done) {
     const std::string_view word = first_word(line);

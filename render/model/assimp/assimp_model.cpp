@@ -85,7 +85,7 @@ void keep_importer(Assimp::Importer& importer, const ModelKind& kind) {
     Assimp::BaseImporter* const each = importer.GetImporter(i);
     if (importer.GetImporter(std::string(kind.suffix).c_str()) == each) continue;
     importer.UnregisterLoader(each);
-    delete each;  // whose it is now
+    delete each;  // it is the caller's now
   }
 }
 
