@@ -19,8 +19,8 @@ struct Limits {
   friend bool operator==(const Limits&, const Limits&) = default;
 };
 
-// Limits that grow at once where data would be cut off, and shrink only after the data has left
-// much of the axis unused for a while. They glide to round numbers.
+// Limits that grow at once where data would be cut off. They shrink only after the data has left
+// much of the axis unused for a while, and glide to round numbers.
 class Autoscale {
  public:
   // `data`: what has to be visible; `smallest_span` > 0: the axis never shows less than that;

@@ -3,8 +3,8 @@
 // All of them depend on the device's damping b_d and its delay t_d. With b_vc = b_d/12, k_vc =
 // 10/12 b_d/(T + 3/2 t_d) and b_v = b_d condition (3) holds with an equals sign, as for the
 // paper's. With alpha = 35/12 b_d eta_min of (25) is the paper's 0.59. An arm whose file says no
-// damping gets one that slows it as fast as the built-in arm's does, or less where that would stop
-// its lightest joint within a tick.
+// damping gets one that slows it as fast as the built-in arm's does. It gets less where that would
+// stop its lightest joint within a tick.
 #pragma once
 
 #include <array>

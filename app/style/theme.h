@@ -25,7 +25,7 @@ ImVec4 colour_vector(Rgb rgb, float alpha = 1);
 enum class Face : std::uint8_t { regular, semibold, small };
 
 // Loads Inter at `scale`, drawn with `density` pixels for each of ImGui's units, or ImGui's own
-// font where Inter is not installed, in place of all fonts loaded before. Call it before the first
+// font where Inter is not installed. Replaces all fonts loaded before. Call it before the first
 // frame, or between frames followed by a new font texture. Returns whether Inter was found.
 bool load_fonts(float scale, float density = 1);
 

@@ -57,9 +57,8 @@ void guard_counts(std::span<const unsigned char> bytes, const std::string& kind)
 //   dae   UTF-16 and Latin-1 become UTF-8; nothing stands before the declaration
 //   mtl   without `aniso` and `anisor`, whose names are taken for their numbers
 //   obj   `0.5` for `.5`, which is not counted as a number
-//   ply   binary data that begin with the end of a line, skipped with the header's, get a byte
-//   before;
-//         unknown elements are renamed to one that is skipped
+//   ply   a byte before binary data that begin with the end of a line, else skipped with the
+//         header's; unknown elements have the name of one that is skipped
 //   stl   text: without solids that are empty
 std::optional<std::vector<unsigned char>> readable(std::span<const unsigned char> bytes,
                                                    const std::string& kind);
