@@ -110,7 +110,7 @@ fs::path picture_file(const fs::path& folder, std::uint64_t number) {
   return folder / fmt::format("{}{:06}.png", kPicture, number);
 }
 
-// Lists the pictures of this video or an earlier one; other files there are somebody's.
+// Lists the pictures of this video or an earlier one; other files there are the user's.
 std::vector<fs::path> pictures_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code none;
