@@ -19,11 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 using Extent = Eigen::AlignedBox3d;
 
-// Larger collision shapes of one arm than these are not read to find out.
+// Number of an arm's collision meshes that are read; with more, those left say nothing.
 constexpr int kMostMeshes = 40;
-// How much better one way has to fit, as parts of the link's size, before it counts.
+// Least difference between the fits of both ways that counts, as parts of the link's size.
 constexpr double kTells = 0.05;
-// Of a file by itself, against what its folder says.
+// Limits of misfit by which a file decides alone, against what its folder says.
 constexpr double kFitsAlone = 0.1, kFarOffAlone = 0.4;
 
 Vec3 turned(const Vec3& p) { return {p.x(), -p.z(), p.y()}; }
@@ -50,14 +50,15 @@ Extent box_of(const Visual& shape) {
   return placed(whole, Extent(-half, half), false);
 }
 
-// The boxes of links, by their numbers.
+// Boxes of links, by the links' numbers.
 class LinkBoxes {
  public:
   LinkBoxes(const ArmDescription& arm, std::span<const Visual> collisions,
             const LoadProgress& progress)
       : arm_(arm), collisions_(collisions), progress_(progress) {}
 
-  // Of the collision shapes; empty without any, or where these are glTF themselves.
+  // Returns the box of the collision shapes; empty without any, or if any of them is glTF or
+  // unread.
   const Extent& collision(int link) {
     const auto [at, fresh] = known_.try_emplace(link);
     if (!fresh) return at->second;
@@ -75,7 +76,7 @@ class LinkBoxes {
     return at->second = box;
   }
 
-  // Of the frames that it carries, and the joint after it.
+  // Returns the box of the frames that the link carries, and of the joint after it.
   Extent frames(int link) const {
     Extent box;
     for (const NamedFrame& frame : arm_.frames) {
@@ -107,20 +108,20 @@ class LinkBoxes {
   int read_ = 0;
 };
 
-// How far the faces of a box are from those of another one, as parts of its size.
+// Returns how far the faces of a box are from those of another one, as parts of its size.
 double difference(const Extent& box, const Extent& other) {
   const double apart =
       (box.min() - other.min()).lpNorm<1>() + (box.max() - other.max()).lpNorm<1>();
   return apart / other.sizes().sum();
 }
 
-// How far points at the corners of `points` are outside of a box, as parts of its size.
+// Returns how far the corners of `points` are outside of a box, as parts of its size.
 double outside(const Extent& box, const Extent& points) {
   const Vec3 over = (box.min() - points.min()).cwiseMax(0) + (points.max() - box.max()).cwiseMax(0);
   return over.sum() / box.sizes().sum();
 }
 
-// What is wrong with the pictures in some links: turned from y up, and as they are in their files.
+// Misfit of the pictures in some links: turned from y up, and as they are in their files.
 struct Wrong {
   double turned = 0, as_it_is = 0;
 
@@ -132,7 +133,7 @@ struct Wrong {
   bool tells() const { return turned != as_it_is; }
 };
 
-// One folder's pictures.
+// Pictures of one folder.
 struct Folder {
   std::map<int, std::pair<Extent, Extent>>
       links;  // all of a link together: turned, and as they are
@@ -140,13 +141,13 @@ struct Folder {
 
   bool z_up() const {
     const Wrong& wrong = by_collision.tells() ? by_collision : by_frames;
-    // Frames are points; they say less than shapes, and so more of it is asked for.
+    // Frames are points and say less than shapes: the misfits must differ more to count.
     const double share = by_collision.tells() ? 1 : 0.75;
     return wrong.as_it_is < share * wrong.turned;
   }
 };
 
-// By the collision shape of its link alone, where that is beyond doubt.
+// Decides by the collision shape of the picture's link alone, where that is beyond doubt.
 std::optional<bool> alone(const std::pair<Extent, Extent>& boxes, const Extent& collision) {
   const double turn = difference(boxes.first, collision);
   const double as_it_is = difference(boxes.second, collision);
@@ -154,57 +155,6 @@ std::optional<bool> alone(const std::pair<Extent, Extent>& boxes, const Extent& 
   if (turn < kFitsAlone && as_it_is > kFarOffAlone) return false;
   return std::nullopt;
 }
-
-}  // namespace
-
-bool is_gltf(const std::string& file) {
-  const ModelKind* const kind = model_kind(file);
-  return kind != nullptr && kind->gltf;
-}
-
-std::set<std::string> with_z_up(const ArmDescription& arm,
-                                const std::map<std::string, Model>& models,
-                                std::span<const Visual> collisions, const LoadProgress& progress) {
-  std::map<fs::path, Folder> folders;
-  std::map<std::string, std::pair<int, std::pair<Extent, Extent>>> files;  // a link that each is in
-  for (const Visual& visual : arm.visuals) {
-    const auto model = models.find(visual.mesh);
-    if (model == models.end() || !is_gltf(visual.mesh)) continue;
-    const Extent box = model->second.bounds();
-    const std::pair boxes{placed(visual, box, true), placed(visual, box, false)};
-    auto& together = folders[fs::path(visual.mesh).parent_path()].links[visual.link];
-    together.first.extend(boxes.first);
-    together.second.extend(boxes.second);
-    files[visual.mesh] = {visual.link, boxes};
-  }
-  LinkBoxes links(arm, collisions, progress);
-  for (auto& [path, folder] : folders) {
-    for (const auto& [link, boxes] : folder.links) {
-      if (const Extent& shape = links.collision(link); !shape.isEmpty()) {
-        folder.by_collision.add(difference(boxes.first, shape), difference(boxes.second, shape));
-      }
-      const Extent frames = links.frames(link);
-      folder.by_frames.add(outside(boxes.first, frames), outside(boxes.second, frames));
-    }
-  }
-  std::set<std::string> z_up;
-  for (const auto& [file, place] : files) {
-    const Folder& folder = folders[fs::path(file).parent_path()];
-    const Extent& shape = links.collision(place.first);
-    const auto own = shape.isEmpty() ? std::nullopt : alone(place.second, shape);
-    if (own.value_or(folder.z_up())) z_up.insert(file);
-  }
-  return z_up;
-}
-
-void stand_upright(Model& model) {
-  for (Vertex& v : model.vertices) {
-    v.position = Eigen::Vector3f(v.position.x(), -v.position.z(), v.position.y());
-    v.normal = Eigen::Vector3f(v.normal.x(), -v.normal.z(), v.normal.y());
-  }
-}
-
-namespace {
 
 constexpr double kSeen = 1e-3;  // shorter links are not missed where others have pictures [m]
 
@@ -214,7 +164,7 @@ Paint paint_of(const Visual& visual) {
   return paint;
 }
 
-// Neither colours nor pictures of its own, as an STL.
+// Returns whether a model has neither colours nor pictures of its own, as an STL.
 bool unpainted(const Model& model) {
   const Eigen::Vector3f none = Vertex{}.color;
   return model.images.empty() &&
@@ -257,7 +207,7 @@ Model model_of(const Visual& visual) {
   return model;
 }
 
-// Empty files and files of nothing but a point show nothing.
+// Reads a model; refuses empty files and files of nothing but a point, which show nothing.
 Model read(const std::string& file, const LoadProgress& progress) {
   Model model = load_model_file(file, progress);
   const Bounds box = model.bounds();
@@ -267,8 +217,8 @@ Model read(const std::string& file, const LoadProgress& progress) {
   return model;
 }
 
-// The models of the visuals that have none, as their files have them; what cannot be read is a line
-// in the arm's warnings.
+// Reads the models of the visuals that have none, as their files have them. Each that cannot be
+// read is a line in the arm's warnings.
 std::map<std::string, Model> read_models(ArmDescription& arm, const LoadProgress& progress) {
   std::map<std::string, Model> models;
   std::set<std::string> tried;
@@ -328,6 +278,53 @@ Item foot(const ArmDescription& arm, double reach) {
 }
 
 }  // namespace
+
+bool is_gltf(const std::string& file) {
+  const ModelKind* const kind = model_kind(file);
+  return kind != nullptr && kind->gltf;
+}
+
+std::set<std::string> with_z_up(const ArmDescription& arm,
+                                const std::map<std::string, Model>& models,
+                                std::span<const Visual> collisions, const LoadProgress& progress) {
+  std::map<fs::path, Folder> folders;
+  std::map<std::string, std::pair<int, std::pair<Extent, Extent>>> files;  // a link that each is in
+  for (const Visual& visual : arm.visuals) {
+    const auto model = models.find(visual.mesh);
+    if (model == models.end() || !is_gltf(visual.mesh)) continue;
+    const Extent box = model->second.bounds();
+    const std::pair boxes{placed(visual, box, true), placed(visual, box, false)};
+    auto& together = folders[fs::path(visual.mesh).parent_path()].links[visual.link];
+    together.first.extend(boxes.first);
+    together.second.extend(boxes.second);
+    files[visual.mesh] = {visual.link, boxes};
+  }
+  LinkBoxes links(arm, collisions, progress);
+  for (auto& [path, folder] : folders) {
+    for (const auto& [link, boxes] : folder.links) {
+      if (const Extent& shape = links.collision(link); !shape.isEmpty()) {
+        folder.by_collision.add(difference(boxes.first, shape), difference(boxes.second, shape));
+      }
+      const Extent frames = links.frames(link);
+      folder.by_frames.add(outside(boxes.first, frames), outside(boxes.second, frames));
+    }
+  }
+  std::set<std::string> z_up;
+  for (const auto& [file, place] : files) {
+    const Folder& folder = folders[fs::path(file).parent_path()];
+    const Extent& shape = links.collision(place.first);
+    const auto own = shape.isEmpty() ? std::nullopt : alone(place.second, shape);
+    if (own.value_or(folder.z_up())) z_up.insert(file);
+  }
+  return z_up;
+}
+
+void stand_upright(Model& model) {
+  for (Vertex& v : model.vertices) {
+    v.position = Eigen::Vector3f(v.position.x(), -v.position.z(), v.position.y());
+    v.normal = Eigen::Vector3f(v.normal.x(), -v.normal.z(), v.normal.y());
+  }
+}
 
 Vec3 end_of(const ArmDescription& arm, std::size_t i) {
   return i + 1 < arm.joints.size() ? Vec3(arm.joints[i + 1].origin.translation())

@@ -1,4 +1,4 @@
-// An arm as its makers drew it, and as a chain of capsules where they did not.
+// The look of an arm: its makers' models, or a chain of capsules where there are none.
 #pragma once
 
 #include <map>
@@ -12,39 +12,36 @@
 
 namespace limpid {
 
-// Which way up the glTF pictures of an arm's links are.
-//
-// glTF has y up and URDF z, and so ROS turns these pictures. Some makers write them with z up all
-// the same, and a turned picture then lies across its link. Both are tried, and the one is kept in
-// which the pictures are where the links are: in the boxes of their collision shapes, or without
-// any in boxes around the frames that the links carry.
+// Tells glTF by the file's suffix.
+bool is_gltf(const std::string& file);
 
-bool is_gltf(const std::string& file);  // by its suffix
-
-// Of the glTF files among `models`, which are as they are in their files, those that have z up.
-// The pictures of one folder come from one maker: what tells for most of them holds for those that
-// fit both ways. `collisions` as arm.visuals are. Errors: LoadCancelled.
+// Finds the glTF files among `models`, given as they are in their files, that have z up. glTF has y
+// up and URDF z, so ROS turns these pictures; some makers write them with z up all the same. A
+// turned picture then lies across its link. Both ways are tried, and the one is kept in which the
+// pictures are where the links are: in the boxes of their collision shapes, or without any in boxes
+// around the frames that the links carry. The pictures of one folder come from one maker: the way
+// of most of them holds for those that fit both ways. `collisions` are like arm.visuals. Errors:
+// LoadCancelled.
 std::set<std::string> with_z_up(const ArmDescription& arm,
                                 const std::map<std::string, Model>& models,
                                 std::span<const Visual> collisions, const LoadProgress& progress);
 
-// From y up to z up.
+// Turns a model from y up to z up.
 void stand_upright(Model& model);
 
 // Reads the models of the visuals that have none yet; for the window's thread only where they are
-// small. One that cannot be read, or is empty, becomes a stand-in, with a line in the arm's
-// warnings. glTF is turned from y up to z up, unless it fits the links better as it is, which is a
-// warning, too: see upright.h. `collisions` are the shapes of the arm's links where they collide,
-// as far as they are known. Errors: LoadCancelled.
+// small. A file that cannot be read, or is empty, becomes a stand-in, with a line in the arm's
+// warnings. glTF is turned from y up to z up, unless with_z_up() names it, which is a warning, too.
+// `collisions` are the collision shapes of the arm's links, as far as they are known. Errors:
+// LoadCancelled.
 void load_visuals(ArmDescription& arm, std::span<const Visual> collisions = {},
                   const LoadProgress& progress = {});
 
-// What there is to draw of an arm whose visuals are loaded, into items.base and items.moving. An
-// arm without any, and links without any or of which only stand-ins are left, are drawn as capsules
-// from joint to joint.
+// Adds what is drawn of an arm with loaded visuals to items.base and items.moving. An arm or link
+// without visuals, or with stand-ins only, is drawn as capsules from joint to joint.
 void add_arm(const ArmDescription& arm, SceneItems& items);
 
-// Where link i ends, in its own frame: at the next joint, the last one at the tip [m].
+// Returns the end of link i in its own frame: the next joint, or the tip for the last link [m].
 Vec3 end_of(const ArmDescription& arm, std::size_t i);
 
 }  // namespace limpid

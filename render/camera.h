@@ -1,4 +1,4 @@
-// What a camera or a light can see of boxes.
+// An orbiting camera, and what it or a light can see of boxes.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,7 +8,8 @@
 
 namespace limpid {
 
-// False only if the whole box, whose frame `to_clip` brings to clip space, lies beyond one side.
+// Returns false only if the whole box, whose frame `to_clip` brings to clip space, lies beyond one
+// side.
 inline bool in_sight(const Eigen::AlignedBox3f& box, const glm::mat4& to_clip) {
   bool beyond[5] = {true, true, true, true, true};
   for (int i = 0; i < 8; ++i) {
@@ -23,7 +24,7 @@ inline bool in_sight(const Eigen::AlignedBox3f& box, const glm::mat4& to_clip) {
   return !(beyond[0] || beyond[1] || beyond[2] || beyond[3] || beyond[4]);
 }
 
-// Of the view, what a box covers at most; more than 1 where it reaches beyond it.
+// Returns the largest share of the view that a box may cover; more than 1 where it reaches beyond.
 inline float share_of_view(const Eigen::AlignedBox3f& box, const glm::mat4& to_clip) {
   Eigen::AlignedBox2f covered;
   for (int i = 0; i < 8; ++i) {
@@ -35,7 +36,6 @@ inline float share_of_view(const Eigen::AlignedBox3f& box, const glm::mat4& to_c
   return 0.25f * covered.sizes().prod();
 }
 
-// An orbiting camera, z up. Pixels are counted from the top left corner of the viewport, y down.
 using Bounds = Eigen::AlignedBox3d;
 
 struct Ray {
@@ -43,28 +43,30 @@ struct Ray {
   Vec3 direction;  // unit
 };
 
+// An orbiting camera, z up. Pixels are counted from the top left corner of the viewport, y down.
 class Camera {
  public:
   Camera();
 
-  // front looks at the device from +x, side from -y, top from +z; iso from front, right and above.
+  // Named views: front looks at the device from +x, side from -y, top from +z; iso from front,
+  // right and above.
   enum class View { front, top, side, iso };
 
   // Size of the viewport in pixels, at least 1 x 1.
   void resize(double width, double height);
 
-  // What the mouse does, in pixels moved. These act at once and end a transition under way.
+  // Moves by the mouse, in pixels. They act at once and end a transition under way.
   void orbit(double dx, double dy);
   void pan(double dx, double dy);
-  // One wheel notch is one step, positive comes closer; what is under the cursor stays there.
+  // Zooms by notches of the wheel, positive closer; what is under the cursor stays there.
   void zoom(double steps, const Eigen::Vector2d& pixel);
 
-  // Smooth moves; advance() carries them out. frame() shows all of `bounds` with room around.
+  // Smooth moves, which advance() carries out. frame() shows all of `bounds` with room around.
   void look(View view);
   void frame(const Bounds& bounds);
   void reset(const Bounds& bounds);  // iso view of `bounds`
   void advance(double dt);           // [s]
-  void finish();                     // be at the goal now
+  void finish();                     // jumps to the goal
 
   Vec3 eye() const;
   Vec3 target() const { return now_.target; }
@@ -78,15 +80,15 @@ class Camera {
   Eigen::Matrix4d view() const;
   Eigen::Matrix4d projection() const;  // OpenGL clip space
 
-  // Nothing when the point is behind the eye.
+  // Returns nothing when the point is behind the eye.
   std::optional<Eigen::Vector2d> project(const Vec3& point) const;
   Ray ray(const Eigen::Vector2d& pixel) const;
-  // Where the mouse ray meets the plane through `through` that is parallel to the image.
+  // Returns the point where the mouse ray meets the plane through `through` parallel to the image.
   Vec3 plane_drag(const Eigen::Vector2d& pixel, const Vec3& through) const;
-  // How large one pixel is at this point [m].
+  // Returns the size of one pixel at this point [m].
   double meters_per_pixel(const Vec3& point) const;
-  // The same eye looking at `about` through a lens, in another viewport: there it appears `times`
-  // as large as in this one.
+  // Returns the same eye looking at `about` through a lens, in another viewport: there `about`
+  // appears `times` as large as here.
   Camera magnified(const Vec3& about, double times, double width, double height) const;
 
  private:
@@ -102,7 +104,7 @@ class Camera {
   Placement now_, from_, goal_;
   double progress_ = 1;  // of the transition from from_ to goal_, 0 to 1
   double width_ = 1280, height_ = 720;
-  double tan_y_;  // of half the vertical field of view
+  double tan_y_;  // tangent of half the vertical field of view
 };
 
 }  // namespace limpid

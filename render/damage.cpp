@@ -10,10 +10,10 @@ namespace limpid {
 
 namespace {
 
-constexpr double kSpan = 0.3;    // of a link: how far a turn moves its end [m]
+constexpr double kSpan = 0.3;    // length of a link, whose end turning moves [m]
 constexpr double kFlash = 0.25;  // a contact's first moment [s]
 
-// One comparison after the other; a number that is none is never near.
+// Compares values within a tolerance; a value that is not a number is never near.
 struct Near {
   double tolerance;
 
@@ -49,7 +49,7 @@ struct Near {
   bool operator()(const std::optional<T>& a, const std::optional<T>& b) const {
     return a.has_value() == b.has_value() && (!a || (*this)(*a, *b));
   }
-  // Trails have a point a frame: those of a tip at rest are the same with any number of them.
+  // Trails have a point a frame: those of a tip at rest are the same with any number of points.
   bool trails(const ArmPose& a, const ArmPose& b) const {
     return (*this)(a.trail, b.trail) || (rests(a) && rests(b));
   }

@@ -1,4 +1,4 @@
-// Whether two states of the view can be told apart in a picture.
+// Parts of a picture that must be drawn anew, and whether two states of the view look the same.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,25 @@
 
 namespace limpid {
 
-// Nothing is further off than `tolerance` [m], forces as long as their arrows.
+// Returns whether nothing is further off than `tolerance` [m]; forces count by the length of their
+// arrows.
 bool same_picture(const ViewState& a, const ViewState& b, double tolerance);
 
-// What of a picture has to be drawn anew because it looks different than in the last frame.
-using PixelArea = Eigen::AlignedBox2i;  // y up, the upper corner is the first pixel outside
+// Area of a picture in pixels: y up, the upper corner is the first pixel outside.
+using PixelArea = Eigen::AlignedBox2i;
 
-// Things are named in the same order in every frame; one that looks different than its predecessor
-// has to be drawn where it is and where that one was.
+// Finds the area of a picture that looks different than in the last frame. Things are named in the
+// same order in every frame. One that looks different has to be drawn where it is and where it was.
 class Damage {
  public:
   // `to_clip`: the world to clip space; sizes in pixels.
   void begin(const glm::mat4& to_clip, int width, int height);
-  // The next thing: all that its look follows from, as bytes, and points of the world whose convex
-  // hull holds it, `margin` pixels around that included.
+  // Adds the next thing. `look` has all that its look follows from, as bytes; the convex hull of
+  // the points `hull` of the world, and `margin` pixels around, holds it.
   void add(std::span<const std::byte> look, std::span<const glm::vec3> hull, float margin);
-  // Something else has changed: all of it.
+  // Marks the whole picture, as something else has changed.
   void spoil() { spoilt_ = true; }
-  // Where; empty: the picture is the same.
+  // Returns the area to be drawn anew; empty: the picture is the same.
   PixelArea end();
   PixelArea whole() const { return {Eigen::Vector2i::Zero(), size_}; }
 
@@ -45,10 +46,11 @@ class Damage {
   bool spoilt_ = true;
 };
 
-// FNV-1a.
+// Hashes by FNV-1a.
 std::uint64_t hash_of(std::span<const std::byte> bytes);
 
-// Clip space in which this area alone fills the view: for leaving out what lies beside it.
+// Returns the clip space in which this area alone fills the view: for leaving out what lies beside
+// it.
 glm::mat4 cropped(const glm::mat4& to_clip, const PixelArea& area, const PixelArea& whole);
 
 }  // namespace limpid

@@ -23,7 +23,7 @@ void ShadowMap::allocate(const Layer& layer) const {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  // Outside of the map everything is lit.
+  // Everything outside of the map is lit.
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
   const float lit[] = {1, 1, 1, 1};
@@ -84,7 +84,7 @@ std::string shadow_defines(const Quality& quality, int hard_taps) {
          std::to_string(std::max(1, quality.shadow_size)) + ".0\n";
 }
 
-// Whether the coarse version's triangles are so small on the screen that nothing is lost by it.
+// Returns whether the coarse version's triangles are so small on the screen that nothing is lost.
 bool coarse_enough(const GpuModel& model, const glm::mat4& to_clip, float pixels) {
   constexpr float kSmall = 6;  // a triangle [px]
   std::size_t indices = 0;
@@ -92,11 +92,29 @@ bool coarse_enough(const GpuModel& model, const glm::mat4& to_clip, float pixels
   return pixels * share_of_view(model.box(), to_clip) < kSmall * static_cast<float>(indices / 3);
 }
 
-// Vertices say everything about it.
+// Returns whether the vertices say everything about the look.
 bool is_plain(const Finish& m) {
   Finish plain;
   plain.flat = m.flat;
   return m == plain;
+}
+
+// Returns the strength of each link's outline, by its distance from the proxy's: none at the same
+// place, where it would surround the proxy.
+std::vector<float> outlines_of(const ArmPose& ghost, const ArmPose& proxy,
+                               double meters_per_pixel) {
+  std::vector<float> strengths(ghost.links.size(), 1.0f);
+  if (ghost.links.size() != proxy.links.size()) return strengths;
+  for (std::size_t i = 0; i < strengths.size(); ++i) {
+    const bool last = i + 1 == strengths.size();
+    const auto end = [&](const ArmPose& arm) {
+      return last ? arm.tip : Vec3(arm.links[i + 1].translation());
+    };
+    const Vec3 off = ghost.links[i].translation() - proxy.links[i].translation();
+    const double apart = std::max(off.norm(), (end(ghost) - end(proxy)).norm());
+    strengths[i] = static_cast<float>(std::clamp((apart / meters_per_pixel - 1) / 3, 0.0, 1.0));
+  }
+  return strengths;
 }
 
 }  // namespace
@@ -192,28 +210,6 @@ void LitPass::draw_textured(const std::vector<Drawable>& list, const Links& link
   });
 }
 
-namespace {
-
-// How far each link of the ghost is from the proxy's, as the strength of its outline: at the same
-// place there is none, or it would surround the proxy.
-std::vector<float> outlines_of(const ArmPose& ghost, const ArmPose& proxy,
-                               double meters_per_pixel) {
-  std::vector<float> strengths(ghost.links.size(), 1.0f);
-  if (ghost.links.size() != proxy.links.size()) return strengths;
-  for (std::size_t i = 0; i < strengths.size(); ++i) {
-    const bool last = i + 1 == strengths.size();
-    const auto end = [&](const ArmPose& arm) {
-      return last ? arm.tip : Vec3(arm.links[i + 1].translation());
-    };
-    const Vec3 off = ghost.links[i].translation() - proxy.links[i].translation();
-    const double apart = std::max(off.norm(), (end(ghost) - end(proxy)).norm());
-    strengths[i] = static_cast<float>(std::clamp((apart / meters_per_pixel - 1) / 3, 0.0, 1.0));
-  }
-  return strengths;
-}
-
-}  // namespace
-
 Links links_of(const ArmPose& arm) {
   Links out;
   for (const Pose& pose : arm.links) {
@@ -235,7 +231,7 @@ Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts)
 BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
                        double meters_per_pixel) {
   if (state.other_bodies.empty()) return {};
-  constexpr double kSpan = 0.03;  // of a body: how far a turn moves its edge [m]
+  constexpr double kSpan = 0.03;  // from a body's middle to its edge, which turns [m]
   BodyGhosts ghosts{body_links(state.other_bodies, starts),
                     {},
                     state.rerun ? palette::kRerun : palette::of_twin(palette::kProxy, state.theme)};

@@ -1,4 +1,4 @@
-// What the key light sees: a depth picture of the scene from its side.
+// Solid surfaces in the key light with their shadows, and the frames of the arms and bodies drawn.
 #pragma once
 
 #include <filesystem>
@@ -18,14 +18,15 @@
 
 namespace limpid {
 
+// A depth picture of the scene from the key light's side.
 class ShadowMap {
  public:
   explicit ShadowMap(int size);  // edge in texels, 0: none
 
   // Aims the light, given as the unit vector towards it, at a box of the world.
   void aim(const Bounds& box, const glm::vec3& to_light);
-  // Casters are drawn with clip() * model: first, seldom, those that stay where they are, then in
-  // an area the others on a copy of that.
+  // Casters are drawn with clip() * model. begin_still() comes first, seldom, for those that stay
+  // where they are; begin_moving() draws the others into an area of a copy.
   void begin_still() const;
   void begin_moving(const PixelArea& area) const;
   void bind(GLuint unit) const;
@@ -48,25 +49,25 @@ class ShadowMap {
   float texel_ = 0;
 };
 
-// Solid surfaces in the scene's light.
+// A model on the graphics card, in a link's frame.
 struct Drawable {
   std::shared_ptr<const GpuModel> model;
   glm::mat4 pose;          // in the frame of `link`
   int link;                // -1: the world
-  bool own_color = false;  // whatever a list is tinted with
+  bool own_color = false;  // keeps it, whatever the tint of its list
 };
 
 // The link frames of one arm; empty if it is not drawn.
 using Links = std::vector<glm::mat4>;
 
-// Its pose in the world; none if it is not drawn.
+// Returns the item's pose in the world; none if it is not drawn.
 inline std::optional<glm::mat4> place(const Drawable& item, const Links& links) {
   if (item.link < 0) return item.pose;
   if (static_cast<std::size_t>(item.link) >= links.size()) return std::nullopt;
   return links[static_cast<std::size_t>(item.link)] * item.pose;
 }
 
-// Calls draw_one(model, pose in the world) for each that is drawn.
+// Calls draw_one(model, pose in the world) for each item that is drawn.
 template <class Draw>
 void each(const std::vector<Drawable>& list, const Links& links, Draw&& draw_one) {
   for (const Drawable& item : list) {
@@ -74,24 +75,24 @@ void each(const std::vector<Drawable>& list, const Links& links, Draw&& draw_one
   }
 }
 
-// Made anew when the quality changes.
+// Draws surfaces in the scene's light. Is made anew when the quality changes.
 class LitPass {
  public:
   LitPass(const std::filesystem::path& shaders, const Quality& quality);
 
   struct Look {
-    glm::vec4 tint{0};    // linear; w: how much of it
-    bool matte = false;   // diffuse light only, worked out at the vertices
-    bool coarse = false;  // else only what would look the same
-    float pixels = 1e9f;  // that the view has
+    glm::vec4 tint{0};    // linear; w: amount
+    bool matte = false;   // diffuse light only, computed at the vertices
+    bool coarse = false;  // else coarse only where it looks the same
+    float pixels = 1e9f;  // number in the view
   };
-  // What hides what is behind it; `view` is the world to clip space.
+  // Draws what hides things behind it; `view` is the world to clip space.
   void draw_solid(const std::vector<Drawable>& list, const Links& links, const glm::mat4& view,
                   const Look& look) const;
-  // What shines through, after everything solid.
+  // Draws what shines through, after everything solid.
   void draw_blended(const std::vector<Drawable>& list, const Links& links, const glm::mat4& view,
                     const Look& look) const;
-  // Triangles of `list` in sight.
+  // Counts the triangles of `list` in sight.
   static std::size_t in_view(const std::vector<Drawable>& list, const glm::mat4& view);
 
   ShaderProgram ground;
@@ -108,14 +109,14 @@ class LitPass {
   GlTexture white_, flat_;
 };
 
-// The translucent arms of a picture: what there is besides the proxy.
+// A translucent arm in the picture, besides the proxy.
 struct Ghost {
   Links links;
   palette::Rgb color;
-  std::vector<float> outline;  // of each link: how strong it is, 0 to 1
+  std::vector<float> outline;  // strength for each link, 0 to 1
 };
 
-// Bodies of a second run, or of a re-run, where they are elsewhere than those of the first.
+// Bodies of a second run or re-run that are elsewhere than those of the first.
 struct BodyGhosts {
   Links links;
   std::vector<bool> shown;  // of each body
@@ -127,14 +128,14 @@ struct BodyGhosts {
   }
 };
 
-// Where each body is: as seen, else as it starts.
+// Returns the frame of each body: as seen, else as it starts.
 Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts);
 BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
                        double meters_per_pixel);
 
-// Where each link is; none of an arm with a pose that is not finite.
+// Returns the frame of each link; none if any is not finite.
 Links links_of(const ArmPose& arm);
-// In the order in which they are to be drawn. `meters_per_pixel` at the tips.
+// Returns the ghosts in the order of drawing. `meters_per_pixel` at the tips.
 std::vector<Ghost> ghosts_of(const ViewState& state, double meters_per_pixel);
 
 }  // namespace limpid

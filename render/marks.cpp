@@ -9,16 +9,16 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeastForce = 0.02;    // [N], below it there is nothing to point at
+constexpr double kLeastForce = 0.02;    // smaller forces have no arrow [N]
 constexpr double kLeastError = 0.0001;  // [m]
-constexpr double kShadeHeight = 0.06;   // above it a tip leaves no shade [m]
+constexpr double kShadeHeight = 0.06;   // a tip above leaves no shade [m]
 constexpr double kFlashTime = 0.25;     // [s]
 
 glm::vec4 with_alpha(const palette::Rgb& c, float alpha) { return {c[0], c[1], c[2], alpha}; }
 
 palette::Rgb lighter(const palette::Rgb& c, float by) { return palette::mix(c, {1, 1, 1}, by); }
 
-// A unit shape along z, scaled across and along, with its z turned to `direction`.
+// Places a unit shape along z at `at`: scaled across and along, its z turned to `direction`.
 glm::mat4 place(const Vec3& at, const Vec3& direction, double across, double along) {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m.block<3, 3>(0, 0) =
@@ -28,7 +28,8 @@ glm::mat4 place(const Vec3& at, const Vec3& direction, double across, double alo
   return to_glm(m);
 }
 
-// A touch is seen at once, and a harder one covers more, though never everything.
+// Radius of a contact's patch [m]: seen at once, larger for a harder touch, though never
+// everything.
 double patch_radius(double force) { return 0.016 + 0.026 * (1 - std::exp(-force / 4)); }
 
 void add_arrow(const Vec3& from, const Vec3& force, const palette::Rgb& color, double size,
@@ -54,8 +55,8 @@ void add_trail(const std::vector<Vec3>& trail, const palette::Rgb& color, LineBa
                 with_alpha(color, alpha(i)), LineBatch::Ends::flat);
 }
 
-// Friction's cone as long as the normal force's arrow would be: the arrow of the whole force ends
-// in its base, on the rim where it slips.
+// Adds friction's cone, as long as the normal force's arrow would be. The arrow of the whole force
+// ends in its base, on the rim where it slips.
 void add_cone(const ContactMark& contact, std::vector<SolidMark>& out) {
   const double along = kMetersPerNewton * contact.force.dot(contact.normal);
   if (!(contact.friction > 0) || !(along > 0) || !std::isfinite(along)) return;
@@ -93,7 +94,7 @@ struct TipColors {
   palette::Rgb device, proxy;
 };
 
-// The two tips, each in the colour of its arm, and the line between them.
+// Adds the two tips, each in the colour of its arm, and the line between them.
 void add_error(const ArmPose& device, const ArmPose& proxy, const TipColors& colors, bool dark,
                LineBatch& lines) {
   const glm::vec4 core = dark ? glm::vec4(1, 1, 1, 1) : glm::vec4(0.05, 0.05, 0.06, 1);
@@ -104,7 +105,7 @@ void add_error(const ArmPose& device, const ArmPose& proxy, const TipColors& col
     lines.add(from, to, 6.5f, edge, edge);
     lines.add(from, to, 3.5f, core, core);
   }
-  // Where they agree the device's is a ring.
+  // The device's dot is the wider: a ring where the two agree.
   const auto dot = [&](const glm::vec3& at, const palette::Rgb& color, float width) {
     lines.add(at, at, width + 3, edge, edge);
     lines.add(at, at, width, with_alpha(color, 1), with_alpha(color, 1));
@@ -164,7 +165,7 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
 }
 
 void add_joints(const ArmDescription& arm, const ArmPose& pose, Theme theme, LineBatch& lines) {
-  constexpr double kHalf = 0.022;  // of what is drawn of an axis [m]
+  constexpr double kHalf = 0.022;  // half the length of a joint's axis [m]
   const auto colors = joint_colours(theme);
   const glm::vec4 edge = theme == Theme::dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
   for (std::size_t i = 0; i < std::min({arm.joints.size(), pose.links.size(), colors.size()});
@@ -196,7 +197,7 @@ void add_grid(const Bounds& area, Theme theme, LineBatch& lines) {
     const auto first = static_cast<int>(std::ceil(area.min()[axis] / kStep));
     const auto last = static_cast<int>(std::floor(area.max()[axis] / kStep));
     for (int line = first; line <= std::min(last, first + kMost); ++line) {
-      // Each line in pieces, as the fading is linear along a piece.
+      // Lines are cut into pieces, as the fading is linear along a piece.
       constexpr int kPieces = 10;
       for (int piece = 0; piece < kPieces; ++piece) {
         const auto point = [&](int k) {

@@ -33,16 +33,16 @@ struct Marks {
   std::vector<FlashMark> flashes;
 };
 
-// Sizes are in pixels, so that marks stay readable; the lengths of arrows are not
-// (kMetersPerNewton).
+// Collects the marks of a state. Their sizes are in pixels, so that they stay readable; only arrows
+// have lengths in metres (kMetersPerNewton).
 Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale);
 
-// Lines that others can hide, and lines on top of everything.
+// Adds lines that others can hide, and lines on top of everything.
 void add_trails(const ViewState& state, LineBatch& lines);
 void add_lines_on_top(const ViewState& state, LineBatch& lines);
-// The axis of each joint, in its colour.
+// Adds the axis of each joint, in its colour.
 void add_joints(const ArmDescription& arm, const ArmPose& pose, Theme theme, LineBatch& lines);
-// Lines at multiples of 5 cm in a flat box, fading towards its edges.
+// Adds lines at multiples of 5 cm in a flat box, fading towards its edges.
 void add_grid(const Bounds& area, Theme theme, LineBatch& lines);
 
 }  // namespace limpid

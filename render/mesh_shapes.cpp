@@ -9,7 +9,7 @@ namespace {
 constexpr int kSegments = 28;
 constexpr double kPi = std::numbers::pi;
 
-// One ring of a turned solid: radius, height and the normal's parts along both.
+// A ring of a turned solid: radius, height and the normal's parts along both.
 struct Ring {
   double radius, height, normal_out, normal_up;
 };
@@ -29,7 +29,7 @@ Model finished(Model model) {
   return model;
 }
 
-// Rings from bottom to top; a sharp edge is a ring given twice with different normals.
+// Joins rings from bottom to top; a sharp edge is a ring given twice with different normals.
 Model turned(const std::vector<Ring>& rings, const Paint& paint) {
   Model m;
   for (const Ring& ring : rings)
@@ -68,7 +68,7 @@ float linear_light(float part) {
   return part <= 0.04045f ? part / 12.92f : std::pow((part + 0.055f) / 1.055f, 2.4f);
 }
 
-// Each vertex of a sphere cut into eight, pushed apart: faces, edges and corners in one go.
+// Pushes apart the vertices of a sphere cut into eight: faces, edges and corners in one go.
 Model make_box(const Vec3& size, double bevel, const Paint& paint) {
   const double r = std::min(bevel, 0.5 * size.minCoeff());
   const Vec3 inner = 0.5 * size - Vec3::Constant(r);

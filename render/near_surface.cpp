@@ -9,8 +9,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kTouch = 0.02, kShade = 0.06;  // how far off a surface is looked for [m]
-constexpr double kSame = 0.01;                  // of friction's limit: at it [-]
+constexpr double kTouch = 0.02, kShade = 0.06;  // distances within which a surface counts [m]
+constexpr double kSame = 0.01;  // distance from friction's limit that counts as at it [-]
 
 using Found = std::optional<Surface>;
 

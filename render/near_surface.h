@@ -1,4 +1,4 @@
-// Which of a scene's surfaces a point is at, and what follows from that for the picture.
+// The surface of a scene that a point is at, and what follows for the picture.
 #pragma once
 
 #include <optional>
@@ -10,19 +10,19 @@
 namespace limpid {
 
 struct NearSurface {
-  Vec3 point, normal;   // on the surface [m]; unit, out of the material as far as that is known
-  double distance = 0;  // of the point from it, not negative [m]
+  Vec3 point, normal;   // on the surface [m]; unit, out of the material if that is known
+  double distance = 0;  // from the point to the surface, not negative [m]
   Material material;
 };
 
-// The nearest one within so many metres. Meshes without a shape are left out. `bodies`: as
-// ViewState has them.
+// Returns the surface nearest to `at` within so many metres. Leaves out meshes without a shape.
+// `bodies`: as in ViewState.
 std::optional<NearSurface> nearest_surface(const Scene& scene, const Vec3& at, double within,
                                            std::span<const Pose> bodies = {});
 
-// Fills in what the contacts' forces do not say: the normals, friction and whether they slip; and
-// the proxy's shade. A force that is no more than friction holds, and is not at the friction of
-// slipping, sticks.
+// Fills in what the contacts' forces do not say: normals, friction, slipping; and the proxy's
+// shade. A contact sticks if its force is no more than friction holds and is not at the friction of
+// slipping.
 void add_surfaces(const Scene& scene, ViewState& state);
 
 }  // namespace limpid

@@ -1,5 +1,5 @@
-// One colour per thing, the same in the 3D view, the plots and the panels, safe for colour-blind
-// eyes (Okabe and Ito). Values are sRGB, 0 to 1. And the light of the two themes.
+// Colours of things, the same in the 3D view, the plots and the panels; the light of the two
+// themes. Colour-blind eyes can tell them apart (Okabe and Ito). Values are sRGB, 0 to 1.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ inline constexpr Rgb kSticks = from_hex(0xCC79A7);   // purple
 inline constexpr Rgb kSlips = from_hex(0xF0E442);    // yellow
 inline constexpr Rgb kRerun = from_hex(0xF0E442);    // yellow, as in the plots
 
-// Of a second run that is there at the same time: towards the text's colour, as its curves are.
+// Returns the colour of a second run at the same time: mixed with the text's, as its curves are.
 constexpr Rgb of_twin(const Rgb& color, Theme theme) {
   return mix(color, from_hex(theme == Theme::dark ? 0xDFE4EA : 0x1D2329), 0.55f);
 }
@@ -41,8 +41,8 @@ namespace limpid {
 // Light and background of a theme. Linear light; the backdrop's two colours are sRGB.
 struct Lighting {
   glm::vec4 key, sky, earth, ground, top, bottom;
-  glm::vec4 outline;      // of what is highlighted, sRGB
-  glm::vec4 object_tint;  // of what can be touched, linear; w: how much
+  glm::vec4 outline;      // around what is highlighted, sRGB
+  glm::vec4 object_tint;  // for objects that can be touched, linear; w: amount
 };
 
 Lighting lighting_of(Theme theme);

@@ -1,4 +1,4 @@
-// How much work a picture may be.
+// Levels of quality: how much work a picture may be.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,14 @@ struct Quality {
   int shadow_size = 2048;  // edge of the shadow map in texels; 0: no shadows
   bool soft = true;        // wide, soft shadow edges
   double scale = 1;        // resolution of the 3D picture, which is scaled up where it is below 1
-  std::size_t triangles = 8'000'000;  // in sight; above, large models are drawn coarsely
+  std::size_t triangles = 8'000'000;  // most in sight; with more, large models are drawn coarsely
 
-  // From the best, 0, to the fastest, kLowest; other numbers are taken to the nearest of these.
+  // Levels run from the best, 0, to the fastest, kLowest; level() takes other numbers to the
+  // nearest of these.
   static constexpr int kLowest = 5;
   static Quality level(int level);
 
-  // What suits the renderer that GL_RENDERER names: a processor drawing in software gets less.
+  // Returns the level that suits the renderer named by GL_RENDERER: lower for drawing in software.
   static int automatic_level(std::string_view gl_renderer);
   static Quality automatic(std::string_view gl_renderer) {
     return level(automatic_level(gl_renderer));
@@ -36,10 +37,11 @@ class AutoQuality {
  public:
   explicit AutoQuality(int level = 0);
 
-  // The time one frame took [s], waiting for the screen included or not. True: a new level.
+  // Takes the time of one frame [s], waiting for the screen included or not. Returns true at a new
+  // level.
   bool frame(double seconds);
   int level() const { return level_; }
-  // Something else is drawn now: whatever was learnt about waiting is forgotten.
+  // Forgets what was learnt about waiting, as something else is drawn now.
   void reset();
 
  private:
@@ -47,7 +49,7 @@ class AutoQuality {
 
   int level_;
   double elapsed_ = 0;                    // of the second under way [s]
-  int frames_ = 0, slow_ = 0, fast_ = 0;  // in it
+  int frames_ = 0, slow_ = 0, fast_ = 0;  // in that second
   int good_seconds_ = 0;                  // in a row
   int wait_;                              // good seconds before a step up
 };

@@ -14,7 +14,7 @@ namespace {
 
 const Paint kObject{{0.85f, 0.84f, 0.82f}, 0, 0.5f};
 
-// Link frames at q = 0.
+// Returns the link frames at q = 0.
 std::vector<Pose> zero_poses(const ArmDescription& arm) {
   std::vector<Pose> poses;
   Pose pose = Pose::Identity();
@@ -40,7 +40,7 @@ bool shown_by_visual(const Bounds& shape, const std::vector<Bounds>& visuals) {
   });
 }
 
-// The direction, in the frame of joint j at zero, in which the arm leaves the joint's axis.
+// Returns the direction, in the frame of joint j at zero, in which the arm leaves the joint's axis.
 Vec3 lever(const ArmDescription& arm, std::size_t j) {
   Vec3 along = Vec3::Zero();
   Pose pose = Pose::Identity();
@@ -53,8 +53,7 @@ Vec3 lever(const ArmDescription& arm, std::size_t j) {
   return arm.joints[j].axis.unitOrthogonal() * 0.05;
 }
 
-// Adds what there is to see of an object. A shape that a model of the scene already shows is not
-// drawn twice.
+// Adds the items of an object. A shape that a model of the scene already shows is not drawn twice.
 class ObjectItems {
  public:
   ObjectItems(const ArmDescription& arm, const std::vector<Bounds>& visuals, SceneItems& items)
@@ -141,15 +140,15 @@ class ObjectItems {
   }
 
  private:
-  // What follows is of a screen's colour, or of none.
+  // Sets the paint of the shapes that follow: a screen's colour, or none.
   void paint(const std::optional<Vec3>& color) {
     own_color_ = color.has_value();
     paint_ = kObject;
     if (color) paint_.color = color->cast<float>().unaryExpr(&linear_light);
   }
-  // What moves is nowhere that a model of the scene could show it.
+  // Tells whether a model of the scene shows the shape; models never show bodies, which move.
   bool shown(const Bounds& shape) const { return body_ < 0 && shown_by_visual(shape, visuals_); }
-  // `pose`: of a body in its frame.
+  // Adds an item at `pose`; a body's shape is in the body's frame.
   void put(Model model, const Pose& pose) {
     (body_ < 0 ? items_.world : items_.bodies)
         .push_back({std::move(model), pose, body_, own_color_});
@@ -158,9 +157,9 @@ class ObjectItems {
   const ArmDescription& arm_;
   const std::vector<Bounds>& visuals_;
   SceneItems& items_;
-  Paint paint_ = kObject;  // of what is being added
+  Paint paint_ = kObject;  // of the object being added
   bool own_color_ = false;
-  int body_ = -1;  // number of the one that is being added; else -1
+  int body_ = -1;  // number of the body being added; else -1
 };
 
 std::vector<Bounds> add_visuals(std::span<const VisualPicture> seen, SceneItems& items) {
@@ -175,14 +174,14 @@ std::vector<Bounds> add_visuals(std::span<const VisualPicture> seen, SceneItems&
   return bounds;
 }
 
-// The arm at rest, and the room in front of it where the hand will be.
+// Returns the box of the arm at rest, and the room in front of it where the hand will be.
 Bounds bounds_of_arm(const ArmDescription& arm, const SceneItems& items) {
   const std::vector<Pose> links = zero_poses(arm);
   Bounds box;
   for (const auto* list : {&items.base, &items.moving})
     for (const Item& item : *list)
       box.extend(moved(item.model.bounds(), pose_of(links, item.link) * item.pose));
-  if (arm.dof() > 0) {  // as it stands to begin with
+  if (arm.dof() > 0) {  // the arm as it stands to begin with
     const Arm<kAnyDof> at_rest(arm);
     Arm<kAnyDof>::Frames f;
     at_rest.frames(Vec<kAnyDof>(rest_pose(arm)), f);
@@ -195,8 +194,8 @@ Bounds bounds_of_arm(const ArmDescription& arm, const SceneItems& items) {
   return box;
 }
 
-// The grid lies on the highest level plane, as far as the model that shows the plane goes;
-// without one, on the ground.
+// Places the grid on the highest level plane, as far as the model that shows the plane goes;
+// without such a plane, on the ground.
 Bounds grid_of(const SceneItems& items, const Surroundings& around,
                const std::vector<Bounds>& world) {
   const Vec3 half = 0.7 * around.bounds.diagonal().norm() * Vec3(1, 1, 0);
@@ -231,15 +230,14 @@ Surroundings surroundings_of(const SceneItems& items, const std::vector<Bounds>&
   for (const Item& item : items.bodies)
     world.push_back(moved(item.model.bounds(), pose_of(items.starts, item.link) * item.pose));
   Surroundings around{items.arm_bounds, 0, {}};
-  // Of what can be touched only what stands in the arm's room: a desk may be larger than the
-  // picture.
+  // Whole boxes count only within the arm's room: a desk may be larger than the picture.
   const Vec3 room = 0.6 * items.reach * Vec3::Ones();
   const Bounds near(around.bounds.center() - room, around.bounds.center() + room);
   const std::array<const std::vector<Bounds>*, 2> all = {&world, &meshes};
   for (const auto* list : all)
     for (const Bounds& box : *list)
       if (near.contains(box)) around.bounds.extend(box);
-  // Of a mesh that is larger, what the arm can reach of it.
+  // The part of a larger mesh that the arm can reach counts, too.
   for (const Bounds& box : meshes)
     if (near.intersects(box)) around.bounds.extend(near.intersection(box));
   around.ground = around.bounds.min().z();

@@ -32,6 +32,39 @@ std::vector<Drawable> upload_all(const std::vector<Item>& items) {
   return out;
 }
 
+constexpr float kMargin = 6;      // of outlines and soft edges [px]
+constexpr float kSoftTexels = 8;  // reach of a shadow's soft edge
+constexpr float kLeastLight = 0.1f;
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
+
+std::array<glm::vec3, 8> corners_of(const Eigen::AlignedBox3f& box, const glm::mat4& pose) {
+  std::array<glm::vec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Eigen::Vector3f c = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i));
+    corners[i] = glm::vec3(pose * glm::vec4(c.x(), c.y(), c.z(), 1));
+  }
+  return corners;
+}
+
+// Returns the points of a body and of the end of its shadow on the floor, the lowest there is.
+std::vector<glm::vec3> with_shadow(std::span<const glm::vec3> body, float floor, float soft) {
+  std::vector<glm::vec3> hull(body.begin(), body.end());
+  for (const glm::vec3& p : body) {
+    const float fall = std::max(0.0f, p.z - floor) / std::max(kLeastLight, kToLight.z);
+    const glm::vec3 end = p - fall * kToLight;
+    for (const glm::vec2 off :
+         {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(-1, 1), glm::vec2(1)})
+      hull.push_back(end + glm::vec3(soft * off, 0));
+  }
+  return hull;
+}
+
+glm::vec4 srgb(const palette::Rgb& c) { return {c[0], c[1], c[2], 1}; }
+
 }  // namespace
 
 ScenePainter::ScenePainter(const std::filesystem::path& shaders, const SceneItems& items,
@@ -133,13 +166,14 @@ void ScenePainter::draw_ground() const {
   ground.set("shadow_map", 1);
   const auto size = static_cast<float>(1.1 * bounds_.diagonal().norm());
   glm::mat4 floor(size);
-  // A tenth of a millimetre down, so that what stands on it wins.
+  // The floor lies a tenth of a millimetre lower, so that what stands on it wins.
   floor[3] = glm::vec4(bounds_.center().x(), bounds_.center().y(), ground_height_ - 1e-4f, 1);
   ground.set("model", floor);
   patch_.draw();
 }
 
-// Stencil 2 marks the arm: a ghost behind it stays hidden, one behind the scene shines through.
+// Marks the arm with stencil 2: a ghost behind it stays hidden, one behind the scene shines
+// through.
 void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy, const Links& bodies) {
   lit_->shadow.bind(1);
   glEnable(GL_STENCIL_TEST);
@@ -173,7 +207,7 @@ void ScenePainter::draw_solid(const Lighting& lighting, const Links& proxy, cons
   draw_outlines(lighting, bodies);
 }
 
-// The inside of a slightly larger copy shows around the edge of what is highlighted.
+// Shows the inside of a slightly larger copy around the edge of what is highlighted.
 void ScenePainter::draw_outlines(const Lighting& lighting, const Links& bodies) const {
   if (highlighted_.empty()) return;
   glCullFace(GL_FRONT);
@@ -186,41 +220,6 @@ void ScenePainter::draw_outlines(const Lighting& lighting, const Links& bodies) 
   });
   glCullFace(GL_BACK);
 }
-
-namespace {
-
-constexpr float kMargin = 6;      // of outlines and soft edges [px]
-constexpr float kSoftTexels = 8;  // how far a shadow's soft edge reaches
-constexpr float kLeastLight = 0.1f;
-
-template <class T>
-std::span<const std::byte> bytes_of(const T& value) {
-  return std::as_bytes(std::span(&value, 1));
-}
-
-std::array<glm::vec3, 8> corners_of(const Eigen::AlignedBox3f& box, const glm::mat4& pose) {
-  std::array<glm::vec3, 8> corners;
-  for (std::size_t i = 0; i < 8; ++i) {
-    const Eigen::Vector3f c = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i));
-    corners[i] = glm::vec3(pose * glm::vec4(c.x(), c.y(), c.z(), 1));
-  }
-  return corners;
-}
-
-// What lies between a body and the end of its shadow on the floor, which is the lowest there is.
-std::vector<glm::vec3> with_shadow(std::span<const glm::vec3> body, float floor, float soft) {
-  std::vector<glm::vec3> hull(body.begin(), body.end());
-  for (const glm::vec3& p : body) {
-    const float fall = std::max(0.0f, p.z - floor) / std::max(kLeastLight, kToLight.z);
-    const glm::vec3 end = p - fall * kToLight;
-    for (const glm::vec2 off :
-         {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(-1, 1), glm::vec2(1)})
-      hull.push_back(end + glm::vec3(soft * off, 0));
-  }
-  return hull;
-}
-
-}  // namespace
 
 void ScenePainter::add_to(Damage& damage, const GpuModel& model, const glm::mat4& pose,
                           bool shadow) const {
@@ -241,7 +240,7 @@ void ScenePainter::note_bodies(const Links& bodies, Damage& damage) const {
   }
 }
 
-// One that is not shown is named too, with nothing around it: the order stays.
+// Names hidden ghosts, too, with nothing around them: the order stays.
 void ScenePainter::note(const BodyGhosts& ghosts, Damage& damage) const {
   for (const auto* list : {&bodies_, &body_meshes_}) {
     for (const Drawable& item : *list) {
@@ -355,14 +354,6 @@ void ScenePainter::draw_shadows(const Links& proxy, const Links& bodies) {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-// Ghosts, glass, marks and lines: what explains the picture.
-
-namespace {
-
-glm::vec4 srgb(const palette::Rgb& c) { return {c[0], c[1], c[2], 1}; }
-
-}  // namespace
-
 void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vector<Drawable>& list,
                                     const Links& links, const palette::Rgb& color,
                                     glm::vec2 alpha) const {
@@ -375,14 +366,14 @@ void ScenePainter::draw_translucent(const ShaderProgram& program, const std::vec
   });
 }
 
-// Around what of the ghost can be seen, and around what the scene hides of it.
+// Draws around the ghost's visible part, and around the part that the scene hides.
 void ScenePainter::draw_ghost_outline(const Ghost& ghost, int mark) const {
   const Links& links = ghost.links;
   const palette::Rgb& color = ghost.color;
   const std::vector<float>& outline = ghost.outline;
   glCullFace(GL_FRONT);
   outline_.use();
-  // With one sample a pixel a thinner line would come and go.
+  // A thinner line would come and go with one sample a pixel.
   outline_.set("width", quality_.msaa > 1 ? 1.6f : 2.2f);
   const auto draw = [&](float share) {
     for (const Drawable& item : moving_) {
@@ -410,11 +401,12 @@ void ScenePainter::draw_ghost(const Ghost& ghost, std::size_t number) {
   const Links& links = ghost.links;
   const palette::Rgb& color = ghost.color;
   const int mark = 3 + static_cast<int>(number);
-  // A little behind its place, so that a proxy at the same place wins without flicker.
+  // The ghost lies a little behind its place, so that a proxy at the same place wins without
+  // flicker.
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.0f, 8.0f);
-  // First its depth alone, so that only the outermost surface shows; a number in the stencil marks
-  // it.
+  // A first pass draws its depth alone, so that only the outermost surface shows; the stencil marks
+  // it with a number.
   glEnable(GL_STENCIL_TEST);
   glStencilFunc(GL_ALWAYS, mark, 0xff);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
@@ -424,7 +416,7 @@ void ScenePainter::draw_ghost(const Ghost& ghost, std::size_t number) {
   glEnable(GL_BLEND);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   draw_translucent(ghost_, moving_, links, color, {0.36f, 1.0f});
-  // What the scene hides, faintly, each pixel once.
+  // A last pass draws faintly the part that the scene hides, each pixel once.
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_GREATER);
   glStencilFunc(GL_EQUAL, 0, 0xff);
@@ -513,7 +505,7 @@ void ScenePainter::draw_lines(LineBatch& lines, bool on_top) {
   glDisable(GL_BLEND);
 }
 
-// On the scene alone: what is marked in the stencil stands before it.
+// Draws on the scene alone: what is marked in the stencil stands before it.
 void ScenePainter::draw_shades(const Marks& marks) const {
   if (marks.shades.empty()) return;
   glEnable(GL_BLEND);

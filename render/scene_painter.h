@@ -1,4 +1,4 @@
-// The passes a frame is made of. Everything here is on the graphics card already.
+// The passes a frame is made of. All their data are on the graphics card already.
 #pragma once
 
 #include <filesystem>
@@ -20,14 +20,14 @@
 
 namespace limpid {
 
-// Unit, towards the key light.
+// Unit vector towards the key light.
 inline const glm::vec3 kToLight = glm::normalize(glm::vec3(-0.30f, -0.55f, 1.0f));
 
 struct PlacedMesh {
   std::shared_ptr<const Model> model;
   glm::mat4 pose;
   bool highlighted;
-  int body;  // whose frame it is in; -1: the world
+  int body;  // body whose frame it is in; -1: the world
 };
 
 class ScenePainter {
@@ -39,32 +39,33 @@ class ScenePainter {
   void set_meshes(const std::vector<PlacedMesh>& meshes);
   void set_surroundings(const Surroundings& around);
 
-  // What all passes share: camera, light, colours. First of all.
+  // Sets what all passes share: camera, light, colours. Comes before all passes.
   void begin_frame(const Lighting& lighting, const Camera& camera);
-  // What of the arm may look different from frame to frame; `casts`: with its shadow.
+  // Names the parts of the arm that may look different from frame to frame; `casts`: with its
+  // shadow.
   void note(const Links& links, bool casts, Damage& damage) const;
   void note(const Ghost& ghost, Damage& damage) const;
   void note_bodies(const Links& bodies, Damage& damage) const;  // with their shadows
   void note(const BodyGhosts& ghosts, Damage& damage) const;
   void note(const Marks& marks, Damage& damage) const;
   void note(const LineBatch& lines, Damage& damage) const;
-  // Nothing beside `area` is drawn from now on; what lies there is left out as far as it is cheap.
+  // Limits drawing to `area` from now on; what lies beside it is left out where that is cheap.
   void limit(const PixelArea& area, const PixelArea& whole) {
     seen_ = cropped(view_, area, whole);
     pixels_ = static_cast<float>(area.sizes().prod());
   }
   void draw_shadows(const Links& proxy, const Links& bodies);
-  // Proxy, base, scene, ground and backdrop.
+  // Draws proxy, base, scene, ground and backdrop.
   void draw_solid(const Lighting& lighting, const Links& proxy, const Links& bodies);
-  // Only its outermost surface shows; `number` tells the ghosts of a picture apart, from 0 on.
+  // Draws a ghost's outermost surface; `number` tells the ghosts of a picture apart, from 0 on.
   void draw_ghost(const Ghost& ghost, std::size_t number);
-  // Before any ghost.
+  // Comes before any ghost.
   void draw_shades(const Marks& marks) const;
-  // Stops of joints and the arm's touching parts.
+  // Draws stops of joints and the arm's touching parts.
   void draw_glass(const Links& proxy);
   void draw_body_ghosts(const BodyGhosts& ghosts);
   void draw_marks(const Marks& marks);
-  // Those hidden by what is in front of them, or those on top of everything.
+  // Draws lines that nearer things hide, or that are on top of everything.
   void draw_lines(LineBatch& lines, bool on_top);
 
   const Quality& quality() const { return quality_; }
@@ -92,14 +93,14 @@ class ScenePainter {
   GpuModel ball_, cone_, tube_, patch_;
   std::vector<Drawable> base_, moving_, world_, walls_, probes_, meshes_;
   std::vector<Drawable> bodies_, body_meshes_;  // `link` is the body's number
-  std::vector<Drawable> highlighted_;           // some of both kinds of meshes
-  // One for each model that is in meshes_, which keeps the model's address its own.
+  std::vector<Drawable> highlighted_;           // some of meshes_ and body_meshes_
+  // Uploaded models of meshes_; the keys keep the models' addresses from being used again.
   std::map<std::shared_ptr<const Model>, std::shared_ptr<const GpuModel>> uploaded_;
   Bounds bounds_;
   glm::mat4 view_{1.0f};        // world to clip space
-  glm::mat4 seen_{1.0f};        // the same for what is drawn in this frame
+  glm::mat4 seen_{1.0f};        // view_, cropped to the area drawn in this frame
   Damage shadow_damage_;        // in the shadow map
-  bool still_shadows_ = false;  // those of what does not move are there
+  bool still_shadows_ = false;  // the map holds the shadows of what does not move
   float ground_height_ = 0, pixel_scale_ = 1, pixels_ = 1;
   bool textured_world_ = false, coarse_ = false;
 };

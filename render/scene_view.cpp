@@ -16,7 +16,8 @@
 namespace limpid {
 namespace {
 
-// Where the caller was drawing, put back at the end of the scope with a plain state.
+// Keeps the caller's framebuffer and viewport; restores them at the end of the scope, with a plain
+// state.
 class CallersState {
  public:
   CallersState() {
@@ -59,14 +60,14 @@ bool drawable(const MeshPicture& mesh) {
          placed(mesh).matrix().allFinite();
 }
 
-// What the switches of a state change everywhere.
+// Switches of a state that change the picture everywhere.
 struct Still {
   Theme theme = Theme::dark;
   bool grid = true;
   bool operator==(const Still&) const = default;
 };
 
-// One picture as it was drawn the last time.
+// A picture as it was drawn the last time.
 struct DrawnSheet {
   explicit DrawnSheet(const std::filesystem::path& shaders) : target(shaders) {}
 
@@ -121,10 +122,10 @@ struct SceneView::Impl {
     ++version;
   }
 
-  // True: it is another picture than the last one.
+  // Returns true if the picture differs from the last one.
   bool draw(DrawnSheet& sheet, const ViewState& wanted, const Camera& camera,
             const FrameTarget::Area& to);
-  // What had to be drawn anew.
+  // Returns the area that had to be drawn anew.
   PixelArea paint(DrawnSheet& sheet, const ViewState& state, const Camera& eye, double scale);
 
   ArmDescription arm;
@@ -134,7 +135,7 @@ struct SceneView::Impl {
   std::map<const Model*, Bounds> model_bounds;  // of those in `meshes`
   ScenePainter painter;
   std::array<DrawnSheet, 4> sheets;  // by SceneView::Sheet
-  std::uint64_t version = 1;         // of all that stands still
+  std::uint64_t version = 1;         // of everything that stands still
 };
 
 SceneView::SceneView(const std::filesystem::path& shaders, const ArmDescription& arm,

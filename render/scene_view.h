@@ -34,9 +34,9 @@ struct MeshPicture {
 
 class SceneView {
  public:
-  // Which of several pictures of one frame: each remembers how it was drawn the last time. A lens
-  // is what Camera::magnified() sees; beside is a second arm in the same scene; small is one that
-  // is kept as a file.
+  // Number of a picture where one frame has several: each remembers how it was drawn the last time.
+  // A lens is what Camera::magnified() sees; beside is a second arm in the same scene; small is
+  // kept as a file.
   enum class Sheet { main, lens, beside, small };
 
   // Loads the shaders, every visual of the arm and these of the scene. An arm without visuals is
@@ -48,7 +48,7 @@ class SceneView {
   SceneView(SceneView&&) noexcept;
   SceneView& operator=(SceneView&&) noexcept;
 
-  // Another scene around the same arm: what can be touched, seen and stopped at. The meshes of
+  // Replaces the scene around the same arm: what can be touched, seen and stopped at. The meshes of
   // set_meshes stay. Throws as the constructor does, and leaves everything as it was then.
   void set_scene(const Scene& scene, std::span<const VisualPicture> visuals);
 
@@ -57,27 +57,27 @@ class SceneView {
   // poses and highlights change, so it may be called every frame.
   void set_meshes(std::span<const MeshPicture> meshes);
 
-  // Draws into a rectangle of the bound framebuffer, in its pixels, y up from the bottom as
-  // OpenGL counts. Leaves that framebuffer and its viewport as they were, and no state behind
-  // that blends, tests, culls or clips. Only what looks different than in the frame before is drawn
-  // anew; false: nothing did.
+  // Draws into a rectangle of the bound framebuffer, in its pixels, y up from the bottom as OpenGL
+  // counts. Leaves that framebuffer and its viewport as they were, and no state behind that blends,
+  // tests, culls or clips. Draws anew only what looks different than in the frame before; returns
+  // false if nothing does.
   bool draw(const ViewState& state, const Camera& camera, int x, int y, int width, int height,
             Sheet on = Sheet::main);
-  // Whether draw() would show anything new in a viewport as large as the camera's; a tenth of a
-  // pixel is not.
+  // Returns whether draw() would show anything new in a viewport as large as the camera's; a tenth
+  // of a pixel does not count.
   bool differs(const ViewState& state, const Camera& camera, Sheet on = Sheet::main) const;
 
-  // What a camera should frame: the arm, the room it works in and what can be touched there,
-  // meshes included as far as they are within reach [m].
+  // Returns what a camera should frame [m]: the arm, the room it works in and what can be touched
+  // there, meshes as far as they are within reach.
   const Bounds& bounds() const;
-  // Where the floor grid is, a flat box [m]; its lines are at multiples of 5 cm, the stronger ones
-  // at multiples of 10 cm.
+  // Returns the floor grid's place, a flat box [m]; its lines are at multiples of 5 cm, the
+  // stronger ones at multiples of 10 cm.
   const Bounds& grid() const;
 
   const Quality& quality() const;
   void set_quality(const Quality& quality);
 
-  // Lines and marks grow with this; 2 on a screen with twice the pixels. 1 to begin with.
+  // Scales lines and marks; 2 on a screen with twice the pixels. 1 to begin with.
   void set_pixel_scale(double scale);
 
  private:

@@ -1,5 +1,4 @@
-// Light on dark or dark on light, for the picture and the panels alike, and what the joints have in
-// each.
+// Dark and light theme of picture and panels, and the joints' colours in each.
 #pragma once
 
 #include <array>
@@ -9,10 +8,8 @@ namespace limpid {
 
 enum class Theme : std::uint8_t { dark, light };
 
-// The joints' own colours, in the 3D view and in the plots: whatever somebody's eyes, the first
-// four are not mistaken for each other, nor for the proxy they belong to.
-
-// 0xRRGGBB, sRGB.
+// Colours of the joints in the 3D view and the plots: 0xRRGGBB, sRGB. Eyes of every kind tell the
+// first four from each other and from the proxy.
 constexpr std::array<unsigned, 7> joint_colours(Theme theme) {
   using Seven = std::array<unsigned, 7>;
   return theme == Theme::dark

@@ -1,4 +1,4 @@
-// Something of the world that is only looked at.
+// Everything one frame of the 3D view shows, as plain data in the device base frame, SI.
 #pragma once
 
 #include <array>
@@ -11,34 +11,34 @@
 
 namespace limpid {
 
-// A vertex v of the model appears at pose * (scale * v).
+// A model that is only looked at. Its vertex v appears at pose * (scale * v).
 struct VisualPicture {
   std::filesystem::path file;  // a model
   Pose pose = Pose::Identity();
   double scale = 1;
 };
 
-// Everything one frame of the 3D view shows, as plain data in the device base frame, SI.
+// An arm's links, tip and trail in one frame.
 struct ArmPose {
-  std::vector<Pose> links;  // one a moving link, base first; empty: the arm is not drawn
+  std::vector<Pose> links;  // one for each moving link, base first; empty: not drawn
   Vec3 tip = Vec3::Zero();  // [m]
-  std::vector<Vec3> trail;  // where the tip was in the last second, oldest first [m]
+  std::vector<Vec3> trail;  // places of the tip in the last second, oldest first [m]
 };
 
 struct ContactMark {
   Vec3 position = Vec3::Zero();  // [m]
   Vec3 force = Vec3::Zero();     // on the proxy [N]
   double age = 1;                // since it began [s]; the flash lasts a quarter of a second
-  Vec3 normal = Vec3::Zero();    // of the surface, out of what is touched; zero: along the force
-  double friction = 0;           // static, that the force has here [-]; 0: no cone
-  bool slips = false;            // along the surface, else it sticks
+  Vec3 normal = Vec3::Zero();    // of the surface, outwards; zero: along the force
+  double friction = 0;           // static [-]; 0: no cone
+  bool slips = false;            // it slips along the surface, else it sticks
 };
 
-// Where the proxy's tip is near a surface: it darkens it there.
+// Shade that the proxy's tip casts on a near surface.
 struct ContactShade {
   Vec3 position = Vec3::Zero();  // on the surface [m]
-  Vec3 normal = Vec3::UnitZ();   // of it
-  double height = 0;             // of the tip above it [m]
+  Vec3 normal = Vec3::UnitZ();   // of the surface
+  double height = 0;             // of the tip above the surface [m]
 };
 
 // A second run on the same hand in the same picture: in tints of the first one's colours.
@@ -57,16 +57,16 @@ struct ViewState {
   bool show_hand = false;
   bool hand_grips = false;         // draws the line from the target to the device tip
   Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
-  bool magnet = false;             // at the proxy's tip: picks up what it may
-  bool magnet_holds = false;       // something
-  // Of a body that is pulled on: the point of it, and where it is pulled to [m].
+  bool magnet = false;             // at the proxy's tip: picks up bodies that it may
+  bool magnet_holds = false;       // holds something
+  // A point of a body, and where it is pulled to [m].
   std::optional<std::array<Vec3, 2>> pull;
   std::vector<ContactMark> contacts;
   std::optional<ContactShade> shade;
-  // The frames of the scene's objects that move, in their order; without one, or with one that is
-  // not finite, an object is where the scene has it.
+  // Frames of the scene's moving objects, in their order. An object whose frame is missing or not
+  // finite stands where the scene has it.
   std::vector<Pose> bodies;
-  std::vector<Pose> other_bodies;  // the second run's, or the re-run's: ghosts where they are apart
+  std::vector<Pose> other_bodies;  // of the second run or the re-run: ghosts where they are apart
 
   bool show_ghost = true;
   bool show_error = true;  // the two tips and the line between them

@@ -29,7 +29,7 @@ struct FilePortal::Talk {
   fs::path file;
   bool left = false;  // nobody waits for the answer any more
 
-  // What has ended stays as it is.
+  // Changes the state; a question that has ended stays as it is.
   void become(State next, const fs::path& answer = {}) {
     const std::scoped_lock lock(mutex);
     if (state != State::asked && state != State::shown) return;
@@ -57,8 +57,8 @@ constexpr const char* kPortal = "org.freedesktop.portal.Desktop";
 constexpr const char* kPortalPath = "/org/freedesktop/portal/desktop";
 constexpr const char* kChooser = "org.freedesktop.portal.FileChooser";
 constexpr const char* kRequest = "org.freedesktop.portal.Request";
-constexpr auto kCloseWithin = std::chrono::seconds(30);  // what comes later is closed
-constexpr int kLook = 50;                                // at whether it goes on [ms]
+constexpr auto kCloseWithin = std::chrono::seconds(30);  // later dialogs are closed
+constexpr int kLook = 50;  // interval of looks whether the question goes on [ms]
 
 // A map from names to values, "a{sv}", at the end of a message.
 class BusOptions {
@@ -76,7 +76,7 @@ class BusOptions {
     add(name, "s",
         [&](DBusMessageIter& at) { dbus_message_iter_append_basic(&at, DBUS_TYPE_STRING, &data); });
   }
-  // With the zero byte at its end, as the portal wants it.
+  // Adds a path with the zero byte at its end, as the portal wants it.
   void path(const char* name, const fs::path& value) {
     const std::string bytes = value.string();
     const char* const data = bytes.c_str();
@@ -87,7 +87,7 @@ class BusOptions {
       });
     });
   }
-  // One filter: its name, and the patterns of the files that it lets through.
+  // Adds one filter: its name, and the patterns of the files that it lets through.
   void filter(const char* name, const std::string& label,
               const std::vector<std::string>& patterns) {
     add(name, "a(sa(us))", [&](DBusMessageIter& at) {
@@ -131,7 +131,7 @@ class BusOptions {
   DBusMessageIter all_;
 };
 
-// ".stl" as "*.[sS][tT][lL]": portals tell capitals from small letters.
+// Turns ".stl" into "*.[sS][tT][lL]": portals tell capitals from small letters.
 std::string pattern_of(const std::string& extension) {
   std::string pattern = "*";
   for (const char c : extension) {
@@ -168,13 +168,13 @@ BusMessage call_for(const Question& question, const std::string& token) {
   return call;
 }
 
-// Nobody else may guess it.
+// Makes a token that nobody else may guess.
 std::string new_token() {
   std::random_device random;
   return fmt::format("limpid_{:08x}{:08x}", random(), random());
 }
 
-// Where the request will be: known before it is, so that its answer cannot be missed.
+// Returns the request's path before it exists, so that its answer cannot be missed.
 std::string handle_of(DBusConnection* bus, const std::string& token) {
   std::string sender = dbus_bus_get_unique_name(bus);
   std::erase(sender, ':');
@@ -188,7 +188,7 @@ void listen_to(DBusConnection* bus, const std::string& handle) {
   dbus_bus_add_match(bus, rule.c_str(), nullptr);
 }
 
-// The first file of the "uris" among the results of an answer.
+// Returns the first file of the "uris" among the results of an answer.
 std::optional<fs::path> chosen_in(DBusMessageIter results) {
   if (dbus_message_iter_get_arg_type(&results) != DBUS_TYPE_ARRAY) return std::nullopt;
   DBusMessageIter entry;
@@ -213,7 +213,7 @@ std::optional<fs::path> chosen_in(DBusMessageIter results) {
   return std::nullopt;
 }
 
-// One question, from asking to its answer, on a thread of its own.
+// A question, from asking to its answer, on a thread of its own.
 class Conversation {
  public:
   Conversation(FilePortal::Talk& talk, const Question& question)
@@ -253,7 +253,7 @@ class Conversation {
     }
   }
 
-  // Portals of old choose a handle of their own.
+  // Hears the reply: old portals choose a handle of their own.
   void hear_reply(DBusMessage* message) {
     const char* handle = nullptr;
     over_ |= dbus_message_get_args(message, nullptr, DBUS_TYPE_OBJECT_PATH, &handle,
@@ -264,7 +264,8 @@ class Conversation {
     talk_.become(State::shown);
   }
 
-  // 0: chosen; 1: given up; 2: ended in another way, such as by a desktop's part that failed.
+  // Hears the answer. 0: chosen; 1: given up; 2: ended in another way, such as by a failed part of
+  // the desktop.
   void hear_answer(DBusMessage* message) {
     DBusMessageIter at;
     dbus_uint32_t how = 2;
@@ -297,7 +298,7 @@ class Conversation {
 
 }  // namespace
 
-// The thread ends by itself: it may have to wait for a bus that does not answer.
+// Asks on a thread that ends by itself: it may have to wait for a bus that does not answer.
 FilePortal::FilePortal(Question question) : talk_(std::make_shared<Talk>()) {
   std::thread([talk = talk_, question = std::move(question)] {
     Conversation(*talk, question).hold();

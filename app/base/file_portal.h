@@ -16,9 +16,9 @@ class FilePortal {
   struct Question {
     std::string title, action;
     std::vector<std::string> extensions;  // of the files that are listed, such as ".toml"
-    bool new_file = false;        // need not be there; the desktop asks before one is replaced
+    bool new_file = false;        // it need not be there; the desktop asks before it replaces one
     std::filesystem::path first;  // a folder with / at its end, or the new file
-    std::string parent;           // the window that it is of, as portals name it; may be empty
+    std::string parent;           // window of the dialog, as portals name it; may be empty
   };
   enum class State : std::uint8_t {
     asked,
@@ -29,12 +29,12 @@ class FilePortal {
   };
 
   explicit FilePortal(Question question);
-  // Closes the dialog. Nothing here waits for the bus.
+  // Closes the dialog. No function here waits for the bus.
   ~FilePortal();
   FilePortal(const FilePortal&) = delete;
   FilePortal& operator=(const FilePortal&) = delete;
 
-  struct Talk;  // what is known of the question on both sides
+  struct Talk;  // state of the question on both sides
 
   State state() const;
   std::filesystem::path file() const;  // once it is chosen
@@ -43,7 +43,7 @@ class FilePortal {
   std::shared_ptr<Talk> talk_;
 };
 
-// The version of the portal that answers within a second. May take seconds.
+// Returns the version of the portal that answers within a second. May take seconds.
 std::optional<unsigned> file_portal_version();
 
 }  // namespace limpid

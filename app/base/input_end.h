@@ -1,4 +1,4 @@
-// Whether the program at the other end of standard input is still there.
+// Check whether the program at the other end of standard input is still there.
 #pragma once
 
 #include <poll.h>
@@ -8,7 +8,7 @@
 
 namespace limpid {
 
-// True once standard input has ended; what comes through it is dropped.
+// Returns true once standard input has ended; drops what comes through it.
 inline bool input_has_ended() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (poll(&input, 1, 0) <= 0) return false;

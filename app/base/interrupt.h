@@ -1,4 +1,4 @@
-// Ctrl-C, termination and a terminal that is closed as a wish that running work looks at.
+// Interruption by Ctrl-C, termination or a closed terminal, as a wish that running work looks at.
 #pragma once
 
 #include <atomic>
@@ -6,11 +6,11 @@
 
 namespace limpid {
 
-// A signal can only reach something with a fixed address.
+// Wish to stop; at a fixed address, as a signal can reach nothing else.
 inline std::atomic<bool> interrupted{false};
 
-// From now on SIGINT, SIGTERM and SIGHUP set `interrupted` instead of ending the program; one that
-// whoever started it wants to be ignored, as nohup does, stays so.
+// Makes SIGINT, SIGTERM and SIGHUP set `interrupted` from now on instead of ending the program. A
+// signal that was ignored from the start, as by nohup, stays so.
 inline void catch_interrupts() {
   const auto note = [](int) { interrupted.store(true); };
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {

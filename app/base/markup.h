@@ -5,7 +5,7 @@
 
 namespace limpid {
 
-// `text` with the characters that markup would take for its own replaced.
+// Returns `text` with the characters replaced that markup would take for its own.
 inline std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {

@@ -25,7 +25,7 @@ constexpr const char* kCompiler = "clang " __clang_version__;
 constexpr const char* kCompiler = "GCC " __VERSION__;
 #endif
 
-// The number in a segment of notes; empty where it has none.
+// Returns the number in a segment of notes; empty if it has none.
 std::string number_in(const char* notes, std::size_t size) {
   const auto padded = [](std::size_t n) { return (n + 3) / 4 * 4; };
   for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= size;) {
@@ -45,7 +45,7 @@ std::string number_in(const char* notes, std::size_t size) {
   return {};
 }
 
-// The program is the first that is asked.
+// Takes the number of the first object, which is the program.
 int take_number(dl_phdr_info* object, std::size_t, void* into) {
   auto& number = *static_cast<std::string*>(into);
   for (int i = 0; i < object->dlpi_phnum && number.empty(); ++i) {
@@ -68,7 +68,7 @@ std::string processor() {
   uname(&system);
   std::string kind = system.machine;
 #ifdef __x86_64__
-  // Those that the C library may use: it chooses its sine by them, Embree its loops.
+  // Features count that the C library may use: it chooses its sine by them, Embree its loops.
   if (CPU_FEATURE_ACTIVE(AVX)) kind += " AVX";
   if (CPU_FEATURE_ACTIVE(AVX2)) kind += " AVX2";
   if (CPU_FEATURE_ACTIVE(FMA)) kind += " FMA";

@@ -1,17 +1,17 @@
-// Which build of Limpid this is, and on what kind of processor it runs.
+// Name of this build of Limpid, with the kind of processor it runs on.
 #pragma once
 
 #include <string>
 
 namespace limpid {
 
-// "limpid 0.1.0+1234.g10594ec, GCC 12.2.0, build 3f2a94d10c5b; x86_64 AVX2 FMA": version, compiler
-// and the linker's number of this very program; then the kind of processor, by what the libraries'
-// arithmetic is chosen for. Runs of equal text give the same rows, bit for bit.
+// Returns "limpid 0.1.0+1234.g10594ec, GCC 12.2.0, build 3f2a94d10c5b; x86_64 AVX2 FMA": version,
+// compiler and the linker's number of this very program; then the kind of processor, by which the
+// libraries choose their arithmetic. Runs of equal text give the same rows, bit for bit.
 const std::string& program_build();
 
-// What to say of rows made by the build of that name that are made again by this one; nothing where
-// they will be the same. `where` names the recording.
+// Warns of rows made by the build of that name that this one makes again; empty if they will be the
+// same. `where` names the recording.
 std::string other_build(const std::string& recorded_by, const std::string& where);
 
 }  // namespace limpid

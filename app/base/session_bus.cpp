@@ -47,7 +47,7 @@ std::string uri_of(const fs::path& file) {
   return uri;
 }
 
-// RFC 8089: the name of the computer is empty or "localhost".
+// Follows RFC 8089: the name of the computer is empty or "localhost".
 std::optional<fs::path> file_of(const std::string& uri) {
   constexpr std::string_view kScheme = "file://", kHere = "localhost";
   if (!uri.starts_with(kScheme)) return std::nullopt;

@@ -20,15 +20,15 @@ struct FreeBusMessage {
 using Bus = std::unique_ptr<DBusConnection, CloseBus>;
 using BusMessage = std::unique_ptr<DBusMessage, FreeBusMessage>;
 
-// Asking for a bus where there is none may start one.
+// Returns whether there is a bus: asking for one where there is none may start it.
 bool has_session_bus();
-// A connection of the caller's own: losing the shared one would end the process. Null where there
-// is none. May take seconds: not for the window's thread.
+// Connects for the caller alone: losing the shared connection would end the process. Null if there
+// is no bus. May take seconds: not for the window's thread.
 Bus session_bus();
 
-// "file:///home/a%20b"
+// Returns "file:///home/a%20b".
 std::string uri_of(const std::filesystem::path& file);
-// Nothing where it is no file of this computer.
+// Returns nothing for an address that is no file of this computer.
 std::optional<std::filesystem::path> file_of(const std::string& uri);
 
 }  // namespace limpid

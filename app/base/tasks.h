@@ -1,4 +1,4 @@
-// Work beside the window.
+// Tasks: work beside the window.
 #pragma once
 
 #include <atomic>
@@ -18,13 +18,13 @@
 
 namespace limpid {
 
-// Work that may take its time, done one after the other by a thread of its own. That, and threads
-// that tasks start, are scheduled as whoever made the queue was then, not as whoever asks for the
-// task: the window may have stepped behind all others by that time.
+// A thread that does tasks one after the other; they may take their time. The thread, and threads
+// that tasks start, are scheduled as the queue's maker was then, not as whoever asks for a task:
+// the window may have stepped behind all others by that time.
 class TaskQueue {
  public:
   TaskQueue() : thread_([this] { live(); }) {}
-  ~TaskQueue() {  // after all that was asked for
+  ~TaskQueue() {  // waits for all tasks
     {
       const std::lock_guard lock(mutex_);
       quit_ = true;
@@ -35,7 +35,8 @@ class TaskQueue {
   TaskQueue(const TaskQueue&) = delete;
   TaskQueue& operator=(const TaskQueue&) = delete;
 
-  // The result, or what was thrown, is in the future. Dropping the future does not wait.
+  // Asks for a task. The future gets the result, or the exception. Dropping the future does not
+  // wait.
   template <class Work>
   auto run(Work work) -> std::future<std::invoke_result_t<Work&>> {
     using Result = std::invoke_result_t<Work&>;
@@ -59,7 +60,7 @@ class TaskQueue {
       waiting_.pop_front();
       lock.unlock();
       work();
-      work = nullptr;  // and what it held
+      work = nullptr;  // frees what it held, too
       lock.lock();
     }
   }
@@ -71,7 +72,7 @@ class TaskQueue {
   std::thread thread_;
 };
 
-// What came of a task of a queue, once, when it is there; throws what the task threw.
+// Returns the result of a queue's task, once, when it is there; throws what the task threw.
 template <class Result>
 std::optional<Result> take_ready(std::future<Result>& result) {
   if (!result.valid() || result.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
@@ -86,8 +87,7 @@ struct TaskProgress {
   std::atomic<bool> cancel{false};  // asked for by the window
 };
 
-// Long work of which the window shows how far it has come: one thing at a time, and it can be
-// cancelled.
+// Long work whose progress the window shows; one at a time, and it can be cancelled.
 template <class Result>
 class Task {
  public:
@@ -102,7 +102,7 @@ class Task {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   }
 
-  // Ends what was running.
+  // Starts work; cancels running work first.
   void start(std::string what, Work work) {
     cancel();
     what_ = std::move(what);
@@ -120,7 +120,8 @@ class Task {
     });
   }
 
-  // Does not wait: take() throws what the work then throws, or gives what it still returns.
+  // Asks the work to stop, without waiting: take() throws what the work then throws, or gives what
+  // it still returns.
   void ask_to_stop() { progress_.cancel = true; }
 
   void cancel() {
@@ -131,7 +132,7 @@ class Task {
     failure_ = nullptr;
   }
 
-  // The result, once, when it is there; throws what the work threw.
+  // Returns the result, once, when it is there; throws what the work threw.
   std::optional<Result> take() {
     if (!busy() || !done_.load(std::memory_order_acquire)) return std::nullopt;
     thread_.join();

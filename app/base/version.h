@@ -1,10 +1,11 @@
-// Which Limpid this is.
+// Version of Limpid.
 #pragma once
 
 namespace limpid {
 
-// As git describes the tree it was built of: "0.1.0" of a release, "0.1.0+1234.g10594ec" of the
-// 1234th commit since, with ".changed" where files differ from it; "0.1.0" without git.
+// Describes the tree that it was built of, as git does: "0.1.0" for a release,
+// "0.1.0+1234.g10594ec" for the 1234th commit since, with ".changed" if files differ from it;
+// "0.1.0" without git.
 const char* program_version();
 
 }  // namespace limpid

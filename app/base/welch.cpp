@@ -14,7 +14,7 @@ namespace limpid {
 
 namespace {
 
-// FFTW makes and forgets plans for one thread at a time.
+// Guards FFTW's making and forgetting of plans, which only one thread at a time may do.
 std::mutex& planner() {
   static std::mutex mutex;
   return mutex;

@@ -10,15 +10,15 @@ namespace limpid {
 
 #ifdef GLFW_PLATFORM_WAYLAND
 constexpr bool kKnowsWayland = true;
-// glfwInit(). Where no Wayland is named its library would complain on stderr.
+// Calls glfwInit(), without Wayland if none is named: its library would complain on stderr.
 inline bool start_glfw() {
   const char* wayland = std::getenv("WAYLAND_DISPLAY");
   const bool named = wayland != nullptr && *wayland != '\0';
   glfwInitHint(GLFW_PLATFORM, named ? GLFW_ANY_PLATFORM : GLFW_PLATFORM_X11);
   return glfwInit() == GLFW_TRUE;
 }
-// Of the windows there are, once it has started. On Wayland a program does not know where its
-// windows are and cannot give them an icon: the desktop finds it by the app id.
+// Returns whether windows are on Wayland, once GLFW has started. On Wayland a program does not know
+// where its windows are and cannot give them an icon: the desktop finds it by the app id.
 inline bool on_wayland() { return glfwGetPlatform() == GLFW_PLATFORM_WAYLAND; }
 #else
 constexpr bool kKnowsWayland = false;
@@ -26,7 +26,7 @@ inline bool start_glfw() { return glfwInit() == GLFW_TRUE; }
 inline bool on_wayland() { return false; }
 #endif
 
-// For the next window that is created.
+// Sets the hints for the next window that is created.
 inline void hint_window() {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);

@@ -1,4 +1,4 @@
-// Owners of what FFmpeg's libraries allocate, and their errors in words.
+// Owners of objects that FFmpeg's libraries allocate, and their errors in words.
 #pragma once
 
 extern "C" {
@@ -35,7 +35,7 @@ struct AvDeleter {
 template <class T>
 using Av = std::unique_ptr<T, AvDeleter>;
 
-// What a call returned, if that is no error. Errors: std::runtime_error.
+// Returns the result of a call, if that is no error. Errors: std::runtime_error.
 inline int checked(int result) {
   if (result >= 0) return result;
   char why[AV_ERROR_MAX_STRING_SIZE] = {};
@@ -49,7 +49,7 @@ T* given(T* made) {
   return made;
 }
 
-// A path and never the address of something else, whatever its letters.
+// Returns the address of a file, whatever its letters, and never of something else.
 inline std::string av_address(const std::filesystem::path& file) { return "file:" + file.string(); }
 
 }  // namespace limpid

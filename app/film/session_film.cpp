@@ -31,6 +31,178 @@ float scale_of(const FilmLook& look) {
   return static_cast<float>(look.text_scale > 0 ? look.text_scale : std::max(kLeastScale, fitting));
 }
 
+constexpr double kWhole = 30;          // longest stretch that the plots show whole [s]
+constexpr double kPart = 10;           // part of a longer stretch, shown at once [s]
+constexpr double kDrawingOfGif = 0.7;  // part of the work; the rest is colours
+constexpr double kCameraSlower = 3;    // than in the window, where somebody waits
+constexpr double kBefore = 1.0;        // time before the first picture whose trail is in it [s]
+
+std::string law_text(const RowLayout& layout, std::span<const double> row) {
+  const auto at = [&](Column c) { return layout.in(row, c)[0]; };
+  const auto kind = static_cast<CouplingKind>(at(Column::kind));
+  return fmt::format("{} coupling,  \u03b7 {:.2f},  \u03b1 {:.3g} N m s/rad", info(kind).key,
+                     at(Column::eta), at(Column::alpha));
+}
+
+// Returns the stretch that the plots show at once [s]; for a story all between one beginning and
+// the next.
+double longest_stretch(const std::vector<StoryStep>& steps, const FilmCut& cut) {
+  double longest = 0, began = cut.from;
+  for (const StoryStep& step : steps) {
+    if (!step.anew || step.begins <= cut.from || step.begins >= cut.to) continue;
+    longest = std::max(longest, step.begins - began);
+    began = step.begins;
+  }
+  longest = std::max(longest, cut.to - began);
+  return longest <= kWhole ? longest : kPart;
+}
+
+// A session on its stage, played from one time to the next.
+class Shown {
+ public:
+  struct Moment {
+    ViewState view;
+    std::optional<ViewState> beside;  // of a twin's second run
+  };
+
+  Shown(const Session& session, const std::string& where, const FilmOrder& order,
+        const FilmCut& cut, const FilmFrame& frame)
+      : session_(session),
+        order_(order),
+        frame_(frame),
+        stage_(stage(session, where, cut, order.steps)),
+        row_(index(cut.from)),
+        seconds_(1.0 / cut.fps) {
+    runs_.emplace_back(session, session_parameters(session, where));
+    if (session.twin) runs_.emplace_back(*session.twin, session_parameters(*session.twin, where));
+    apply_changes(row_);
+    enter_step(row_);
+    camera_.finish();
+    const double step = cut.speed / cut.fps;
+    for (double t = std::max(0.0, cut.from - kBefore); t < cut.from; t += step) see(index(t));
+  }
+
+  // Plays up to `time` [s], which never goes back.
+  Moment play_to(double time) {
+    camera_.advance(seconds_ / kCameraSlower);
+    const std::size_t now = index(time);
+    for (; row_ <= now; ++row_) {
+      apply_changes(row_);
+      enter_step(row_);
+      stage_.append(session_.row(row_), session_.twin ? session_.twin->row(row_) : Row());
+      for (const Mark& mark : session_.marks) {
+        if (mark.tick == row_) stage_.history.mark(time_at(row_), mark.text, kNoteMark);
+      }
+    }
+    return see(now);
+  }
+  FilmCaption caption() const {
+    const std::span<const double> row = session_.row(row_ - 1);
+    FilmCaption caption{.time = fmt::format("{:.2f} s", session_.layout.in(row, Column::time)[0]),
+                        .text = law_text(session_.layout, row),
+                        .aside = order_.title};
+    if (twin_shown()) caption.text = stage_.names().first + "  |  " + stage_.names().second;
+    if (step_ != nullptr) caption.told = step_->caption;
+    const double force = session_.layout.in(row, Column::force_state)[0];
+    caption.sign = force_text(static_cast<ForceState>(force));
+    return caption;
+  }
+  Stage& stage() { return stage_; }
+  const Camera& camera() const { return camera_; }
+
+ private:
+  using Row = std::span<const double>;
+  struct Run {
+    Run(const Session& s, const Parameters& p) : session(s), parameters(p) {}
+    const Session& session;
+    Parameters parameters;
+    std::size_t next = 0;  // change
+  };
+
+  static Stage stage(const Session& session, const std::string& where, const FilmCut& cut,
+                     const std::vector<StoryStep>& steps) {
+    RunPlan world = replay(session, where, {});
+    const double shown = longest_stretch(steps, cut);
+    History history({.channels = TraceChannels(session.layout).count() * (session.twin ? 2 : 1),
+                     .seconds = shown + 1,
+                     .tick = session.info.tick});
+    return {std::move(world.arm), std::move(world.document), std::move(world.models),
+            std::move(history), shown};
+  }
+  std::size_t index(double time) const {
+    const auto k = static_cast<std::size_t>(time / session_.info.tick + 1e-6);
+    return std::min(k, session_.size() - 1);
+  }
+  bool twin_shown() const { return session_.twin && (step_ == nullptr || step_->beside); }
+
+  Moment see(std::size_t k) {
+    Moment moment{.view = view(session_.row(k), stage_.memory), .beside = {}};
+    if (session_.twin) {
+      const ViewState beside = view(session_.twin->row(k), stage_.twin_memory);
+      if (twin_shown()) moment.beside = beside;
+    }
+    return moment;
+  }
+  ViewState view(Row row, ViewMemory& memory) const {
+    const RowLayout& layout = session_.layout;
+    ViewState view = stage_.rows().view(layout, row);
+    memory.update(view, stage_.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
+    return view;
+  }
+
+  // Applies the changes up to row k; a story marks its steps instead.
+  void apply_changes(std::size_t k) {
+    for (Run& run : runs_) {
+      const std::vector<SettingChange>& changes = run.session.changes;
+      for (; run.next < changes.size() && changes[run.next].row <= k; ++run.next) {
+        const SettingChange& change = changes[run.next];
+        apply_change(run.parameters, change);
+        if (&run != &runs_.front() || change.row < k || !order_.steps.empty()) continue;
+        std::string label = change.setting;
+        std::erase(label, '"');
+        stage_.history.mark(time_at(k), label, std::string(change.key()));
+      }
+    }
+    stage_.follow(runs_.front().parameters);
+    if (!session_.twin || !order_.steps.empty()) return;
+    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters), time_at(k));
+  }
+  // Names the two runs in the plots, with their laws at `time` [s].
+  void name_runs(const std::array<std::string, 2>& names, double time) {
+    stage_.name_runs({names[0], names[1], true, laws_at(session_, time)});
+  }
+  double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
+
+  void enter_step(std::size_t k) {
+    const StoryStep* step = order_.steps.empty() ? nullptr : &step_at(order_.steps, time_at(k));
+    if (step == step_ && aimed_) return;
+    step_ = step;
+    aimed_ = true;
+    const StoryCamera aim = step == nullptr ? StoryCamera{} : camera_in(order_.steps, *step);
+    const ImVec2 viewport = frame_.viewport(twin_shown());
+    camera_.resize(viewport.x, viewport.y);
+    camera_.look(aim.view);
+    camera_.frame(aim.of.value_or(stage_.picture.bounds()));
+    if (step == nullptr) return;
+    if (step->anew) stage_.history.clear();
+    if (step->beside) name_runs(step->names, step->begins);
+    const bool begins =
+        time_at(k) < step->begins + session_.info.tick;  // the video does not begin in it
+    if (begins && !step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
+  }
+
+  const Session& session_;
+  const FilmOrder& order_;
+  const FilmFrame& frame_;
+  Stage stage_;
+  Camera camera_;
+  std::size_t row_;  // next row for the plots
+  double seconds_;   // of a picture
+  std::vector<Run> runs_;
+  const StoryStep* step_ = nullptr;
+  bool aimed_ = false;
+};
+
 }  // namespace
 
 FilmFrame::FilmFrame(const FilmLook& look)
@@ -65,7 +237,7 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
   if (beside) beside->theme = look_.theme;
   const bool overlaid = beside && look_.overlaid;
   if (overlaid) lay_over(view, *std::exchange(beside, std::nullopt));
-  stage.draw_at(0);  // there is time
+  stage.draw_at(0);  // at the best quality: there is time
   stage.picture.set_pixel_scale(scale_);
   draw_picture(at.picture, stage, view, camera, beside ? &*beside : nullptr);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -148,187 +320,12 @@ void FilmFrame::draw_plots(const ScreenRect& rect, Stage& stage) const {
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     const ScreenRect& place = at.places[i];
     ImGui::SetCursorPos({origin.x + place.min.x, origin.y + place.min.y});
-    // Nobody can click on the legend to have them back.
+    // Hidden curves go: nobody can click on the legend to have them back.
     std::erase_if(stage.plots[i].spec().curves, [](const Curve& c) { return !c.visible; });
     stage.plots[i].draw(stage.history, stage.group, place.size());
   }
   ImGui::End();
 }
-
-namespace {
-
-constexpr double kWhole = 30;          // the plots show all of what is no longer than that [s]
-constexpr double kPart = 10;           // of what is longer
-constexpr double kDrawingOfGif = 0.7;  // part of the work; the rest is colours
-constexpr double kCameraSlower = 3;    // than where somebody waits for it
-constexpr double kBefore = 1.0;  // what came before the first picture leaves its trail in it [s]
-
-std::string law_text(const RowLayout& layout, std::span<const double> row) {
-  const auto at = [&](Column c) { return layout.in(row, c)[0]; };
-  const auto kind = static_cast<CouplingKind>(at(Column::kind));
-  return fmt::format("{} coupling,  \u03b7 {:.2f},  \u03b1 {:.3g} N m s/rad", info(kind).key,
-                     at(Column::eta), at(Column::alpha));
-}
-
-// So much of a session the plots show at once [s]; of a story all between one beginning and the
-// next.
-double longest_stretch(const std::vector<StoryStep>& steps, const FilmCut& cut) {
-  double longest = 0, began = cut.from;
-  for (const StoryStep& step : steps) {
-    if (!step.anew || step.begins <= cut.from || step.begins >= cut.to) continue;
-    longest = std::max(longest, step.begins - began);
-    began = step.begins;
-  }
-  longest = std::max(longest, cut.to - began);
-  return longest <= kWhole ? longest : kPart;
-}
-
-// A session on its stage, played from one time to the next.
-class Shown {
- public:
-  struct Moment {
-    ViewState view;
-    std::optional<ViewState> beside;  // of a twin's second run
-  };
-
-  Shown(const Session& session, const std::string& where, const FilmOrder& order,
-        const FilmCut& cut, const FilmFrame& frame)
-      : session_(session),
-        order_(order),
-        frame_(frame),
-        stage_(stage(session, where, cut, order.steps)),
-        row_(index(cut.from)),
-        seconds_(1.0 / cut.fps) {
-    runs_.emplace_back(session, session_parameters(session, where));
-    if (session.twin) runs_.emplace_back(*session.twin, session_parameters(*session.twin, where));
-    apply_changes(row_);
-    enter_step(row_);
-    camera_.finish();
-    const double step = cut.speed / cut.fps;
-    for (double t = std::max(0.0, cut.from - kBefore); t < cut.from; t += step) see(index(t));
-  }
-
-  // Up to `time` [s], which never goes back.
-  Moment play_to(double time) {
-    camera_.advance(seconds_ / kCameraSlower);
-    const std::size_t now = index(time);
-    for (; row_ <= now; ++row_) {
-      apply_changes(row_);
-      enter_step(row_);
-      stage_.append(session_.row(row_), session_.twin ? session_.twin->row(row_) : Row());
-      for (const Mark& mark : session_.marks) {
-        if (mark.tick == row_) stage_.history.mark(time_at(row_), mark.text, kNoteMark);
-      }
-    }
-    return see(now);
-  }
-  FilmCaption caption() const {
-    const std::span<const double> row = session_.row(row_ - 1);
-    FilmCaption caption{.time = fmt::format("{:.2f} s", session_.layout.in(row, Column::time)[0]),
-                        .text = law_text(session_.layout, row),
-                        .aside = order_.title};
-    if (twin_shown()) caption.text = stage_.names().first + "  |  " + stage_.names().second;
-    if (step_ != nullptr) caption.told = step_->caption;
-    const double force = session_.layout.in(row, Column::force_state)[0];
-    caption.sign = force_text(static_cast<ForceState>(force));
-    return caption;
-  }
-  Stage& stage() { return stage_; }
-  const Camera& camera() const { return camera_; }
-
- private:
-  using Row = std::span<const double>;
-  struct Run {
-    Run(const Session& s, const Parameters& p) : session(s), parameters(p) {}
-    const Session& session;
-    Parameters parameters;
-    std::size_t next = 0;  // change
-  };
-
-  static Stage stage(const Session& session, const std::string& where, const FilmCut& cut,
-                     const std::vector<StoryStep>& steps) {
-    RunPlan world = replay(session, where, {});
-    const double shown = longest_stretch(steps, cut);
-    History history({.channels = TraceChannels(session.layout).count() * (session.twin ? 2 : 1),
-                     .seconds = shown + 1,
-                     .tick = session.info.tick});
-    return {std::move(world.arm), std::move(world.document), std::move(world.models),
-            std::move(history), shown};
-  }
-  std::size_t index(double time) const {
-    const auto k = static_cast<std::size_t>(time / session_.info.tick + 1e-6);
-    return std::min(k, session_.size() - 1);
-  }
-  bool twin_shown() const { return session_.twin && (step_ == nullptr || step_->beside); }
-
-  Moment see(std::size_t k) {
-    Moment moment{.view = view(session_.row(k), stage_.memory), .beside = {}};
-    if (session_.twin) {
-      const ViewState beside = view(session_.twin->row(k), stage_.twin_memory);
-      if (twin_shown()) moment.beside = beside;
-    }
-    return moment;
-  }
-  ViewState view(Row row, ViewMemory& memory) const {
-    const RowLayout& layout = session_.layout;
-    ViewState view = stage_.rows().view(layout, row);
-    memory.update(view, stage_.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
-    return view;
-  }
-
-  // Those up to row k; a story marks its steps instead.
-  void apply_changes(std::size_t k) {
-    for (Run& run : runs_) {
-      const std::vector<SettingChange>& changes = run.session.changes;
-      for (; run.next < changes.size() && changes[run.next].row <= k; ++run.next) {
-        const SettingChange& change = changes[run.next];
-        apply_change(run.parameters, change);
-        if (&run != &runs_.front() || change.row < k || !order_.steps.empty()) continue;
-        std::string label = change.setting;
-        std::erase(label, '"');
-        stage_.history.mark(time_at(k), label, std::string(change.key()));
-      }
-    }
-    stage_.follow(runs_.front().parameters);
-    if (!session_.twin || !order_.steps.empty()) return;
-    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters), time_at(k));
-  }
-  // Of two runs the plots show what a sentence can say.
-  void name_runs(const std::array<std::string, 2>& names, double time) {
-    stage_.name_runs({names[0], names[1], true, laws_at(session_, time)});
-  }
-  double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
-
-  void enter_step(std::size_t k) {
-    const StoryStep* step = order_.steps.empty() ? nullptr : &step_at(order_.steps, time_at(k));
-    if (step == step_ && aimed_) return;
-    step_ = step;
-    aimed_ = true;
-    const StoryCamera aim = step == nullptr ? StoryCamera{} : camera_in(order_.steps, *step);
-    const ImVec2 viewport = frame_.viewport(twin_shown());
-    camera_.resize(viewport.x, viewport.y);
-    camera_.look(aim.view);
-    camera_.frame(aim.of.value_or(stage_.picture.bounds()));
-    if (step == nullptr) return;
-    if (step->anew) stage_.history.clear();
-    if (step->beside) name_runs(step->names, step->begins);
-    const bool begins = time_at(k) < step->begins + session_.info.tick;  // and not the video in it
-    if (begins && !step->mark.empty()) stage_.history.mark(time_at(k), step->mark);
-  }
-
-  const Session& session_;
-  const FilmOrder& order_;
-  const FilmFrame& frame_;
-  Stage stage_;
-  Camera camera_;
-  std::size_t row_;  // the next one for the plots
-  double seconds_;   // of a picture
-  std::vector<Run> runs_;
-  const StoryStep* step_ = nullptr;
-  bool aimed_ = false;
-};
-
-}  // namespace
 
 std::size_t FilmCut::pictures() const {
   return static_cast<std::size_t>(std::max(1LL, std::llround(duration() * fps)));

@@ -1,4 +1,4 @@
-// One picture of a video: the 3D picture, the window's plots below it and a caption above.
+// Videos of recorded sessions: the 3D picture, the window's plots below it and a caption above.
 #pragma once
 
 #include <atomic>
@@ -21,35 +21,36 @@ namespace limpid {
 
 struct FilmLook {
   int width = 1280, height = 720;  // [px]
-  bool plots = true;               // left out where there is no room for them
+  bool plots = true;               // left out if there is no room for them
   bool overlaid = false;           // a twin's two runs in one picture
-  double text_scale = 0;           // 1 is the window's on an ordinary screen; 0: by the size
+  double text_scale = 0;           // 1 as in the window on an ordinary screen; 0: by the size
   Theme theme = Theme::dark;
 };
 
 struct FilmCaption {
   std::string time;       // "12.34 s"
-  std::string text;       // what is in force
+  std::string text;       // the settings in force
   std::string aside;      // at the right, if there is room
-  std::string told = {};  // over the picture, in lines as they fit
-  std::string sign = {};  // there, at the top: what must not be missed
+  std::string told = {};  // sentence over the picture, in lines as they fit
+  std::string sign = {};  // warning over the picture, at the top
 };
 
-// Draws without a display, in an OpenGL context of its own: make it before the stages it draws, on
-// the thread that draws them. ImGui being what it is, not beside a window in the same program.
+// Draws pictures of a video without a display, in an OpenGL context of its own: make it before the
+// stages it draws, on the thread that draws them. ImGui being what it is, not beside a window in
+// the same program.
 class FilmFrame {
  public:
-  // Errors: std::runtime_error where OpenGL cannot be had.
+  // Errors: std::runtime_error if OpenGL cannot be had.
   explicit FilmFrame(const FilmLook& look);
 
-  // `view` in the stage's picture, and of its plots what its history holds by now, with a line at
-  // the newest row; `elapsed` since the last picture [s]. With a second run `beside` it, each has
-  // half of the picture and the name that the stage gives it, unless they are overlaid. Four bytes
-  // a pixel, top row first.
+  // Draws `view` in the stage's picture, and the stage's plots with what its history holds by now
+  // and a line at the newest row. `elapsed` since the last picture [s]. With a second run `beside`
+  // it, each has half of the picture and the name that the stage gives it, unless they are
+  // overlaid. Returns four bytes a pixel, top row first.
   std::vector<unsigned char> draw(Stage& stage, ViewState view, const Camera& camera,
                                   const FilmCaption& caption, double elapsed,
                                   std::optional<ViewState> beside = {});
-  // The viewport that the camera should expect [px], of one run or of a twin's two.
+  // Returns the viewport that the camera should expect [px], of one run or of a twin's two.
   ImVec2 viewport(bool twin) const;
 
  private:
@@ -69,17 +70,17 @@ class FilmFrame {
   ImGuiGl imgui_;
 };
 
-// The video of a recorded session.
+// Order for the video of a recorded session.
 struct FilmOrder {
   std::filesystem::path out = {};
   bool force = false;
   FilmLook look = {};
-  std::optional<int> fps = {};        // none: what is usual for such a file
+  std::optional<int> fps = {};        // none: the usual one for such a file
   double from = 0;                    // [s] of the session
   std::optional<double> to = {};      // none: its end
   double speed = 1;                   // of the session in the video, 0.01 to 100
   std::string title = {};             // at the right of the caption
-  std::vector<StoryStep> steps = {};  // of the story that was recorded; none: it is no story's
+  std::vector<StoryStep> steps = {};  // of the recorded story; none: the session is no story's
 };
 
 // Moments of a session, one for each picture of its video.
@@ -93,17 +94,17 @@ struct FilmCut {
   double time(std::size_t picture) const;                  // [s] of the session
 };
 
-// What an order means for a session. Errors: FileError for times that are not in it, and for a
-// name that is no video's.
+// Works out the moments that an order means for a session. Errors: FileError for times that are not
+// in it, and for a name that is no video's.
 FilmCut cut(const FilmOrder& order, const Session& session, const std::string& where);
 
 struct FilmEnd {
-  bool stopped = false;  // then there is no video
-  double seconds = 0;    // of the video that were drawn
+  bool stopped = false;  // there is no video then
+  double seconds = 0;    // of the video, as far as drawn
 };
 
-// Draws at full quality, as fast as it goes. `at` is told the part of the work that is done, 0
-// to 1. `where` names the session in errors: FileError for what is refused before anything is
+// Draws a video at full quality, as fast as it goes. Tells `at` the part of the work that is done,
+// 0 to 1. `where` names the session in errors: FileError for what is refused before anything is
 // written, else std::runtime_error.
 FilmEnd film(const Session& session, const std::string& where, const FilmOrder& order,
              const std::atomic<bool>& stop, const std::function<void(double)>& at);

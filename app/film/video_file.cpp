@@ -35,7 +35,8 @@ class Dictionary {
 
 bool subsampled(AVPixelFormat pixels) { return pixels == AV_PIX_FMT_YUV420P; }
 
-// Players take what says nothing for BT.601 or BT.709 as they like: it is said, and held to.
+// Names the colours, BT.709, which the converter keeps to. Without a name players take them for
+// BT.601 or BT.709 as they like.
 void say_colours(AVCodecContext& codec) {
   if (!subsampled(codec.pix_fmt)) return;
   codec.colorspace = AVCOL_SPC_BT709;
@@ -55,6 +56,101 @@ Av<SwsContext> converter(const VideoFormat& format, AVPixelFormat to) {
     sws_setColorspaceDetails(convert.get(), bt709, 1, bt709, 0, 0, kOne, kOne);
   }
   return convert;
+}
+
+using Options = std::initializer_list<std::pair<const char*, std::string>>;
+
+// Filters of libavfilter in a row that ends in a sink.
+class Filters {
+ public:
+  Filters() : graph_(given(avfilter_graph_alloc())), sink_(node("buffersink", {})) {}
+
+  AVFilterContext* node(const char* filter, Options options) {
+    AVFilterContext* made =
+        given(avfilter_graph_alloc_filter(graph_.get(), avfilter_get_by_name(filter), nullptr));
+    for (const auto& [key, value] : options) {
+      checked(av_opt_set(made, key, value.c_str(), AV_OPT_SEARCH_CHILDREN));
+    }
+    checked(avfilter_init_str(made, nullptr));
+    return made;
+  }
+  // Adds a source, into which frames of this kind are put.
+  AVFilterContext* source(int width, int height, AVPixelFormat pixels) {
+    return node("buffer", {{"video_size", fmt::format("{}x{}", width, height)},
+                           {"pix_fmt", av_get_pix_fmt_name(pixels)},
+                           {"time_base", "1/100"}});
+  }
+  static void link(AVFilterContext* from, AVFilterContext* to, unsigned input = 0) {
+    checked(avfilter_link(from, 0, to, input));
+  }
+  void end_with(AVFilterContext* last) {
+    link(last, sink_);
+    checked(avfilter_graph_config(graph_.get(), nullptr));
+  }
+
+  // Takes the next frame out of the sink; false after the last.
+  bool next(AVFrame& frame) {
+    const int got = av_buffersink_get_frame(sink_, &frame);
+    if (got == AVERROR_EOF) return false;
+    checked(got);
+    return true;
+  }
+  AVRational time_base() const { return av_buffersink_get_time_base(sink_); }
+
+ private:
+  Av<AVFilterGraph> graph_;
+  AVFilterContext* sink_;
+};
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPicture = "frame-";
+
+fs::path picture_file(const fs::path& folder, std::uint64_t number) {
+  return folder / fmt::format("{}{:06}.png", kPicture, number);
+}
+
+// Lists the pictures of this video or an earlier one; other files there are the user's.
+std::vector<fs::path> pictures_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(kPicture) && name.ends_with(".png")) files.push_back(entry.path());
+  }
+  return files;
+}
+
+fs::path frames_of(const fs::path& part) { return fs::path(part) += ".frames"; }
+
+void check_format(const fs::path& out, const VideoFormat& format, VideoKind kind) {
+  const auto even = [](int n) { return n >= kLeastVideo && n <= kLargestVideo && n % 2 == 0; };
+  if (!even(format.width) || !even(format.height)) {
+    throw FileError(
+        fmt::format("{}: a video of {} x {} pixels; allowed: even numbers from {} to {}",
+                    out.string(), format.width, format.height, kLeastVideo, kLargestVideo));
+  }
+  if (format.fps < 1 || format.fps > most_fps(kind)) {
+    throw FileError(fmt::format("{}: {} pictures a second; allowed: 1 to {}", out.string(),
+                                format.fps, most_fps(kind)));
+  }
+}
+
+// Checks that a folder for pictures is there, or can be.
+void check_pictures(const fs::path& folder, bool force) {
+  std::error_code error;
+  check_name(folder);
+  if (!fs::exists(folder, error)) return check_folder(folder);
+  if (!fs::is_directory(folder, error)) {
+    throw FileError(fmt::format("{}: not a directory", folder.string()));
+  }
+  if (!force && !fs::is_empty(folder, error)) {
+    throw FileError(
+        fmt::format("{}: is not empty; --force replaces the pictures of an earlier "
+                    "video in it",
+                    folder.string()));
+  }
+  check_folder(folder / kPicture);
 }
 
 }  // namespace
@@ -166,54 +262,6 @@ void StreamFile::finish() {
   checked(avio_closep(&file_->pb));
 }
 
-namespace {
-
-using Options = std::initializer_list<std::pair<const char*, std::string>>;
-
-// Filters of libavfilter, one behind the other, that end in a sink.
-class Filters {
- public:
-  Filters() : graph_(given(avfilter_graph_alloc())), sink_(node("buffersink", {})) {}
-
-  AVFilterContext* node(const char* filter, Options options) {
-    AVFilterContext* made =
-        given(avfilter_graph_alloc_filter(graph_.get(), avfilter_get_by_name(filter), nullptr));
-    for (const auto& [key, value] : options) {
-      checked(av_opt_set(made, key, value.c_str(), AV_OPT_SEARCH_CHILDREN));
-    }
-    checked(avfilter_init_str(made, nullptr));
-    return made;
-  }
-  // Where frames of this kind are put in.
-  AVFilterContext* source(int width, int height, AVPixelFormat pixels) {
-    return node("buffer", {{"video_size", fmt::format("{}x{}", width, height)},
-                           {"pix_fmt", av_get_pix_fmt_name(pixels)},
-                           {"time_base", "1/100"}});
-  }
-  static void link(AVFilterContext* from, AVFilterContext* to, unsigned input = 0) {
-    checked(avfilter_link(from, 0, to, input));
-  }
-  void end_with(AVFilterContext* last) {
-    link(last, sink_);
-    checked(avfilter_graph_config(graph_.get(), nullptr));
-  }
-
-  // The next frame out of the sink; false after the last.
-  bool next(AVFrame& frame) {
-    const int got = av_buffersink_get_frame(sink_, &frame);
-    if (got == AVERROR_EOF) return false;
-    checked(got);
-    return true;
-  }
-  AVRational time_base() const { return av_buffersink_get_time_base(sink_); }
-
- private:
-  Av<AVFilterGraph> graph_;
-  AVFilterContext* sink_;
-};
-
-}  // namespace
-
 struct GifFile::Impl {
   Impl(const std::filesystem::path& file, const VideoFormat& video)
       : kept(file), format(video), stream(std::in_place, file, video, lossless_coding(video.fps)) {
@@ -238,7 +286,7 @@ struct GifFile::Impl {
     checked(av_buffersrc_add_frame(source, frame.get()));
   }
 
-  // kept pictures -> paletteuse -> sink, with the colours as its second input.
+  // Builds kept pictures -> paletteuse -> sink, with the colours as its second input.
   void use_colours(Filters& filters) {
     const Av<AVFrame> colours(given(av_frame_alloc()));
     checked(av_buffersrc_add_frame(source, nullptr));
@@ -246,7 +294,7 @@ struct GifFile::Impl {
     AVFilterContext* pictures_in = filters.node("movie", {{"filename", av_address(kept)}});
     AVFilterContext* colours_in = filters.source(colours->width, colours->height,
                                                  static_cast<AVPixelFormat>(colours->format));
-    // Ordered dither stays where it is from picture to picture, and is small in the file.
+    // Ordered dither stays in place from picture to picture, and is small in the file.
     AVFilterContext* use = filters.node(
         "paletteuse", {{"dither", "bayer"}, {"bayer_scale", "4"}, {"diff_mode", "rectangle"}});
     Filters::link(pictures_in, use, 0);
@@ -294,61 +342,6 @@ bool GifFile::finish(const std::filesystem::path& gif, const std::atomic<bool>& 
   return true;
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kPicture = "frame-";
-
-fs::path picture_file(const fs::path& folder, std::uint64_t number) {
-  return folder / fmt::format("{}{:06}.png", kPicture, number);
-}
-
-// Of this video or an earlier one; what else lies there is somebody's.
-std::vector<fs::path> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(kPicture) && name.ends_with(".png")) files.push_back(entry.path());
-  }
-  return files;
-}
-
-fs::path frames_of(const fs::path& part) { return fs::path(part) += ".frames"; }
-
-void check_format(const fs::path& out, const VideoFormat& format, VideoKind kind) {
-  const auto even = [](int n) { return n >= kLeastVideo && n <= kLargestVideo && n % 2 == 0; };
-  if (!even(format.width) || !even(format.height)) {
-    throw FileError(
-        fmt::format("{}: a video of {} x {} pixels; allowed: even numbers from {} to {}",
-                    out.string(), format.width, format.height, kLeastVideo, kLargestVideo));
-  }
-  if (format.fps < 1 || format.fps > most_fps(kind)) {
-    throw FileError(fmt::format("{}: {} pictures a second; allowed: 1 to {}", out.string(),
-                                format.fps, most_fps(kind)));
-  }
-}
-
-// A folder for pictures that is there, or can be.
-void check_pictures(const fs::path& folder, bool force) {
-  std::error_code error;
-  check_name(folder);
-  if (!fs::exists(folder, error)) return check_folder(folder);
-  if (!fs::is_directory(folder, error)) {
-    throw FileError(fmt::format("{}: not a directory", folder.string()));
-  }
-  if (!force && !fs::is_empty(folder, error)) {
-    throw FileError(
-        fmt::format("{}: is not empty; --force replaces the pictures of an earlier "
-                    "video in it",
-                    folder.string()));
-  }
-  check_folder(folder / kPicture);
-}
-
-}  // namespace
-
 VideoKind video_kind(const fs::path& out) {
   std::error_code none;
   std::string ending = out.extension().string();
@@ -362,7 +355,7 @@ VideoKind video_kind(const fs::path& out) {
       out.string()));
 }
 
-// A GIF counts in hundredths of a second, and viewers slow down what is shown for one only.
+// A GIF counts in hundredths of a second, and viewers slow down pictures shown for one only.
 int most_fps(VideoKind kind) { return kind == VideoKind::gif ? 50 : 240; }
 int usual_fps(VideoKind kind) { return kind == VideoKind::gif ? 15 : 30; }
 
@@ -375,7 +368,7 @@ struct VideoFile::Impl {
   std::optional<GifFile> gif;
   std::uint64_t pictures = 0;
 
-  // What goes wrong once writing has begun.
+  // Does work once writing has begun; errors name OUT.
   template <class Work>
   auto attempt(Work&& work) {
     try {
@@ -416,7 +409,7 @@ struct VideoFile::Impl {
 
 VideoFile::VideoFile(const fs::path& out, const VideoFormat& format, bool force)
     : impl_(std::make_unique<Impl>()) {
-  // A folder's name may end in a slash, which OUT.part must not go behind.
+  // The name of a folder may end in a slash, which OUT.part must not go behind.
   impl_->out = out.has_filename() ? out : out.parent_path();
   impl_->part = part_of(impl_->out);
   impl_->format = format;
@@ -428,7 +421,7 @@ VideoFile::VideoFile(const fs::path& out, const VideoFormat& format, bool force)
   } else {
     check_place(impl_->out, force);
   }
-  av_log_set_level(AV_LOG_QUIET);  // what matters is thrown
+  av_log_set_level(AV_LOG_QUIET);  // errors are thrown
   impl_->remove_part();
   try {
     impl_->open();

@@ -26,9 +26,36 @@ Limits around(const Limits& data, double smallest_span) {
   }
   const double margin = kMargin * (high - low);
   const double round_to = nice_step(high - low, 10);
-  // A magnitude's axis begins at zero: below there is nothing.
+  // A magnitude's axis begins at zero, as no value is below.
   return {low == 0 ? 0 : std::floor((low - margin) / round_to) * round_to,
           std::ceil((high + margin) / round_to) * round_to};
+}
+
+std::string log_text(double value) {
+  const int exponent = static_cast<int>(std::round(std::log10(value)));
+  if (exponent >= -3 && exponent <= 4) return fmt::format("{:.6g}", value);
+  const std::string power = exponent_text(exponent);  // "\u00d710\u207b\u2076"
+  const std::string mantissa = fmt::format("{:.0f}", value / std::pow(10, exponent));
+  return mantissa == "1" ? power.substr(std::string("\u00d7").size()) : mantissa + power;
+}
+
+// Returns decades and places between them; 2 and 5 have labels where there are few decades.
+std::vector<AxisPlace> log_places(const AxisMap& map, double factor, double most) {
+  std::vector<AxisPlace> places;
+  const double shift = std::log10(factor);
+  const double low = map.limits.low + shift, high = map.limits.high + shift;
+  const int apart = std::max(1, static_cast<int>(std::ceil((high - low) / std::max(1.0, most))));
+  const bool few = high - low < 1.5;
+  for (int decade = static_cast<int>(std::floor(low)); decade <= high; ++decade) {
+    for (int m = 1; m < 10; ++m) {
+      const double value = m * std::pow(10, decade);
+      if (std::log10(value) < low - 1e-9 || std::log10(value) > high + 1e-9) continue;
+      const bool named = (m == 1 && decade % apart == 0) || (few && (m == 2 || m == 5));
+      if (!named && high - low > 4) continue;
+      places.push_back({value / factor, named ? log_text(value) : ""});
+    }
+  }
+  return places;
 }
 
 }  // namespace
@@ -59,37 +86,6 @@ Limits Autoscale::update(const Limits& data, double smallest_span, double elapse
   shown_->high = std::max(shown_->high, data.high);
   return *shown_;
 }
-
-namespace {
-
-std::string log_text(double value) {
-  const int exponent = static_cast<int>(std::round(std::log10(value)));
-  if (exponent >= -3 && exponent <= 4) return fmt::format("{:.6g}", value);
-  const std::string power = exponent_text(exponent);  // "\u00d710\u207b\u2076"
-  const std::string mantissa = fmt::format("{:.0f}", value / std::pow(10, exponent));
-  return mantissa == "1" ? power.substr(std::string("\u00d7").size()) : mantissa + power;
-}
-
-// Decades and what is between them; 2 and 5 with labels where there are few decades.
-std::vector<AxisPlace> log_places(const AxisMap& map, double factor, double most) {
-  std::vector<AxisPlace> places;
-  const double shift = std::log10(factor);
-  const double low = map.limits.low + shift, high = map.limits.high + shift;
-  const int apart = std::max(1, static_cast<int>(std::ceil((high - low) / std::max(1.0, most))));
-  const bool few = high - low < 1.5;
-  for (int decade = static_cast<int>(std::floor(low)); decade <= high; ++decade) {
-    for (int m = 1; m < 10; ++m) {
-      const double value = m * std::pow(10, decade);
-      if (std::log10(value) < low - 1e-9 || std::log10(value) > high + 1e-9) continue;
-      const bool named = (m == 1 && decade % apart == 0) || (few && (m == 2 || m == 5));
-      if (!named && high - low > 4) continue;
-      places.push_back({value / factor, named ? log_text(value) : ""});
-    }
-  }
-  return places;
-}
-
-}  // namespace
 
 std::vector<AxisPlace> axis_places(const PlotAxis& axis, const AxisMap& map, double most) {
   if (map.log) return log_places(map, axis.factor, most);

@@ -1,4 +1,4 @@
-// Limits of a value axis that follow the data without fidgeting.
+// Value axes of plots: limits that follow the data without fidgeting, mapping, labels.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ struct Limits {
   friend bool operator==(const Limits&, const Limits&) = default;
 };
 
-// Grows at once where data would be cut off, shrinks only after the data has left much of the axis
-// unused for a while, and glides to round limits.
+// Limits that grow at once where data would be cut off. They shrink only after the data has left
+// much of the axis unused for a while, and glide to round numbers.
 class Autoscale {
  public:
   // `data`: what has to be visible; `smallest_span` > 0: the axis never shows less than that;
@@ -36,12 +36,12 @@ class Autoscale {
   double unused_for_ = 0;  // [s]
 };
 
-// Where values lie along an axis, linear or logarithmic.
+// Mapping of values to places along an axis, linear or logarithmic.
 struct AxisMap {
-  Limits limits;  // of a logarithmic axis those of the decimal logarithm
+  Limits limits;  // for a logarithmic axis: of the decimal logarithm
   bool log = false;
 
-  // 0 at the low end, 1 at the high one.
+  // Returns 0 at the low end, 1 at the high one.
   double part(double value) const {
     return ((log ? std::log10(std::max(value, 1e-300)) : value) - limits.low) / limits.span();
   }
@@ -53,16 +53,16 @@ struct AxisMap {
   double high() const { return value(1); }
 };
 
-// Where a value axis has its lines and labels.
+// A line of a value axis, and its label.
 struct AxisPlace {
   double value;       // in the channels' unit
   std::string label;  // empty: a line of the grid alone
 };
 
-// At most about `most` labels, from the low end to the high one.
+// Returns at most about `most` labels, from the low end to the high one.
 std::vector<AxisPlace> axis_places(const PlotAxis& axis, const AxisMap& map, double most);
 
-// What the labels are multiplied by, and their unit.
+// Returns the factor of the labels and their unit.
 std::string unit_text(const PlotAxis& axis, const AxisMap& map);
 
 }  // namespace limpid

@@ -1,5 +1,5 @@
-// A drawing that is kept, to be done again on another canvas: beside the window, say, where it may
-// take its time.
+// A recorded drawing, to be played on another canvas: beside the window, say, where it may take its
+// time.
 #pragma once
 
 #include <functional>

@@ -18,6 +18,11 @@ void put(LargeVector<T>& ring, std::size_t at, const T& value) {
   }
 }
 
+constexpr double kGapTicks = 1.5;
+constexpr double kResetGap = 0.2;     // shown between two runs [s]
+constexpr double kSameGesture = 0.5;  // marks of one key closer than this are one [s]
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
 }  // namespace
 
 MinMaxRing::MinMaxRing(std::size_t at_least) {
@@ -37,7 +42,7 @@ void MinMaxRing::append(float sample) {
   if (end_ - lap_ == capacity()) lap_ = end_;
 }
 
-// What was only counted, before the first number.
+// Stores the rows that were only counted as no numbers, before the first number comes.
 void MinMaxRing::make_up() {
   const std::size_t rows = end_ < capacity() ? static_cast<std::size_t>(end_) : capacity();
   samples_.assign(rows, kNothing);
@@ -86,15 +91,6 @@ Extent MinMaxRing::extent(SampleIndex from, SampleIndex to) const {
     to /= kFan;
   }
 }
-
-namespace {
-
-constexpr double kGapTicks = 1.5;
-constexpr double kResetGap = 0.2;     // shown between two runs [s]
-constexpr double kSameGesture = 0.5;  // marks of one key closer than this are one [s]
-constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-
-}  // namespace
 
 History::History(const Options& options) : tick_(options.tick) {
   if (options.channels < 1 || !(options.seconds > 0) || !(options.tick > 0)) {
@@ -166,7 +162,7 @@ SampleIndex History::lower_bound(double time_wanted) const {
 }
 
 SampleIndex History::lower_bound(double time_wanted, SampleIndex from) const {
-  // Gallop: the row is mostly close to `from`, and then a few steps are enough.
+  // The search gallops: the row is mostly close to `from`, and then a few steps are enough.
   SampleIndex low = from;
   SampleIndex high = from;
   for (SampleIndex step = 1; high < end() && time(high) < time_wanted; step *= 2) {

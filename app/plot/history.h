@@ -16,14 +16,13 @@
 namespace limpid {
 
 // Smallest and largest of some values.
-
 struct Extent {
   float low = std::numeric_limits<float>::infinity();
   float high = -std::numeric_limits<float>::infinity();
 
   bool empty() const { return low > high; }
 
-  // Not a number changes nothing: the order of the comparison matters.
+  // Leaves out a value that is not a number, by the order of the comparisons.
   void include(float value) {
     low = value < low ? value : low;
     high = value > high ? value : high;
@@ -36,14 +35,14 @@ struct Extent {
   friend bool operator==(const Extent&, const Extent&) = default;
 };
 
-// The newest samples of one channel with the extents of ever larger blocks of them kept beside.
-//
-// Blocks of 8, 64, 512 and 4096 samples are summed up as soon as they are full, so that the extent
-// of any stretch costs a few dozen comparisons however long it is. Samples are numbered from 0 in
-// the order of arrival; a sample keeps its number when older ones are overwritten. A channel that
-// has never had a number, as those of a second run that there is not, is only counted.
+// Number of a sample: from 0 in the order of arrival; stays when older samples are overwritten.
 using SampleIndex = std::uint64_t;
 
+// The newest samples of one channel, with the extents of ever larger blocks of them.
+//
+// Blocks of 8, 64, 512 and 4096 samples are summed up as soon as they are full. So the extent of
+// any stretch costs a few dozen comparisons however long it is. A channel that has never had a
+// number is only counted: those of a second run that does not exist.
 class MinMaxRing {
  public:
   static constexpr int kFanBits = 3;
@@ -51,7 +50,7 @@ class MinMaxRing {
   static constexpr int kLevels = 4;  // above the samples themselves
   static constexpr std::size_t kLargestBlock = std::size_t{1} << (kFanBits * kLevels);
 
-  // `at_least`: how many samples to keep; rounded up to whole largest blocks.
+  // `at_least`: number of samples to keep; rounded up to whole largest blocks.
   explicit MinMaxRing(std::size_t at_least);
 
   void append(float sample);
@@ -66,12 +65,13 @@ class MinMaxRing {
     return samples_.empty() ? kNothing : samples_[slot(index, 0)];
   }
 
-  // Exact extent of the samples [from, to) inside [first(), end()); not-a-numbers do not count.
+  // Returns the exact extent of the samples [from, to) inside [first(), end()), without those that
+  // are not numbers.
   Extent extent(SampleIndex from, SampleIndex to) const;
 
  private:
-  // Where block `index` of a level lies. The ring holds at most two laps, the newest of which began
-  // at sample lap_: cheaper than a division.
+  // Returns the place of block `index` of a level. The ring holds at most two laps, the newest of
+  // which began at sample lap_: cheaper than a division.
   std::size_t slot(SampleIndex index, int level) const {
     const SampleIndex lap = lap_ >> (kFanBits * level);
     const std::size_t size = capacity() >> (kFanBits * level);
@@ -84,7 +84,7 @@ class MinMaxRing {
   static constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
   std::size_t capacity_;
-  // Their memory is taken at once, and touched only as samples come.
+  // Storage is reserved at once, and touched only as samples come.
   LargeVector<float> samples_;
   std::array<LargeVector<Extent>, kLevels> blocks_;
   SampleIndex end_ = 0;
@@ -99,11 +99,11 @@ struct PlotMark {
 };
 
 inline constexpr const char* kResetMark = "reset";  // key of the mark where a new run begins
-inline constexpr const char* kNoteMark = "note";    // of those that people set
+inline constexpr const char* kNoteMark = "note";    // key of marks that people set
 
-// Rows of `channels` values in time order. The time axis only ever grows: where the time handed to
+// Rows of `channels` values in time order. The time axis only ever grows. Where the time handed to
 // append() steps back (a reset), the axis goes on after a short gap and offset() tells the
-// difference, so that data before and after a reset can be looked at together.
+// difference. So data before and after a reset can be looked at together.
 //
 // Memory is set aside once, by the constructor: about 5.2 bytes a value and 8 bytes a row; it is
 // used as rows come.
@@ -113,25 +113,25 @@ class History {
 
   struct Options {
     int channels = 1;
-    double seconds = 60;  // how much to keep at least [s]
+    double seconds = 60;  // least time to keep [s]
     double tick = 0.001;  // time between rows [s]; more than 1.5 of it is a gap
   };
 
   // Throws std::invalid_argument when an option is not positive.
   explicit History(const Options& options);
 
-  // `time` [s] as the loop counts it; `values`: one for each channel, in its own unit; values that
-  // are not finite are shown as gaps of their channel. Throws std::invalid_argument for a wrong
-  // number of values or a time that is not finite.
+  // Appends a row. `time` [s] as the loop counts it; `values`: one for each channel, in its own
+  // unit; values that are not finite are shown as gaps of their channel. Throws
+  // std::invalid_argument for a wrong number of values or a time that is not finite.
   void append(double time, std::span<const double> values);
 
-  // `time` [s] as the loop counts it. A mark with the same key less than half a second ago is
-  // replaced, so that dragging a slider leaves one mark. Of more than kMostMarks the oldest go, as
-  // each is drawn in every frame.
+  // Adds a mark at `time` [s] as the loop counts it. Replaces a mark with the same key less than
+  // half a second ago, so that dragging a slider leaves one mark. Drops the oldest beyond
+  // kMostMarks, as each is drawn in every frame.
   void mark(double time, std::string label, std::string key = "");
-  // The same at a time of the history's axis, which may be long ago.
+  // Adds a mark at a time of the history's axis, which may be long ago.
   void mark_at(double axis_time, std::string label, std::string key);
-  // Puts these [s on the axis] in place of all marks with the key.
+  // Replaces all marks with the key by `marks` [s on the axis].
   void replace_marks(const std::string& key, const std::vector<PlotMark>& marks);
 
   void clear();
@@ -146,23 +146,23 @@ class History {
   double start_time() const { return empty() ? 0 : time(first()); }
   double end_time() const { return empty() ? 0 : time(end() - 1); }
   double offset() const { return offset_; }
-  // Where the newest run begins.
+  // Returns the beginning of the newest run.
   double run_start() const { return std::max(run_start_, start_time()); }
   double time(SampleIndex index) const;
   float value(int channel, SampleIndex index) const { return ring(channel).at(index); }
 
-  // Whether rows are missing between this one and the one before.
+  // Returns whether rows are missing between this one and the one before.
   bool gap_before(SampleIndex index) const;
 
-  // First row at `time` or later; end() when there is none. `from`: a row known to lie before,
-  // which makes walking along the axis cheap.
+  // Returns the first row at `time` or later; end() when there is none. `from`: a row known to lie
+  // before, which makes walking along the axis cheap.
   SampleIndex lower_bound(double time) const;
   SampleIndex lower_bound(double time, SampleIndex from) const;
 
-  // Row closest to `time`; the history must not be empty.
+  // Returns the row closest to `time`; the history must not be empty.
   SampleIndex nearest(double time) const;
 
-  // Exact extent of a channel over rows [from, to), or over the times [start, stop].
+  // Returns the exact extent of a channel over rows [from, to), or over the times [start, stop].
   Extent extent(int channel, SampleIndex from, SampleIndex to) const {
     return ring(channel).extent(from, to);
   }

@@ -15,7 +15,131 @@ namespace limpid {
 namespace {
 
 constexpr double kShortestTicks = 8;
-constexpr double kPlaybackPlace = 0.75;  // of the window, where playback runs when zoomed in
+constexpr double kPlaybackPlace = 0.75;  // part of the window at which playback runs when zoomed in
+
+constexpr double kNoticeTime = 4;        // [s]
+constexpr float kLeastHeight = 84;       // of curves and time axis under the legend [px]
+constexpr float kMostMargin = 0.3f;      // part of the width, for values at the curves' ends
+constexpr int kFramesToCloseMenu = 2;    // the menu must not be in the picture
+constexpr double kBetweenSpectra = 0.1;  // [s]
+constexpr double kNoValue = -9;          // decimal logarithm that stands for an amplitude of 0
+constexpr double kDecades = 5;           // of a spectrum, shown below its peak
+
+constexpr double kWheelStep = 1.18;
+constexpr float kGrip = 5;  // distance at which a drag takes the playback line [px]
+
+constexpr float kReach = 30;  // from the mouse to what it points at [px]
+
+struct Line {
+  std::string label;
+  std::string value;
+  Rgb rgb;
+  ImVec2 at;  // on the screen
+};
+
+// Writes as many digits as the screen can show, not as many as the number has.
+std::string number_text(const PlotAxis& axis, const AxisMap& map, double value) {
+  if (map.log) return three_digits(value * axis.factor);
+  const double resolution = std::abs(axis.factor) * map.limits.span() / 1000;
+  const int exponent = common_exponent(map.limits.low * axis.factor, map.limits.high * axis.factor);
+  const double unit = std::pow(10.0, exponent);
+  const std::string text = fixed_text(value * axis.factor / unit, decimals_of(resolution / unit));
+  return exponent != 0 ? text + exponent_text(exponent) : text;
+}
+
+// Writes three digits, with the typographic minus.
+std::string short_text(double value) {
+  return (value < 0 ? "\u2212" : "") + three_digits(std::abs(value));
+}
+
+std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
+  return number_text(axis, map, value) + " " + axis.unit;
+}
+
+Rgb ink_of(const PlotFrame& frame, const Curve& curve) { return colour_of(frame.palette, curve); }
+
+std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
+                                const History& history, SampleIndex row) {
+  std::vector<Line> lines;
+  for (const Curve& curve : spec.curves) {
+    if (!curve.visible) continue;
+    const double value = history.value(curve.channel, row);
+    if (!std::isfinite(value)) continue;
+    std::string text = value_text(spec.y, frame.y, value);
+    float x = frame.x_of(history.time(row));
+    if (curve.across >= 0) {
+      const double across = history.value(curve.across, row);
+      if (!std::isfinite(across)) continue;
+      x = frame.x_of(across);
+      text += ", " + value_text(spec.x, frame.x, across);
+    }
+    lines.push_back({curve.label, std::move(text), ink_of(frame, curve), {x, frame.y_of(value)}});
+  }
+  return lines;
+}
+
+void draw_dots(const PlotFrame& frame, const std::vector<Line>& lines) {
+  for (const Line& line : lines) {
+    if (line.at.y < frame.area.min.y || line.at.y > frame.area.max.y) continue;
+    if (line.at.x < frame.area.min.x || line.at.x > frame.area.max.x) continue;
+    frame.list.AddCircleFilled(line.at, 4 * frame.scale, colour(frame.palette.panel));
+    frame.list.AddCircleFilled(line.at, 2.8f * frame.scale, colour(line.rgb));
+  }
+}
+
+void draw_line_at(const PlotFrame& frame, float x) {
+  frame.list.AddRectFilled({x, frame.area.min.y}, {x + 1, frame.area.max.y},
+                           colour(frame.palette.text, 0.45f));
+}
+
+void draw_box(const PlotFrame& frame, const std::string& title, const std::vector<Line>& lines,
+              float line_x, ImVec2 near_to) {
+  const float s = frame.scale;
+  const float height = text_size(Face::small, "0").y + s;
+  const float swatch = 10 * s;
+  float labels = 0;
+  float values = 0;
+  for (const Line& line : lines) {
+    labels = std::max(labels, text_size(Face::small, line.label).x);
+    values = std::max(values, text_size(Face::small, line.value).x);
+  }
+  const float width =
+      std::max(text_size(Face::small, title).x, swatch + 6 * s + labels + 12 * s + values) + 14 * s;
+  const float tall = height * static_cast<float>(lines.size() + 1) + 10 * s;
+  float left = line_x + 10 * s;
+  if (left + width > frame.area.max.x) left = line_x - 10 * s - width;
+  // The box of a narrow plot goes over its neighbour rather than being cut off.
+  left = std::min(std::max(left, frame.outer.min.x), frame.list.GetClipRectMax().x - width);
+  const float top = std::clamp(near_to.y - 0.5f * tall, frame.area.min.y,
+                               std::max(frame.area.min.y, frame.area.max.y - tall));
+  frame.list.AddRectFilled({left, top}, {left + width, top + tall},
+                           colour(frame.palette.raised, 0.94f), 4 * s);
+  frame.list.AddRect({left, top}, {left + width, top + tall}, colour(frame.palette.border), 4 * s);
+  float y = top + 5 * s;
+  draw_text(frame.list, Face::small, {left + 7 * s, y}, frame.palette.muted, title);
+  for (const Line& line : lines) {
+    y += height;
+    const float middle = std::round(y + 0.5f * height);
+    frame.list.AddRectFilled({left + 7 * s, middle - 1.5f * s},
+                             {left + 7 * s + swatch, middle + 0.5f * s}, colour(line.rgb));
+    draw_text(frame.list, Face::small, {left + 13 * s + swatch, y}, frame.palette.text, line.label);
+    draw_text(frame.list, Face::small,
+              {left + width - 7 * s - text_size(Face::small, line.value).x, y}, frame.palette.text,
+              line.value);
+  }
+}
+
+// Drops lines until there is room for the rest: first those that say what a neighbour says.
+void leave_room(std::vector<Line>& lines, float most) {
+  while (static_cast<float>(lines.size()) > most) {
+    auto closest = lines.begin() + 1;
+    for (auto line = closest; line != lines.end(); ++line) {
+      const auto apart = [](auto at) { return at->at.y - (at - 1)->at.y; };
+      if (apart(line) < apart(closest)) closest = line;
+    }
+    lines.erase(closest);
+  }
+}
 
 }  // namespace
 
@@ -36,7 +160,7 @@ void PlotGroup::begin_frame(const History& history, std::optional<double> playba
   } else if (following_) {
     stop_ = std::max(earliest_stop, data_stop_);
   } else {
-    // Some data stays in view, also when the oldest is being forgotten.
+    // Some data stays in view, also while the oldest is being forgotten.
     const double some = 0.1 * length_;
     stop_ = std::clamp(stop_, data_start_ + some, data_stop_ + length_ - some);
   }
@@ -59,18 +183,6 @@ void PlotGroup::fit() {
   length_ = fitted_length_;
   following_ = true;
 }
-
-namespace {
-
-constexpr double kNoticeTime = 4;        // [s]
-constexpr float kLeastHeight = 84;       // of curves and time axis under the legend [px]
-constexpr float kMostMargin = 0.3f;      // of the width, for values at the curves' ends
-constexpr int kFramesToCloseMenu = 2;    // so that the menu is not in the picture
-constexpr double kBetweenSpectra = 0.1;  // [s]
-constexpr double kNoValue = -9;          // decimal logarithm of amplitudes that are none
-constexpr double kDecades = 5;           // that a spectrum shows below its peak
-
-}  // namespace
 
 void Plot::ValueAxis::fit() {
   follows = true;
@@ -99,7 +211,7 @@ PlotEvents Plot::draw(const History& history, PlotGroup& group, ImVec2 size,
   ImGui::PushID(this);
   follow_data(history, group);
   const PlotFrame frame = lay_out(history, group, size, saving.arranged);
-  // Also keeps the wheel from scrolling the window around.
+  // The button also keeps the wheel from scrolling the window around.
   ImGui::InvisibleButton("plot", size, ImGuiButtonFlags_MouseButtonLeft);
   ImGui::SetItemUsingMouseWheel();
   hovered_ = ImGui::IsItemHovered();
@@ -161,7 +273,7 @@ PlotFrame Plot::lay_out(const History& history, const PlotGroup& group, ImVec2 s
 void Plot::follow_data(const History& history, const PlotGroup& group) {
   if (std::exchange(run_start_, history.run_start()) != run_start_) fit_values();
   if (spec_.kind == PlotKind::spectrum) return follow_spectra(history, group);
-  // What was before the newest run is left behind, unless it is looked at.
+  // Rows before the newest run do not count, unless they are looked at.
   const double from =
       group.following() ? std::max(group.start(), history.run_start()) : group.start();
   Extent values, across;
@@ -189,7 +301,7 @@ void Plot::follow_values(ValueAxis& axis, const PlotAxis& spec, Extent data) {
                                       static_cast<double>(ImGui::GetIO().DeltaTime));
 }
 
-// Anew where the stretch has changed, but not in every frame.
+// Computes spectra again if the stretch has changed, but not in every frame.
 void Plot::follow_spectra(const History& history, const PlotGroup& group) {
   const bool other = spectra_.size() != spec_.curves.size();
   const bool moved = group.start() != spectra_start_ || group.stop() != spectra_stop_;
@@ -220,7 +332,7 @@ void Plot::follow_spectra(const History& history, const PlotGroup& group) {
 
 void Plot::draw_inside(const PlotFrame& frame, const History& history, const PlotGroup& group,
                        ImVec2 mouse) {
-  // A curve on the axis is seen whole.
+  // The clip leaves a rim, so that a curve on the axis is seen whole.
   const float rim = 2 * frame.scale;
   frame.list.PushClipRect(frame.area.min, {frame.area.max.x, frame.area.max.y + rim}, true);
   if (over_time()) {
@@ -355,20 +467,11 @@ void Plot::draw_latest_notice(const PlotFrame& frame) {
   draw_notice(frame, notice_->text, notice_->bad, static_cast<float>(std::min(1.0, 2 * left)));
 }
 
-// What the mouse does in a plot.
-
-namespace {
-
-constexpr double kWheelStep = 1.18;
-constexpr float kGrip = 5;  // how close to the playback line a drag takes it [px]
-
-}  // namespace
-
 void Plot::ValueAxis::zoom(double factor, double part) {
   const double around = limits.low + part * limits.span();
   const Limits wanted{around + (limits.low - around) * factor,
                       around + (limits.high - around) * factor};
-  // Beyond that, single precision runs out.
+  // Single precision runs out beyond these limits.
   const double finest = 1e-6 * std::max({std::abs(wanted.low), std::abs(wanted.high), 1e-12});
   if (wanted.span() < finest || wanted.span() > 1e12) return;
   follows = false;
@@ -477,111 +580,6 @@ void Plot::pan(const PlotFrame& frame, PlotGroup& group, ImVec2 by) {
   y_.pan(by.y / frame.area.height());
 }
 
-namespace {
-
-constexpr float kReach = 30;  // from the mouse to what it points at [px]
-
-struct Line {
-  std::string label;
-  std::string value;
-  Rgb rgb;
-  ImVec2 at;  // on the screen
-};
-
-// As many digits as the screen can show, not as many as the number has.
-std::string number_text(const PlotAxis& axis, const AxisMap& map, double value) {
-  if (map.log) return three_digits(value * axis.factor);
-  const double resolution = std::abs(axis.factor) * map.limits.span() / 1000;
-  const int exponent = common_exponent(map.limits.low * axis.factor, map.limits.high * axis.factor);
-  const double unit = std::pow(10.0, exponent);
-  const std::string text = fixed_text(value * axis.factor / unit, decimals_of(resolution / unit));
-  return exponent != 0 ? text + exponent_text(exponent) : text;
-}
-
-// Three digits, with the typographic minus.
-std::string short_text(double value) {
-  return (value < 0 ? "\u2212" : "") + three_digits(std::abs(value));
-}
-
-std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
-  return number_text(axis, map, value) + " " + axis.unit;
-}
-
-Rgb ink_of(const PlotFrame& frame, const Curve& curve) { return colour_of(frame.palette, curve); }
-
-std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
-                                const History& history, SampleIndex row) {
-  std::vector<Line> lines;
-  for (const Curve& curve : spec.curves) {
-    if (!curve.visible) continue;
-    const double value = history.value(curve.channel, row);
-    if (!std::isfinite(value)) continue;
-    std::string text = value_text(spec.y, frame.y, value);
-    float x = frame.x_of(history.time(row));
-    if (curve.across >= 0) {
-      const double across = history.value(curve.across, row);
-      if (!std::isfinite(across)) continue;
-      x = frame.x_of(across);
-      text += ", " + value_text(spec.x, frame.x, across);
-    }
-    lines.push_back({curve.label, std::move(text), ink_of(frame, curve), {x, frame.y_of(value)}});
-  }
-  return lines;
-}
-
-void draw_dots(const PlotFrame& frame, const std::vector<Line>& lines) {
-  for (const Line& line : lines) {
-    if (line.at.y < frame.area.min.y || line.at.y > frame.area.max.y) continue;
-    if (line.at.x < frame.area.min.x || line.at.x > frame.area.max.x) continue;
-    frame.list.AddCircleFilled(line.at, 4 * frame.scale, colour(frame.palette.panel));
-    frame.list.AddCircleFilled(line.at, 2.8f * frame.scale, colour(line.rgb));
-  }
-}
-
-void draw_line_at(const PlotFrame& frame, float x) {
-  frame.list.AddRectFilled({x, frame.area.min.y}, {x + 1, frame.area.max.y},
-                           colour(frame.palette.text, 0.45f));
-}
-
-void draw_box(const PlotFrame& frame, const std::string& title, const std::vector<Line>& lines,
-              float line_x, ImVec2 near_to) {
-  const float s = frame.scale;
-  const float height = text_size(Face::small, "0").y + s;
-  const float swatch = 10 * s;
-  float labels = 0;
-  float values = 0;
-  for (const Line& line : lines) {
-    labels = std::max(labels, text_size(Face::small, line.label).x);
-    values = std::max(values, text_size(Face::small, line.value).x);
-  }
-  const float width =
-      std::max(text_size(Face::small, title).x, swatch + 6 * s + labels + 12 * s + values) + 14 * s;
-  const float tall = height * static_cast<float>(lines.size() + 1) + 10 * s;
-  float left = line_x + 10 * s;
-  if (left + width > frame.area.max.x) left = line_x - 10 * s - width;
-  // In a narrow plot rather over its neighbour than cut off.
-  left = std::min(std::max(left, frame.outer.min.x), frame.list.GetClipRectMax().x - width);
-  const float top = std::clamp(near_to.y - 0.5f * tall, frame.area.min.y,
-                               std::max(frame.area.min.y, frame.area.max.y - tall));
-  frame.list.AddRectFilled({left, top}, {left + width, top + tall},
-                           colour(frame.palette.raised, 0.94f), 4 * s);
-  frame.list.AddRect({left, top}, {left + width, top + tall}, colour(frame.palette.border), 4 * s);
-  float y = top + 5 * s;
-  draw_text(frame.list, Face::small, {left + 7 * s, y}, frame.palette.muted, title);
-  for (const Line& line : lines) {
-    y += height;
-    const float middle = std::round(y + 0.5f * height);
-    frame.list.AddRectFilled({left + 7 * s, middle - 1.5f * s},
-                             {left + 7 * s + swatch, middle + 0.5f * s}, colour(line.rgb));
-    draw_text(frame.list, Face::small, {left + 13 * s + swatch, y}, frame.palette.text, line.label);
-    draw_text(frame.list, Face::small,
-              {left + width - 7 * s - text_size(Face::small, line.value).x, y}, frame.palette.text,
-              line.value);
-  }
-}
-
-}  // namespace
-
 void draw_read_out(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                    double time, ImVec2 near_to) {
   const bool over_time = spec.kind == PlotKind::time;
@@ -612,7 +610,7 @@ void draw_spectrum_read_out(const PlotFrame& frame, const PlotSpec& spec,
                             ImVec2 near_to) {
   const float x = std::round(frame.x_of(frequency));
   if (x < frame.area.min.x || x > frame.area.max.x) return;
-  // What the pixel shows: the highest of its frequencies, or the one that is nearest.
+  // The value is that of the pixel: the highest of its frequencies, or the nearest one.
   const double low = frame.x_at(x - 0.5f), high = frame.x_at(x + 0.5f);
   std::vector<Line> lines;
   double at = frequency;
@@ -665,22 +663,6 @@ std::optional<double> time_near(const PlotFrame& frame, const PlotSpec& spec,
   return found;
 }
 
-namespace {
-
-// Of sorted lines as many as there is room for: those go first that say what a neighbour says.
-void leave_room(std::vector<Line>& lines, float most) {
-  while (static_cast<float>(lines.size()) > most) {
-    auto closest = lines.begin() + 1;
-    for (auto line = closest; line != lines.end(); ++line) {
-      const auto apart = [](auto at) { return at->at.y - (at - 1)->at.y; };
-      if (apart(line) < apart(closest)) closest = line;
-    }
-    lines.erase(closest);
-  }
-}
-
-}  // namespace
-
 float end_label_width() { return text_size(Face::small, "\u22120.000").x + 6 * current_scale(); }
 
 void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
@@ -703,7 +685,7 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
   }
   std::ranges::sort(lines, {}, [](const Line& line) { return line.at.y; });
   leave_room(lines, std::max(1.0f, std::floor(frame.area.height() / height)));
-  // From the top each stands below the one before, then from the bottom each above the next.
+  // Lines are pushed apart: downwards from the top, then upwards from the bottom.
   float free = frame.area.min.y;
   for (Line& line : lines) {
     line.at.y = std::max(line.at.y - 0.5f * height, free);

@@ -1,4 +1,4 @@
-// What the plots of one window share: the stretch of time they show and the moment pointed at.
+// A plot of a history's channels drawn with ImGui, and what all plots of a window share.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace limpid {
 
-// A stretch of time that was selected, and in which of the plots.
+// A selected stretch of time, and the plot in which it was selected.
 struct PlotRange {
   double start = 0, stop = 0;  // on the history's axis [s]
   std::size_t plot = 0;
@@ -20,14 +20,16 @@ struct PlotRange {
   friend bool operator==(const PlotRange&, const PlotRange&) = default;
 };
 
+// State that all plots of one window share: the stretch of time they show and the moment pointed
+// at.
 class PlotGroup {
  public:
-  // `fitted_length` [s]: how much fit() shows of a long history; a recording's duration shows it
-  // all.
+  // `fitted_length` [s]: the part of a long history that fit() shows; a recording's duration shows
+  // it all.
   explicit PlotGroup(double fitted_length = 10) : fitted_length_(fitted_length) { fit(); }
 
-  // Once a frame before the plots are drawn. `playback` [s on the history's axis]: where playback
-  // stands; while following, the window keeps it in view instead of the newest data.
+  // Is called once a frame before the plots are drawn. `playback`: its place [s on the history's
+  // axis]; while following, the window keeps it in view instead of the newest data.
   void begin_frame(const History& history, std::optional<double> playback = std::nullopt);
 
   double start() const { return stop_ - length_; }
@@ -42,21 +44,21 @@ class PlotGroup {
   // Moves the window by `seconds`; stops following unless that brings the newest data into view.
   void pan(double seconds);
 
-  // `factor` > 1 shows more. The time `around` stays where it is, unless the window follows the
-  // newest data: then that stays.
+  // Shows more for `factor` > 1. The time `around` stays where it is; but if the window follows the
+  // newest data, that stays.
   void zoom(double factor, double around);
 
-  // Follow, with the fitted length.
+  // Follows with the fitted length.
   void fit();
   void set_fitted_length(double seconds) { fitted_length_ = seconds; }
 
-  // Under the mouse, in any of the plots.
+  // Returns the time under the mouse, in any of the plots.
   std::optional<double> hovered() const { return hovered_; }
   void hover(double time) { hovered_ = hovering_ = time; }
-  // What was selected, as long as there are rows of it.
+  // Returns what was selected, as long as there are rows of it.
   const std::optional<PlotRange>& range() const { return range_; }
   void select(const std::optional<PlotRange>& range) { range_ = range; }
-  // The same in spectra [Hz].
+  // Returns the frequency under the mouse in spectra [Hz].
   std::optional<double> hovered_frequency() const { return hovered_frequency_; }
   void hover_frequency(double f) { hovered_frequency_ = hovering_frequency_ = f; }
 
@@ -70,50 +72,50 @@ class PlotGroup {
   double shortest_ = 0.01;
   std::optional<double> playback_;
   std::optional<double> hovered_;
-  std::optional<double> hovering_;  // said during this frame, for plots drawn earlier in the next
+  std::optional<double> hovering_;  // set during this frame, for plots drawn earlier in the next
   std::optional<PlotRange> range_;
   std::optional<double> hovered_frequency_, hovering_frequency_;
 };
 
-// Channels of a history, drawn with ImGui: curves, axes, legend, read-out and what the mouse does.
+// Results of one frame: what the mouse did in a plot.
 struct PlotEvents {
   std::optional<double> playback;    // dragged here [s on the history's axis]
   std::optional<PlotNotice> notice;  // also shown in the plot itself
-  PlotWish wish = PlotWish::none;    // one of those that only the plots' owner can fulfil
+  PlotWish wish = PlotWish::none;    // a wish that only the plots' owner can fulfil
   std::optional<PlotRange> range;    // selected here; the owner knows which plot it is
-  bool unselect = false;             // Shift+click: nothing is selected any more
+  bool unselect = false;             // Shift+click: unselects the range
 };
 
-// Mouse: drag pans, Shift+drag selects a stretch of time, wheel zooms along the horizontal axis,
-// Ctrl+wheel or the wheel over the value axis zooms values, double click fits, right click opens
-// the menu, a click on the legend hides or shows a curve. Over another channel the wheel zooms both
-// axes.
+// Curves, axes, legend and read-out of some channels. Mouse: drag pans, Shift+drag selects a
+// stretch of time, wheel zooms along the horizontal axis, Ctrl+wheel or the wheel over the value
+// axis zooms values, double click fits, right click opens the menu, a click on the legend hides or
+// shows a curve. Over another channel the wheel zooms both axes.
 class Plot {
  public:
   explicit Plot(PlotSpec spec) : spec_(std::move(spec)) {}
 
   PlotSpec& spec() { return spec_; }
   const PlotSpec& spec() const { return spec_; }
-  // From now on, with the limits that there are where that makes sense.
+  // Shows another spec from now on, with the present limits where that makes sense.
   void show(PlotSpec spec);
 
   // Draws at ImGui's cursor, `size` [px]; needs PlotGroup::begin_frame() once before.
   PlotEvents draw(const History& history, PlotGroup& group, ImVec2 size,
                   const PlotSaving& saving = {});
 
-  // What it shows now, for a picture or a table of it.
+  // Returns what the plot shows now, for a picture or a table.
   PlotPicture picture(const PlotGroup& group) const;
-  // Where its curves were drawn last [px].
+  // Returns the area in which the curves were drawn last [px].
   const ScreenRect& area() const { return area_; }
-  // Back to limits that follow the data.
+  // Lets the limits follow the data again.
   void fit_values();
-  // As if its menu had been asked for it, with the next draw().
+  // Acts with the next draw() as if the menu had been asked for this.
   void ask(PlotWish wish) { asked_ = wish; }
 
  private:
   enum class Drag { none, pan, values, playback, range };
 
-  // A value axis: where it is, and whether it moves with the data.
+  // Value axis: its limits, and whether it moves with the data.
   struct ValueAxis {
     Limits limits;
     Autoscale autoscale;
@@ -152,9 +154,9 @@ class Plot {
 
   PlotSpec spec_;
   ValueAxis x_, y_;       // x_: over another channel or frequencies
-  double run_start_ = 0;  // of the run that the limits follow [s]
+  double run_start_ = 0;  // start of the run that the limits follow [s]
   Drag drag_ = Drag::none;
-  double range_from_ = 0;  // where the drag that selects began [s]
+  double range_from_ = 0;  // start of the drag that selects [s]
   PlotLegend legend_;
   int hovered_curve_ = -1;
   bool hovered_ = false;

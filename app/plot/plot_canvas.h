@@ -1,4 +1,4 @@
-// What a plot's picture is drawn on: the lines of an SVG document, or pixels.
+// Canvas for a plot's picture: the lines of an SVG document, or pixels.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace limpid {
 
-// Places and sizes in pixels of the layout, from the upper left corner.
+// Draws at places and in sizes in pixels of the layout, from the upper left corner.
 class PlotCanvas {
  public:
   struct Point {
@@ -25,16 +25,16 @@ class PlotCanvas {
   virtual void rect(const Box& box, Rgb fill, double alpha) = 0;
   virtual void outline(const Box& box, Rgb rgb) = 0;
   virtual void stripes(const Box& box, Rgb rgb) = 0;
-  // In dashes of that length with gaps between, or, where it is 0, whole.
+  // Draws dashes of that length with gaps between; a whole line if `dash` is 0.
   virtual void line(Point from, Point to, Rgb rgb, double width, double dash, double gap) = 0;
   virtual void polyline(std::span<const Point> points, Rgb rgb, double width) = 0;
-  // Filled, with an edge of the same colour.
+  // Draws a filled polygon, with an edge of the same colour.
   virtual void polygon(std::span<const Point> points, Rgb rgb, double width) = 0;
   virtual void square(Point middle, double half, Rgb fill, Rgb edge) = 0;
   virtual void ring(Point middle, double radius, Rgb edge, Rgb fill) = 0;
-  // `at`: on the base line, where the anchor of the text is.
+  // Draws text with its anchor at `at`, on the base line.
   virtual void text(Point at, Anchor anchor, Rgb rgb, const std::string& what, bool bold) = 0;
-  // Nothing is drawn outside of it from now on; null: everything is.
+  // Draws nothing outside of `box` from now on; null: everything.
   virtual void clip(const Box* box) = 0;
 };
 

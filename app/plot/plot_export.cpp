@@ -43,8 +43,8 @@ Rows rows_between(const History& history, double start, double stop) {
   return {from, to};
 }
 
-// Over time, or over another channel: that one's column stands before the first curve that needs
-// it.
+// Makes a table over time or over another channel, whose column stands before the first curve that
+// needs it.
 PlotTable rows_table(const PlotSpec& spec, const History& history, Rows rows) {
   PlotTable table;
   std::vector<std::pair<int, double>> columns;  // channel, factor
@@ -76,7 +76,7 @@ PlotTable spectrum_table(const PlotSpec& spec, const History& history, double st
   for (const Curve& curve : spec.curves) {
     if (!curve.visible) continue;
     AmplitudeSpectrum s = spectrum_between(history, curve.channel, start, stop);
-    // Where a channel's longest part is another one, its frequencies are.
+    // A channel whose longest part has another length has other frequencies: it is left out.
     if (s.empty() || (!spectra.empty() && s.step != spectra.front().step)) continue;
     spectra.push_back(std::move(s));
     table.columns.push_back(fmt::format("{} [{}]", curve.label, spec.y.unit));
@@ -89,32 +89,6 @@ PlotTable spectrum_table(const PlotSpec& spec, const History& history, double st
   return table;
 }
 
-}  // namespace
-
-PlotTable plot_table(const PlotSpec& spec, const History& history, double start, double stop) {
-  if (spec.kind == PlotKind::spectrum) return spectrum_table(spec, history, start, stop);
-  return rows_table(spec, history, rows_between(history, start, stop));
-}
-
-std::string csv_text(const PlotTable& table) {
-  std::string text = table.first;
-  for (const std::string& column : table.columns) text += "," + quoted(column);
-  text += '\n';
-  const auto out = std::back_inserter(text);
-  auto value = table.values.begin();
-  for (const double time : table.times) {
-    fmt::format_to(out, "{:.6f}", time);
-    for (std::size_t i = 0; i < table.columns.size(); ++i, ++value) {
-      text += ',';
-      if (std::isfinite(*value)) fmt::format_to(out, "{:.7g}", *value);
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-namespace {
-
 using Point = PlotCanvas::Point;
 using Area = PlotCanvas::Box;
 using Anchor = PlotCanvas::Anchor;
@@ -122,7 +96,7 @@ using Anchor = PlotCanvas::Anchor;
 constexpr double kLine = 2;  // [px]
 constexpr Rgb kPaper{255, 255, 255};
 constexpr double kSvgSign = 3.6, kSvgBetween = 64, kSvgEdge = 3;  // as on the screen [px]
-constexpr int kColumnsPerPixel = 2;                               // pictures are looked at closely
+constexpr int kColumnsPerPixel = 2;  // as pictures are looked at closely
 
 std::string hex(Rgb c) { return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b); }
 
@@ -214,7 +188,7 @@ class SvgCanvas : public PlotCanvas {
   std::string text_;
 };
 
-// The picture of a plot, on whichever canvas.
+// Draws the picture of a plot on any canvas.
 class PlotDrawing {
  public:
   PlotDrawing(const PlotSpec& spec, const History& history, const PlotPicture& picture)
@@ -304,7 +278,7 @@ class PlotDrawing {
     }
   }
 
-  // Those that a band says go without a label, and those that have no room for it.
+  // Draws marks; those that a band says and those without room have no label.
   void marks() {
     std::vector<std::string> said;
     for (const Band& band : spec_.bands) {
@@ -345,7 +319,7 @@ class PlotDrawing {
   double column(double number) const { return x_at((number - first_column_) / columns_); }
 
   void bands() {
-    double line = 0;  // of names, from the top; each band has its own
+    double line = 0;  // line of the names, from the top; each band has its own
     for (const Band& each : spec_.bands) {
       double free_from = left_;
       const double y = top_ + 15 + 14 * line++;
@@ -368,7 +342,7 @@ class PlotDrawing {
         }
         const std::string& name = each.names[static_cast<std::size_t>(stretch.said)];
         const double x = std::max(left, left_) + 3, wide = width_of(name);
-        // A moment under another law is a line without a name.
+        // A short time under another law is a line without a name.
         if (!named || x < free_from || (each.laws && box.width < wide)) continue;
         label(x, y, Anchor::start, palette_.text, name);
         free_from = x + wide + 8;
@@ -407,7 +381,7 @@ class PlotDrawing {
             y_of(static_cast<double>(value))};
   }
 
-  // The outline of the band, filled; its stroke gives thin bands the width of a line.
+  // Fills the outline of the band; its stroke gives thin bands the width of a line.
   void band(std::span<const TracePoint> points, Rgb rgb) {
     std::vector<Point> outline;
     for (const TracePoint& p : points) outline.push_back(point(p, p.high));
@@ -458,7 +432,7 @@ class PlotDrawing {
   double right_;
   double bottom_;
   int columns_ = 1;          // of the traces, over the area's width
-  double first_column_ = 0;  // that stands at its left end
+  double first_column_ = 0;  // column at the area's left end
   PixelWindow window_{};
   std::vector<SampleIndex> rows_;  // of the columns
   PlotCanvas* canvas_ = nullptr;
@@ -466,11 +440,33 @@ class PlotDrawing {
 
 }  // namespace
 
+PlotTable plot_table(const PlotSpec& spec, const History& history, double start, double stop) {
+  if (spec.kind == PlotKind::spectrum) return spectrum_table(spec, history, start, stop);
+  return rows_table(spec, history, rows_between(history, start, stop));
+}
+
+std::string csv_text(const PlotTable& table) {
+  std::string text = table.first;
+  for (const std::string& column : table.columns) text += "," + quoted(column);
+  text += '\n';
+  const auto out = std::back_inserter(text);
+  auto value = table.values.begin();
+  for (const double time : table.times) {
+    fmt::format_to(out, "{:.6f}", time);
+    for (std::size_t i = 0; i < table.columns.size(); ++i, ++value) {
+      text += ',';
+      if (std::isfinite(*value)) fmt::format_to(out, "{:.7g}", *value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
   PlotDrawing drawing(spec, history, picture);
   SvgCanvas canvas(picture, drawing.colours(), drawing.area());
   drawing.draw(canvas);
-  // The settings may have changed within the plot's time.
+  // Provenance names no settings, as they may have changed within the plot's time.
   return with_metadata(canvas.end(), provenance("", std::nullopt));
 }
 

@@ -1,4 +1,4 @@
-// A plot as a table and as a picture made of lines.
+// Plots as tables, SVG documents and pixels.
 #pragma once
 
 #include <string>
@@ -11,22 +11,23 @@
 
 namespace limpid {
 
-// What a plot shows, to be written whatever becomes of the history: visible curves only, in the
-// plot's unit, over start <= time <= stop, times without the history's offset. Of a spectrum the
-// frequencies stand in place of times.
+// Table of what a plot shows, which outlives the history's rows: visible curves only, in the plot's
+// unit, over start <= time <= stop, times without the history's offset. A spectrum has frequencies
+// in place of times.
 struct PlotTable {
   std::string first = "time [s]";
   std::vector<std::string> columns;  // "label [unit]"
   std::vector<double> times;         // [s], or [Hz]
-  std::vector<double> values;        // a row after the other
+  std::vector<double> values;        // row by row
 };
 PlotTable plot_table(const PlotSpec& spec, const History& history, double start, double stop);
 
-// Header "time [s],label [unit],..." and a line for each row. What is not a number is left empty.
+// Returns a header "time [s],label [unit],..." and a line for each row. Values that are not numbers
+// are left empty.
 std::string csv_text(const PlotTable& table);
 
-// A complete SVG document, `width` x `height` [px], of the visible curves over [start, stop] and
-// `y` in the channels' unit; over other things than time on `x`; light colours are for paper.
+// Stretch and look of a plot's picture: the visible curves over [start, stop]. `y` is in the
+// channels' unit; `x` is for other things than time; light colours are for paper.
 struct PlotPicture {
   double start;
   double stop;
@@ -34,13 +35,14 @@ struct PlotPicture {
   int width = 720;
   int height = 360;
   Theme theme = Theme::light;
-  double millimetres = 0;  // how wide it is printed; 0: as many pixels
+  double millimetres = 0;  // printed width; 0: as many pixels
 };
+// Returns a complete SVG document, `width` x `height` [px].
 std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture);
-// The same picture on another canvas, and the colour of its paper.
+// Draws the same picture on another canvas; returns the colour of its paper.
 Rgb draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
               PlotCanvas& canvas);
-// In pixels, `scale` of them for one of the layout.
+// Draws the same picture in pixels, `scale` of them for one of the layout.
 Raster plot_raster(const PlotSpec& spec, const History& history, const PlotPicture& picture,
                    double scale);
 

@@ -1,4 +1,4 @@
-// Where a plot lies on the screen during one frame, and the parts that draw into it.
+// Frame of a plot: its place on the screen, and the functions that draw its parts.
 #pragma once
 
 #include <imgui.h>
@@ -34,9 +34,9 @@ struct PlotFrame {
   const Palette& palette;
   float scale;
   ScreenRect outer;    // the whole plot
-  ScreenRect area;     // where the curves are
+  ScreenRect area;     // of the curves
   PixelWindow window;  // the stretch of time
-  AxisMap x;           // over time, the window
+  AxisMap x;           // if over time: the window
   AxisMap y;           // in the channels' unit
 
   float x_of(double value) const {
@@ -53,70 +53,72 @@ struct PlotFrame {
 };
 
 ImVec2 text_size(Face face, const std::string& text);
-// At whole pixels, where text is sharpest.
+// Draws at whole pixels, where text is sharpest.
 void draw_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const std::string& text);
-// Ends with an ellipsis where it would be wider than `width`; returns the width used.
+// Ends the text with an ellipsis if it is wider than `width`; returns the width used.
 float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const std::string& text,
                         float width);
 
-// Grid, labels and unit scaling of both axes; `time_offset` is subtracted from the labels [s].
+// Draws grid, labels and unit scaling of both axes; `time_offset` is subtracted from the labels
+// [s].
 void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset);
-// Tints the spec's bands behind the curves, and says over them what they are: once `rows` are those
-// of the frame's pixels.
+// Tint the spec's bands behind the curves, and name them over the curves. `rows` are those of the
+// frame's pixels.
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows);
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      const std::vector<SampleIndex>& rows);
 void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
-// Behind the curves a line wherever something was changed, and over them what it was, where they
-// leave room.
+// Draw a line behind the curves wherever something was changed, and over them what it was, where
+// they leave room.
 void draw_mark_lines(const PlotFrame& frame, const History& history);
 void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                       const std::vector<SampleIndex>& rows, std::span<const Trace> traces,
                       ImVec2 mouse);
 
-// When somebody noted what is marked under the mouse; nothing where there is no such mark.
+// Returns the time of the note under the mouse; nothing without one.
 std::optional<double> note_near(const PlotFrame& frame, const History& history, ImVec2 mouse);
 
-// `emphasis` below 1 fades the curve, above 1 thickens it.
+// Draws a curve; `emphasis` below 1 fades it, above 1 thickens it.
 void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis);
 
-// What tells a second run's curve from the first one's; over time the signs move with the data.
+// Draws signs that tell a second run's curve from the first one's; over time they move with the
+// data.
 void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, ImU32 rgba);
-// One of them, around a point.
+// Draws one sign around a point.
 void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale);
 
-// The values of the curves at a time, in their colours, in the margin beside the area: that at the
-// mouse, where playback stands, or at the right end; and how wide that margin has to be.
+// Draws the curves' values at a time, in their colours, in the margin beside the area: at the
+// mouse, where playback stands, or at the right end. end_label_width() is the width of that margin.
 float end_label_width();
 void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                      double time);
 
-// Over time: the line at `time` with a dot on every visible curve, and the values in a box beside
-// it. Over another channel: the dots and the box.
+// Draws the values in a box beside `time`, with a dot on every visible curve. Over time there is a
+// line at `time`, too.
 void draw_read_out(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                    double time, ImVec2 near_to);
-// The same of spectra, one for each curve, at a frequency [Hz].
+// Draws the same for spectra, one for each curve, at a frequency [Hz].
 void draw_spectrum_read_out(const PlotFrame& frame, const PlotSpec& spec,
                             const std::vector<AmplitudeSpectrum>& spectra, double frequency,
                             ImVec2 near_to);
-// Over another channel: where the curves are at `time`.
+// Draws, over another channel, where the curves are at `time`.
 void draw_present(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                   double time);
-// Over another channel: the time of the row closest to the mouse, if one is near.
+// Returns, over another channel, the time of the row closest to the mouse, if one is near.
 std::optional<double> time_near(const PlotFrame& frame, const PlotSpec& spec,
                                 const History& history, ImVec2 mouse);
 
-// Behind the curves: what is selected, from one time to another.
+// Draws a selection behind the curves, from one time to another.
 void draw_range(const PlotFrame& frame, double start, double stop);
 
-// A line that can be dragged, with a handle on top.
+// Draws a line that can be dragged, with a handle on top.
 void draw_playback(const PlotFrame& frame, double time, bool held);
 
-// Three dots that open the menu; nothing where the button has no height.
+// Draws three dots that open the menu; nothing if the button has no height.
 void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at);
 
-// A short message at the bottom.
+// Draws a short message at the bottom.
 void draw_notice(const PlotFrame& frame, const std::string& text, bool bad, float alpha);
 
 }  // namespace limpid

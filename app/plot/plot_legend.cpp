@@ -19,7 +19,7 @@ void draw_swatch(const PlotFrame& frame, const ScreenRect& entry, const Curve& c
                 colour(frame.palette.panel), s);
 }
 
-// Without the words that a label shares with the one before it.
+// Removes the words that a label shares with the one before it.
 std::string without_shared_words(const std::string& label, const std::string& before) {
   const auto differs = std::ranges::mismatch(label, before).in1;
   const auto same = static_cast<std::size_t>(differs - label.begin());
@@ -33,7 +33,7 @@ float PlotLegend::sample_width(float scale) const {
   return style_.samples ? (kSwatch + 5) * scale : 0;
 }
 
-// Empty where nothing is to be said of the curve.
+// Returns the label as the style has it; empty if it says nothing more.
 std::string PlotLegend::label_of(const std::string& whole, const std::string& before) const {
   if (style_.samples) return whole;
   if (style_.runs) return without_shared_words(whole, before);
@@ -42,7 +42,7 @@ std::string PlotLegend::label_of(const std::string& whole, const std::string& be
   return said ? "" : last;
 }
 
-// Entries from left to right, in lines no wider than `width`, relative to (0, 0).
+// Lays out entries from left to right, in lines no wider than `width`, relative to (0, 0).
 ImVec2 PlotLegend::lay_out(const PlotSpec& spec, float width, float scale) {
   entries_.clear();
   const float height = text_size(Face::small, "0").y + 2 * scale;

@@ -14,11 +14,11 @@ class PlotLegend {
     ScreenRect beside;   // the title, on its line
     float least_height;  // of the curves
   };
-  // Beside the title where there is room; else on lines of its own under it, as many as leave the
-  // curves their height, but one at least: what is hidden goes without a name first, then names
-  // are in their curves' colours without a sample and without the words they share with the one
-  // before, then each quantity is named once for all runs. Returns how much height it takes under
-  // the title.
+  // Places the legend beside the title if there is room. Else it has lines of its own under the
+  // title, as many as leave the curves their height, but one at least. For lack of room hidden
+  // curves lose their names first. Then names have their curves' colours, without a sample and
+  // without the words shared with the name before. Then each quantity is named once for all runs.
+  // Returns the height it takes under the title.
   float place(const Room& room, const PlotSpec& spec, float scale);
 
   // Curve under the mouse, -1 for none.

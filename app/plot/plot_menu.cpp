@@ -39,7 +39,7 @@ PlotNotice save_as(const std::filesystem::path& folder, const std::string& name,
                    const char* extension, const std::function<std::string()>& text) {
   try {
     const auto file = save_text(free_file(folder, name, extension), text());
-    // The name first: what is too long for the plot is cut off at its end.
+    // The name comes first: text too long for the plot is cut off at its end.
     return {fmt::format("Saved {} in {}", file.filename().string(), folder.string()), false, file};
   } catch (const std::exception& e) {
     return {e.what(), true};
@@ -87,7 +87,7 @@ std::optional<PlotNotice> fulfil(PlotWish wish, const PlotSpec& spec, const Hist
     return save_as(saving.folder, spec.file_name, "svg",
                    [&] { return plot_svg(spec, history, picture); });
   }
-  // The history goes on meanwhile: its rows are taken along.
+  // The work takes the rows along, as the history goes on meanwhile.
   const auto save = [folder = saving.folder, name = spec.file_name,
                      table = std::make_shared<const PlotTable>(
                          plot_table(spec, history, picture.start, picture.stop))] {

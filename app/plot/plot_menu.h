@@ -1,4 +1,4 @@
-// What can be taken away from a plot: numbers on the clipboard, tables and pictures in files.
+// A plot's menu: what it can give away, as numbers on the clipboard, tables and pictures in files.
 #pragma once
 
 #include <filesystem>
@@ -14,21 +14,21 @@ namespace limpid {
 struct PlotNotice {
   std::string text;
   bool bad = false;
-  std::filesystem::path file = {};  // that was written, if one was
+  std::filesystem::path file = {};  // the file written, if any
 };
 
 struct PlotSaving {
   std::filesystem::path folder;  // created when missing
 
-  // Asked to save the plot that is drawn between two corners [px, ImGui coordinates] as a PNG; who
-  // does that says what became of it. Without it PNG is not offered.
+  // Saves the plot between two corners [px, ImGui coordinates] as a PNG when asked; whoever does
+  // that tells the result. Without it PNG is not offered.
   std::function<void(const ScreenRect& box, const std::filesystem::path& file)> save_png;
 
-  // Does work on a file that may take its time somewhere else, and says what became of it. Without
-  // it that is done, and said, at once.
+  // Does work on a file elsewhere, where it may take its time, and tells the result. Without it the
+  // work is done, and its result told, at once.
   std::function<void(std::function<PlotNotice()> work)> beside;
 
-  // Whoever draws the plots lets their channels be chosen, and plots be added and removed.
+  // The owner of the plots lets people choose their channels, and add and remove plots.
   bool arranged = false;
 };
 
@@ -45,16 +45,16 @@ enum class PlotWish {
   export_as
 };
 
-// The items of the context menu inside an open pop-up; says what was chosen.
+// Draws the items of the context menu inside an open pop-up; returns the choice.
 PlotWish plot_menu_items(bool png_offered, bool arranged);
 
-// First free "folder/name-001.extension". Creates the folder. Throws std::runtime_error naming it
-// when that is not possible.
+// Returns the first free "folder/name-001.extension". Creates the folder. Throws std::runtime_error
+// naming it when that is not possible.
 std::filesystem::path free_file(const std::filesystem::path& folder, const std::string& name,
                                 const std::string& extension);
 
-// Does copy_csv, save_csv and save_svg; what there is to tell the person about it, if it is known
-// already. Never throws for a file that cannot be written: that is told, too.
+// Does copy_csv, save_csv and save_svg; returns what to tell about it, if that is known already.
+// Never throws for a file that cannot be written: that is told, too.
 std::optional<PlotNotice> fulfil(PlotWish wish, const PlotSpec& spec, const History& history,
                                  const PlotPicture& picture, const PlotSaving& saving);
 

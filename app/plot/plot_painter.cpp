@@ -1,4 +1,4 @@
-// Grid and labels of a plot's axes.
+// The painter of a plot's parts: axes, curves, signs, thresholds, marks, bands.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void draw_value_axis(const PlotFrame& frame, const PlotSpec& spec) {
     const float y = frame.y_of(place.value);
     level_line(frame, y, colour(frame.palette.grid));
     const ImVec2 size = text_size(Face::small, place.label);
-    // Pushed inwards at the ends rather than cut off or left out.
+    // Labels at the ends are pushed inwards rather than cut off or left out.
     const float middle = y - 0.5f * size.y;
     const float top = std::clamp(middle, frame.area.min.y - 3, frame.area.max.y + 3 - size.y);
     if (std::abs(top - middle) > 0.6f * size.y) continue;
@@ -42,7 +42,8 @@ void draw_value_axis(const PlotFrame& frame, const PlotSpec& spec) {
   }
 }
 
-// Labels under the area, from the left; pushed inwards at the ends rather than cut off or left out.
+// Draws a label under the area, from the left. At the ends it is pushed inwards rather than cut off
+// or left out.
 void draw_place_below(const PlotFrame& frame, double at, const std::string& label, float right) {
   const float x = frame.x_of(at);
   upright_line(frame, x, colour(frame.palette.grid));
@@ -68,7 +69,7 @@ void draw_time_axis(const PlotFrame& frame, double time_offset) {
   }
 }
 
-// What the axis shows, at its right end; its numbers leave room for that.
+// Draws what the axis shows at its right end; its numbers leave room for that.
 void draw_across_axis(const PlotFrame& frame, const PlotSpec& spec) {
   const std::string unit = unit_text(spec.x, frame.x);
   const std::string name = spec.x.label.empty() ? unit : spec.x.label + "  " + unit;
@@ -84,34 +85,12 @@ void draw_across_axis(const PlotFrame& frame, const PlotSpec& spec) {
   }
 }
 
-}  // namespace
-
-void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset) {
-  if (spec.kind == PlotKind::time) {
-    draw_time_axis(frame, time_offset);
-  } else {
-    draw_across_axis(frame, spec);
-  }
-  draw_value_axis(frame, spec);
-  const float zero = frame.y_of(0);
-  if (spec.y.zero_line && !frame.y.log && zero >= frame.area.min.y && zero <= frame.area.max.y) {
-    level_line(frame, zero, colour(frame.palette.axis));
-  }
-  const float left = frame.x_of(0);
-  if (spec.kind == PlotKind::cross && spec.x.zero_line && left >= frame.area.min.x &&
-      left <= frame.area.max.x) {
-    upright_line(frame, left, colour(frame.palette.axis));
-  }
-}
-
-namespace {
-
 constexpr float kThickness = 2;             // [px] at scale 1
 constexpr float kDotsFrom = 7;              // samples further apart than this get dots [px]
-constexpr float kTolerance = 0.2f;          // by which points may be left out [px]
+constexpr float kTolerance = 0.2f;          // error at which points may be left out [px]
 constexpr float kTallFrom = 6;              // height that neighbouring columns share [px]
 constexpr std::size_t kGroup = 12;          // columns looked at together
-constexpr std::size_t kLongestPath = 2000;  // what ImGui counts in 16 bits
+constexpr std::size_t kLongestPath = 2000;  // as ImGui counts in 16 bits
 constexpr float kSoftUpTo = 2.5f;           // wider bands need no soft rim [px]
 
 // A point on the screen with the upper and lower edge of the curve there.
@@ -121,7 +100,7 @@ struct ScreenPoint {
   float bottom;
 };
 
-// Slopes a line from an anchor may have to pass all points so far closely.
+// Slopes at which a line from an anchor passes all points so far closely.
 class Cone {
  public:
   bool admits(float dx, float dy) const { return dy >= low_ * dx && dy <= high_ * dx; }
@@ -135,7 +114,7 @@ class Cone {
   float high_ = 1e9f;
 };
 
-// Leaves out points that lie on the line between their neighbours: smooth curves need a tenth of
+// Leaves out points that lie on the line between their neighbours. Smooth curves need a tenth of
 // them, and triangles are what drawing in software costs.
 void simplify(std::vector<ScreenPoint>& points) {
   if (points.size() < 3) return;
@@ -163,10 +142,10 @@ void simplify(std::vector<ScreenPoint>& points) {
   points.resize(kept);
 }
 
-// Four rows of vertices, one column for each point, and the quads between them.
+// A mesh of four rows of vertices, one column for each point, and the quads between them.
 class Ribbon {
  public:
-  // `quads`: at most so many will be added.
+  // `quads`: the most that will be added.
   Ribbon(ImDrawList& list, int points, int quads)
       : list_(list), white_(ImGui::GetFontTexUvWhitePixel()), unused_(6 * quads) {
     list.PrimReserve(unused_, 4 * points);
@@ -183,7 +162,7 @@ class Ribbon {
     list_.PrimWriteVtx({x, y[3]}, white_, outer);
   }
 
-  // Between rows `row` and `row` + 1 from one column to another.
+  // Adds a quad between rows `row` and `row` + 1 from one column to another.
   void quad(std::size_t from, std::size_t to, unsigned row) {
     const unsigned a = base_ + 4 * static_cast<unsigned>(from) + row;
     const unsigned b = base_ + 4 * static_cast<unsigned>(to) + row;
@@ -200,8 +179,8 @@ class Ribbon {
   unsigned base_ = 0;
 };
 
-// A soft rim where the band is thin, like that of an antialiased line; none where it is as wide as
-// the signal's noise.
+// Draws a band, thin parts with a soft rim like an antialiased line's. Parts as wide as the
+// signal's noise have none.
 void draw_thin(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 solid) {
   const ImU32 clear = solid & ~IM_COL32_A_MASK;
   const auto count = static_cast<int>(points.size());
@@ -219,8 +198,8 @@ void draw_thin(ImDrawList& list, std::span<const ScreenPoint> points, ImU32 soli
   }
 }
 
-// What all columns have in common is one rectangle: filling it in pieces a pixel wide is what
-// takes a software renderer long.
+// Draws a tall band with the part common to all columns as one rectangle: a software renderer is
+// slow at pieces a pixel wide.
 void draw_tall(ImDrawList& list, std::span<const ScreenPoint> points, float core_top,
                float core_bottom, ImU32 solid) {
   const auto count = static_cast<int>(points.size());
@@ -258,7 +237,7 @@ void draw_line(const PlotFrame& frame, std::span<const ScreenPoint> points, ImU3
   for (std::size_t from = 0; from + 1 < points.size(); from += kLongestPath) {
     const auto part = points.subspan(from, std::min(kLongestPath + 1, points.size() - from));
     for (const ScreenPoint& p : part) frame.list.PathLineTo({p.x, p.top});
-    // Whole pixels let ImGui draw a line with a third of the triangles.
+    // A width of whole pixels lets ImGui draw a line with a third of the triangles.
     frame.list.PathStroke(solid, 0, std::round(thickness));
   }
 }
@@ -276,7 +255,156 @@ bool far_apart(const PlotFrame& frame, std::span<const TracePoint> points) {
   return apart >= kDotsFrom * frame.scale;
 }
 
+constexpr float kBetweenSigns = 64;  // [px] at scale 1
+constexpr float kSign = 3.6f;        // half the width of a sign
+
+void dashed_line(const PlotFrame& frame, ImVec2 from, ImVec2 to, ImU32 rgba, float dash) {
+  const bool level = from.y == to.y;
+  const float length = level ? to.x - from.x : to.y - from.y;
+  for (float at = 0; at < length; at += 2 * dash) {
+    const float end = std::min(at + dash, length);
+    const ImVec2 a = level ? ImVec2{from.x + at, from.y} : ImVec2{from.x, from.y + at};
+    const ImVec2 b = level ? ImVec2{from.x + end, from.y} : ImVec2{from.x, from.y + end};
+    frame.list.AddRectFilled(a, {b.x + (level ? 0 : 1), b.y + (level ? 1 : 0)}, rgba);
+  }
+}
+
+// Draws text over curves, readable through a veil of the background.
+void draw_backed_text(const PlotFrame& frame, ImVec2 at, Rgb rgb, const std::string& text,
+                      float veil) {
+  const ImVec2 size = text_size(Face::small, text);
+  const float pad = 3 * frame.scale;
+  frame.list.AddRectFilled({at.x - pad, at.y}, {at.x + size.x + pad, at.y + size.y},
+                           colour(frame.palette.panel, veil), pad);
+  draw_text(frame.list, Face::small, at, rgb, text);
+}
+
+// Calls draw(mark, x) for the marks in sight, from the left.
+template <class Draw>
+void for_marks(const PlotFrame& frame, const History& history, Draw&& draw) {
+  for (const PlotMark& mark : history.marks()) {
+    const float x = std::round(frame.x_of(mark.time));
+    if (x >= frame.area.min.x && x <= frame.area.max.x) draw(mark, x);
+  }
+}
+
+bool crosses(const PlotFrame& frame, const Trace& trace, const ScreenRect& box) {
+  for (const TraceRun& run : trace.runs) {
+    for (std::size_t i = run.first; i < run.first + run.count; ++i) {
+      const TracePoint& to = trace.points[i];
+      const TracePoint& from = trace.points[i > run.first ? i - 1 : i];
+      if (frame.area.min.x + to.x < box.min.x || frame.area.min.x + from.x > box.max.x) continue;
+      const auto low = static_cast<double>(std::min(from.low, to.low));
+      const auto high = static_cast<double>(std::max(from.high, to.high));
+      if (frame.y_of(low) > box.min.y && frame.y_of(high) < box.max.y) return true;
+    }
+  }
+  return false;
+}
+
+// Rows of labels from the bottom up, each free from some place on.
+class MarkRows {
+ public:
+  explicit MarkRows(const PlotFrame& frame, float line) : frame_(frame), line_(line) {
+    free_from_.fill(frame.area.min.x);
+    const float fit = frame.area.height() / line;
+    most_ = std::clamp(static_cast<std::size_t>(fit), std::size_t{1}, kRows);
+    usual_ = std::clamp(static_cast<std::size_t>(fit / 2), std::size_t{1}, kRows);
+  }
+  ScreenRect box(std::size_t row, float left, float width) const {
+    const float bottom = frame_.area.max.y - static_cast<float>(row) * line_ - 2 * frame_.scale;
+    return {{left, bottom - line_}, {left + width, bottom}};
+  }
+  // Returns the lowest row that no curve crosses, else the lowest one in the lower half.
+  std::optional<std::size_t> find(std::span<const Trace> traces, float left, float width) const {
+    std::optional<std::size_t> crossed;
+    for (std::size_t row = 0; row < most_; ++row) {
+      if (left < free_from_[row]) continue;
+      const ScreenRect place = box(row, left, width);
+      if (std::ranges::none_of(traces, [&](const Trace& t) { return crosses(frame_, t, place); }))
+        return row;
+      if (!crossed && row < usual_) crossed = row;
+    }
+    return crossed;
+  }
+  void take(std::size_t row, float until) { free_from_[row] = std::max(free_from_[row], until); }
+
+ private:
+  static constexpr std::size_t kRows = 5;
+
+  const PlotFrame& frame_;
+  float line_;
+  std::size_t most_ = 1, usual_ = 1;
+  std::array<float, kRows> free_from_{};
+};
+
+constexpr float kLawEdge = 3;  // of a law's band, at its top [px]
+
+// Calls draw(number, left, right) for each stretch, with its edges on the screen.
+template <class Draw>
+void for_stretches(const PlotFrame& frame, const Band& band, const History& history,
+                   const std::vector<SampleIndex>& rows, Draw&& draw) {
+  for (const BandStretch& stretch : band_stretches(band, history, rows)) {
+    draw(stretch.said, frame.area.min.x + static_cast<float>(stretch.from),
+         frame.area.min.x + static_cast<float>(stretch.to));
+  }
+}
+
+// Draws the names of a band at `line`, counted from the top; each band has its own.
+void draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
+                const std::vector<SampleIndex>& rows) {
+  float free_from = frame.area.min.x;
+  int before = -1;
+  for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
+    const std::string& name = band.names[static_cast<std::size_t>(now)];
+    const ImVec2 label = text_size(Face::small, name);
+    const float x =
+        std::max(std::min(left, frame.area.max.x - label.x - 6 * frame.scale), frame.area.min.x) +
+        2 * frame.scale;
+    if (name.empty() || std::exchange(before, now) == now || x < free_from) return;
+    // Names would fill a low plot.
+    if (frame.area.height() < 6 * label.y) return;
+    // A short time under another law is a line without a name.
+    if (!band.names.front().empty() && right - left < label.x) return;
+    const float y = frame.area.min.y + kLawEdge * frame.scale + line * label.y;
+    draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
+                     0.85f);
+    free_from = x + label.x + 12 * frame.scale;
+  });
+}
+
+// Draws stripes from lower left to upper right; those of stretches side by side fit together.
+void draw_stripes(const PlotFrame& frame, float left, float right) {
+  const float gap = 7 * frame.scale, high = frame.area.height();
+  const ImU32 rgba = colour(frame.palette.muted, 0.5f);
+  frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
+                           colour(frame.palette.muted, 0.1f));
+  frame.list.PushClipRect({left, frame.area.min.y}, {right, frame.area.max.y}, true);
+  for (float x = gap * std::floor((left - high) / gap); x < right; x += gap) {
+    frame.list.AddLine({x, frame.area.max.y}, {x + high, frame.area.min.y}, rgba, frame.scale);
+  }
+  frame.list.PopClipRect();
+}
+
 }  // namespace
+
+void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset) {
+  if (spec.kind == PlotKind::time) {
+    draw_time_axis(frame, time_offset);
+  } else {
+    draw_across_axis(frame, spec);
+  }
+  draw_value_axis(frame, spec);
+  const float zero = frame.y_of(0);
+  if (spec.y.zero_line && !frame.y.log && zero >= frame.area.min.y && zero <= frame.area.max.y) {
+    level_line(frame, zero, colour(frame.palette.axis));
+  }
+  const float left = frame.x_of(0);
+  if (spec.kind == PlotKind::cross && spec.x.zero_line && left >= frame.area.min.x &&
+      left <= frame.area.max.x) {
+    upright_line(frame, left, colour(frame.palette.axis));
+  }
+}
 
 void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis) {
   const float thickness = kThickness * frame.scale * std::max(1.0f, emphasis);
@@ -301,13 +429,6 @@ void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float empha
   }
 }
 
-namespace {
-
-constexpr float kBetweenSigns = 64;  // [px] at scale 1
-constexpr float kSign = 3.6f;        // half of one's width
-
-}  // namespace
-
 void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale) {
   const float r = kSign * scale;
   const ImVec2 from{at.x - r, at.y - r}, to{at.x + r, at.y + r};
@@ -322,7 +443,7 @@ void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 
   }
 }
 
-// At whole distances along the time axis, or along the curve where that wanders.
+// Draws signs at whole distances along the time axis, or along the curve if that wanders.
 void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, ImU32 rgba) {
   if (sign == RunSign::none) return;
   const float apart = std::round(kBetweenSigns * frame.scale);
@@ -351,31 +472,6 @@ void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, Im
   }
 }
 
-namespace {
-
-void dashed_line(const PlotFrame& frame, ImVec2 from, ImVec2 to, ImU32 rgba, float dash) {
-  const bool level = from.y == to.y;
-  const float length = level ? to.x - from.x : to.y - from.y;
-  for (float at = 0; at < length; at += 2 * dash) {
-    const float end = std::min(at + dash, length);
-    const ImVec2 a = level ? ImVec2{from.x + at, from.y} : ImVec2{from.x, from.y + at};
-    const ImVec2 b = level ? ImVec2{from.x + end, from.y} : ImVec2{from.x, from.y + end};
-    frame.list.AddRectFilled(a, {b.x + (level ? 0 : 1), b.y + (level ? 1 : 0)}, rgba);
-  }
-}
-
-// Text over curves, readable through a veil of the background.
-void draw_backed_text(const PlotFrame& frame, ImVec2 at, Rgb rgb, const std::string& text,
-                      float veil) {
-  const ImVec2 size = text_size(Face::small, text);
-  const float pad = 3 * frame.scale;
-  frame.list.AddRectFilled({at.x - pad, at.y}, {at.x + size.x + pad, at.y + size.y},
-                           colour(frame.palette.panel, veil), pad);
-  draw_text(frame.list, Face::small, at, rgb, text);
-}
-
-}  // namespace
-
 ImVec2 text_size(Face face, const std::string& text) {
   const ImFont* f = font(face);
   return f->CalcTextSizeA(f->FontSize, 1e6f, 0, text.data(), text.data() + text.size());
@@ -391,7 +487,7 @@ float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const s
                         float width) {
   std::string shown = text;
   while (!shown.empty() && text_size(face, shown).x > width) {
-    // Whole UTF-8 characters: drop continuation bytes with their first one.
+    // A whole UTF-8 character goes: continuation bytes with their first one.
     if (shown.ends_with("\u2026")) shown.erase(shown.size() - 3);
     while (!shown.empty() && (shown.back() & 0xc0) == 0x80) shown.pop_back();
     if (!shown.empty()) shown.pop_back();
@@ -415,69 +511,6 @@ void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec) {
     draw_backed_text(frame, at, rgb, each.label, 0.75f);
   }
 }
-
-namespace {
-
-// In sight, from the left.
-template <class Draw>
-void for_marks(const PlotFrame& frame, const History& history, Draw&& draw) {
-  for (const PlotMark& mark : history.marks()) {
-    const float x = std::round(frame.x_of(mark.time));
-    if (x >= frame.area.min.x && x <= frame.area.max.x) draw(mark, x);
-  }
-}
-
-bool crosses(const PlotFrame& frame, const Trace& trace, const ScreenRect& box) {
-  for (const TraceRun& run : trace.runs) {
-    for (std::size_t i = run.first; i < run.first + run.count; ++i) {
-      const TracePoint& to = trace.points[i];
-      const TracePoint& from = trace.points[i > run.first ? i - 1 : i];
-      if (frame.area.min.x + to.x < box.min.x || frame.area.min.x + from.x > box.max.x) continue;
-      const auto low = static_cast<double>(std::min(from.low, to.low));
-      const auto high = static_cast<double>(std::max(from.high, to.high));
-      if (frame.y_of(low) > box.min.y && frame.y_of(high) < box.max.y) return true;
-    }
-  }
-  return false;
-}
-
-// Lines of text from the bottom on, each free from some place on.
-class MarkRows {
- public:
-  explicit MarkRows(const PlotFrame& frame, float line) : frame_(frame), line_(line) {
-    free_from_.fill(frame.area.min.x);
-    const float fit = frame.area.height() / line;
-    most_ = std::clamp(static_cast<std::size_t>(fit), std::size_t{1}, kRows);
-    usual_ = std::clamp(static_cast<std::size_t>(fit / 2), std::size_t{1}, kRows);
-  }
-  ScreenRect box(std::size_t row, float left, float width) const {
-    const float bottom = frame_.area.max.y - static_cast<float>(row) * line_ - 2 * frame_.scale;
-    return {{left, bottom - line_}, {left + width, bottom}};
-  }
-  // The lowest one that no curve crosses, else the lowest one in the lower half.
-  std::optional<std::size_t> find(std::span<const Trace> traces, float left, float width) const {
-    std::optional<std::size_t> crossed;
-    for (std::size_t row = 0; row < most_; ++row) {
-      if (left < free_from_[row]) continue;
-      const ScreenRect place = box(row, left, width);
-      if (std::ranges::none_of(traces, [&](const Trace& t) { return crosses(frame_, t, place); }))
-        return row;
-      if (!crossed && row < usual_) crossed = row;
-    }
-    return crossed;
-  }
-  void take(std::size_t row, float until) { free_from_[row] = std::max(free_from_[row], until); }
-
- private:
-  static constexpr std::size_t kRows = 5;
-
-  const PlotFrame& frame_;
-  float line_;
-  std::size_t most_ = 1, usual_ = 1;
-  std::array<float, kRows> free_from_{};
-};
-
-}  // namespace
 
 void draw_mark_lines(const PlotFrame& frame, const History& history) {
   float last = -1e9f;
@@ -507,7 +540,7 @@ std::optional<double> note_near(const PlotFrame& frame, const History& history, 
   return found;
 }
 
-// A label stands right of its line, at the end left of it.
+// Draws labels right of their lines, at the end left of them.
 void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                       const std::vector<SampleIndex>& pixels, std::span<const Trace> traces,
                       ImVec2 mouse) {
@@ -532,58 +565,6 @@ void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const Histor
     rows.take(row.value_or(0), left + width + 6 * frame.scale);
   });
 }
-
-namespace {
-
-constexpr float kLawEdge = 3;  // of a law's band, at its top [px]
-
-// Each with its edges on the screen.
-template <class Draw>
-void for_stretches(const PlotFrame& frame, const Band& band, const History& history,
-                   const std::vector<SampleIndex>& rows, Draw&& draw) {
-  for (const BandStretch& stretch : band_stretches(band, history, rows)) {
-    draw(stretch.said, frame.area.min.x + static_cast<float>(stretch.from),
-         frame.area.min.x + static_cast<float>(stretch.to));
-  }
-}
-
-// `line`: of names, from the top; each band has its own.
-void draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
-                const std::vector<SampleIndex>& rows) {
-  float free_from = frame.area.min.x;
-  int before = -1;
-  for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
-    const std::string& name = band.names[static_cast<std::size_t>(now)];
-    const ImVec2 label = text_size(Face::small, name);
-    const float x =
-        std::max(std::min(left, frame.area.max.x - label.x - 6 * frame.scale), frame.area.min.x) +
-        2 * frame.scale;
-    if (name.empty() || std::exchange(before, now) == now || x < free_from) return;
-    // Where the plot is low, names would fill it.
-    if (frame.area.height() < 6 * label.y) return;
-    // A moment under another law is a line without a name.
-    if (!band.names.front().empty() && right - left < label.x) return;
-    const float y = frame.area.min.y + kLawEdge * frame.scale + line * label.y;
-    draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
-                     0.85f);
-    free_from = x + label.x + 12 * frame.scale;
-  });
-}
-
-// From lower left to upper right; stretches side by side fit together.
-void draw_stripes(const PlotFrame& frame, float left, float right) {
-  const float gap = 7 * frame.scale, high = frame.area.height();
-  const ImU32 rgba = colour(frame.palette.muted, 0.5f);
-  frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
-                           colour(frame.palette.muted, 0.1f));
-  frame.list.PushClipRect({left, frame.area.min.y}, {right, frame.area.max.y}, true);
-  for (float x = gap * std::floor((left - high) / gap); x < right; x += gap) {
-    frame.list.AddLine({x, frame.area.max.y}, {x + high, frame.area.min.y}, rgba, frame.scale);
-  }
-  frame.list.PopClipRect();
-}
-
-}  // namespace
 
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows) {

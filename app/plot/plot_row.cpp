@@ -7,7 +7,7 @@
 namespace limpid {
 namespace {
 
-// At scale 1 [px].
+// Least sizes at scale 1 [px].
 constexpr float kLeastWidth = 190, kLeastCross = 160, kLeastRowHeight = 125;
 constexpr float kCrossShape = 1.25f;  // width over height
 

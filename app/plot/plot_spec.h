@@ -1,4 +1,4 @@
-// What a plot shows: plain data, the same for the window, pictures and tables.
+// Specification of a plot: plain data, the same for the window, pictures and tables.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace limpid {
 
-// What stands along its horizontal axis.
+// Quantity along a plot's horizontal axis.
 enum class PlotKind : std::uint8_t {
   time,
   cross,     // another channel
-  spectrum,  // the frequency, of the stretch of time shown
+  spectrum,  // frequency, in the stretch of time shown
 };
 
-// Drawn on a curve at even distances, so that curves of two runs differ by more than a tint.
+// Sign drawn on a curve at even distances, so that curves of two runs differ by more than a tint.
 enum class RunSign : std::uint8_t { none, square, ring };
 
 struct Curve {
@@ -40,21 +40,21 @@ struct Threshold {
   bool always_in_view = false;  // autoscale makes room for it
 };
 
-// Tinted behind the curves by what a channel says: one of the numbers from 0 that have a name here.
-// Where 0 has none it is the usual; where it has one, only changes are of interest.
+// Tint behind the curves by a channel's value: a number from 0 that has a name here. Without a
+// name, 0 is the usual value; if 0 has one, only changes are of interest.
 struct Band {
   int channel = 0;
   std::vector<std::string> names = {};
-  float tint = 0.13f;  // of the last one; those before have less
-  // All but 0 look alike, striped: what is behind them is not what it seems.
+  float tint = 0.13f;  // of the last value; those before have less
+  // All values but 0 look alike, striped: the curves there are not what they seem.
   bool striped = false;
-  // They are coupling laws: each has its colour, 0 too, and an edge of it at the top.
+  // Values are coupling laws: each, 0 too, has its colour, and an edge of it at the top.
   bool laws = false;
-  // Marks with this key say what the band says: they go without a label while it is seen.
+  // Key of marks that say the same as the band: they have no label while it is seen.
   std::string key = {};
 };
 
-// How an axis is written while it shows no more than `most` [the channels' unit].
+// Unit of an axis while it shows no more than `most` [the channels' unit].
 struct PlotUnit {
   std::string name;
   double factor;  // from the channels' unit
@@ -62,7 +62,7 @@ struct PlotUnit {
 };
 
 struct PlotAxis {
-  std::string label = {};            // of the horizontal one
+  std::string label = {};            // of the horizontal axis
   std::string unit = {};             // after multiplication by factor
   double factor = 1;                 // from the channels' unit, such as 1000 from rad to mrad
   std::vector<PlotUnit> units = {};  // smallest first, to choose unit and factor from; or none

@@ -1,4 +1,4 @@
-// What a stretch of time amounts to, curve by curve.
+// Figures of a stretch of time, channel by channel.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace limpid {
 
-// Of the rows of a channel from start to stop [s on the history's axis] that are numbers, in the
-// channel's unit. Without any all but the count are not numbers.
+// Figures of a channel's rows from start to stop [s on the history's axis] that are numbers, in the
+// channel's unit. Without any such row all but the count are not numbers.
 struct RangeFigures {
   std::size_t count = 0;
   double mean = 0;

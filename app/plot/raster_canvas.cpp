@@ -20,8 +20,8 @@ using Contour = std::vector<Point>;
 
 constexpr int kCorners = 12;  // of a round end
 
-// What part of each pixel is covered: every edge adds, in the rows that it crosses, by how much it
-// has shadowed what is right of it. Holes turn the other way round.
+// Covered part of each pixel. Every edge adds, in the rows that it crosses, how much it shadows
+// what is right of it. Holes turn the other way round.
 class Coverage {
  public:
   Coverage(int width, int height)
@@ -35,7 +35,7 @@ class Coverage {
     }
   }
 
-  // Calls paint(x, y, covered) for what is covered, 0 to 1, and is empty then.
+  // Calls paint(x, y, covered) for each covered pixel, 0 to 1, and is empty then.
   template <class Paint>
   void sweep(const Paint& paint) {
     for (int y = top_; y < bottom_; ++y) {
@@ -77,7 +77,7 @@ class Coverage {
     }
   }
 
-  // An edge from x0 to x1 within one row, of the height `part`.
+  // Adds an edge from x0 to x1 within one row, of the height `part`.
   void shadow(float* row, double x0, double x1, float part) {
     const double most = width_;
     x0 = std::clamp(x0, 0.0, most);
@@ -86,18 +86,18 @@ class Coverage {
     left_ = std::min(left_, first);
     right_ = std::max(right_, last + 2);
     if (first == last) {
-      const auto right = static_cast<float>(0.5 * (x0 + x1) - first);  // what stays uncovered
+      const auto right = static_cast<float>(0.5 * (x0 + x1) - first);  // uncovered part
       row[first] += part * (1 - right);
       row[first + 1] += part * right;
       return;
     }
-    // Covered up to pixel x, as the edge goes across it.
+    // The covered part up to pixel x grows as the edge goes across it.
     const double wide = x1 - x0;
     float before = 0;
     for (int x = first; x <= last; ++x) {
       const double a = std::max(x0, static_cast<double>(x)), b = std::min(x1, x + 1.0);
       const double crossed = (b - a) / wide;
-      const double mean = x + 1 - 0.5 * (a + b);  // of the pixel right of the edge, where it is
+      const double mean = x + 1 - 0.5 * (a + b);  // part of the pixel right of the edge, on average
       const double reached = (a - x0) / wide;
       const auto now = static_cast<float>(reached + crossed * mean);
       row[x] += part * (now - before);
@@ -107,7 +107,7 @@ class Coverage {
   }
 
   int width_, height_;
-  int top_ = 1 << 30, bottom_ = 0, left_ = 1 << 30, right_ = 0;  // where something is
+  int top_ = 1 << 30, bottom_ = 0, left_ = 1 << 30, right_ = 0;  // area that is covered
   std::vector<float> all_;
 };
 
@@ -135,7 +135,7 @@ Contour corners_of(const PlotCanvas::Box& box) {
   return {{box.left, box.top}, {right, box.top}, {right, bottom}, {box.left, bottom}};
 }
 
-// The characters of UTF-8; what is none is left out.
+// Decodes UTF-8; leaves out bytes that are no character.
 std::vector<unsigned long> characters(const std::string& text) {
   std::vector<unsigned long> all;
   for (std::size_t i = 0; i < text.size();) {
@@ -169,7 +169,7 @@ class Type {
   Type(const Type&) = delete;
   Type& operator=(const Type&) = delete;
 
-  // From (0, 0) on the base line on, `size` high; how wide the text is.
+  // Adds the outlines of a text `size` high, from (0, 0) on the base line on; returns its width.
   double outlines(const std::string& text, bool bold, double size, std::vector<Contour>& into) {
     FT_Face face = faces_[bold ? 1 : 0];
     if (face == nullptr) return 0;
@@ -262,8 +262,8 @@ struct RasterCanvas::Impl {
     if (contour.size() > 2) coverage.add(scaled(contour));
   }
 
-  // A piece of a line, which overlaps others: a pixel is covered as the one does that covers it
-  // most.
+  // Adds a piece of a line, which overlaps others: each pixel is covered as by the piece that
+  // covers it most.
   void add_piece(const Contour& contour) {
     add(contour);
     coverage.sweep([&](int x, int y, float covered) {
@@ -349,12 +349,12 @@ void RasterCanvas::outline(const Box& box, Rgb rgb) {
   impl_->paint_line(corners, 1, rgb);
 }
 
-// From upper left to lower right, 7 px apart, over a veil.
+// Draws stripes from upper left to lower right, 7 px apart, over a veil.
 void RasterCanvas::stripes(const Box& box, Rgb rgb) {
   rect(box, rgb, 0.1);
   const double apart = 7 * std::numbers::sqrt2;
   for (double x = box.left - box.height; x < box.left + box.width; x += apart) {
-    // Cut to the box.
+    // Stripes are cut to the box.
     const double from = std::max(0.0, box.left - x);
     const double to = std::min(box.height, box.left + box.width - x);
     if (from < to) impl_->add(band({x + from, box.top + from}, {x + to, box.top + to}, 1));

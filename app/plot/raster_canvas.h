@@ -1,6 +1,6 @@
-// A canvas of pixels: lines and text are outlines that are filled, each pixel by how much of it is
-// covered, so that a picture at any resolution is the same picture. It needs no window and no
-// graphics card, and may be used on any thread.
+// A canvas of pixels: lines and text are filled outlines, each pixel by the part that is covered.
+// So a picture is the same at any resolution. It needs no window and no graphics card, and may be
+// used on any thread.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-// Four bytes a pixel, top row first, opaque.
+// An image: four bytes a pixel, top row first, opaque.
 struct Raster {
   int width = 0, height = 0;
   std::vector<unsigned char> rgba;
@@ -19,7 +19,7 @@ struct Raster {
 class RasterCanvas : public PlotCanvas {
  public:
   // `scale`: pixels of the picture for one of the layout, whose size is `width` x `height`. Text is
-  // left out where no font is installed.
+  // left out if no font is installed.
   RasterCanvas(double width, double height, double scale, Rgb paper);
   ~RasterCanvas() override;
 

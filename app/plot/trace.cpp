@@ -62,7 +62,7 @@ void trace_bands(const History& history, const Curve& curve, const std::vector<S
 
 void trace_samples(const History& history, const Curve& curve, const PixelWindow& window,
                    const std::vector<SampleIndex>& rows, TracePen& pen) {
-  // One row more on either side: the line goes on to the edge.
+  // A row more on either side lets the line go on to the edge.
   const SampleIndex from = rows.front() > history.first() ? rows.front() - 1 : history.first();
   const SampleIndex to = std::min(rows.back() + 1, history.end());
   for (SampleIndex row = from; row < to; ++row) {
@@ -72,6 +72,8 @@ void trace_samples(const History& history, const Curve& curve, const PixelWindow
     pen.put({static_cast<float>(window.pixel(history.time(row))), value, value});
   }
 }
+
+constexpr double kApart = 0.5;  // points closer than that are one [pixel]
 
 }  // namespace
 
@@ -107,14 +109,6 @@ void make_trace(const History& history, const Curve& curve, const PixelWindow& w
   }
 }
 
-// Traces over anything but time.
-
-namespace {
-
-constexpr double kApart = 0.5;  // points closer than that are one [pixel]
-
-}  // namespace
-
 void make_cross_trace(const History& history, const Curve& curve, SampleIndex from, SampleIndex to,
                       const TraceArea& area, Trace& trace) {
   TracePen pen(trace);
@@ -137,7 +131,7 @@ void make_cross_trace(const History& history, const Curve& curve, SampleIndex fr
 
 void make_spectrum_trace(const AmplitudeSpectrum& spectrum, const TraceArea& area, Trace& trace) {
   TracePen pen(trace);
-  double shown = -1e9;  // the pixel that the last point stands for
+  double shown = -1e9;  // pixel of the last point
   for (std::size_t i = 1; i < spectrum.amplitude.size(); ++i) {
     const double x = area.x.part(static_cast<double>(i) * spectrum.step) * area.width;
     const auto value = static_cast<float>(spectrum.amplitude[i]);

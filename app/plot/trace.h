@@ -1,4 +1,4 @@
-// What of a curve falls on which pixel: the shape that the window draws and picture files store.
+// Shapes of curves and bands on pixels, as the window draws them and picture files store them.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,20 @@
 
 namespace limpid {
 
-// Where a band of a plot says what.
-
-// From one pixel up to another one the band's channel says the same: the number of a name.
+// A stretch of pixels in which a band's channel says the same: the number of a name.
 struct BandStretch {
   int said;
   std::size_t from, to;  // [px]
 };
 
-// One after the other, `rows` being those of the pixels; none of a band that says nothing of
-// interest there.
+// Returns the stretches from left to right; `rows` are those of the pixels. Empty if the band says
+// nothing of interest there.
 std::vector<BandStretch> band_stretches(const Band& band, const History& history,
                                         const std::vector<SampleIndex>& rows);
 
 // A stretch of the time axis over a row of pixels. It begins at a whole multiple of a pixel's
-// duration, so that a moving window gathers the same samples in a pixel from frame to frame and
-// noise does not shimmer.
+// duration: a moving window then gathers the same samples in a pixel from frame to frame, and noise
+// does not shimmer.
 struct PixelWindow {
   double per_pixel = 1;          // [s]
   std::int64_t first_pixel = 0;  // counted from time 0
@@ -39,11 +37,11 @@ struct PixelWindow {
   double stop() const { return time(pixels); }
 };
 
-// `length` > 0 [s], `pixels` > 0. The window's end is within a pixel of `stop`.
+// Makes a window whose end is within a pixel of `stop`. `length` > 0 [s], `pixels` > 0.
 PixelWindow pixel_window(double stop, double length, int pixels);
 
-// First row of the history for each pixel, and one more for the end of the last. Shared by all
-// curves of a plot.
+// Finds the first row of the history for each pixel, and one more for the end of the last. All
+// curves of a plot share them.
 void pixel_rows(const History& history, const PixelWindow& window, std::vector<SampleIndex>& rows);
 
 struct TracePoint {
@@ -52,7 +50,7 @@ struct TracePoint {
   float high;
 };
 
-// Points to be joined to one another.
+// A run of points that are joined to one another.
 struct TraceRun {
   std::size_t first;
   std::size_t count;
@@ -95,21 +93,22 @@ class TracePen {
 void make_trace(const History& history, const Curve& curve, const PixelWindow& window,
                 const std::vector<SampleIndex>& rows, Trace& trace);
 
-// The same over another channel, of the rows [from, to), on an area of `width` x `height` pixels.
+// Area of a trace over another channel or of a spectrum.
 struct TraceArea {
   AxisMap x, y;
   int width, height;  // [pixel]
 };
+// Fills `trace` with the rows [from, to) of a curve over another channel.
 void make_cross_trace(const History& history, const Curve& curve, SampleIndex from, SampleIndex to,
                       const TraceArea& area, Trace& trace);
 
-// Of frequencies that share a pixel the highest amplitude; 0 Hz, which a logarithmic axis has no
-// place for, is left out.
+// Fills `trace` with the highest amplitude of the frequencies that share a pixel. Leaves out 0 Hz,
+// which has no place on a logarithmic axis.
 void make_spectrum_trace(const AmplitudeSpectrum& spectrum, const TraceArea& area, Trace& trace);
 
-// What a spectrum of the stretch is made of: the longest part of it without gaps in rows or
-// channel, at most the newest kMostOfSpectrum rows.
+// Rows that a spectrum takes at most: the newest.
 inline constexpr SampleIndex kMostOfSpectrum = 1 << 18;
+// Returns the spectrum of the longest part of the stretch without gaps in rows or channel.
 AmplitudeSpectrum spectrum_between(const History& history, int channel, double start, double stop);
 
 }  // namespace limpid

@@ -12,7 +12,8 @@ namespace limpid {
 
 namespace {
 
-// Whether the mark is of a setting of this run. Settings of hand, device and loop are both runs'.
+// Returns whether the mark is of a setting of this run. Settings of hand, device and loop are both
+// runs'.
 bool changes(const PlotMark& mark, const RunOfHistory& run) {
   std::string_view key = mark.key;
   const bool of_twin = key.starts_with(kTwinMark);
@@ -21,40 +22,6 @@ bool changes(const PlotMark& mark, const RunOfHistory& run) {
   const ParameterInfo* info = find_parameter(key);
   return of_twin == run.twin || info == nullptr || !of_controller(*info);
 }
-
-}  // namespace
-
-void EnergyAccount::follow(const History& history, SampleIndex end, RunOfHistory run) {
-  if (end < next_) start_over();
-  next_ = std::max(next_, history.first());
-  // One that was placed at the last sample after it was looked at counts, too.
-  auto mark = std::ranges::lower_bound(history.marks(), looked_until_, {}, &PlotMark::time);
-  for (; next_ < end; ++next_) {
-    const double time = history.time(next_);
-    for (; mark != history.marks().end() && mark->time <= time; ++mark) {
-      if (mark->key == kResetMark) {
-        const SampleIndex at = next_;
-        start_over();
-        next_ = at;
-      } else if (changes(*mark, run)) {
-        shares_.change(mark->time);
-      }
-    }
-    looked_until_ = time;
-    const auto value = [&](Channel c) {
-      return history.value(run.first + static_cast<int>(c), next_);
-    };
-    const double energy = static_cast<double>(value(Channel::energy_total)) -
-                          static_cast<double>(value(Channel::energy_compensation));
-    if (std::isnan(energy)) {  // there was no such run yet
-      shares_.forget();
-      continue;
-    }
-    shares_.take(time, energy, value(Channel::limited) > 0.5f);
-  }
-}
-
-namespace {
 
 double norm(std::span<const double> v) {
   double sum = 0;
@@ -66,7 +33,7 @@ constexpr int kJointInks = static_cast<int>(Ink::joint_7) - static_cast<int>(Ink
 
 using enum Ink;
 
-// Worked out of the row; the joints' are those of x_E.
+// Describes the channels computed from a row; the joints' are those of x_E.
 std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
                                         const std::vector<std::string>& joint_units) {
   std::vector<ChannelInfo> infos{
@@ -111,15 +78,15 @@ constexpr std::array kGroups{
     Group{"energy", "Energy", energy},  Group{"contact", "Contacts", contact},
     Group{"timing", "Timing", neutral}, Group{"objects", "Objects", neutral}};
 
-// Of each body, in this order: its place, and how fast it goes and turns.
+// Channels of each body, in this order: its place, and how fast it goes and turns.
 constexpr std::size_t kOfBody = 5;
 
-// What hands and eyes know of a run: where the tips are, and forces at them. Last in a row of
-// values.
+// Words for the axes of the tips. The tips' channels come last in a row of values: where the tips
+// are, and forces at them, as hands and eyes know them.
 constexpr std::array<std::string_view, 3> kAxisWords{"forward", "to the left", "upward"};
 constexpr std::size_t kOfTips = 2 * (3 + 1) + 2;
 
-// What the parts of a column are called; a single one has no name.
+// Names the parts of a column; a single one has no name.
 std::string part_name(ColumnWidth width, int part) {
   constexpr std::array kAxes{"x", "y", "z"};
   const char* axis = kAxes[static_cast<std::size_t>(part % 3)];
@@ -136,7 +103,7 @@ std::string part_name(ColumnWidth width, int part) {
   return "";
 }
 
-// Many numbers of each, of which people want a few.
+// Returns whether a column has many numbers for each body, of which people want a few.
 bool of_bodies(const ColumnInfo& column) {
   return column.width == ColumnWidth::poses || column.width == ColumnWidth::velocities;
 }
@@ -162,12 +129,42 @@ ChannelInfo column_channel(const ColumnInfo& column, int part, const std::string
       info.ink = static_cast<Ink>(static_cast<int>(joint_1) + part % kJointInks);
     }
   }
-  // Where something is has no zero worth looking at.
+  // Positions have no zero worth looking at.
   info.zero = info.unit != "m" && !(info.unit == "rad" && what.ends_with("position"));
   return info;
 }
 
 }  // namespace
+
+void EnergyAccount::follow(const History& history, SampleIndex end, RunOfHistory run) {
+  if (end < next_) start_over();
+  next_ = std::max(next_, history.first());
+  // A mark placed at the last sample, after that was looked at, counts too.
+  auto mark = std::ranges::lower_bound(history.marks(), looked_until_, {}, &PlotMark::time);
+  for (; next_ < end; ++next_) {
+    const double time = history.time(next_);
+    for (; mark != history.marks().end() && mark->time <= time; ++mark) {
+      if (mark->key == kResetMark) {
+        const SampleIndex at = next_;
+        start_over();
+        next_ = at;
+      } else if (changes(*mark, run)) {
+        shares_.change(mark->time);
+      }
+    }
+    looked_until_ = time;
+    const auto value = [&](Channel c) {
+      return history.value(run.first + static_cast<int>(c), next_);
+    };
+    const double energy = static_cast<double>(value(Channel::energy_total)) -
+                          static_cast<double>(value(Channel::energy_compensation));
+    if (std::isnan(energy)) {  // this run had not begun yet
+      shares_.forget();
+      continue;
+    }
+    shares_.take(time, energy, value(Channel::limited) > 0.5f);
+  }
+}
 
 TraceChannels::TraceChannels(const RowLayout& layout, const std::vector<bool>& slides,
                              const std::vector<std::string>& bodies)
@@ -273,7 +270,7 @@ void TraceChannels::add_bodies(const std::vector<std::string>& names) {
   }};
   for (std::size_t i = 0; i < static_cast<std::size_t>(layout_.bodies()); ++i) {
     std::string body = i < names.size() ? names[i] : "object " + std::to_string(i + 1);
-    // Two of one name: the second by its number as well.
+    // The second body of one name has its number as well.
     if (find("objects/" + body + ".x")) body += " (" + std::to_string(i + 1) + ")";
     for (const Quantity& q : kQuantities) {
       infos_.push_back(

@@ -1,4 +1,4 @@
-// The quantities that plots can show: what a row of the trace holds, and what is worked out of it.
+// Channels: the quantities that plots can show, from a row of the trace or computed from it.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ namespace limpid {
 // The first channels of one run, in this order; the joints' follow one by one, and after these all
 // columns of the row.
 enum class Channel : std::uint8_t {
-  kind,          // its number
+  kind,          // number of the law
   error,         // |x_E| [rad]; [m] of an arm that only slides
   energy_total,  // [J]
   energy_commanded,
@@ -35,10 +35,10 @@ enum class Channel : std::uint8_t {
 
 // A channel as people and files know it.
 struct ChannelInfo {
-  std::string key;    // in files, the same for every arm that has it: "device/position.2"
-  std::string group;  // of the list to choose from: "Device"
-  std::string name;   // there: "position, joint 2"
-  std::string label;  // of its curve: "device position 2"
+  std::string key;    // name in files, the same for every arm that has it: "device/position.2"
+  std::string group;  // heading in the list of channels: "Device"
+  std::string name;   // name in that list: "position, joint 2"
+  std::string label;  // name of its curve: "device position 2"
   std::string unit;   // SI; "-": none
   std::string help;
   Ink ink = Ink::neutral;
@@ -49,23 +49,23 @@ struct ChannelInfo {
 
 class TraceChannels {
  public:
-  // `slides`: which joints do; their channels are in metres and newtons. Empty: none. `bodies`:
-  // what the objects that move are called; those without a name go by their number.
+  // `slides`: whether each joint slides, with channels in metres and newtons; empty: none.
+  // `bodies`: names of the moving objects; those without a name go by their number.
   explicit TraceChannels(const RowLayout& layout, const std::vector<bool>& slides = {},
                          const std::vector<std::string>& bodies = {});
-  // The same of an arm: which joints slide, and where its tips are; without one what is worked out
-  // of the tips is no number.
+  // Takes from the arm which joints slide, and where its tips are. Without an arm all that is
+  // computed from the tips is not a number.
   TraceChannels(const ArmDescription& arm, const RowLayout& layout,
                 const std::vector<std::string>& bodies);
 
-  // From now on these are the motors' largest torques [N m]; before, no motor is ever limited.
+  // Sets the motors' largest torques from now on [N m]; before, no motor is ever limited.
   void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
-  // Whether the motor of a joint gives all it can in this row.
+  // Returns whether the motor of a joint gives all it can in this row.
   bool limited(std::span<const double> row, int joint) const;
 
   int count() const { return static_cast<int>(infos_.size()); }
   std::span<const ChannelInfo> infos() const { return infos_; }
-  // By its key; nothing where this arm has no such channel.
+  // Finds a channel by its key; nothing if this arm has no such channel.
   std::optional<int> find(const std::string& key) const;
   // Fills count() values.
   void values(std::span<const double> row, std::span<double> into) const;
@@ -73,7 +73,7 @@ class TraceChannels {
   void append(History& history, std::span<const double> row,
               std::span<const double> again = {}) const;
   const RowLayout& layout() const { return layout_; }
-  // Columns that are worked out of rows, the tips among them; null without an arm.
+  // Returns the columns that are computed from rows, the tips among them; null without an arm.
   const DerivedColumns* tips() const { return tips_ ? &*tips_ : nullptr; }
 
  private:
@@ -84,7 +84,7 @@ class TraceChannels {
   RowLayout layout_;
   NormUnits norms_;
   std::vector<ChannelInfo> infos_;
-  // A number of the row, behind the first channels; the bodies' follow.
+  // Place of a number in the row, for channels behind the first ones; the bodies' follow.
   struct Place {
     std::size_t at;
     std::optional<SessionUnits::Scaled> scaled;  // if it is shown in another unit
@@ -96,19 +96,19 @@ class TraceChannels {
   std::optional<DerivedColumns> tips_;
 };
 
-// Which of two runs in a history: its first channel there, and whether it is the second one.
+// Place of a run in a history: its first channel there, and whether it is the second of two runs.
 struct RunOfHistory {
   int first = 0;
   bool twin = false;
 };
-// Beginning of the marks of settings that are the second run's alone.
+// Beginning of the marks for settings of the second run alone.
 inline constexpr std::string_view kTwinMark = "twin: ";
 
-// The energy that the coupling gave, followed through a history.
+// Energy that the coupling gave, followed through a history.
 class EnergyAccount {
  public:
-  // Accounts for the samples up to `end` that were not looked at yet; from the beginning where
-  // `end` lies before them. The history has the channels of TraceChannels.
+  // Accounts for the samples up to `end` that were not looked at yet; from the beginning if `end`
+  // lies before them. The history has the channels of TraceChannels.
   void follow(const History& history, SampleIndex end, RunOfHistory run = {});
 
   // Shares of E_c as EnergyShares has them [J].
@@ -123,7 +123,7 @@ class EnergyAccount {
   void start_over() { *this = EnergyAccount(); }
 
   SampleIndex next_ = 0;
-  double looked_until_ = -1;  // at the marks [s]
+  double looked_until_ = -1;  // time up to which marks were looked at [s]
   EnergyShares shares_;
 };
 

@@ -13,8 +13,9 @@ namespace limpid {
 
 namespace {
 
+// Tells whether the grip is stable at eta, by
 // x1' = v1;  x2' = (k_vc (x1 - x2) + b_vc v1) / (b_v + b_vc);  f_hat' = alpha M^-1 (f - f_hat);
-// M v1' = f - b_d v1 - k_vc (x1 - x2) - b_vc (v1 - x2') + (1 - eta)/eta f_hat;  f = -K_h x1
+// M v1' = f - b_d v1 - k_vc (x1 - x2) - b_vc (v1 - x2') + (1 - eta)/eta f_hat;  f = -K_h x1.
 bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parameters& p,
             const Eigen::MatrixXd& K_h, double eta) {
   const Eigen::Index n = M_L.rows();
@@ -35,6 +36,64 @@ bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parame
   A.block(3 * n, 3 * n, n, n) = -spring * I;
   const Eigen::VectorXcd poles = eigenvalues(A);
   return poles.real().maxCoeff() < 1e-9 * poles.cwiseAbs().maxCoeff();
+}
+
+// Analyzes all but the grip.
+Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, const Parameters& p,
+                  std::optional<double> w_b) {
+  const Eigen::VectorXd b_d = device_damping(arm, p);
+  Analysis a;
+  a.b = b_d.minCoeff() + p.b_v;
+  for (const LockedMode& mode : modes) {
+    a.w_f.push_back(mode.w_f());
+    a.w_c.push_back(mode.w_c());
+    a.eta_min = std::max(a.eta_min, eta_min(mode));
+    if (w_b) a.eta_min_band = std::max(a.eta_min_band.value_or(0), eta_min_band(mode, *w_b));
+  }
+  a.modes = std::move(modes);
+  a.delay = device_delay(arm, p);
+  a.measured = arm.delay.has_value() && std::isnan(p.damping);
+  a.condition3 = condition3(arm, p);
+  a.link = p.oldest() * p.tick;
+  a.above_eta_min = p.eta >= a.eta_min;
+  return a;
+}
+
+// Locked system at a configuration, in the hand.
+struct Held {
+  Eigen::MatrixXd M_L;       // [kg m^2]
+  Eigen::VectorXd b;         // b_d + b_v of each joint [N m s/rad]
+  Eigen::MatrixXd K_h, B_h;  // of the grip, at the joints [N m/rad, N m s/rad]
+};
+
+Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const Parameters& p) {
+  const ArmAt arm = arm_at(description, x);
+  const Eigen::MatrixXd JJ = arm.J.transpose() * arm.J;
+  const Eigen::VectorXd b = device_damping(description, p).array() + p.b_v;
+  return {(1 + p.inertia_ratio) * arm.M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
+}
+
+constexpr double kTriedTick = 1.001e-3;  // [s]
+
+// Judges spring and damper alone.
+Passivity by_condition3(const Condition3& c) {
+  if (!c.known) return {std::nullopt, "no bound is known, as packets are lost (link.loss)"};
+  return {c.holds, c.holds ? "condition (3) holds" : "condition (3) is broken"};
+}
+
+Passivity of_feedforward(const Analysis& a, const Parameters& p) {
+  if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
+  if (p.eta < a.eta_min_grip) {
+    return {false, fmt::format("eta is below Routh's limit {:.4f} of this grip", a.eta_min_grip)};
+  }
+  const Passivity spring = by_condition3(a.condition3);
+  if (spring.passive == false) return spring;
+  if (p.linked()) return {std::nullopt, "no bound is known of what is fed forward through a link"};
+  if (a.delay > 0) {
+    return {std::nullopt,
+            fmt::format("no bound is known of what is fed forward {:.3g} ms late", 1e3 * a.delay)};
+  }
+  return {true, "eta is at or above eta_min, (25), and condition (3) holds"};
 }
 
 }  // namespace
@@ -60,7 +119,7 @@ Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
 
 double device_delay(const ArmDescription& arm, const Parameters& p) {
   const double known = arm.delay ? *arm.delay : p.delay * p.tick;
-  // The virtual arm has whole ticks: rounded they are the measured one.
+  // The virtual arm delays by whole ticks; the measured delay rounded to them counts as measured.
   const double simulated = p.device_delay * p.tick;
   return simulated > known + p.tick / 2 ? simulated : known;
 }
@@ -95,45 +154,6 @@ ArmAt arm_at(const ArmDescription& description, const Eigen::VectorXd& x) {
   return {M, J};
 }
 
-namespace {
-
-// All but the grip.
-Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, const Parameters& p,
-                  std::optional<double> w_b) {
-  const Eigen::VectorXd b_d = device_damping(arm, p);
-  Analysis a;
-  a.b = b_d.minCoeff() + p.b_v;
-  for (const LockedMode& mode : modes) {
-    a.w_f.push_back(mode.w_f());
-    a.w_c.push_back(mode.w_c());
-    a.eta_min = std::max(a.eta_min, eta_min(mode));
-    if (w_b) a.eta_min_band = std::max(a.eta_min_band.value_or(0), eta_min_band(mode, *w_b));
-  }
-  a.modes = std::move(modes);
-  a.delay = device_delay(arm, p);
-  a.measured = arm.delay.has_value() && std::isnan(p.damping);
-  a.condition3 = condition3(arm, p);
-  a.link = p.oldest() * p.tick;
-  a.above_eta_min = p.eta >= a.eta_min;
-  return a;
-}
-
-// The locked system at a configuration, in the hand.
-struct Held {
-  Eigen::MatrixXd M_L;       // [kg m^2]
-  Eigen::VectorXd b;         // b_d + b_v of each joint [N m s/rad]
-  Eigen::MatrixXd K_h, B_h;  // of the grip, at the joints [N m/rad, N m s/rad]
-};
-
-Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const Parameters& p) {
-  const ArmAt arm = arm_at(description, x);
-  const Eigen::MatrixXd JJ = arm.J.transpose() * arm.J;
-  const Eigen::VectorXd b = device_damping(description, p).array() + p.b_v;
-  return {(1 + p.inertia_ratio) * arm.M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
-}
-
-}  // namespace
-
 Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                  std::optional<double> w_b) {
   const Held held = held_at(arm, x, p);
@@ -141,33 +161,6 @@ Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Para
   a.eta_min_grip = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
   return a;
 }
-
-namespace {
-
-constexpr double kTriedTick = 1.001e-3;  // [s]
-
-// Passivity of spring and damper alone.
-Passivity by_condition3(const Condition3& c) {
-  if (!c.known) return {std::nullopt, "no bound is known, as packets are lost (link.loss)"};
-  return {c.holds, c.holds ? "condition (3) holds" : "condition (3) is broken"};
-}
-
-Passivity of_feedforward(const Analysis& a, const Parameters& p) {
-  if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
-  if (p.eta < a.eta_min_grip) {
-    return {false, fmt::format("eta is below Routh's limit {:.4f} of this grip", a.eta_min_grip)};
-  }
-  const Passivity spring = by_condition3(a.condition3);
-  if (spring.passive == false) return spring;
-  if (p.linked()) return {std::nullopt, "no bound is known of what is fed forward through a link"};
-  if (a.delay > 0) {
-    return {std::nullopt,
-            fmt::format("no bound is known of what is fed forward {:.3g} ms late", 1e3 * a.delay)};
-  }
-  return {true, "eta is at or above eta_min, (25), and condition (3) holds"};
-}
-
-}  // namespace
 
 Passivity passivity(const Analysis& a, const Parameters& p) {
   switch (p.kind) {

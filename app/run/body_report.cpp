@@ -18,12 +18,12 @@ namespace {
 
 constexpr double kInEachOther = 0.0005;  // less than this deep is touching [m]
 constexpr double kHurts = 0.2;           // [J]
-// As deep as 50 g that fall 10 cm press a point in; deeper than half of it, and the other side is
-// nearer [m].
+// Thickness below which a body is thin [m]: as deep as 50 g that fall 10 cm press a point in.
+// Deeper than half of the thickness the other side is nearer.
 constexpr double kThinBody = 0.004;
 constexpr double kFarFetched = 100;  // times the inertia of a solid
 
-// The box around a mesh, in its object's frame: as a box at a pose.
+// Returns the box around a mesh, in its object's frame: a box at a pose.
 std::pair<Box, Pose> box_around(const Mesh& mesh) {
   Eigen::AlignedBox3d box;
   if (mesh.triangles) {
@@ -41,7 +41,7 @@ struct Placed {
   Pose pose;
 };
 
-// Shape and parts in the world; of a mesh the box around it.
+// Returns shape and parts in the world; a mesh as the box around it.
 std::vector<Placed> pieces(const Object& object) {
   std::vector<Placed> all{{object.shape, object.pose}};
   if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
@@ -67,7 +67,7 @@ Vec3 root_of(const ArmDescription& arm) {
   return arm.joints.empty() ? Vec3(Vec3::Zero()) : Vec3(arm.joints.front().origin.translation());
 }
 
-// How high above the origin what falls comes to rest.
+// Returns the height above the origin at which falling things come to rest.
 double floor_of(const Scene& scene, const ArmDescription& arm, const Vec3& up) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const Object& object : scene.objects) {
@@ -79,7 +79,7 @@ double floor_of(const Scene& scene, const ArmDescription& arm, const Vec3& up) {
   return up.dot(root_of(arm)) - farthest_tip(arm).distance;
 }
 
-// How far a joint on the world lets a centre of mass sink; what else it hangs on may sink, too.
+// Returns how far a joint on the world lets a centre of mass sink; one on a body sinks with that.
 double sinks_on(const BodyJoint& joint, const Object& object, const Vec3& center, const Vec3& up) {
   const double along = joint.axis.dot(up);
   if (joint.kind == BodyJoint::Kind::slider) {
@@ -132,7 +132,7 @@ void warn(const Object& object, const Scene& scene, const ArmDescription& arm, B
     report.warnings.push_back(
         fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
   }
-  double thick = 0;  // of its thickest part: what is thin on it only marks it
+  double thick = 0;  // of its thickest part: thin parts only mark it
   for (const Placed& piece : pieces(object)) thick = std::max(thick, 2 * half_width(piece.shape));
   if (thick < kThinBody) {
     report.warnings.push_back(fmt::format("'{}' is {:.3g} mm thin: what falls on it may go through",
@@ -163,7 +163,7 @@ double beyond_reach(const Object& object, const Scene& scene, const ArmDescripti
 }
 
 double spring_energy(const Scene& scene) {
-  // In the world, where it holds at the start.
+  // Ends of a spring in the world, at the start.
   const auto at = [&](const BodySpring& spring, std::size_t end) -> Vec3 {
     const auto body = std::ranges::find(scene.objects, spring.between[end], &Object::name);
     if (spring.between[end].empty() || body == scene.objects.end()) return spring.points[end];

@@ -1,4 +1,4 @@
-// What there is to know of a scene's moving objects before anybody touches them.
+// Facts and warnings about a scene's moving objects before anybody touches them.
 #pragma once
 
 #include <string>
@@ -15,25 +15,27 @@ struct BodyReport {
   std::vector<std::string> facts, warnings;
 };
 
-// Meshes have their triangles. Empty for a scene in which nothing moves.
+// Reports on a scene whose meshes have their triangles; empty if nothing in it moves.
 BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm);
 
-// The most that weight may give: how far each may sink, at most to the lowest level plane, or
-// without one as far as the tip gets [J].
+// Returns the most energy that weight may give [J]: by how far each body may sink, at most to the
+// lowest level plane, or without a plane as far as the tip gets.
 double most_weight_energy(const Scene& scene, const ArmDescription& arm);
 
-// Energy of all springs at the start: those between bodies, and those of their joints [J].
+// Returns the energy of all springs at the start, between bodies and of their joints [J].
 double spring_energy(const Scene& scene);
 
-// How far the tip stays away from the object at the least [m]; not above 0: it gets there. Of a
-// mesh the box around it counts.
+// Returns the least distance of the tip from the object [m]; not above 0 if the tip gets there. A
+// mesh counts by the box around it.
 double beyond_reach(const Object& object, const Scene& scene, const ArmDescription& arm);
 
-// Places of objects that are in each other at the start, more than half a millimetre; one of each
-// two moves. What hangs on each other is none. Of moving meshes the convex hull counts.
+// Finds pairs of objects, at least one of them moving, that are more than half a millimetre in each
+// other at the start. Objects that hang on each other do not count. Moving meshes count by their
+// convex hull.
 std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene);
 
-// Whether some body can have these principal moments: none is more than the other two together.
+// Returns whether some body can have these principal moments: none is more than the sum of the
+// other two.
 bool possible_inertia(const Vec3& inertia);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// Whose energy E_c is: what the coupling gave, apart from what changing a setting put in.
+// Shares of the energy E_c: what the coupling gave, apart from what changing a setting put in.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-// Energy that counts: what E_c is above less than this is noise [J].
+// Energy that counts: E_c above zero by less than this is noise [J].
 inline constexpr double kGivenEnergy = 1e-3;
 
 // Shares of E_c, the energy that the controller gave since the start. Three are no fault of the
@@ -29,38 +29,38 @@ class EnergyShares {
  public:
   static constexpr double kSettling = 0.3;  // [s]
 
-  // A setting changes at `time` [s], which is not before that of the last row.
+  // Tells of a setting's change at `time` [s], which is not before that of the last row.
   void change(double time);
-  // The next row: E_c without what was for the device's own forces [J], and whether a motor was at
-  // its limit.
+  // Takes the next row: E_c without the energy for the device's own forces [J], and whether a motor
+  // was at its limit.
   void take(double time, double energy, bool limited);
-  // No row so far counts: E_c begins with the next one.
+  // Starts again: no row so far counts, E_c begins with the next one.
   void forget() { total_ = changes_ = limits_ = forgiven_ = peak_ = 0; }
 
-  // E_c, without what was for the device's own forces [J].
+  // Returns E_c without the energy for the device's own forces [J].
   double total() const { return total_; }
   double by_changes() const { return changes_; }             // [J]
   double forgiven() const { return forgiven_; }              // [J]
   double by_limits() const { return limits_; }               // [J]
   double own() const { return without_limits() - limits_; }  // [J]
-  // The coupling's own share where it is known not to be passive: its motors' limit is no excuse
-  // then [J].
+  // Returns the coupling's share with the limits' [J], for a coupling known not to be passive: the
+  // limit of its motors is no excuse then.
   double without_limits() const { return total_ - changes_ - forgiven_; }
 
  private:
   double total_ = 0, changes_ = 0, limits_ = 0, forgiven_ = 0;
-  double settled_ = -1;  // when the last change has settled [s]
+  double settled_ = -1;  // time at which the last change has settled [s]
   double peak_ = 0;      // of E_c since the excuse began [J]
   bool excused_ = false;
 };
 
-// Largest torque of each motor: the parameters', or the arm's own where they leave it to the arm
-// [N m].
+// Returns the largest torque of each motor [N m]: the parameters' one, or the arm's own where they
+// leave it to the arm.
 std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
-// Whether the motor of a joint gives all it can in this row. Without limits none does.
+// Returns whether the motor of a joint gives all it can in this row; never without limits.
 bool at_limit(const RowLayout& layout, std::span<const double> row, std::span<const double> limits,
               int joint);
-// The same of any motor.
+// Returns whether any motor gives all it can in this row.
 bool any_at_limit(const RowLayout& layout, std::span<const double> row,
                   std::span<const double> limits);
 

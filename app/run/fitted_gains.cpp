@@ -21,7 +21,7 @@ constexpr double kRate = 50;
 constexpr double kLeastMeasured = 1e-3;  // gains need some damping to go by [N m s/rad]
 constexpr double kSpread = 100;  // heaviest mode over the one that the damping is for, at most
 
-// What the second digit of a number counts: a power of ten.
+// Returns the unit of a number's second digit: a power of ten.
 double unit_of(double x) {
   const double digits = std::floor(logarithm(x) / std::numbers::ln10);
   // The quotient may round across a power of ten.
@@ -29,7 +29,7 @@ double unit_of(double x) {
   return power(10, digits - (x >= above ? 0 : x < below ? 2 : 1));
 }
 
-// Rounded to two digits, downwards or upwards.
+// Rounds to two digits, downwards or upwards.
 double down(double x) {
   const double unit = unit_of(x);
   return std::floor(x / unit * (1 + 1e-12)) * unit;
@@ -40,13 +40,14 @@ double up(double x) {
 }
 
 void set(Parameters& p, const char* key, double value) {
-  // Through its text, so that it is the number that people see.
+  // The number goes through its text, so that it is the one that people see.
   const double written = std::stod(fmt::format("{:.6g}", value));
   set_parameter_number(p, *find_parameter(key), written);
 }
 
-// What the file says nothing of. A joint that comes to rest within a tick would ring in laws that
-// model it by the midpoint rule: so its lightest mode bounds it.
+// Returns a damping for an arm whose file says none for all joints. A joint that comes to rest
+// within a tick would ring in laws that model it by the midpoint rule: so the lightest mode bounds
+// the damping.
 double wanted_damping(const ArmDescription& arm, double tick) {
   double said = 0;
   for (const Joint& joint : arm.joints) {
@@ -77,13 +78,13 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
   if (suits) return p;
   if (chosen.damping > 0) {
     p.damping = b_d = chosen.damping;
-  } else if (arm.delay) {  // measured: no damping is none
+  } else if (arm.delay) {  // measured: no damping means none
     b_d = std::max(b_d, kLeastMeasured);
   } else if (!(b_d > 0)) {
     set(p, "device.damping", wanted_damping(arm, chosen.tick));
     b_d = p.damping;
   }
-  // Of (3), for packets that are so old and velocities that count so often again.
+  // Gains follow (3) for packets that are `old` [s], and velocities that count `again` times more.
   const double old = link.oldest() * chosen.tick, again = 0.5 * link.link_jitter;
   set(p, "coupling.b_vc", down(b_d / (12 + 6 * again)));
   set(p, "coupling.k_vc", down((b_d - (2 + again) * p.b_vc) / (chosen.tick + 1.5 * delay + old)));

@@ -34,11 +34,12 @@ std::string text_of(const ModelAxes& axes) {
 
 namespace {
 
-// A closed body thinner than this part of its size is pushed through before it is felt.
+// Thinness of a closed body, as a part of its size, at which it is pushed through before it is
+// felt.
 constexpr double kThin = 0.005;
 constexpr std::size_t kProbes = 2000;  // triangles that are looked at
 
-// What the body holds by the divergence theorem, in its own units; below zero where its surface
+// Returns the body's volume by the divergence theorem, in its own units; below zero if its surface
 // faces inwards.
 double volume(const Model& model, const Vec3& middle) {
   double sum = 0;
@@ -51,7 +52,7 @@ double volume(const Model& model, const Vec3& middle) {
   return sum;
 }
 
-// The share of triangles from which it is less than `thin` to the other side of the body.
+// Returns the share of triangles less than `thin` from the other side of the body.
 double thin_share(const Model& model, const TriangleMesh& shape, double thin) {
   const std::size_t count = model.indices.size() / 3;
   const std::size_t step = std::max<std::size_t>(1, count / kProbes);
@@ -86,7 +87,7 @@ std::string size_text(const Model& model, double unit) {
                      large ? "m" : "mm");
 }
 
-// What is touched with a hand is neither as large as a house nor as small as a grain of sand.
+// Sizes of things touched with a hand: neither as large as a house nor as small as a grain of sand.
 constexpr double kLargest = 10, kSmallest = 1e-3;  // [m]
 
 std::size_t materials(const Model& model) {

@@ -43,8 +43,8 @@ SmallPath small_path(const ArmDescription& description) {
   const Arm<kAnyDof> arm(description);
   const Eigen::VectorXd rest = rest_pose(description);
   const Eigen::Index n = rest.size();
-  // Each joint swings at a rate of its own, all of them from rest to rest; the swing is what keeps
-  // the tip near.
+  // Each joint swings at a rate of its own, from rest to rest; the factor `swing` keeps the tip
+  // near.
   const auto pose = [&](double swing, double t) {
     const double wave = sine(std::numbers::pi * t / kLongest), gate = wave * wave;
     Eigen::VectorXd x = rest;

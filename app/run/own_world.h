@@ -1,4 +1,4 @@
-// Where an arm is tried that the built-in world was not made for.
+// Worlds and paths for arms that the built-in world was not made for.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,22 @@
 
 namespace limpid {
 
-// Of the built-in arm's size, and standing as it does: the default scene and path are within its
-// reach.
+// Returns whether the arm is as large as the built-in one and stands as it does: then the default
+// scene and path are within its reach.
 bool suits_default_world(const ArmDescription& arm);
 
-// The scene that an arm is shown in at first: the default one where it suits, or nothing to touch.
+// Returns the scene that an arm is shown in at first: the default one where it suits, or one with
+// nothing to touch.
 std::filesystem::path default_scene(const ArmDescription& arm);
 
-// The same of a device in the arm's place: one of two joints has a world of its own.
+// Returns the same for a device in the arm's place: one of two joints has a world of its own.
 std::filesystem::path scene_of_device(const ArmDescription& arm);
 
-// A small loop of the tip, a twentieth of the arm's reach to every side and slow, through what the
-// joints can do: within the reach and within the limits.
+// A small, slow loop of the tip, a twentieth of the arm's reach to every side, within the reach and
+// the joints' limits.
 struct SmallPath {
   HandPath hand;
-  RigStart start;  // at rest at its beginning
+  RigStart start;  // at rest at the path's beginning
 };
 SmallPath small_path(const ArmDescription& arm);
 

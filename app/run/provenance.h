@@ -11,24 +11,26 @@
 
 namespace limpid {
 
-// Eight hexadecimal digits for settings: equal for what is set equally. Of many, whatever their
+// Returns eight hexadecimal digits, the same for equal settings. Several settings may come in any
 // order.
 std::string settings_digest(const Parameters& p);
 std::string settings_digest(const std::set<std::string>& configs);
 
-// The day [UTC], as 2026-11-26: today, or that of SOURCE_DATE_EPOCH, for files that have to be the
-// same again.
+// Returns the day [UTC], as 2026-11-26: today, or that of SOURCE_DATE_EPOCH, for files that have to
+// be the same again.
 std::string today();
 
-// "limpid 0.1.0, settings 3f2a94d1, seed 1, 2026-11-26", without what is empty. `date`: none in
-// files that are the same however, and whenever, they are made.
+// Returns "limpid 0.1.0, settings 3f2a94d1, seed 1, 2026-11-26", without empty parts. `date`: empty
+// for files that are the same however, and whenever, they are made.
 std::string provenance(const std::string& settings, std::optional<std::uint64_t> seed,
                        const std::string& date = today());
 
-// The line of a recording: the version that made it, its settings, its seed, the day it was made.
+// Returns the line of a recording: the version that made it, its settings, its seed, the day it was
+// made.
 std::string provenance_of(const SessionInfo& info);
 
-// With the line in a <metadata> behind the root's first tag; as it is where there is no such tag.
+// Puts the line into a <metadata> behind the root's first tag; leaves an SVG without such a tag as
+// it is.
 std::string with_metadata(const std::string& svg, const std::string& line);
 
 }  // namespace limpid

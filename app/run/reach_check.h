@@ -1,4 +1,4 @@
-// Whether the arm of a plan can go where its hand goes, before anything is run.
+// Check before a run whether the arm of a plan can go where its hand goes.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-// What is out of reach, in words; empty if nothing is.
+// Says in words what is out of reach; empty if nothing is.
 std::string out_of_reach(const RunPlan& plan);
 
 }  // namespace limpid

@@ -13,17 +13,17 @@
 namespace limpid {
 namespace {
 
-constexpr std::size_t kBlockRows = 4096;  // what SessionWriter writes at once
+constexpr std::size_t kBlockRows = 4096;  // rows that SessionWriter writes at once
 constexpr int kMostNaps = 10;             // of 2 ms, for a block to come together
 
-// Never more than 64 MiB.
+// Returns the rows of the ring: `room`, but never more than 64 MiB.
 std::size_t ring_rows(std::size_t room, int stride) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
   const std::size_t fit = kBytes / (static_cast<std::size_t>(stride) * sizeof(double));
   return std::min(room, std::bit_floor(fit));
 }
 
-// Memory that is there, so that taking in what a loop begins with does not ask for any.
+// Returns memory that is there, so that taking in what a loop begins with does not ask for any.
 std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t lanes) {
   std::array<std::vector<double>, 2> worlds;
   if (info.bodies.empty()) return worlds;
@@ -34,7 +34,7 @@ std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t la
   return worlds;
 }
 
-// One watch for each lane; none where the recording does not say which arm its rows are of.
+// Makes one watch for each lane; none if the recording does not say which arm its rows are of.
 std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Parameters> initial,
                                 std::size_t lanes) {
   std::deque<RunWatch> watches;
@@ -49,7 +49,7 @@ std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Paramet
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
                    const Parameters& initial, bool force, std::size_t room, const Parameters* twin)
     : out_(out),
-      // Nobody waits for the packing where a clock sets the pace.
+      // Packing costs nobody time where a clock sets the pace.
       writer_(out, info, force, room > kWaitingRoom ? Packing::yes : Packing::no),
       ring_(ring_rows(room, (twin ? 2 : 1) * info.layout().stride()),
             static_cast<std::size_t>((twin ? 2 : 1) * info.layout().stride())),
@@ -94,7 +94,7 @@ void Recorder::mark(Mark mark) {
   marks_.push_back(std::move(mark));
 }
 
-// Of a recording without rows none is kept.
+// Writes the marks; a recording without rows keeps none.
 void Recorder::write_marks() {
   if (rows() == 0) return;
   const std::lock_guard lock(marks_mutex_);

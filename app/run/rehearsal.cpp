@@ -15,15 +15,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFadeIn = 1;                              // of the force, at rest [s]
-constexpr double kPress = 3, kFree = 6;                    // [s]
-constexpr double kStop = 0.05, kDepth = 0.15;              // beyond rest, and beyond that [rad]
-constexpr double kStopStiffness = 2;                       // [N m/rad]
+constexpr double kFadeIn = 1;                  // of the force, at rest [s]
+constexpr double kPress = 3, kFree = 6;        // [s]
+constexpr double kStop = 0.05, kDepth = 0.15;  // from rest to the stop, and from there on [rad]
+constexpr double kStopStiffness = 2;           // [N m/rad]
 constexpr double kSwing = 0.12, kSlow = 1.3, kFast = 4.1;  // [rad], [Hz]
-constexpr double kLeastSpeed = 0.05;                       // that is motion [rad/s]
+constexpr double kLeastSpeed = 0.05;                       // of motion [rad/s]
 constexpr double kTwoPi = 2 * 3.14159265358979323846;
 
-// What the device truly did, a row a tick.
+// True motion of the device, a row a tick.
 struct Truth {
   std::vector<VectorXd> x, v, hand;
 };
@@ -48,7 +48,7 @@ class Stand {
     tau2_ = zero;
   }
 
-  // One tick, the hand's target where the tip is at this pose.
+  // Runs one tick, the hand's target where the tip is at this pose.
   void step(const VectorXd& wanted) {
     RigInput input{{arm_.tip_at(Vec<kAnyDof>(wanted)), 1}};
     if (ticks_ == 0) input.force = ForceRequest::arm;
@@ -71,7 +71,8 @@ class Stand {
   bool force() const { return force_; }
 
  private:
-  // E_c of the law alone: the proxy's part is of the tick before this one, the last that has ended.
+  // Adds up E_c of the law alone. The proxy's part is of the tick before this one, the last that
+  // has ended.
   void keep_books(const VectorXd& dx1) {
     std::rotate(given_.begin(), given_.end() - 1, given_.end());
     given_.front() =
@@ -95,7 +96,7 @@ class Stand {
   double energy_ = 0, most_ = 0;
 };
 
-// The first joint against a stop, deeper and deeper.
+// Presses the first joint against a stop, deeper and deeper.
 void press(Stand& stand, const Parameters& p, Rehearsal& result) {
   double ef = 0, ff = 0;
   for (double t = 0; t < kFadeIn + kPress; t += p.tick) {
@@ -128,7 +129,7 @@ void swing(Stand& stand, const Parameters& p, Truth& truth) {
   }
 }
 
-// What the law leaves felt of inertia and damping [-].
+// Factors on inertia and damping that the law promises to leave felt [-].
 struct Promise {
   double inertia, damping;
 };
@@ -137,7 +138,8 @@ Promise promise(const Parameters& p) {
   return {p.eta, info(p.kind).observes ? p.eta : p.damping_share(p.eta)};
 }
 
-// A row a tick and joint: inertia, damping, friction, weight and spring of each joint.
+// Fits the hand's torque, a row a tick and joint: by inertia, damping, friction, and weight and
+// spring of each joint.
 void explain_what_is_felt(const Truth& truth, const Stand& stand, const Parameters& p,
                           Rehearsal& result) {
   const Index n = stand.rest().size(), ticks = static_cast<Index>(truth.x.size()) - 1;

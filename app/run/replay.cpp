@@ -49,7 +49,7 @@ Parameters session_parameters(const Session& session, const std::string& where) 
 
 namespace {
 
-// What the text inside a session says, with the built-in pictures where it names those.
+// Parses text from a session, with the built-in pictures if it names those.
 template <class Parse>
 auto with_pictures(const std::filesystem::path& folder, const Parse& parse) {
   try {
@@ -59,7 +59,8 @@ auto with_pictures(const std::filesystem::path& folder, const Parse& parse) {
   }
 }
 
-// The changes made while recording, but for keys that are set otherwise now than at its beginning.
+// Returns the changes made while recording, but for keys that are now set otherwise than at its
+// beginning.
 std::vector<SettingChange> changes_again(const Session& run, const std::string& where,
                                          const Parameters& own, const Parameters& chosen) {
   std::vector<SettingChange> changes;
@@ -78,8 +79,8 @@ std::vector<SettingChange> changes_again(const Session& run, const std::string& 
   return changes;
 }
 
-// What was chosen otherwise than the first run began holds for the twin as well, but for what the
-// two differed in: that is what they are compared for.
+// Makes changes to the first run's settings in the twin's, too, but for those in which the two
+// differed: these are what the twin compares.
 Parameters with_changed(Parameters twin, const Parameters& began, const Parameters& chosen) {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string was = parameter_text(began, info);
@@ -95,7 +96,7 @@ RigStart start_of(const Session& run) {
   return start;
 }
 
-// What the motors held of a real device's own forces the virtual arm in its place has.
+// Gives the virtual arm those own forces of the real device that its motors held.
 void give_forces(RunPlan& plan) {
   plan.parameters.weighs = plan.parameters.holds_weight;
   plan.parameters.springy = plan.parameters.holds_springs;
@@ -134,7 +135,7 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.rows = session.size();
   plan.note = other_build(session.info.build, where);
   plan.seed = session.info.seed;
-  // Nobody measured the hand on a real device: what the observer saw of it acts in its place.
+  // A real device has no measured hand torque: the observer's estimate acts in its place.
   const bool measured = !std::isnan(session.at(0, Column::hand_torque)[0]);
   for (std::size_t k = 0; k < session.size(); ++k) {
     const auto estimate = session.at(k, Column::hand_torque_estimate);

@@ -1,4 +1,4 @@
-// What stands for a program, a file, a run: equal only for what gives the same rows.
+// Keys of programs, files and runs: equal only for what gives the same rows.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class Digest {
   }
   void add(double x) { add(&x, sizeof x); }
   void add(std::uint64_t n) { add(&n, sizeof n); }
-  // With their lengths, so that no two lists run into the same bytes.
+  // Adds lists with their lengths, so that no two of them run into the same bytes.
   void add(const std::string& text) {
     add(std::uint64_t{text.size()});
     add(text.data(), text.size());
@@ -36,14 +36,14 @@ class Digest {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
-// Of the file's bytes; nothing where it cannot be read.
+// Returns the digest of the file's bytes; nothing if it cannot be read.
 std::optional<std::uint64_t> file_digest(const std::filesystem::path& file);
 
-// Stands for the program that is running: another build has another one.
+// Returns the key of the running program: another build has another one.
 std::uint64_t program_digest();
 
-// Stands for a program and all that decides a run: arm, scene and models, hand, rows, seed,
-// and of each lane the parameters, their changes and the start.
+// Returns the key of a program and all that decides a run: arm, scene and models, hand, rows, seed,
+// and for each lane the parameters, their changes and the start.
 std::uint64_t trial_key(const RunPlan& plan, std::uint64_t program);
 
 }  // namespace limpid

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kTipVelocity = 1;  // of the device, in kDerivedInfo
 const std::string kSecondRun = "the second run: ";
 
-// The largest E_c that the law allows [J].
+// Returns the largest E_c that the law allows [J].
 double promised(const Parameters& p) {
   if (!info(p.kind).keeps_ledger) return 0;
   return p.kind == CouplingKind::tank ? p.tank_energy : p.energy;
@@ -60,7 +60,7 @@ void RunWatch::add(std::span<const double> row) {
   }
   ++rows_;
   diverged_.add(row);
-  if (diverged_.wild()) return;  // said by itself
+  if (diverged_.wild()) return;  // instability has its own warning
   const double energy =
       layout_.in(row, Column::energy_total)[0] - layout_.in(row, Column::energy_compensation)[0];
   if (!begun_at_) begun_at_ = energy;

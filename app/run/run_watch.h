@@ -21,19 +21,19 @@ namespace limpid {
 // Watches the rows of one lane in turn.
 class RunWatch {
  public:
-  // No hand leads a tip faster than this [m/s]: a thrown ball leaves most hands at 10 to 25.
+  // Fastest tip that a hand leads [m/s]: a thrown ball leaves most hands at 10 to 25.
   static constexpr double kFastestTip = 10;
 
-  // `p`: at the first row.
+  // `p` are the parameters at the first row.
   RunWatch(const ArmDescription& arm, const RowLayout& layout, const Parameters& p);
 
-  // From row `row` on these hold. In the order of rows, before that row is added.
+  // Sets the parameters from row `row` on. Comes in the order of rows, before that row is added.
   void change(std::uint64_t row, const Parameters& p);
   void add(std::span<const double> row);
 
-  // Warnings, a sentence each; none of a run that is as it should be.
+  // Returns warnings, a sentence each; none of a run that is as it should be.
   std::vector<std::string> warnings() const;
-  // The same without that it became unstable, for whoever says that by RunEnd.
+  // Returns the warnings without instability, which RunEnd tells.
   std::vector<std::string> cautions() const;
 
  private:
@@ -41,10 +41,10 @@ class RunWatch {
     std::uint64_t row;
     Parameters parameters;
   };
-  // The first time that something was beyond what is allowed, and the most of it.
+  // First time that something was beyond what is allowed, and its largest value.
   struct Excess {
     double since = -1, most = 0;  // [s]; -1: it never was
-    std::string with;             // the settings then, in words
+    std::string with;             // the settings at `since`, in words
     void take(double time, double value, double allowed, const std::string& settings);
   };
 
@@ -59,35 +59,35 @@ class RunWatch {
   std::deque<Change> changes_;
   std::uint64_t rows_ = 0;
   std::vector<double> limits_;  // of the motors
-  double promised_ = 0;         // E_c is at most this [J]
+  double promised_ = 0;         // largest E_c that the law allows [J]
   bool at_fault_ = false;       // the law is known not to be passive
   std::string settings_;        // in words
   Excess energy_, speed_;
 };
 
-// Puts those of a lane behind others: a further lane's have "the second run: " before them.
+// Appends a lane's warnings; a further lane's have "the second run: " before them.
 void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
                   std::vector<std::string>& into);
 
 // Watches the rows of all lanes of a recording, which need not fit into memory.
 class SessionWatch {
  public:
-  // `about`: the recording with its changes, whether it has its rows or not. Errors: FileError and
-  // ParameterError where its settings cannot be read.
+  // `about` is the recording with its changes, whether it has its rows or not. Errors: FileError
+  // and ParameterError where its settings cannot be read.
   SessionWatch(const Session& about, const std::string& file);
-  // Whole rows in turn, and as many of the second run's, if there is one.
+  // Takes whole rows in turn, and as many of the second run's, if there is one.
   void take(std::span<const double> rows, std::span<const double> twin);
   std::vector<std::string> warnings() const;
 
  private:
   std::size_t stride_;
-  std::vector<RunWatch> lanes_;  // empty: its arm cannot be read
+  std::vector<RunWatch> lanes_;  // empty: the recording's arm cannot be read
 };
 
-// Those of a recording, of all its lanes. Errors: FileError and ParameterError where its settings
-// cannot be read. A recording whose arm cannot be read has none.
+// Returns the warnings of all lanes of a recording; none if its arm cannot be read. Errors:
+// FileError and ParameterError where its settings cannot be read.
 std::vector<std::string> warnings_of(const Session& session, const std::string& file);
-// Warnings joined one a line, as recordings keep them.
+// Joins warnings one a line, as recordings keep them.
 std::string warnings_text(const std::vector<std::string>& warnings);
 
 }  // namespace limpid

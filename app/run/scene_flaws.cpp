@@ -21,7 +21,7 @@ Vec3 tip_at_rest(const ArmDescription& description) {
   return arm.tip(frames);
 }
 
-// How deep the tip is in it [m]. Of a mesh, which may be open, nothing is said.
+// Returns how deep the tip is in an object [m]; 0 for a mesh, which may be open.
 double depth_of(const Vec3& tip, const Object& object, const Scene& scene) {
   return std::visit(
       [&]<class S>(const S& shape) {

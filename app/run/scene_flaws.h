@@ -10,10 +10,10 @@
 
 namespace limpid {
 
-// Flaws of still objects, in sentences: things beyond the tip's reach, walls
-// stiffer than the law of `p` renders on this arm, kinetic friction above the static one, and the
-// tip inside something at the rest pose. Meshes have their triangles. Of things that move
-// report_on_bodies() says it.
+// Lists flaws of still objects, in sentences: things beyond the tip's reach, walls stiffer than the
+// law of `p` renders on this arm, kinetic friction above the static one, and the tip inside
+// something at the rest pose. Meshes have their triangles. For moving objects report_on_bodies()
+// does this.
 std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& arm,
                                      const Parameters& p);
 

@@ -19,7 +19,7 @@ std::string where(const SceneDocument& document, const Mesh& mesh) {
   return path.empty() ? mesh.model : path;
 }
 
-// What is touched is built beside what is drawn from afar: each takes longer than reading did.
+// Builds the shape to touch beside the coarse model to draw: each takes longer than reading did.
 std::shared_ptr<const Model> finished(Model model, Mesh& mesh, const std::string& name,
                                       const LoadProgress& progress) {
   std::future<std::shared_ptr<const TriangleMesh>> shape;
@@ -52,8 +52,7 @@ MeshModels build_meshes(SceneDocument& document, const LoadProgress& progress) {
     }
     const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
     try {
-      // What it refers to is not there any more when a recording is opened; so recordings get one
-      // file.
+      // Recordings get the model as one file: other files are gone when a recording is opened.
       std::vector<unsigned char> whole;
       Model model = parse_model(*file.bytes, name, folder, progress, &whole);
       if (!whole.empty()) {

@@ -46,7 +46,8 @@ std::optional<fs::path> shipped_file(const std::string& named, const Kinds& kind
 
 std::string shipped_hint(const std::string& named, const Kinds& kinds) {
   if (named.find('/') != std::string::npos) return {};
-  // By their stems, for endings make names alike; one of the same ending comes first.
+  // Names are compared by their stems, as endings make them alike; those of the same ending come
+  // first.
   const fs::path wanted = named;
   std::vector<std::string> stems, names;
   for (const bool same_ending : {true, false}) {

@@ -31,7 +31,7 @@ void note(RunEnd& end, const DivergenceWatch& watch) {
   end.why = watch.why();
 }
 
-// A lane under way: a rig and what changes in its settings.
+// A lane under way: a rig and the changes of its settings.
 class LaneRun {
  public:
   LaneRun(const RunPlan& plan, const Lane& lane)
@@ -42,7 +42,7 @@ class LaneRun {
     parameters.tick = plan.parameters.tick;
   }
 
-  // Whether something has changed at row k.
+  // Applies the changes up to row k; returns whether there was any.
   bool apply_changes(std::uint64_t k) {
     bool changed = false;
     for (; next_ < changes_.size() && changes_[next_].row <= k; ++next_) {
@@ -69,7 +69,7 @@ class LaneRun {
   std::size_t next_ = 0;
 };
 
-// The run as a sequence of ticks of all its lanes, whoever paces them.
+// A run as a sequence of ticks of all its lanes, whoever paces them.
 class Run {
  public:
   Run(const RunPlan& plan, const RunPace& pace, const RowSink& sink)
@@ -84,7 +84,7 @@ class Run {
     armed_ = start.armed;
   }
 
-  // One tick; false when the run is over.
+  // Runs one tick; false when the run is over.
   bool step(double wake_latency) {
     if (end_.rows >= plan_.rows) return false;
     if (pace_.stop != nullptr && pace_.stop->load(std::memory_order_relaxed)) {

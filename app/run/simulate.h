@@ -16,63 +16,63 @@
 
 namespace limpid {
 
-// One run on the hand of a plan, in its world, under settings of its own.
+// Settings of one run on the hand of a plan, in its world.
 struct Lane {
   Parameters parameters;               // at the first row; the tick is the first lane's
   std::vector<SettingChange> changes;  // later ones
-  // Default: at rest, the tip on the hand's first point; of further lanes where the first one
-  // starts.
+  // Default: at rest, the tip on the hand's first point; further lanes start as the first one.
   std::optional<RigStart> start = {};
 };
 
-// All that decides a run: the same plan gives the same rows, bit for bit. It is its own first lane.
+// All that decides a run: the same plan gives the same rows, bit for bit. A plan is its own first
+// lane.
 struct RunPlan : Lane {
   ArmDescription arm;
   SceneDocument document;
-  MeshModels models;  // what the scene's meshes look like
+  MeshModels models;  // to draw the scene's meshes
   HandPath hand;
   std::vector<double> hand_torque;  // N x n [N m], instead of a grip; empty: the hand's path leads
   std::vector<bool> force;          // armed at each row of a recording; empty: always
-  std::uint64_t rows = 0;           // how many ticks
-  std::uint64_t seed = 0;           // for whatever is random
+  std::uint64_t rows = 0;           // number of ticks
+  std::uint64_t seed = 0;           // for everything random
   std::vector<Lane> beside;         // further lanes; one makes a twin
-  std::string note = {};  // for people: why rows may come out otherwise than recorded; of a re-run
+  std::string note = {};  // for people: why rows of a re-run may differ from the recorded ones
 
   std::size_t lanes() const { return 1 + beside.size(); }
   const Lane& lane(std::size_t i) const { return i == 0 ? *this : beside[i - 1]; }
-  // What a recorder wants to know of the second lane; null: there is none.
+  // Returns the second lane's parameters, for a recorder; null: there is none.
   const Parameters* twin() const { return beside.empty() ? nullptr : &beside[0].parameters; }
   RowLayout layout() const { return row_layout(arm.dof(), document.scene); }  // of each lane's rows
 };
 
-// What a hand that follows the path does over its k-th tick of length T [s].
+// Returns what a hand that follows the path does over its k-th tick of length T [s].
 HandInput input_at(const HandPath& path, std::size_t k, double T);
 
-// Called with each tick's rows, lane behind lane, and with the parameters of each lane whose own
-// have just changed, else null. False ends the run.
+// Parameters of each lane that have just changed, else null.
 using LaneChanges = std::span<const Parameters* const>;
+// Takes each tick's rows, lane behind lane; returning false ends the run.
 using RowSink = std::function<bool(std::span<const double> rows, LaneChanges changed)>;
 
 struct RunEnd {
-  std::uint64_t rows = 0;  // that were run
+  std::uint64_t rows = 0;  // number of rows that were run
   bool diverged = false;   // unstable at the last of them
   bool stopped = false;    // by the sink or by `stop`
-  double diverged_at = 0;  // the first row that no arm could follow, where it diverged [s]
-  std::string why = {};    // what that row had, in words
+  double diverged_at = 0;  // time of the first row that no arm could follow, if it diverged [s]
+  std::string why = {};    // fault of that row, in words
 };
 
-// The same of a run that was recorded to its end.
+// Returns the end of a run that was recorded whole.
 RunEnd end_of(const Session& session);
 
 struct RunPace {
-  bool realtime = false;                    // paced at the tick rate by the haptic thread
+  bool realtime = false;                    // the haptic thread paces it at the tick rate
   const std::atomic<bool>* stop = nullptr;  // set it to end early
 };
 
 // Makes a recorded change. Errors: ParameterError.
 void apply_change(Parameters& p, const SettingChange& change);
 
-// All lanes in lockstep. Ends early where one of them diverges (DivergenceWatch). Errors:
+// Runs all lanes in lockstep. Ends early if one of them diverges (DivergenceWatch). Errors:
 // std::invalid_argument if the hand's first point cannot be reached; ParameterError in a recorded
 // change.
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink);

@@ -18,14 +18,14 @@ constexpr double kLost = 1e3;        // times those
 constexpr std::uint64_t kCalm = 10;  // rows; what swings ever higher passes through small values
 
 struct Excess {
-  double times = 0;  // of what is wild; not a number where the value is none
+  double times = 0;  // over its limit; not a number where the value is none
   int joint = 0;     // from 0
   Column column = Column::device_velocity;
 };
 
 bool beyond(const Excess& e, double times) { return !(e.times <= times); }
 
-// The furthest beyond its limit.
+// Finds the value furthest beyond its limit.
 Excess largest(const RowLayout& layout, std::span<const double> row) {
   Excess most;
   const auto look = [&](Column column, int joint, double value, double limit) {
@@ -63,6 +63,10 @@ std::string in_words(const Excess& e) {
   if (!std::isfinite(e.times)) return fmt::format("{} {} is not finite", words.what, e.joint + 1);
   return fmt::format("{} {} grew beyond {:.0f} {}", words.what, e.joint + 1, words.limit,
                      words.unit);
+}
+
+auto vector(std::span<const double> values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 }  // namespace
@@ -104,14 +108,6 @@ std::string ForceTally::text(double tick) const {
   }
   return text;
 }
-
-namespace {
-
-auto vector(std::span<const double> values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-}  // namespace
 
 bool Summary::add(std::span<const double> row) {
   const auto at = [&](Column c) { return layout_.in(row, c); };

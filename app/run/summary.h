@@ -1,4 +1,5 @@
-// What a run or a recording amounts to, in a few lines.
+// Summary of a run or recording in a few lines: its figures, its time without force, its
+// divergence.
 #pragma once
 
 #include <cmath>
@@ -14,24 +15,23 @@
 
 namespace limpid {
 
-// From when on a loop does what no arm can do, and how to say so.
-
-// Watches rows in turn. A row is wild when a joint turns faster than 1e3 rad/s, is asked for more
-// than 1e4 N m, or device and proxy are 10 rad apart; a loop that got there may come back, and
-// has after ten rows that are not. At a thousand times that, or at something that is no number, it
-// is lost: unstable since the first wild row of those from which it did not come back.
+// Finds when a loop does what no arm can do. Watches rows in turn. A row is wild when a joint turns
+// faster than 1e3 rad/s, is asked for more than 1e4 N m, or device and proxy are 10 rad apart. A
+// loop that got there may come back, and has after ten rows that are not wild. At a thousand times
+// those limits, or at a value that is no number, the loop is lost: unstable since the first wild
+// row from which it did not come back.
 class DivergenceWatch {
  public:
   explicit DivergenceWatch(const RowLayout& layout) : layout_(layout) {}
 
   void add(std::span<const double> row);
 
-  bool wild() const { return !why_.empty(); }  // a row was, and it has not come back
+  bool wild() const { return !why_.empty(); }  // a row was, and the loop has not come back
   bool lost() const { return lost_; }
-  // Of the first of those rows; only while wild().
+  // Returns the first wild row of those that wild() is about; only while wild().
   std::uint64_t since_row() const { return since_row_; }
   double since() const { return since_; }          // [s]
-  const std::string& why() const { return why_; }  // in words, of the first of them
+  const std::string& why() const { return why_; }  // fault of that row, in words
 
  private:
   RowLayout layout_;
@@ -41,14 +41,13 @@ class DivergenceWatch {
   std::string why_;
 };
 
-// How much of a recording was without force, and why.
-
+// Counts how much of a recording was without force, and why.
 class ForceTally {
  public:
   explicit ForceTally(const RowLayout& layout) : layout_(layout) {}
 
   void add(std::span<const double> row);
-  // In lines for people, one for each reason; `tick` [s].
+  // Returns lines for people, one for each reason; `tick` [s].
   std::string text(double tick) const;
 
  private:
@@ -57,21 +56,22 @@ class ForceTally {
   std::map<int, std::uint64_t> ticks_;  // without full force, of each state
 };
 
-// Of a loop that became unstable: what it did while it was stable, and since when it was not.
+// Figures of a run. For a loop that became unstable: those up to then, and since when it was
+// unstable.
 class Summary {
  public:
-  // `slides`: which joints do; empty: none.
+  // `slides`: whether each joint slides; empty: none.
   explicit Summary(const RowLayout& layout, const std::vector<bool>& slides = {})
       : layout_(layout), units_(norm_units(slides)), watch_(layout) {}
 
-  // Whether it is the memorable one, for now.
+  // Adds a row; returns whether it is the memorable one, for now.
   bool add(std::span<const double> row);
   double time() const { return time_; }  // of the last row [s]
   const DivergenceWatch& watch() const { return watch_; }
-  // The row of the strongest contact; the last one of a run without any.
+  // Returns the row of the strongest contact; the last row of a run without any.
   std::span<const double> memorable() const { return totals().memorable; }
   std::string text() const;
-  // Of a twin: the numbers of both runs side by side, and the second's over the first's.
+  // Compares a twin's two runs: their numbers side by side, and the second's over the first's.
   static std::string beside(const Summary& first, const std::string& name, const Summary& second,
                             const std::string& other);
 
@@ -84,7 +84,7 @@ class Summary {
     std::uint64_t in_contact = 0;
     double to_objects = 0, objects_gain = 0;  // given to bodies, and the most they gained [J]
     double most_awake = 0;                    // bodies
-    double left_out = 0;                      // most points at which they meet without pushing
+    double left_out = 0;                      // most points at which bodies meet without pushing
     std::vector<double> memorable;
 
     double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }
@@ -93,7 +93,7 @@ class Summary {
    private:
     double counted() const { return rows > 0 ? static_cast<double>(rows) : 1; }
   };
-  // Of a loop that became unstable: up to there.
+  // Returns the totals; up to its instability for a loop that became unstable.
   const Totals& totals() const { return watch_.lost() ? stable_ : all_; }
 
  private:
@@ -109,7 +109,7 @@ class Summary {
   DivergenceWatch watch_;
   double time_ = 0;
   Totals all_;
-  Totals stable_;  // up to where the present wild rows began
+  Totals stable_;  // totals before the present wild rows began
 };
 
 }  // namespace limpid

@@ -1,5 +1,5 @@
-// What each coupling can show at the tip of an arm, without simulating: walls, and what is felt in
-// free motion.
+// Limits of each coupling at the tip of an arm, without simulating: walls, and what is felt in free
+// motion.
 #pragma once
 
 #include <array>
@@ -13,39 +13,39 @@
 
 namespace limpid {
 
-// Along the direction in which the arm's own dampers hold the tip least; walls of the predictive
-// coupling along the worst.
+// Limits along the direction in which the arm's own dampers hold the tip least; walls of the
+// predictive coupling along the worst.
 struct TipLimits {
   TipAlong tip;
-  double delay = 0;  // of the device, that walls are reckoned with [s]
-  // Of each coupling, in the order of the laws: the stiffest wall that it renders well, or that can
-  // be felt through it [N/m], and what bounds it.
+  double delay = 0;  // of the device, as used for walls [s]
+  // Stiffest wall that a coupling renders well, or that can be felt through it [N/m], and what
+  // bounds it.
   struct Wall {
     double stiffness;
     std::string bound;
   };
-  std::array<Wall, kLaws> walls;
+  std::array<Wall, kLaws> walls;  // in the order of the laws
   double every_hand;  // stiffest wall that a linear law can render passively in every hand [N/m]
   double scene;       // stiffest thing in the scene, 0 without any [N/m]
   FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
-  double w_f;         // of the observer there [rad/s]
+  double w_f;         // of the observer at the tip [rad/s]
   AddedMass added;    // of the predictive coupling: eta as the possible delay leaves it
-  int delay_most;     // that delay [ticks]
+  int delay_most;     // possible delay [ticks]
 };
 
-// At configuration x [rad].
+// Finds the limits at configuration x [rad].
 TipLimits tip_limits(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                      const Scene& scene);
 
-// The same if the device's torque answered its readings at once.
+// Finds the limits as if the device's torque answered its readings at once.
 TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                         const Scene& scene);
 
-// What the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3 Hz,
-// as the torque may be 3 ms late"; empty where it leaves all of it.
+// Says what the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3
+// Hz, as the torque may be 3 ms late"; empty if it leaves all of it.
 std::string late_text(const TipLimits& limits, const Parameters& p);
 
-// What is felt in free motion at f [Hz].
+// Mass and damping felt in free motion at f [Hz].
 struct FeltAtTip {
   double mass;     // [kg]
   double damping;  // [N s/m]

@@ -1,4 +1,4 @@
-// What the two runs of a twin have in common, and what tells them apart.
+// Settings that the two runs of a twin share, and names by those that differ.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace limpid {
 
-// Gives the twin all that it has not of its own: it has ControllerSettings.
+// Copies to the twin all settings but its own ControllerSettings.
 void share_world(const Parameters& first, Parameters& twin);
-// What the two are called: by what they differ in.
+// Names the two runs by what they differ in.
 std::array<std::string, 2> twin_names(const Parameters& first, const Parameters& twin);
 
 }  // namespace limpid

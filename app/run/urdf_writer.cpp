@@ -10,7 +10,7 @@
 namespace limpid {
 namespace {
 
-// A comment ends at its first two hyphens.
+// Makes a text fit for a comment, which ends at its first two hyphens.
 std::string as_comment(std::string text) {
   for (std::size_t at; (at = text.find("--")) != std::string::npos;) text.insert(at + 1, " ");
   return text;
@@ -55,7 +55,8 @@ std::string inertial(const Link& link) {
       numbers(link.com), link.mass, I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2));
 }
 
-// A slide's numbers are in units of its travel; the file's are in metres and newtons.
+// Writes a joint. A slide's numbers are in units of its travel; the file's are in metres and
+// newtons.
 std::string joint_text(const Joint& joint, const std::string& parent, const std::string& child) {
   const bool slides = joint.kind == Joint::Kind::prismatic;
   const double unit = slides ? kSlideUnit : 1;
@@ -76,7 +77,7 @@ std::string joint_text(const Joint& joint, const std::string& parent, const std:
       joint.damping / (unit * unit), joint.friction / unit);
 }
 
-// What the format has no words for, see urdf_own.h.
+// Writes values that the format has no words for, see urdf_own.h.
 std::string own(const ArmDescription& arm) {
   std::string springs;
   for (const Joint& joint : arm.joints) {

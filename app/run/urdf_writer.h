@@ -7,8 +7,8 @@
 
 namespace limpid {
 
-// The chain with its masses, limits, resistances, springs and delay, links that were fixed to
-// others merged into them; read again it is the same arm. `remark` stands in a comment.
+// Writes the chain with its masses, limits, resistances, springs and delay; links fixed to others
+// are merged into those. Read again it is the same arm. `remark` stands in a comment.
 std::string urdf_text(const ArmDescription& arm, const std::string& remark);
 
 }  // namespace limpid

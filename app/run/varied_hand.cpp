@@ -20,7 +20,7 @@ struct Sine {
   double frequency, phase;  // [Hz], [rad]
 };
 
-// How one trial differs from the path it follows.
+// Difference of one trial from the path it follows.
 struct Manner {
   double horizontal, vertical;  // factors on the distance from the start
   double duration;              // factor

@@ -22,7 +22,7 @@ std::string wall_text(const TapPlace& place, double stiffness) {
       place.out.z(), fmt::format("{:#.9g}", stiffness));
 }
 
-// At rest before the wall, the joints moved by no more than that takes.
+// Starts at rest before the wall, with the joints moved as little as possible.
 RigStart before_the_wall(const ArmDescription& description, const TapPlace& place) {
   const Arm<kAnyDof> arm(description);
   Eigen::VectorXd x = place.x;

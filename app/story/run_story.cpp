@@ -16,7 +16,7 @@ namespace {
 
 constexpr Range kTime{0, 1e9, false, "s"};
 
-// A box has edges of one length, as read from a script.
+// Writes a camera's box as a script has it, with edges of one length.
 toml::table box_table(const StoryCamera& camera) {
   const Vec3 at = camera.of->center();
   return toml::table{{"view", view_word(camera.view)},
@@ -52,33 +52,6 @@ StoryStep step_in(const TomlTable& table, const std::string& where, double begin
   return step;
 }
 
-}  // namespace
-
-std::string told_text(const ToldSteps& told) {
-  toml::array steps;
-  for (const StoryStep& step : told.steps) steps.push_back(table_of(step));
-  std::ostringstream text;
-  text << toml::table{{"title", told.title}, {"step", steps}} << '\n';
-  return text.str();
-}
-
-ToldSteps read_told(const std::string& text, const std::string& where) {
-  const toml::table whole = parse_toml(text, where);
-  const TomlTable table(whole, where, "");
-  ToldSteps told{table.text("title").value_or(""), {}};
-  double begins = 0;
-  for (const TomlTable& step : table.tables("step")) {
-    begins = told.steps.emplace_back(step_in(step, where, begins)).ends;
-  }
-  return told;
-}
-
-ToldSteps told_in(const Session& session, const std::filesystem::path& file) {
-  return read_told(session.info.story, file.string() + ": story");
-}
-
-namespace {
-
 double square(std::span<const double> v) {
   double sum = 0;
   for (const double x : v) sum += x * x;
@@ -109,6 +82,29 @@ StepNumbers numbers(const StoryStep& step, const Session& run) {
 }
 
 }  // namespace
+
+std::string told_text(const ToldSteps& told) {
+  toml::array steps;
+  for (const StoryStep& step : told.steps) steps.push_back(table_of(step));
+  std::ostringstream text;
+  text << toml::table{{"title", told.title}, {"step", steps}} << '\n';
+  return text.str();
+}
+
+ToldSteps read_told(const std::string& text, const std::string& where) {
+  const toml::table whole = parse_toml(text, where);
+  const TomlTable table(whole, where, "");
+  ToldSteps told{table.text("title").value_or(""), {}};
+  double begins = 0;
+  for (const TomlTable& step : table.tables("step")) {
+    begins = told.steps.emplace_back(step_in(step, where, begins)).ends;
+  }
+  return told;
+}
+
+ToldSteps told_in(const Session& session, const std::filesystem::path& file) {
+  return read_told(session.info.story, file.string() + ": story");
+}
 
 StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
                    const std::function<void(double)>& at) {

@@ -1,4 +1,4 @@
-// Runs a story, and measures what happens in each of its steps.
+// Stories run, measured step by step, and kept in sessions.
 #pragma once
 
 #include <atomic>
@@ -10,27 +10,26 @@
 
 namespace limpid {
 
-// What a session keeps of the story that it tells: title and steps, to be shown with it again.
-
+// Title and steps that a session keeps of the story that it tells, to be shown with it again.
 struct ToldSteps {
   std::string title;
   std::vector<StoryStep> steps;  // none: the session tells no story
 };
 
-// As TOML, and back. Errors: FileError "WHERE: ..." as of a story's script, also for steps that are
-// not one after the other.
+// Write steps as TOML, and read them. Errors: FileError "WHERE: ..." as for a story's script, also
+// for steps that are not one after the other.
 std::string told_text(const ToldSteps& told);
 ToldSteps read_told(const std::string& text, const std::string& where);
 
-// Steps that a session tells; `file`: where it was read. Errors: as read_told().
+// Returns the steps that a session tells; `file`: from which it was read. Errors: as read_told().
 ToldSteps told_in(const Session& session, const std::filesystem::path& file);
 
-// What one run did in one step.
+// Figures of one run in one step.
 struct StepNumbers {
   double largest_error = 0;    // |x_E| [rad]
   double rms_human = 0;        // |f1| [N m]
   double largest_contact = 0;  // |f2| [N m]
-  double energy_given = 0;     // the most that E_c rose above where the step found it [J]
+  double energy_given = 0;     // most that E_c rose above its value at the step's beginning [J]
 };
 
 struct StoryRun {
@@ -38,16 +37,17 @@ struct StoryRun {
   RunEnd end;
 };
 
-// The same story gives the same rows, bit for bit, but for how long each tick took. `at` is told
-// the seconds that have been told.
+// Runs a story. The same story gives the same rows, bit for bit, but for the time that each tick
+// took. Tells `at` the seconds that are done.
 StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
                    const std::function<void(double)>& at);
 
-// Of both runs, for each step that was told. `session` has a twin.
+// Measures both runs in each of the steps. `session` has a twin.
 std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
                                                 const Session& session);
 
-// With what it tells, so that it is told again when it is opened. Errors: as SessionWriter.
+// Writes a session with the story that it tells, which is told again when it is opened. Errors: as
+// SessionWriter.
 void write_session(const Session& session, const ToldSteps& told, const std::filesystem::path& out,
                    bool force);
 

@@ -29,48 +29,9 @@ Camera::View view_in(const TomlTable& table, const char* key) {
   return static_cast<Camera::View>(at - kViews.begin());
 }
 
-}  // namespace
-
-const char* view_word(Camera::View view) { return kViews[static_cast<std::size_t>(view)]; }
-
-std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string& where) {
-  const toml::node* node = step.find("camera");
-  if (node == nullptr) return std::nullopt;
-  if (node->is_string()) return StoryCamera{view_in(step, "camera")};
-  if (!node->is_table()) {
-    step.refuse("camera", "a view, or { view = \"side\", target = [x, y, z], size = 0.2 }");
-  }
-  const TomlTable table(*node->as_table(), where, "step.camera");
-  table.allow_only({"view", "target", "size"});
-  const Vec3 target = table.need(table.vector("target", kMetres), "target");
-  const double size = table.need(table.number("size", {0.01, 10, false, "m"}), "size");
-  return StoryCamera{view_in(table, "view"),
-                     Bounds(target - Vec3::Constant(size / 2), target + Vec3::Constant(size / 2))};
-}
-
-std::optional<std::array<std::string, 2>> names_said(const TomlTable& step) {
-  const toml::node* node = step.find("names");
-  if (node == nullptr) return std::nullopt;
-  const toml::array* list = node->as_array();
-  const bool good = list != nullptr && list->size() == 2 && list->get(0)->is_string() &&
-                    list->get(1)->is_string();
-  if (!good) step.refuse("names", "two words, as [\"left\", \"right\"]");
-  return std::array{*list->get(0)->value<std::string>(), *list->get(1)->value<std::string>()};
-}
-
-bool flag_in(const TomlTable& step, const char* key, bool otherwise) {
-  const toml::node* node = step.find(key);
-  if (node == nullptr) return otherwise;
-  const auto said = node->value_exact<bool>();
-  if (!said) step.refuse(key, "true, false");
-  return *said;
-}
-
-namespace {
-
 constexpr std::size_t kBoth = 2;
 
-// A list of "key = value".
+// Returns the settings in a list of "key = value", with their lines.
 std::vector<std::pair<std::string, std::uint32_t>> settings_in(const TomlTable& step,
                                                                const char* key) {
   std::vector<std::pair<std::string, std::uint32_t>> all;
@@ -93,7 +54,7 @@ const ParameterInfo* key_of(const std::string& setting) {
 
 void check(const std::string& setting, std::size_t lane, double time) {
   const ParameterInfo* info = key_of(setting);
-  if (info == nullptr) return;  // apply_setting says it better
+  if (info == nullptr) return;  // apply_setting has a better message
   if (lane != kBoth && !of_controller(*info)) {
     throw ParameterError(fmt::format("{}: is one for both runs; it belongs under set", info->key));
   }
@@ -102,58 +63,13 @@ void check(const std::string& setting, std::size_t lane, double time) {
   }
 }
 
-}  // namespace
-
-void StorySettings::read(const TomlTable& step, const std::string& where, double time) {
-  const std::array<Parameters, 2> before = now_;
-  for (const auto& [key, lane] :
-       {std::pair{"set", kBoth}, {"first", kMainLane}, {"twin", kTwinLane}}) {
-    for (const auto& [setting, line] : settings_in(step, key)) {
-      try {
-        check(setting, lane, time);
-        if (lane != kTwinLane) apply_setting(now_[kMainLane], setting);
-        if (lane != kMainLane) apply_setting(now_[kTwinLane], setting);
-      } catch (const ParameterError& error) {
-        throw FileError(fmt::format("{}:{}: step.{}: {}", where, line, key, error.what()));
-      }
-    }
-  }
-  if (time == 0) {
-    began_ = now_;
-    return;
-  }
-  for (std::size_t lane = 0; lane < now_.size(); ++lane) {
-    for (const ParameterInfo& info : parameter_table()) {
-      const std::string value = parameter_text(now_[lane], info);
-      if (value == parameter_text(before[lane], info)) continue;
-      changes_[lane].push_back({time, fmt::format("{} = {}", info.key, value)});
-    }
-  }
-}
-
-void StorySettings::into(RunPlan& plan) const {
-  const auto rows = [&](std::size_t lane) {
-    std::vector<SettingChange> changes;
-    for (const Change& change : changes_[lane]) {
-      const auto row = std::llround(change.time / began_[kMainLane].tick);
-      changes.push_back({static_cast<std::uint64_t>(row), change.setting});
-    }
-    return changes;
-  };
-  plan.parameters = began_[kMainLane];
-  plan.changes = rows(kMainLane);
-  plan.beside.push_back({began_[kTwinLane], rows(kTwinLane)});
-}
-
-namespace {
-
 constexpr double kFastest = 3;  // of a hand; faster it is a slip of the pen [m/s]
 constexpr Range kSeconds{0, 3600};
 constexpr Range kHandMetres{-10, 10};
 const char* const kAllowed =
     "a file, or points [[seconds after the step's beginning, x, y, z], ...] in metres";
 
-// t, x, y, z
+// Reads a point: t, x, y, z.
 std::array<double, 4> point_in(const TomlTable& step, const toml::node& node) {
   const toml::array* list = node.as_array();
   if (list == nullptr || list->size() != 4) step.refuse("hand", kAllowed);
@@ -170,44 +86,7 @@ std::array<double, 4> point_in(const TomlTable& step, const toml::node& node) {
   return point;
 }
 
-}  // namespace
-
-void StoryHand::read(const TomlTable& step, double begins, double ends) {
-  const toml::node* node = step.find("hand");
-  if (node == nullptr) {
-    if (time_.empty()) step.refuse_missing("hand");
-  } else if (node->is_string()) {
-    read_file(step, *node->value<std::string>(), begins, ends);
-  } else {
-    read_points(step, begins, ends);
-  }
-}
-
-void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
-  const toml::array* list = step.find("hand")->as_array();
-  if (list == nullptr || list->empty()) step.refuse("hand", kAllowed);
-  double before = -1;
-  for (const toml::node& each : *list) {
-    const auto [t, x, y, z] = point_in(step, each);
-    const std::uint32_t line = each.source().begin.line;
-    if (!(t > before && begins + t < ends)) {
-      throw FileError(
-          fmt::format("{}:{}: step.hand: {} s after {} s; allowed: increasing, and before the step "
-                      "ends at {} s",
-                      where_, line, t, std::max(before, 0.0), ends - begins));
-    }
-    if (before < 0 && t > 0) {
-      const Vec3 here = position_.empty() ? Vec3(x, y, z) : position_.back();
-      add(begins, here, line);  // until then it stays
-    }
-    add(begins + t, {x, y, z}, line);
-    before = t;
-  }
-}
-
-namespace {
-
-// Errors: FileError, where it is neither beside the script nor of those that come along.
+// Finds a file beside the script or among the program's own. Errors: FileError if it is in neither.
 std::filesystem::path file_named(const TomlTable& table, const char* key,
                                  const std::filesystem::path& folder, const char* kind,
                                  const std::string& name) {
@@ -218,43 +97,6 @@ std::filesystem::path file_named(const TomlTable& table, const char* key,
   }
   return found;
 }
-
-}  // namespace
-
-void StoryHand::read_file(const TomlTable& step, const std::string& file, double begins,
-                          double ends) {
-  const HandPath path = read_hand(file_named(step, "hand", folder_, "hands", file));
-  const std::uint32_t line = step.find("hand")->source().begin.line;
-  for (std::size_t i = 0; i < path.time.size() && begins + path.time[i] < ends; ++i) {
-    add(begins + path.time[i], path.position[i], line);
-  }
-}
-
-void StoryHand::add(double time, const Vec3& point, std::uint32_t line) {
-  const auto refuse = [&](const std::string& why) {
-    throw FileError(
-        fmt::format("{}:{}: step.hand: the point ({:.4f}, {:.4f}, {:.4f}) m at {:.3f} s {}", where_,
-                    line, point.x(), point.y(), point.z(), time, why));
-  };
-  if (near_.size() == 0) near_ = rest_pose(arm_);
-  auto x = inverse_kinematics(arm_, point, near_);
-  if (!x) x = inverse_kinematics(arm_, point, rest_pose(arm_));
-  if (!x) refuse(fmt::format("is out of reach of the arm {} within its joint limits", arm_.name));
-  near_ = *x;
-  if (!time_.empty()) {
-    const double passed = time - time_.back(), way = (point - position_.back()).norm();
-    if (way > kFastest * passed) {
-      refuse(fmt::format("is {:.3f} m from the one {:.3f} s before; allowed: up to {} m/s", way,
-                         passed, kFastest));
-    }
-  }
-  time_.push_back(time);
-  position_.push_back(point);
-}
-
-HandPath StoryHand::path() const { return hand_through(time_, position_, where_); }
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -269,7 +111,7 @@ std::array<std::string, 2> names_in(const TomlTable& step, const StorySettings& 
 }
 
 std::string short_text(const TomlTable& table, const char* key, std::string text) {
-  // Of UTF-8, bytes that begin one.
+  // Letters are counted by the bytes that begin them in UTF-8.
   const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
   if (std::ranges::count_if(text, begins) > kLongestCaption) {
     table.refuse(key, fmt::format("at most {} letters", kLongestCaption));
@@ -277,7 +119,7 @@ std::string short_text(const TomlTable& table, const char* key, std::string text
   return text;
 }
 
-// The story while it is read.
+// Reader of a story's file.
 class Reader {
  public:
   Reader(const TomlTable& file, const std::string& where, const fs::path& folder)
@@ -349,6 +191,148 @@ class Reader {
 };
 
 }  // namespace
+
+const char* view_word(Camera::View view) { return kViews[static_cast<std::size_t>(view)]; }
+
+std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string& where) {
+  const toml::node* node = step.find("camera");
+  if (node == nullptr) return std::nullopt;
+  if (node->is_string()) return StoryCamera{view_in(step, "camera")};
+  if (!node->is_table()) {
+    step.refuse("camera", "a view, or { view = \"side\", target = [x, y, z], size = 0.2 }");
+  }
+  const TomlTable table(*node->as_table(), where, "step.camera");
+  table.allow_only({"view", "target", "size"});
+  const Vec3 target = table.need(table.vector("target", kMetres), "target");
+  const double size = table.need(table.number("size", {0.01, 10, false, "m"}), "size");
+  return StoryCamera{view_in(table, "view"),
+                     Bounds(target - Vec3::Constant(size / 2), target + Vec3::Constant(size / 2))};
+}
+
+std::optional<std::array<std::string, 2>> names_said(const TomlTable& step) {
+  const toml::node* node = step.find("names");
+  if (node == nullptr) return std::nullopt;
+  const toml::array* list = node->as_array();
+  const bool good = list != nullptr && list->size() == 2 && list->get(0)->is_string() &&
+                    list->get(1)->is_string();
+  if (!good) step.refuse("names", "two words, as [\"left\", \"right\"]");
+  return std::array{*list->get(0)->value<std::string>(), *list->get(1)->value<std::string>()};
+}
+
+bool flag_in(const TomlTable& step, const char* key, bool otherwise) {
+  const toml::node* node = step.find(key);
+  if (node == nullptr) return otherwise;
+  const auto said = node->value_exact<bool>();
+  if (!said) step.refuse(key, "true, false");
+  return *said;
+}
+
+void StorySettings::read(const TomlTable& step, const std::string& where, double time) {
+  const std::array<Parameters, 2> before = now_;
+  for (const auto& [key, lane] :
+       {std::pair{"set", kBoth}, {"first", kMainLane}, {"twin", kTwinLane}}) {
+    for (const auto& [setting, line] : settings_in(step, key)) {
+      try {
+        check(setting, lane, time);
+        if (lane != kTwinLane) apply_setting(now_[kMainLane], setting);
+        if (lane != kMainLane) apply_setting(now_[kTwinLane], setting);
+      } catch (const ParameterError& error) {
+        throw FileError(fmt::format("{}:{}: step.{}: {}", where, line, key, error.what()));
+      }
+    }
+  }
+  if (time == 0) {
+    began_ = now_;
+    return;
+  }
+  for (std::size_t lane = 0; lane < now_.size(); ++lane) {
+    for (const ParameterInfo& info : parameter_table()) {
+      const std::string value = parameter_text(now_[lane], info);
+      if (value == parameter_text(before[lane], info)) continue;
+      changes_[lane].push_back({time, fmt::format("{} = {}", info.key, value)});
+    }
+  }
+}
+
+void StorySettings::into(RunPlan& plan) const {
+  const auto rows = [&](std::size_t lane) {
+    std::vector<SettingChange> changes;
+    for (const Change& change : changes_[lane]) {
+      const auto row = std::llround(change.time / began_[kMainLane].tick);
+      changes.push_back({static_cast<std::uint64_t>(row), change.setting});
+    }
+    return changes;
+  };
+  plan.parameters = began_[kMainLane];
+  plan.changes = rows(kMainLane);
+  plan.beside.push_back({began_[kTwinLane], rows(kTwinLane)});
+}
+
+void StoryHand::read(const TomlTable& step, double begins, double ends) {
+  const toml::node* node = step.find("hand");
+  if (node == nullptr) {
+    if (time_.empty()) step.refuse_missing("hand");
+  } else if (node->is_string()) {
+    read_file(step, *node->value<std::string>(), begins, ends);
+  } else {
+    read_points(step, begins, ends);
+  }
+}
+
+void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
+  const toml::array* list = step.find("hand")->as_array();
+  if (list == nullptr || list->empty()) step.refuse("hand", kAllowed);
+  double before = -1;
+  for (const toml::node& each : *list) {
+    const auto [t, x, y, z] = point_in(step, each);
+    const std::uint32_t line = each.source().begin.line;
+    if (!(t > before && begins + t < ends)) {
+      throw FileError(
+          fmt::format("{}:{}: step.hand: {} s after {} s; allowed: increasing, and before the step "
+                      "ends at {} s",
+                      where_, line, t, std::max(before, 0.0), ends - begins));
+    }
+    if (before < 0 && t > 0) {
+      const Vec3 here = position_.empty() ? Vec3(x, y, z) : position_.back();
+      add(begins, here, line);  // the hand stays until then
+    }
+    add(begins + t, {x, y, z}, line);
+    before = t;
+  }
+}
+
+void StoryHand::read_file(const TomlTable& step, const std::string& file, double begins,
+                          double ends) {
+  const HandPath path = read_hand(file_named(step, "hand", folder_, "hands", file));
+  const std::uint32_t line = step.find("hand")->source().begin.line;
+  for (std::size_t i = 0; i < path.time.size() && begins + path.time[i] < ends; ++i) {
+    add(begins + path.time[i], path.position[i], line);
+  }
+}
+
+void StoryHand::add(double time, const Vec3& point, std::uint32_t line) {
+  const auto refuse = [&](const std::string& why) {
+    throw FileError(
+        fmt::format("{}:{}: step.hand: the point ({:.4f}, {:.4f}, {:.4f}) m at {:.3f} s {}", where_,
+                    line, point.x(), point.y(), point.z(), time, why));
+  };
+  if (near_.size() == 0) near_ = rest_pose(arm_);
+  auto x = inverse_kinematics(arm_, point, near_);
+  if (!x) x = inverse_kinematics(arm_, point, rest_pose(arm_));
+  if (!x) refuse(fmt::format("is out of reach of the arm {} within its joint limits", arm_.name));
+  near_ = *x;
+  if (!time_.empty()) {
+    const double passed = time - time_.back(), way = (point - position_.back()).norm();
+    if (way > kFastest * passed) {
+      refuse(fmt::format("is {:.3f} m from the one {:.3f} s before; allowed: up to {} m/s", way,
+                         passed, kFastest));
+    }
+  }
+  time_.push_back(time);
+  position_.push_back(point);
+}
+
+HandPath StoryHand::path() const { return hand_through(time_, position_, where_); }
 
 const StoryStep& step_at(const std::vector<StoryStep>& steps, double time) {
   const auto next = std::ranges::find_if(

@@ -1,5 +1,5 @@
-// A script that plays itself: where the hand goes, which settings two runs on it have when, where
-// to look from, and a sentence for each step. Its file is TOML; assets/stories/README.md says how
+// Stories: scripts that play themselves. For each step a script gives the hand's path, the settings
+// of two runs on it, the view, and a sentence. Its file is TOML; assets/stories/README.md says how
 // to write one.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace limpid {
 
-// Where to look from: all of `of`, or of the arm and what it can touch.
+// View of all of `of`, or of the arm and what it can touch.
 struct StoryCamera {
   Camera::View view = Camera::View::iso;
   std::optional<Bounds> of = {};  // [m]
@@ -26,7 +26,7 @@ struct StoryCamera {
 struct StoryStep {
   double begins = 0, ends = 0;  // [s]
   std::string caption;          // a sentence
-  std::string mark;             // in the plots where it begins; empty: none
+  std::string mark;             // in the plots at its beginning; empty: none
   std::array<std::string, 2> names;
   bool beside = true;                      // the second run is shown, too
   bool anew = false;                       // the plots begin anew
@@ -35,45 +35,46 @@ struct StoryStep {
 
 struct Story {
   std::string title;
-  std::vector<StoryStep> steps;  // one at least, from 0 on, one after the other
-  RunPlan plan;                  // with a twin, always
+  std::vector<StoryStep> steps;  // at least one, from 0 on, one after the other
+  RunPlan plan;                  // always with a twin
 
   double seconds() const { return steps.back().ends; }
 };
 
-// The step at that time [s]; the last one holds to the end.
+// Returns the step at that time [s]; the last one holds to the end.
 const StoryStep& step_at(const std::vector<StoryStep>& steps, double time);
 
-// Where to look from in that step, whichever step said so.
+// Returns the view in that step: its own, or that of the latest step before that has one.
 StoryCamera camera_in(const std::vector<StoryStep>& steps, const StoryStep& step);
 
-// Errors: FileError "FILE:LINE: KEY: ..." for text that is not TOML, keys that are unknown or
-// missing, values that are not allowed, steps or points of the hand that are not in order, points
-// the arm does not reach.
+// Reads a story. Errors: FileError "FILE:LINE: KEY: ..." for text that is not TOML, keys that are
+// unknown or missing, values that are not allowed, steps or points of the hand that are not in
+// order, points the arm does not reach.
 Story read_story(const std::filesystem::path& file);
-// The same of a text; files that it names lie in `folder`, or among the program's own.
+// Reads the same from a text; files that it names lie in `folder`, or among the program's own.
 Story parse_story(const std::string& text, const std::string& where,
                   const std::filesystem::path& folder);
 
 std::filesystem::path default_story();
 
-// Parts of a step that a script and a session's file spell alike.
+// Spells a view as scripts and sessions' files do.
 const char* view_word(Camera::View view);
 
-// Errors of all: FileError for values that are not allowed. Nothing where the key is missing.
+// Return nothing where the key is missing. Errors of all: FileError for values that are not
+// allowed.
 std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string& where);
 std::optional<std::array<std::string, 2>> names_said(const TomlTable& step);
 bool flag_in(const TomlTable& step, const char* key, bool otherwise);
 
-// The settings of a story's two runs, step by step.
+// Settings of a story's two runs, step by step.
 class StorySettings {
  public:
-  // Takes in what a step that begins at time [s] says under `set` (both runs), `first` and `twin`.
-  // Errors: FileError.
+  // Takes in the settings that a step beginning at `time` [s] has under `set` (both runs), `first`
+  // and `twin`. Errors: FileError.
   void read(const TomlTable& step, const std::string& where, double time);
 
   const Parameters& now(std::size_t lane) const { return now_[lane]; }
-  // What the runs begin with, and what changes at which row.
+  // Puts into the plan the settings at the beginning, and the later changes at their rows.
   void into(RunPlan& plan) const;
 
  private:
@@ -85,15 +86,15 @@ class StorySettings {
   std::array<std::vector<Change>, 2> changes_;
 };
 
-// Where a story's hand goes, step by step.
+// Path of a story's hand, step by step.
 class StoryHand {
  public:
   StoryHand(const ArmDescription& arm, std::string where, std::filesystem::path folder)
       : arm_(arm), where_(std::move(where)), folder_(std::move(folder)) {}
 
   // Takes in the `hand` of a step from `begins` to `ends` [s]: a file, or points with their times
-  // after the step's beginning. Without one the hand stays. Errors: FileError, also for points that
-  // the arm does not reach.
+  // after the step's beginning. Without `hand` it stays in place. Errors: FileError, also for
+  // points that the arm does not reach.
   void read(const TomlTable& step, double begins, double ends);
 
   HandPath path() const;
@@ -108,7 +109,7 @@ class StoryHand {
   std::filesystem::path folder_;
   std::vector<double> time_;
   std::vector<Vec3> position_;
-  Eigen::VectorXd near_;  // a configuration with the tip on the last point [rad]
+  Eigen::VectorXd near_;  // configuration with the tip on the last point [rad]
 };
 
 }  // namespace limpid

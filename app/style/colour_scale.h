@@ -1,11 +1,12 @@
-// The colours of numbers in a map, from the lowest to the highest.
+// Colours of numbers in a map, from the lowest to the highest.
 #pragma once
 
 #include "app/style/palette.h"
 
 namespace limpid {
 
-// Viridis, which grows evenly lighter for every eye; `part` 0 to 1, what is beyond as its end.
+// Returns a colour of Viridis, which grows evenly lighter for every eye; `part` 0 to 1, held at the
+// ends.
 Rgb scale_colour(double part);
 
 }  // namespace limpid

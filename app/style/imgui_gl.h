@@ -5,7 +5,8 @@
 
 namespace limpid {
 
-// ImGui has one current context in all of a program: one of these at a time, on one thread.
+// An ImGui context. ImGui has one current context in all of a program: have one of these at a time,
+// on one thread.
 class ImGuiGl {
  public:
   // Needs a current OpenGL context until the end. Fonts and theme come with set_up().

@@ -20,7 +20,7 @@ struct Key {
   decltype(kKeypadEnter) imgui;
 };
 
-// Those that ImGui does something for.
+// Keys that ImGui does something for.
 constexpr std::array kKeys{
     Key{GLFW_KEY_TAB, ImGuiKey_Tab},
     Key{GLFW_KEY_LEFT, ImGuiKey_LeftArrow},
@@ -45,6 +45,22 @@ constexpr std::array kKeys{
     Key{GLFW_KEY_Y, ImGuiKey_Y},
     Key{GLFW_KEY_Z, ImGuiKey_Z},
 };
+
+#if IMGUI_VERSION_NUM >= 18900
+// Returns ImGui's key, also for the digits that Limpid asks for.
+ImGuiKey imgui_key(int key) {
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) {
+    return static_cast<ImGuiKey>(ImGuiKey_0 + key - GLFW_KEY_0);
+  }
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) {
+    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + key - GLFW_KEY_KP_0);
+  }
+  for (const Key& each : kKeys) {
+    if (each.glfw == key) return each.imgui;
+  }
+  return ImGuiKey_None;
+}
+#endif
 
 }  // namespace
 
@@ -71,28 +87,10 @@ int step_to_menu_beside(int before) {
 
 #if IMGUI_VERSION_NUM >= 18900
 
-namespace {
-
-// Also the digits that Limpid asks for.
-ImGuiKey imgui_key(int key) {
-  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) {
-    return static_cast<ImGuiKey>(ImGuiKey_0 + key - GLFW_KEY_0);
-  }
-  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) {
-    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + key - GLFW_KEY_KP_0);
-  }
-  for (const Key& each : kKeys) {
-    if (each.glfw == key) return each.imgui;
-  }
-  return ImGuiKey_None;
-}
-
-}  // namespace
-
 void begin_imgui_input() {
-  // ImGui would spread what happened over several frames. Limpid has done that already.
+  // ImGui would spread events over several frames, which Limpid has done already.
   ImGui::GetIO().ConfigInputTrickleEventQueue = false;
-  // Nor does Ctrl+Tab go through ImGui's windows.
+  // Ctrl+Tab does not go through ImGui's windows.
   ImGuiContext& ui = *ImGui::GetCurrentContext();
   ui.ConfigNavWindowingKeyNext = ui.ConfigNavWindowingKeyPrev = ImGuiKey_None;
 }

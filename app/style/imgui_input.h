@@ -1,12 +1,12 @@
-// How ImGui is told what keys and mouse do, which its version 1.89 changed: into fields before, as
-// events since. Keys have GLFW's names, and what is told is what the next frame sees.
+// Keys and mouse for ImGui, which takes them as events since version 1.89, as fields before. Keys
+// have GLFW's names. The next frame sees what is told.
 #pragma once
 
 #include <imgui.h>
 
 namespace limpid {
 
-// Once for every context, after ImGui's own part for GLFW where a window has one.
+// Begins input, once for every context, after ImGui's own part for GLFW if a window has one.
 void begin_imgui_input();
 
 void show_key(int key, bool down);
@@ -14,18 +14,18 @@ void show_modifiers(bool control, bool shift, bool alt);
 void show_mouse(const ImVec2& at);
 void show_mouse_button(int button, bool down);
 
-// Whether arrows and the space bar go through what ImGui has open, as through a menu.
+// Lets arrows and the space bar go through what ImGui has open, as through a menu, or not.
 void lead_menus_by_keys(bool lead);
-// Shows which item keys have chosen, in a frame before it is drawn; ImGui hides it now and then.
+// Shows which item keys have chosen, if called in a frame before the item is drawn; ImGui hides it
+// now and then.
 void show_chosen_item();
-// So many menus and popups are open inside of each other.
+// Counts the menus and popups that are open inside of each other.
 int menus_open();
-// After all menus of the bar were drawn, where `before` of them were open inside of each other at
-// first: 1 or -1 where an arrow leaves the one that is open for its neighbour, else 0. ImGui would
-// close it.
+// Tells whether an arrow leaves the open menu for its neighbour: 1 or -1, else 0; ImGui would close
+// it. Comes after all menus of the bar were drawn; `before` is menus_open() before them.
 int step_to_menu_beside(int before);
 
-// ImGui::IsKeyPressed().
+// Does what ImGui::IsKeyPressed() does.
 bool key_pressed(int key, bool repeat = true);
 
 }  // namespace limpid

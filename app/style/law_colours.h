@@ -1,8 +1,9 @@
-// The colour of each coupling law: one table, by the law's number in recordings (core/coupling/
-// laws.h), for buttons, bands, curves, heads of a twin and figures. A new law is a line at its end.
+// Colours of the coupling laws: one table, by the law's number in recordings
+// (core/coupling/laws.h), for buttons, bands, curves, heads of a twin and figures. A new law is a
+// line at its end.
 //
-// Each has a contrast of 3 to 1 at least with what is behind it, none is a thing's colour, and
-// people who see no red, no green or no blue tell them apart; a test computes both.
+// Each has a contrast of 3 to 1 at least with its background, and none is a thing's colour. People
+// who see no red, no green or no blue tell them apart. A test computes both.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@ namespace limpid {
 
 struct LawColour {
   const char* on_light;  // the light theme and paper, "#rrggbb"
-  const char* tint;      // there, of a variant of the law
+  const char* tint;      // on light, for a variant of the law
   const char* on_dark;
 };
 
@@ -24,7 +25,7 @@ inline constexpr std::array<LawColour, 4> kLawColours{{
     {"#7A2E0E", "#C79A85", "#BF6A40"},  // tank
 }};
 
-// "#rrggbb" as a number.
+// Returns "#rrggbb" as a number.
 constexpr std::uint32_t hex_colour(const char* text) {
   std::uint32_t value = 0;
   for (std::size_t i = 1; text[i] != '\0'; ++i) {

@@ -1,4 +1,4 @@
-// One colour per thing, the same in the 3D view, the plots and the panels.
+// Colours of things, the same in the 3D view, the plots and the panels.
 //
 // The inks of things are Okabe and Ito's palette, which colour-blind eyes tell apart too, each in a
 // tint that reads well on its background. Red is kept for broken promises.
@@ -44,14 +44,14 @@ enum class Ink : std::uint8_t {
   energy,
   neutral,
   rerun,    // all of a second run
-  joint_1,  // and so on, of one joint each
+  joint_1,  // and so on, one for each joint
   joint_7 = joint_1 + 6,
   count_
 };
 
 using Inks = std::array<Rgb, static_cast<std::size_t>(Ink::count_)>;
 
-// Those of the things up to the joints, and of the joints as the 3D view has them.
+// Returns the inks of things, up to the joints', and those of the joints as in the 3D view.
 constexpr Inks with_joints(const std::array<Rgb, static_cast<std::size_t>(Ink::joint_1)>& things,
                            Theme theme) {
   Inks inks{};
@@ -73,7 +73,7 @@ struct Palette {
   Rgb axis;  // the zero line and ticks
   Rgb text;
   Rgb muted;
-  Rgb accent;  // what is switched on; no thing's own colour
+  Rgb accent;  // for what is switched on; no thing's own colour
   Rgb broken;
   Inks inks;
   bool dark = false;
@@ -125,22 +125,22 @@ constexpr const Palette& palette(Theme theme) {
 constexpr Rgb shaded(const Palette& palette, Rgb pure, float shade) {
   return shade >= 0 ? mix(pure, palette.text, shade) : mix(pure, palette.panel, -shade);
 }
-// `shade` tells curves of one thing apart, such as its joints: above 0 towards the text's colour,
-// below 0 towards the background; -1 to 1.
+// Returns an ink. `shade` tells curves of one thing apart, such as its joints: above 0 towards the
+// text's colour, below 0 towards the background; -1 to 1.
 constexpr Rgb ink(const Palette& palette, Ink which, float shade = 0) {
   return shaded(palette, palette.inks[static_cast<std::size_t>(which)], shade);
 }
 
-// Of a coupling law by its number; a number that is none has no colour of its own.
+// Returns the ink of a coupling law by its number; a number without a law has no colour of its own.
 constexpr Rgb law_ink(const Palette& palette, int law) {
   const auto i = static_cast<std::size_t>(law);
   if (law < 0 || i >= kLawColours.size()) return palette.muted;
   return rgb(hex_colour(palette.dark ? kLawColours[i].on_dark : kLawColours[i].on_light));
 }
 
-// From 1 to 21, as WCAG 2 has it.
+// Returns the contrast from 1 to 21 by WCAG 2.
 double contrast(Rgb one, Rgb other);
-// Black or white, whichever reads better on a colour: 4.5 to 1 at least.
+// Returns black or white, whichever reads better on a colour: 4.5 to 1 at least.
 Rgb text_on(Rgb back);
 
 }  // namespace limpid

@@ -42,7 +42,7 @@ std::vector<Entry> entries_of(const PictureLegend& legend, bool lines) {
     run(legend.second, kTwinShade);
   }
   if (legend.beside != nullptr) entries.push_back({legend.beside, of(Ink::rerun)});
-  if (legend.cone != nullptr) {  // in colours of the picture
+  if (legend.cone != nullptr) {  // in the picture's colours
     entries.push_back({legend.cone, {legend.slips ? rgb(0xf0e442) : rgb(0xcc79a7)}});
   }
   return entries;
@@ -55,7 +55,7 @@ float width_of(const Entry& entry) {
          small->CalcTextSizeA(em, 1e9f, 0, entry.text.c_str()).x;
 }
 
-// Where each entry goes; returns the place behind the last line.
+// Calls draw() at each entry's place; returns the place behind the last line.
 template <class Draw>
 float lay_out(const std::vector<Entry>& entries, ImVec2 from, ImVec2 to, bool lines,
               const Draw& draw) {
@@ -98,7 +98,7 @@ void draw_picture_legend(ImDrawList& list, ImVec2 from, ImVec2 to, const Picture
 ImVec2 picture_legend_size(ImVec2 from, ImVec2 to) {
   const bool lines = in_lines(from, to);
   const float em = font(Face::small)->FontSize;
-  // The lines that come and go have their room, too.
+  // Lines that come and go have their room, too.
   std::vector<Entry> entries = entries_of({}, lines);
   float widest = 0;
   for (const Entry& entry : entries) widest = std::max(widest, width_of(entry));

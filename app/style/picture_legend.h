@@ -1,4 +1,4 @@
-// What the colours in the picture of arm and scene mean.
+// Legend of the colours in the picture of arm and scene.
 #pragma once
 
 #include <imgui.h>
@@ -8,19 +8,19 @@
 namespace limpid {
 
 struct PictureLegend {
-  const char* beside = nullptr;  // who a second proxy is, if there is one
-  const char* cone = nullptr;    // what the friction cone says, if there is one
-  bool slips = false;            // and its colour
-  // Two runs in one picture, by name; or none.
+  const char* beside = nullptr;  // name of a second proxy, if there is one
+  const char* cone = nullptr;    // meaning of the friction cone, if there is one
+  bool slips = false;            // shows the colour of slipping, too
+  // Names of two runs in one picture; or none.
   std::string first = {}, second = {};
   bool compact = false;  // short words side by side, however much room there is
 };
 
-// In the upper left corner of a picture, line by line, or, where that would hide half of it, in
-// short words side by side.
+// Draws the legend in the upper left corner of a picture, line by line. Where that would hide half
+// of the picture, short words stand side by side.
 void draw_picture_legend(ImDrawList& list, ImVec2 from, ImVec2 to,
                          const PictureLegend& legend = {});
-// What it takes at most, with its margin, from that corner on [px].
+// Returns the most that the legend takes from that corner on, with its margin [px].
 ImVec2 picture_legend_size(ImVec2 from, ImVec2 to);
 
 }  // namespace limpid

@@ -53,7 +53,7 @@ void draw_track(const ImRect& track, const ParameterInfo& info, double value, do
   list.AddCircleFilled({x, middle}, (held ? 5.5f : 4.5f) * scale, colour(main), 24);
 }
 
-// Label and value above the track; the value is shortened first where the panel is narrow.
+// Draws label and value above the track; shortens the value first if the panel is narrow.
 void draw_caption(const ImRect& box, const ParameterInfo& info, double value, bool broken) {
   const Palette& p = current_palette();
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -67,7 +67,7 @@ void draw_caption(const ImRect& box, const ParameterInfo& info, double value, bo
   list.AddText({box.Max.x - width, box.Min.y}, colour(rgb), text.c_str());
 }
 
-// A number with a point or a comma; nothing else around it.
+// Reads a number with a point or a comma, and nothing else around it.
 bool parse_number(std::string text, double& value) {
   std::ranges::replace(text, ',', '.');
   const auto from = text.find_first_not_of(' ');
@@ -81,8 +81,8 @@ bool parse_number(std::string text, double& value) {
   return true;
 }
 
-// Number typed over the slider; true while the input is open. The value changes when typing is
-// done, not with every key: nobody wants to feel the 0 on the way to 0.6.
+// Takes a number typed over the slider; returns true while the input is open. The value changes
+// when typing is done, not with every key: nobody wants to feel the 0 on the way to 0.6.
 bool typing(const ImRect& box, ImGuiID id, const ParameterInfo& info, bool begin, double& value,
             bool& changed) {
   if (!begin && !ImGui::TempInputIsActive(id)) return false;
@@ -97,9 +97,9 @@ bool typing(const ImRect& box, ImGuiID id, const ParameterInfo& info, bool begin
   return true;
 }
 
-// Where on the track the mouse wants the value now. A press alone may be the first half of a double
-// click, which must leave the value alone: it counts once the mouse is dragged, or when no second
-// one has come.
+// Place on the track that the mouse wants. A press alone may be the first half of a double click,
+// which must leave the value alone. It counts once the mouse is dragged, or when no second press
+// has come.
 class TrackMouse {
  public:
   explicit TrackMouse(ImGuiID id)
@@ -107,7 +107,7 @@ class TrackMouse {
 
   void forget() { memory_.SetFloat(since_, kNever); }
 
-  // `held`: the track, by the mouse's left button.
+  // Returns the wanted place; `held`: the mouse's left button holds the track.
   std::optional<double> wanted(const ImRect& track, bool held) {
     const ImGuiIO& io = ImGui::GetIO();
     const auto now = static_cast<float>(ImGui::GetTime());
@@ -124,7 +124,7 @@ class TrackMouse {
     }
     if (since == kNever || now - since < io.MouseDoubleClickTime) return std::nullopt;
     forget();
-    // One that was hidden meanwhile comes back as it was left.
+    // A slider that was hidden meanwhile comes back as it was left.
     return now - since < kForgotten ? std::optional<double>(memory_.GetFloat(place_))
                                     : std::nullopt;
   }
@@ -137,6 +137,73 @@ class TrackMouse {
   ImGuiStorage& memory_;
   ImGuiID place_, since_;
 };
+
+void show_tooltip(const ParameterInfo& info, double usual, const char* broken) {
+  begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  if (broken != nullptr) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
+    ImGui::TextUnformatted(broken);
+    ImGui::PopStyleColor();
+    ImGui::Spacing();
+  }
+  ImGui::TextUnformatted(info.meaning);
+  ImGui::Spacing();
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+  const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
+  if (number) {
+    const std::string range = three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
+    ImGui::Text("%s, %s", info.key, range.c_str());
+    ImGui::Text("%s: %s (right click). Double click to type.", of_paper(info) ? "Paper" : "Usual",
+                with_unit(info, usual).c_str());
+  } else {
+    ImGui::Text("%s. Right click: the usual choice.", info.key);
+  }
+  if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
+  ImGui::PopStyleColor();
+  end_tooltip();
+}
+
+void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered) {
+  const Palette& p = current_palette();
+  const float rounding = ImGui::GetStyle().FrameRounding;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (chosen || hovered) {
+    list.AddRectFilled(box.Min, box.Max, colour(chosen ? p.accent : p.frame_active), rounding);
+  }
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  const ImVec2 at{std::round(box.GetCenter().x - 0.5f * size.x),
+                  std::round(box.GetCenter().y - 0.5f * size.y)};
+  const Rgb rgb = chosen ? p.panel : hovered ? p.text : p.muted;
+  list.PushClipRect(box.Min, box.Max, true);
+  list.AddText(at, colour(rgb), text);
+  list.PopClipRect();
+}
+
+// Draws radio buttons side by side, of which one is pressed in.
+bool choices(const ParameterInfo& info, const Choice<Parameters>& choice, Parameters& p) {
+  ImGui::TextUnformatted(caption(info));
+  const int count = static_cast<int>(choice.words.size());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
+                                            colour(current_palette().frame),
+                                            ImGui::GetStyle().FrameRounding);
+  bool changed = false;
+  for (int i = 0; i < count; ++i) {
+    const char* word = choice.words[static_cast<std::size_t>(i)];
+    const bool chosen = choice.get(p) == i;
+    const float left = std::round(size.x * static_cast<float>(i) / static_cast<float>(count));
+    const float right = std::round(size.x * static_cast<float>(i + 1) / static_cast<float>(count));
+    ImGui::SetCursorScreenPos({at.x + left, at.y});
+    if (ImGui::InvisibleButton(word, {right - left, size.y})) {
+      changed = !chosen;
+      choice.set(p, static_cast<std::uint8_t>(i));
+    }
+    const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
+    draw_choice(box, word, choice.get(p) == i, ImGui::IsItemHovered());
+  }
+  return changed;
+}
 
 }  // namespace
 
@@ -163,7 +230,7 @@ double slider_value(const ParameterInfo& info, double place) {
 double slider_step(const ParameterInfo& info, double value, double usual, int direction) {
   constexpr double kStep = 1.1;
   value = std::clamp(value, slider_low(info), info.slider_maximum);
-  // What rounding left over must not count as a step.
+  // Remains of rounding must not count as a step.
   const auto beyond = [&](double next) { return direction * (next / value - 1) > 1e-9; };
   int place = static_cast<int>(std::lround(std::log(value / usual) / std::log(kStep))) - direction;
   double next = value;
@@ -209,7 +276,7 @@ bool number_slider(const ParameterInfo& info, double& value, double usual, bool 
   bool over = false;
   bool held = false;
   ImGui::ButtonBehavior(box, id, &over, &held);
-  // Only the track is for dragging: a click on the caption leaves the value alone.
+  // Dragging is for the track only: a click on the caption leaves the value alone.
   const bool from_track = held && io.MouseClickedPos[0].y >= track.Min.y;
   if (const auto place = mouse.wanted(track, from_track)) {
     const double wanted = slider_value(info, *place);
@@ -225,77 +292,6 @@ bool number_slider(const ParameterInfo& info, double& value, double usual, bool 
   if (broken) draw_broken_frame(box.Min, box.Max);
   return changed;
 }
-
-namespace {
-
-void show_tooltip(const ParameterInfo& info, double usual, const char* broken) {
-  begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
-  if (broken != nullptr) {
-    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
-    ImGui::TextUnformatted(broken);
-    ImGui::PopStyleColor();
-    ImGui::Spacing();
-  }
-  ImGui::TextUnformatted(info.meaning);
-  ImGui::Spacing();
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
-  if (number) {
-    const std::string range = three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
-    ImGui::Text("%s, %s", info.key, range.c_str());
-    ImGui::Text("%s: %s (right click). Double click to type.", of_paper(info) ? "Paper" : "Usual",
-                with_unit(info, usual).c_str());
-  } else {
-    ImGui::Text("%s. Right click: the usual choice.", info.key);
-  }
-  if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
-  ImGui::PopStyleColor();
-  end_tooltip();
-}
-
-void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered) {
-  const Palette& p = current_palette();
-  const float rounding = ImGui::GetStyle().FrameRounding;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  if (chosen || hovered) {
-    list.AddRectFilled(box.Min, box.Max, colour(chosen ? p.accent : p.frame_active), rounding);
-  }
-  const ImVec2 size = ImGui::CalcTextSize(text);
-  const ImVec2 at{std::round(box.GetCenter().x - 0.5f * size.x),
-                  std::round(box.GetCenter().y - 0.5f * size.y)};
-  const Rgb rgb = chosen ? p.panel : hovered ? p.text : p.muted;
-  list.PushClipRect(box.Min, box.Max, true);
-  list.AddText(at, colour(rgb), text);
-  list.PopClipRect();
-}
-
-// Radio buttons side by side, of which one is pressed in.
-bool choices(const ParameterInfo& info, const Choice<Parameters>& choice, Parameters& p) {
-  ImGui::TextUnformatted(caption(info));
-  const int count = static_cast<int>(choice.words.size());
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
-  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
-                                            colour(current_palette().frame),
-                                            ImGui::GetStyle().FrameRounding);
-  bool changed = false;
-  for (int i = 0; i < count; ++i) {
-    const char* word = choice.words[static_cast<std::size_t>(i)];
-    const bool chosen = choice.get(p) == i;
-    const float left = std::round(size.x * static_cast<float>(i) / static_cast<float>(count));
-    const float right = std::round(size.x * static_cast<float>(i + 1) / static_cast<float>(count));
-    ImGui::SetCursorScreenPos({at.x + left, at.y});
-    if (ImGui::InvisibleButton(word, {right - left, size.y})) {
-      changed = !chosen;
-      choice.set(p, static_cast<std::uint8_t>(i));
-    }
-    const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
-    draw_choice(box, word, choice.get(p) == i, ImGui::IsItemHovered());
-  }
-  return changed;
-}
-
-}  // namespace
 
 bool value_slider(const ParameterInfo& info, double& value, double usual) {
   ImGui::PushID(info.key);

@@ -1,4 +1,4 @@
-// One parameter as a slider, a check box or a row of choices.
+// Widgets of one parameter: a slider, a check box or a row of choices.
 #pragma once
 
 #include <imgui.h>
@@ -7,24 +7,22 @@
 
 namespace limpid {
 
-// A number as a slider: what value_slider() and parameter_slider() are made of.
-
 bool is_int(const ParameterInfo& info);
 
-// Where a value lies on the slider of `info`, 0 to 1, and back; beyond the ends it is held there.
-// A logarithmic slider whose range begins at zero begins at a millionth of its end.
+// Return the place of a value on the slider of `info`, 0 to 1, and back; beyond the ends it is held
+// there. A logarithmic slider whose range begins at zero begins at a millionth of its end.
 double slider_place(const ParameterInfo& info, double value);
 double slider_value(const ParameterInfo& info, double place);
 
-// The next value of a grid of steps of about a tenth, of two digits each, with `usual` on it;
-// `direction`: 1 up, -1 down. Held within the slider's range, as slider_value() is.
+// Returns the next value of a grid of steps of about a tenth, of two digits each, with `usual` on
+// it; `direction`: 1 up, -1 down. Held within the slider's range, as slider_value() is.
 double slider_step(const ParameterInfo& info, double value, double usual, int direction);
 
-// Draws it at ImGui's cursor over the width left, below an ID of its own; returns whether `value`
-// was changed. `usual` is marked and gone back to; `broken`: in red.
+// Draws a number as a slider at ImGui's cursor over the width left, below an ID of its own; returns
+// whether `value` was changed. `usual` is marked, and can be gone back to; `broken`: in red.
 bool number_slider(const ParameterInfo& info, double& value, double usual, bool broken);
 
-// The frame round what is broken.
+// Draws the frame round a widget whose value breaks a promise.
 void draw_broken_frame(ImVec2 from, ImVec2 to);
 
 // Draws the widget for `info` at ImGui's cursor over the width left, and changes `parameters`;
@@ -35,8 +33,8 @@ void draw_broken_frame(ImVec2 from, ImVec2 to);
 bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double usual,
                       const char* broken = nullptr);
 
-// The same for a number that is no parameter, described as if it were one of type double; `usual`
-// is marked and gone back to. Without a tooltip.
+// Draws the same for a number that is no parameter, described like one of type double, without a
+// tooltip. `usual` is marked, and can be gone back to.
 bool value_slider(const ParameterInfo& info, double& value, double usual);
 
 }  // namespace limpid

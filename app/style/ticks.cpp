@@ -75,7 +75,7 @@ std::string tick_text(double value, double step, int exponent) {
 std::string time_text(double seconds, double step, bool clock) {
   const int decimals = decimals_of(step);
   if (!clock) return fixed_text(seconds, decimals) + " s";
-  // Rounded first, so that 59.96 s does not become 0:60.0.
+  // The number is rounded first, so that 59.96 s does not become 0:60.0.
   const double parts = std::pow(10.0, decimals);
   const double whole = std::round(std::abs(seconds) * parts) / parts;
   const auto minutes = static_cast<int>(whole / 60);

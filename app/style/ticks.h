@@ -1,4 +1,4 @@
-// Round numbers along an axis, and how numbers are written.
+// Round numbers along an axis, and numbers as text.
 #pragma once
 
 #include <cstdint>
@@ -15,35 +15,36 @@ struct Ticks {
   double at(std::int64_t number) const { return static_cast<double>(number) * step; }
 };
 
-// Smallest 1, 2 or 5 times a power of ten that divides `span` into at most `at_most` parts.
+// Returns the smallest 1, 2 or 5 times a power of ten that divides `span` into at most `at_most`
+// parts.
 double nice_step(double span, int at_most);
 
-// Ticks inside [low, high], at most `at_most` + 1 of them; low < high.
+// Returns ticks inside [low, high], at most `at_most` + 1 of them; low < high.
 Ticks nice_ticks(double low, double high, int at_most);
 
-// The same for seconds: from ten seconds on, steps that divide minutes and hours.
+// Returns the same for seconds: from ten seconds on, steps that divide minutes and hours.
 Ticks time_ticks(double low, double high, int at_most);
 
-// Digits after the point that tell multiples of `step` apart.
+// Returns the number of digits after the point that tell multiples of `step` apart.
 int decimals_of(double step);
 
-// Power of ten, a multiple of 3, by which the labels of an axis are divided to keep them short; 0
-// where plain numbers are fine.
+// Returns the power of ten, a multiple of 3, by which the labels of an axis are divided to keep
+// them short; 0 if plain numbers are fine.
 int common_exponent(double low, double high);
 
-// "×10⁻⁶"; empty for 0.
+// Returns "×10⁻⁶"; empty for 0.
 std::string exponent_text(int exponent);
 
-// With the typographic minus and never as minus zero.
+// Writes a number with the typographic minus and never as minus zero.
 std::string fixed_text(double value, int decimals);
 
-// Label of a tick divided by 10^exponent.
+// Labels a tick divided by 10^exponent.
 std::string tick_text(double value, double step, int exponent);
 
-// "12.5 s", or "2:05.5" and "1:02:05" when `clock` is set; `step` decides about the digits.
+// Writes "12.5 s", or "2:05.5" and "1:02:05" when `clock` is set; `step` decides about the digits.
 std::string time_text(double seconds, double step, bool clock);
 
-// Three significant digits, plainly where that is short: "0.035", "12.3", "1.20e-05".
+// Writes three significant digits, plainly where that is short: "0.035", "12.3", "1.20e-05".
 std::string three_digits(double value);
 
 }  // namespace limpid

@@ -34,34 +34,6 @@ Place place_of(const ImRect& item, const ImRect& panel, ImVec2 window) {
           {right ? 1.0f : 0.0f, low ? 1.0f : 0.0f}};
 }
 
-}  // namespace
-
-void begin_tooltip(ImVec2 from, ImVec2 to) {
-  const ImGuiWindow* window = ImGui::GetCurrentWindow();
-  const ImRect panel = window->RootWindow != nullptr ? window->RootWindow->Rect() : window->Rect();
-  const ImVec2 size = ImGui::GetMainViewport()->Size;
-  const Place place = place_of(ImRect(from, to), panel, size);
-  ImGui::SetNextWindowPos(place.at, ImGuiCond_Always, place.pivot);
-  ImGui::BeginTooltip();
-  const float room = place.pivot.x > 0 ? place.at.x : size.x - place.at.x;
-  ImGui::PushTextWrapPos(
-      std::min(kWidth * ImGui::GetFontSize(), room - 3 * ImGui::GetStyle().WindowPadding.x));
-}
-
-void end_tooltip() {
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-}
-
-void tooltip(const char* text) {
-  if (!ImGui::IsItemHovered()) return;
-  begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
-  ImGui::TextUnformatted(text);
-  end_tooltip();
-}
-
-namespace {
-
 constexpr std::array kWords{
     std::pair{"coupling.eta", "Impedance scaling \xCE\xB7"},
     std::pair{"observer.alpha", "Observer gain \xCE\xB1"},
@@ -99,6 +71,30 @@ constexpr std::array kWords{
 };
 
 }  // namespace
+
+void begin_tooltip(ImVec2 from, ImVec2 to) {
+  const ImGuiWindow* window = ImGui::GetCurrentWindow();
+  const ImRect panel = window->RootWindow != nullptr ? window->RootWindow->Rect() : window->Rect();
+  const ImVec2 size = ImGui::GetMainViewport()->Size;
+  const Place place = place_of(ImRect(from, to), panel, size);
+  ImGui::SetNextWindowPos(place.at, ImGuiCond_Always, place.pivot);
+  ImGui::BeginTooltip();
+  const float room = place.pivot.x > 0 ? place.at.x : size.x - place.at.x;
+  ImGui::PushTextWrapPos(
+      std::min(kWidth * ImGui::GetFontSize(), room - 3 * ImGui::GetStyle().WindowPadding.x));
+}
+
+void end_tooltip() {
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void tooltip(const char* text) {
+  if (!ImGui::IsItemHovered()) return;
+  begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  ImGui::TextUnformatted(text);
+  end_tooltip();
+}
 
 const char* caption(const ParameterInfo& info) {
   for (const auto& [key, words] : kWords) {

@@ -1,4 +1,4 @@
-// What people read of a parameter: words first, the symbol after.
+// Words for parameters, before their symbols, and tooltips beside what they explain.
 #pragma once
 
 #include <imgui.h>
@@ -9,28 +9,28 @@
 
 namespace limpid {
 
-// Tooltips that stand beside what they explain.
-
-// Of the item between two corners [ImGui's coordinates]: beside the panel that it is in, or above
-// or below it where that reaches across the window. Pairs with end_tooltip().
+// Begins a tooltip of the item between two corners [ImGui's coordinates]: beside its panel, or
+// above or below the item if the panel reaches across the window. Pairs with end_tooltip().
 void begin_tooltip(ImVec2 from, ImVec2 to);
 void end_tooltip();
-// Of ImGui's last item, while the mouse is over it.
+// Shows a tooltip of ImGui's last item, while the mouse is over it.
 void tooltip(const char* text);
 
-// Beside a slider: "Impedance scaling η". What has no words of its own is called by its label.
+// Returns the words beside a slider: "Impedance scaling η". A parameter without words of its own
+// has its label.
 const char* caption(const ParameterInfo& info);
 
-// The number with its unit, as a slider shows it; what is not a number is the arm's own.
+// Writes the number with its unit, as a slider shows it; a value that is not a number means the
+// arm's own.
 std::string with_unit(const ParameterInfo& info, double value);
 
-// Whether its usual value is the one that the paper gives, in section 4.
+// Returns whether the usual value is the one that the paper gives, in section 4.
 bool of_paper(const ParameterInfo& info);
 
-// Where a plot marks that it has changed: "η 0.909".
+// Returns the text of a plot's mark where the parameter has changed: "η 0.909".
 std::string mark_text(const ParameterInfo& info, const Parameters& p);
 
-// An energy with three digits, in J or mJ: "−64.2 mJ", "5.76 J".
+// Writes an energy with three digits, in J or mJ: "−64.2 mJ", "5.76 J".
 std::string energy_text(double joules);
 
 }  // namespace limpid

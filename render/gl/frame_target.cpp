@@ -84,7 +84,7 @@ void FrameTarget::soften(const Area& to, const Area& changed) {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, buffers_->soft, 0);
   }
   glBindFramebuffer(GL_FRAMEBUFFER, buffers_->softened);
-  // Edges are looked for a little around a pixel.
+  // Pixels around a pixel in which edges are looked for.
   constexpr int kAround = 3;
   const auto scaled = [](int at, int size, int from) {
     return static_cast<int>(static_cast<long long>(at) * size / from);
@@ -122,7 +122,7 @@ void FrameTarget::finish(GLuint framebuffer, const Area& to, const Area& changed
   if (samples_ > 1) {
     if (any) resolve(changed);
   } else if (all) {
-    // Every frame is another one while the camera turns: nothing is gained by keeping it.
+    // While the camera turns every frame is new: nothing is gained by keeping it.
     soft_width_ = soft_height_ = 0;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     return show(buffers_->picture, to);

@@ -1,5 +1,5 @@
-// Where a frame is drawn before it is brought to the window: with several samples a pixel, or
-// with one and edges softened afterwards.
+// Target of a frame before it comes to the window: with several samples a pixel, or with one and
+// edges softened afterwards.
 #pragma once
 
 #include <filesystem>
@@ -17,13 +17,13 @@ class FrameTarget {
   struct Area {
     int x, y, width, height;  // pixels, y up
   };
-  // Binds a target of this size, in which the last frame still stands; true: nothing does, as it is
-  // new. Sizes may change every frame.
+  // Binds a target of this size, which may differ in every frame. Returns true if it is new and
+  // empty, false if it still has the last frame.
   bool begin(int width, int height, int samples);
-  // What is drawn from now on changes this alone, which is cleared.
+  // Clears this area; drawing changes it alone from now on.
   void clear(const Area& area);
   // Brings the picture to a rectangle of `framebuffer`, which stays bound; it may be larger. Only
-  // `changed` differs from the frame before; nothing: the same picture again.
+  // `changed` differs from the frame before; an empty area: the same picture again.
   void finish(GLuint framebuffer, const Area& to, const Area& changed);
 
  private:
@@ -31,7 +31,7 @@ class FrameTarget {
     GlFramebuffer drawn, resolved;
     GlRenderbuffer color, depth;
     GlTexture picture;
-    // With soft edges, as large as shown; all of the picture but what changed is kept.
+    // Picture with softened edges, as large as shown; only what changed is softened again.
     GlFramebuffer softened;
     GlTexture soft;
   };
@@ -44,7 +44,7 @@ class FrameTarget {
   GlVertexArray no_vertices_;
   std::optional<Buffers> buffers_;
   int width_ = 0, height_ = 0, samples_ = 0;
-  int soft_width_ = 0, soft_height_ = 0;  // of what is softened already
+  int soft_width_ = 0, soft_height_ = 0;  // size of the softened picture
 };
 
 }  // namespace limpid

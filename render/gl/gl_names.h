@@ -1,4 +1,4 @@
-// OpenGL objects that are deleted when they go out of scope.
+// OpenGL objects that are deleted when they go out of scope; Eigen's types as GLM's.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -9,8 +9,6 @@
 #include "core/math/sizes.h"
 
 namespace limpid {
-
-// The one place where Eigen's types become GLM's.
 
 inline glm::vec3 to_glm(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 

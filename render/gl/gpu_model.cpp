@@ -16,7 +16,7 @@ struct PackedVertex {
   std::array<float, 2> uv;
   std::array<std::int16_t, 4> normal;
   std::array<std::uint8_t, 4> color;    // square roots of linear light, opacity
-  std::array<std::uint8_t, 4> surface;  // metallic, roughness, all of it: drawn flat
+  std::array<std::uint8_t, 4> surface;  // metallic, roughness, and 255 for flat triangles
 };
 
 std::uint8_t byte(float unit) {
@@ -59,7 +59,7 @@ std::vector<GpuModel::Piece> cut(const Model& model, const std::vector<std::uint
   return pieces;
 }
 
-// A field of PackedVertex as the shaders' input.
+// Makes a field of PackedVertex an input of the shaders.
 void attribute(GLuint location, GLint size, GLenum type, GLboolean normalized, std::size_t offset) {
   glVertexAttribPointer(location, size, type, normalized, sizeof(PackedVertex),
                         reinterpret_cast<const void*>(offset));

@@ -36,7 +36,7 @@ class GpuModel {
   std::vector<GlTexture> textures_;
 };
 
-// A 1 x 1 or larger texture with mipmaps.
+// Makes a texture with mipmaps, at least 1 x 1 pixels.
 GlTexture upload(const Image& image);
 
 }  // namespace limpid

@@ -14,10 +14,10 @@ class LineBatch {
   LineBatch();
 
   void clear() { lines_.clear(); }
-  // Colours are sRGB with alpha; width in pixels.
+  // Adds a line. Colours are sRGB with alpha; width in pixels.
   void add(const glm::vec3& from, const glm::vec3& to, float width, const glm::vec4& color_from,
            const glm::vec4& color_to, Ends ends = Ends::round);
-  // With the "line" program in use.
+  // Needs the "line" program in use.
   void draw();
 
   struct Line {

@@ -47,6 +47,33 @@ struct Frame {
   }
 };
 
+void put_big_endian(std::vector<unsigned char>& into, std::uint32_t value) {
+  for (const int shift : {24, 16, 8, 0}) into.push_back(static_cast<unsigned char>(value >> shift));
+}
+
+// Checksum as in the PNG specification, annex D.
+std::uint32_t crc(std::span<const unsigned char> bytes) {
+  std::uint32_t sum = 0xffffffffu;
+  for (const unsigned char byte : bytes) {
+    sum ^= byte;
+    for (int i = 0; i < 8; ++i) sum = (sum & 1) != 0 ? 0xedb88320u ^ (sum >> 1) : sum >> 1;
+  }
+  return ~sum;
+}
+
+// The chunk pHYs: pixels per metre, as many across as down.
+std::vector<unsigned char> density_chunk(std::uint32_t per_metre) {
+  std::vector<unsigned char> body{'p', 'H', 'Y', 's'};
+  put_big_endian(body, per_metre);
+  put_big_endian(body, per_metre);
+  body.push_back(1);
+  std::vector<unsigned char> chunk;
+  put_big_endian(chunk, static_cast<std::uint32_t>(body.size() - 4));
+  chunk.insert(chunk.end(), body.begin(), body.end());
+  put_big_endian(chunk, crc(body));
+  return chunk;
+}
+
 }  // namespace
 
 struct OffscreenContext::Impl {
@@ -136,37 +163,6 @@ std::vector<unsigned char> drawn_rgba(int width, int height, const std::function
   return rgba;
 }
 
-namespace {
-
-void put_big_endian(std::vector<unsigned char>& into, std::uint32_t value) {
-  for (const int shift : {24, 16, 8, 0}) into.push_back(static_cast<unsigned char>(value >> shift));
-}
-
-// As PNG has it, annex D.
-std::uint32_t crc(std::span<const unsigned char> bytes) {
-  std::uint32_t sum = 0xffffffffu;
-  for (const unsigned char byte : bytes) {
-    sum ^= byte;
-    for (int i = 0; i < 8; ++i) sum = (sum & 1) != 0 ? 0xedb88320u ^ (sum >> 1) : sum >> 1;
-  }
-  return ~sum;
-}
-
-// The chunk pHYs: pixels per metre, as many across as down.
-std::vector<unsigned char> density_chunk(std::uint32_t per_metre) {
-  std::vector<unsigned char> body{'p', 'H', 'Y', 's'};
-  put_big_endian(body, per_metre);
-  put_big_endian(body, per_metre);
-  body.push_back(1);
-  std::vector<unsigned char> chunk;
-  put_big_endian(chunk, static_cast<std::uint32_t>(body.size() - 4));
-  chunk.insert(chunk.end(), body.begin(), body.end());
-  put_big_endian(chunk, crc(body));
-  return chunk;
-}
-
-}  // namespace
-
 std::vector<unsigned char> png_of(int width, int height, const std::vector<unsigned char>& rgba,
                                   unsigned per_metre) {
   if (width < 1 || height < 1 ||
@@ -189,7 +185,7 @@ std::vector<unsigned char> png_of(int width, int height, const std::vector<unsig
 
 void write_png(const std::filesystem::path& path, int width, int height,
                const std::vector<unsigned char>& rgba) {
-  // By way of memory: stb's own writing to files does not notice a full disk.
+  // The picture goes through memory: stb's own writing to files does not notice a full disk.
   const std::vector<unsigned char> png = png_of(width, height, rgba);
   errno = 0;
   std::FILE* file = std::fopen(path.string().c_str(), "wb");

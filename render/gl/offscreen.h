@@ -23,27 +23,27 @@ class OffscreenContext {
   std::unique_ptr<Impl> impl_;
 };
 
-// Who draws for the current context, as OpenGL names it.
+// Returns the name that OpenGL gives the current context's renderer.
 std::string renderer_name();
 
-// The bound framebuffer in one colour, 0xrrggbb.
+// Fills the bound framebuffer with one colour, 0xrrggbb.
 void fill(unsigned colour);
 
-// The rectangle (0, 0, width, height) of the bound framebuffer, four bytes a pixel, top row
+// Reads the rectangle (0, 0, width, height) of the bound framebuffer: four bytes a pixel, top row
 // first, opaque.
 std::vector<unsigned char> read_rgba(int width, int height);
 
-// The same of what `draw` draws into a framebuffer of its own, of the current context, whose
+// Returns such pixels of what `draw` draws into a framebuffer of its own. The current context's
 // framebuffer and viewport stay as they were. Throws std::runtime_error if OpenGL refuses the size.
 std::vector<unsigned char> drawn_rgba(int width, int height, const std::function<void()>& draw);
 
-// A PNG file of such pixels; `per_metre` of them, for who prints it, if that is not 0. Errors:
-// std::invalid_argument when the sizes do not agree, std::runtime_error.
+// Encodes such pixels as a PNG file, with `per_metre` pixels a metre for printing unless that is 0.
+// Errors: std::invalid_argument when the sizes do not agree, std::runtime_error.
 std::vector<unsigned char> png_of(int width, int height, const std::vector<unsigned char>& rgba,
                                   unsigned per_metre = 0);
 
-// Throws std::runtime_error naming the file when it cannot be written, std::invalid_argument when
-// the sizes do not agree.
+// Writes such pixels to a PNG file. Throws std::runtime_error naming the file when it cannot be
+// written, std::invalid_argument when the sizes do not agree.
 void write_png(const std::filesystem::path& path, int width, int height,
                const std::vector<unsigned char>& rgba);
 

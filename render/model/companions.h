@@ -1,4 +1,4 @@
-// The files that a model refers to: in its folder and below, of a limited size together.
+// The files that a model refers to: in its folder and below, limited in size together.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,11 @@ namespace limpid {
 
 inline constexpr std::size_t kLargestModelFiles = std::size_t{512} << 20;  // [bytes] together
 
-// Throws std::runtime_error naming the file if it is no file, larger than `most` or unreadable.
+// Reads a file. Throws std::runtime_error naming it if it is no file, larger than `most` or
+// unreadable.
 std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::size_t most);
 
-// Words of a file made fit for a message: no line ends, no control characters, not too long.
+// Makes words of a file fit for a message: no line ends, no control characters, not too long.
 std::string one_line(std::string text);
 
 // Throws std::runtime_error: the name, and why in one line.
@@ -21,14 +22,14 @@ std::string one_line(std::string text);
 
 class Companions {
  public:
-  // `name` stands for the model in messages and outlives this; its own `size` counts, too. With an
-  // empty `folder` there are none.
+  // `name` stands for the model in messages and must outlive this; the model's own `size` counts,
+  // too. An empty `folder` has no files.
   Companions(const std::string& name, std::filesystem::path folder, std::size_t size)
       : name_(name), folder_(std::move(folder)), left_(kLargestModelFiles - size) {}
 
   bool none() const { return folder_.empty(); }
-  // Nothing for what does not exist. Throws std::runtime_error naming the model for what lies
-  // elsewhere, cannot be read, or makes all of them too large.
+  // Returns nothing for a file that does not exist. Throws std::runtime_error naming the model for
+  // one that lies elsewhere, cannot be read, or makes all of them too large.
   std::optional<std::vector<unsigned char>> read(const std::string& uri);
 
  private:

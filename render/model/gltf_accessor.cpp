@@ -30,13 +30,43 @@ T read(const unsigned char* p) {
   return value;
 }
 
-// Integers stand for themselves, or normalised for -1 to 1.
+// Reads an integer as itself, or normalised to -1 to 1.
 template <class T>
 float number(const unsigned char* p, bool normalized) {
   const auto value = static_cast<float>(read<T>(p));
   if (!normalized) return value;
   return std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
 }
+
+// Reads a number, neither below zero nor beyond what a file can hold.
+std::size_t number(const tinygltf::Value& object, const char* key) {
+  const auto& value = object.Get(key);
+  const double read = value.IsNumber() ? value.GetNumberAsDouble() : 0;
+  return read >= 0 && read < 4e9 ? static_cast<std::size_t>(read) : 0;
+}
+
+std::string word(const tinygltf::Value& object, const char* key) {
+  const auto& value = object.Get(key);
+  return value.IsString() ? value.Get<std::string>() : "";
+}
+
+// Undoes a filter that made the numbers compress better; false: it is unknown, or does not fit.
+bool undo_filter(const std::string& filter, std::vector<unsigned char>& out, std::size_t count,
+                 std::size_t stride) {
+  if (filter.empty() || filter == "NONE") return true;
+  if (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) {
+    meshopt_decodeFilterOct(out.data(), count, stride);
+  } else if (filter == "QUATERNION" && stride == 8) {
+    meshopt_decodeFilterQuat(out.data(), count, stride);
+  } else if (filter == "EXPONENTIAL" && stride % 4 == 0) {
+    meshopt_decodeFilterExp(out.data(), count, stride);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -118,12 +148,12 @@ Elements GltfAccessor::elements(int index) {
     if (!inside) refuse("accessor " + std::to_string(index) + " reaches outside of its buffer");
     e.first = bytes.data() + accessor.byteOffset;
   }
-  // Where there is no data there are zeros, of which a sparse accessor lists the exceptions.
+  // Elements without data are zeros; a sparse accessor lists the exceptions.
   if (accessor.sparse.isSparse || e.first == nullptr) fill_in(accessor, e);
   return e;
 }
 
-// A sparse accessor is a list of exceptions from another one, or from zero.
+// Fills in a sparse accessor: a list of exceptions from another one, or from zero.
 void GltfAccessor::fill_in(const tinygltf::Accessor& accessor, Elements& e) {
   const std::size_t packed = bytes_of(e.component_type) * static_cast<std::size_t>(e.components);
   take(e.count * packed);
@@ -136,7 +166,7 @@ void GltfAccessor::fill_in(const tinygltf::Accessor& accessor, Elements& e) {
   e.own = all;
   const auto& sparse = accessor.sparse;
   if (!sparse.isSparse) return;
-  // tinygltf has had numbers of either sign for offsets: a negative one is beyond all buffers.
+  // Some versions of tinygltf have signed offsets: a negative one is beyond all buffers.
   const auto list = [&](int buffer_view, auto offset, std::size_t size) {
     const auto bytes = view(buffer_view);
     const auto from = static_cast<std::size_t>(offset);
@@ -199,38 +229,6 @@ std::uint32_t GltfAccessor::index(const Elements& e, std::size_t i) const {
   }
 }
 
-namespace {
-
-// Not below zero, nor beyond what a file can hold.
-std::size_t number(const tinygltf::Value& object, const char* key) {
-  const auto& value = object.Get(key);
-  const double read = value.IsNumber() ? value.GetNumberAsDouble() : 0;
-  return read >= 0 && read < 4e9 ? static_cast<std::size_t>(read) : 0;
-}
-
-std::string word(const tinygltf::Value& object, const char* key) {
-  const auto& value = object.Get(key);
-  return value.IsString() ? value.Get<std::string>() : "";
-}
-
-// What stands in for numbers that compress better; false: unknown, or it does not fit.
-bool undo_filter(const std::string& filter, std::vector<unsigned char>& out, std::size_t count,
-                 std::size_t stride) {
-  if (filter.empty() || filter == "NONE") return true;
-  if (filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) {
-    meshopt_decodeFilterOct(out.data(), count, stride);
-  } else if (filter == "QUATERNION" && stride == 8) {
-    meshopt_decodeFilterQuat(out.data(), count, stride);
-  } else if (filter == "EXPONENTIAL" && stride % 4 == 0) {
-    meshopt_decodeFilterExp(out.data(), count, stride);
-  } else {
-    return false;
-  }
-  return true;
-}
-
-}  // namespace
-
 const tinygltf::Value* meshopt_extension(const tinygltf::BufferView& view) {
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     const auto found = view.extensions.find(name);
@@ -264,12 +262,6 @@ std::vector<unsigned char> decode_meshopt(const tinygltf::Value& extension,
   return out;
 }
 
-namespace {
-
-constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-
-}  // namespace
-
 Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitive,
                          std::size_t vertices, std::size_t most) {
   Elements e;
@@ -297,7 +289,7 @@ Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitiv
   Triangles out{{}, made};
   out.corners.reserve(3 * made);
   for (std::size_t i = 0; i < made; ++i) {
-    // In a strip every second triangle is turned over.
+    // Every second triangle of a strip is turned over.
     const std::size_t odd = i % 2;
     const std::uint32_t a = vertex(list ? 3 * i : fan ? 0 : i);
     const std::uint32_t b = vertex(list ? 3 * i + 1 : fan ? i + 1 : i + 1 + odd);

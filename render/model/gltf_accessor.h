@@ -16,21 +16,22 @@
 
 namespace limpid {
 
-// What a typed element of an accessor looks like in memory, after all of it was checked.
+// Typed elements of an accessor in memory, after all checks.
 struct Elements {
   const unsigned char* first = nullptr;
   std::size_t count = 0, stride = 0;
   int components = 0, component_type = 0;
   bool normalized = false;
-  std::shared_ptr<const std::vector<unsigned char>> own;  // of what no buffer holds as it is
+  std::shared_ptr<const std::vector<unsigned char>>
+      own;  // keeps elements that no buffer holds as they are
 };
 
 class GltfAccessor {
  public:
-  // `name` stands for the file in messages; both outlive this.
+  // Keeps references to both; they must outlive this. `name` stands for the file in messages.
   GltfAccessor(const tinygltf::Model& gltf, const std::string& name) : gltf_(gltf), name_(name) {}
 
-  // All of these throw std::runtime_error naming the file for what does not exist or fit.
+  // Functions below throw std::runtime_error naming the file for what does not exist or fit.
   Elements elements(int accessor);
   std::span<const unsigned char> view(int buffer_view);
   Eigen::Vector4f element(const Elements& e, std::size_t i) const;  // missing parts: 0 0 0 1
@@ -42,7 +43,7 @@ class GltfAccessor {
     int components = 0, component_type = 0;
   };
   Kind kind(int accessor) const;
-  // From now on the accessor has these elements, packed; of the file's component type if it is 0.
+  // Replaces the elements of the accessor, packed; component_type 0 is the file's own.
   void replace(int accessor, std::vector<unsigned char> bytes, int component_type = 0);
 
   template <class List>
@@ -58,7 +59,7 @@ class GltfAccessor {
   std::span<const unsigned char> part(int buffer, std::size_t offset, std::size_t length,
                                       int view) const;
   void fill_in(const tinygltf::Accessor& accessor, Elements& e);
-  void take(std::size_t bytes);  // of memory for what no buffer holds as it is
+  void take(std::size_t bytes);  // counts memory for what no buffer holds as it is
 
   const tinygltf::Model& gltf_;
   const std::string& name_;
@@ -67,37 +68,37 @@ class GltfAccessor {
   std::map<int, Elements> replaced_;                 // accessors
 };
 
-// Buffer views compressed with EXT_meshopt_compression.
-
-// What a compressed view says about itself; null: it is not compressed.
+// Returns what a compressed view says about itself (EXT_ or KHR_meshopt_compression); null: it is
+// not compressed.
 const tinygltf::Value* meshopt_extension(const tinygltf::BufferView& view);
 
-// Where the compressed bytes lie.
+// Place of the compressed bytes.
 struct MeshoptSource {
   int buffer = 0;
   std::size_t offset = 0, length = 0;
 };
 MeshoptSource meshopt_source(const tinygltf::Value& extension);
 
-// The bytes of the view, or nothing for what cannot be decoded or has more than `most` bytes.
+// Decompresses the bytes of a view; empty for what cannot be decoded or has more than `most` bytes.
 std::vector<unsigned char> decode_meshopt(const tinygltf::Value& extension,
                                           std::span<const unsigned char> bytes, std::size_t most);
 
-// From a glTF primitive's indices to plain triangles over the vertices it uses.
+// A glTF primitive as plain triangles over the vertices it uses.
 struct Triangles {
   std::vector<std::uint32_t> corners;  // three a triangle, strips and fans taken apart
   std::size_t looked_at = 0;
 };
 
-// Triangles that name a vertex twice are left out. Throws std::runtime_error naming the file when
+// Leaves out triangles that name a vertex twice. Throws std::runtime_error naming the file when
 // there are more than `most` to look at.
 Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitive,
                          std::size_t vertices, std::size_t most);
 
-// Several primitives may share one long list of vertices, of which each uses a few.
+// Vertices that one primitive uses, where several share one long list.
 class VertexUse {
  public:
-  // Which of `count` vertices are used, in order of use; `corners` become places in that list.
+  // Lists which of `count` vertices are used, in order of use; `corners` become places in that
+  // list.
   const std::vector<std::uint32_t>& renumber(std::vector<std::uint32_t>& corners,
                                              std::size_t count);
 
@@ -105,23 +106,22 @@ class VertexUse {
   std::vector<std::uint32_t> place_, used_;
 };
 
-// Where vertices are while nothing moves: morphed by the default weights, and held by the joints of
-// a skin as the nodes stand.
-
-// Nodes' transforms in the scene, by their numbers.
+// Transforms of nodes in the scene, by their numbers.
 using NodePoses = std::vector<Eigen::Affine3d>;
 
+// Vertices at rest: morphed by the default weights, and held by the joints of a skin as the nodes
+// stand. Errors: std::runtime_error naming the file.
 class GltfRest {
  public:
   GltfRest(const tinygltf::Model& gltf, GltfAccessor& file, const NodePoses& nodes)
       : gltf_(gltf), file_(file), nodes_(nodes) {}
 
-  // Of the `used` vertices of a primitive: what is added to one attribute (POSITION, NORMAL).
-  // Empty: nothing. All of these throw std::runtime_error naming the file.
+  // Returns what morphing adds to one attribute (POSITION, NORMAL) of each vertex in `used`; empty:
+  // nothing.
   std::vector<Eigen::Vector3f> shifts(const tinygltf::Node& node,
                                       const tinygltf::Primitive& primitive, const char* attribute,
                                       const std::vector<std::uint32_t>& used, std::size_t count);
-  // ... and the transform of each into the scene. Empty: that of the node.
+  // Returns the transform of each vertex in `used` into the scene; empty: that of the node.
   std::vector<Eigen::Affine3f> moves(const tinygltf::Node& node,
                                      const tinygltf::Primitive& primitive,
                                      const std::vector<std::uint32_t>& used, std::size_t count);
@@ -134,7 +134,7 @@ class GltfRest {
   const NodePoses& nodes_;
 };
 
-// The accessor of an attribute, -1 for none.
+// Returns the accessor of an attribute, -1 for none.
 int attribute_of(const std::map<std::string, int>& attributes, const std::string& key);
 
 }  // namespace limpid

@@ -15,12 +15,12 @@ std::unique_ptr<draco::Mesh> decode(std::span<const unsigned char> bytes) {
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     return decoded.ok() ? std::move(decoded).value() : nullptr;
-  } catch (const std::exception&) {  // of memory for what it says that it has
+  } catch (const std::exception&) {  // memory for what it says that it has
     return nullptr;
   }
 }
 
-// The numbers of one attribute, as the accessor that they stand for has them.
+// Returns the numbers of one attribute, as the accessor that they stand for has them.
 template <class T>
 std::vector<unsigned char> values(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
                                   int components) {

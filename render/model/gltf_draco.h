@@ -7,9 +7,9 @@ namespace limpid {
 
 inline constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 
-// Puts what is compressed in the place of the primitive's accessors. Does nothing for one that is
-// not compressed. Throws std::runtime_error naming the file for what cannot be read or has more
-// than `most` triangles.
+// Replaces the primitive's accessors by its decompressed data; does nothing for one that is not
+// compressed. Throws std::runtime_error naming the file for what cannot be read or has more than
+// `most` triangles.
 void decode_draco(const tinygltf::Primitive& primitive, GltfAccessor& file, std::size_t most);
 
 }  // namespace limpid

@@ -26,37 +26,11 @@ void put(Bytes& out, std::size_t number) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-}  // namespace
-
-void fill_up(Bytes& bytes, unsigned char filler) {
-  bytes.resize((bytes.size() + 3) / 4 * 4, filler);
-}
-
-Bytes glb_bytes(const std::string& json, const Bytes& data) {
-  const std::size_t text = (json.size() + 3) / 4 * 4, binary = (data.size() + 3) / 4 * 4;
-  Bytes out;
-  out.reserve(28 + text + binary);
-  put(out, kGlbMagic);
-  put(out, 2);
-  put(out, 12 + 8 + text + 8 + binary);
-  put(out, text);
-  put(out, kJson);
-  out.insert(out.end(), json.begin(), json.end());
-  fill_up(out, ' ');
-  put(out, binary);
-  put(out, kBinary);
-  out.insert(out.end(), data.begin(), data.end());
-  fill_up(out, 0);
-  return out;
-}
-
-namespace {
-
 constexpr int kDeepest = 64;
 constexpr std::size_t kMostValues = 8'000'000;
 constexpr std::size_t kMostObjects = 1'000'000;  // each may become a struct of two kilobytes
 
-// Told of each value in turn by the parser; false ends the reading.
+// Checks values as the parser reaches them; returning false ends the reading.
 class Guard {
  public:
   explicit Guard(const std::string& name) : name_(name) {}
@@ -133,16 +107,6 @@ class Guard {
   bool in_asset_ = false, at_version_ = false, at_list_ = false;
 };
 
-}  // namespace
-
-std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name) {
-  Guard guard(name);
-  nlohmann::json::sax_parse(text.begin(), text.end(), &guard);
-  return guard.embedded();
-}
-
-namespace {
-
 using nlohmann::json;
 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
@@ -153,8 +117,8 @@ std::uint32_t word_at(std::span<const unsigned char> bytes, std::size_t at) {
   return word;
 }
 
-// The JSON text in a binary file. tinygltf trusts the lengths a file states in places, so all of
-// them are compared with the file first.
+// Returns the JSON text in a binary file. Compares all lengths with the file first, as tinygltf
+// trusts them in places.
 std::span<const unsigned char> json_of_glb(std::span<const unsigned char> bytes,
                                            const std::string& name) {
   if (bytes.size() < 20) refuse(name, "is too short for a glTF file");
@@ -177,7 +141,7 @@ std::span<const unsigned char> json_of_glb(std::span<const unsigned char> bytes,
   return bytes.subspan(20, word_at(bytes, 12));
 }
 
-// A text file's JSON without a byte order mark and blanks in front; empty: it is no text.
+// Returns a text file's JSON without a byte order mark and blanks in front; empty: it is no text.
 std::span<const unsigned char> json_of_text(std::span<const unsigned char> bytes) {
   if (bytes.size() >= 3 && bytes[0] == 0xEF && bytes[1] == 0xBB && bytes[2] == 0xBF)
     bytes = bytes.subspan(3);
@@ -186,7 +150,7 @@ std::span<const unsigned char> json_of_text(std::span<const unsigned char> bytes
   return !bytes.empty() && bytes[0] == '{' ? bytes : bytes.subspan(bytes.size());
 }
 
-// The bytes of a data URI of a kind that tinygltf does not know, as WebP.
+// Decodes a data URI of a kind that tinygltf does not know, as WebP.
 std::optional<std::vector<unsigned char>> embedded(const std::string& uri) {
   constexpr std::string_view kMark = ";base64,";
   const auto at = uri.find(kMark);
@@ -217,7 +181,7 @@ bool read_other(std::vector<unsigned char>* out, std::string* error, const std::
   return false;
 }
 
-// In the place of the file system. A template, for not every tinygltf asks for a file's size.
+// Replaces the file system. A template, for not every tinygltf asks for a file's size.
 template <class Callbacks>
 Callbacks only_companions(Companions& around) {
   Callbacks out{};
@@ -228,7 +192,7 @@ Callbacks only_companions(Companions& around) {
                           void*) { return false; };
   out.user_data = &around;
   if constexpr (requires { out.GetFileSizeInBytes; }) {
-    // Only asked of files that are read whole afterwards, which has its own limits.
+    // tinygltf asks only for files that it reads whole afterwards, and reading has its own limits.
     out.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string&, void*) {
       *size = 1;
       return true;
@@ -237,7 +201,7 @@ Callbacks only_companions(Companions& around) {
   return out;
 }
 
-// Pictures stay encoded: which of them are needed is not known yet. Those in buffer views stay
+// Keeps pictures encoded: which of them are needed is not known yet. Those in buffer views stay
 // there; tinygltf has not compared the views with their buffers, so their bytes are not touched.
 bool keep_encoded(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void* user) {
@@ -255,7 +219,8 @@ bool contains(std::span<const unsigned char> text, std::string_view word) {
   return std::search(text.begin(), text.end(), word.begin(), word.end()) != text.end();
 }
 
-// Whether anything lies in the buffer: views that are compressed name another one for that.
+// Returns whether a view has its bytes in the buffer. Compressed views count by the buffer of their
+// extension.
 bool is_used(json& gltf, std::size_t buffer) {
   const auto names = [&](const json& object) {
     const auto found = object.find("buffer");
@@ -274,8 +239,8 @@ bool is_used(json& gltf, std::size_t buffer) {
   return false;
 }
 
-// Buffers that exist in name only, for readers without meshopt: each would be taken for the binary
-// chunk. They become a byte. Returns how many others have no uri.
+// Makes buffers that exist in name only, for readers without meshopt, a byte each: tinygltf would
+// take each for the binary chunk. Returns how many others have no uri.
 std::size_t shrink_fallbacks(json& gltf) {
   std::size_t embedded = 0;
   json& buffers = gltf_list(gltf, "buffers");
@@ -292,7 +257,7 @@ std::size_t shrink_fallbacks(json& gltf) {
   return embedded;
 }
 
-// tinygltf wants indices to have a buffer view; those in Draco data have none.
+// Gives indices in Draco data a buffer view: tinygltf wants one.
 void give_views(json& gltf) {
   json& accessors = gltf_list(gltf, "accessors");
   for (json& mesh : gltf_list(gltf, "meshes")) {
@@ -310,8 +275,8 @@ void give_views(json& gltf) {
   }
 }
 
-// A percent sign that begins no encoded character stands for itself, as in names that were never
-// encoded. "" of a name that needs no change.
+// Encodes percent signs that begin no encoded character, as in names that were never encoded.
+// Returns "" for a name that needs no change.
 std::string with_percents_encoded(const std::string& uri) {
   const auto hex = [&](std::size_t at) {
     return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])) != 0;
@@ -337,7 +302,7 @@ void encode_percents(json& gltf) {
   }
 }
 
-// The file with what tinygltf would not understand in other words.
+// Rewrites what tinygltf would not understand.
 std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
                                     std::span<const unsigned char> text, bool binary,
                                     const std::string& name) {
@@ -356,6 +321,34 @@ std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
 }
 
 }  // namespace
+
+void fill_up(Bytes& bytes, unsigned char filler) {
+  bytes.resize((bytes.size() + 3) / 4 * 4, filler);
+}
+
+Bytes glb_bytes(const std::string& json, const Bytes& data) {
+  const std::size_t text = (json.size() + 3) / 4 * 4, binary = (data.size() + 3) / 4 * 4;
+  Bytes out;
+  out.reserve(28 + text + binary);
+  put(out, kGlbMagic);
+  put(out, 2);
+  put(out, 12 + 8 + text + 8 + binary);
+  put(out, text);
+  put(out, kJson);
+  out.insert(out.end(), json.begin(), json.end());
+  fill_up(out, ' ');
+  put(out, binary);
+  put(out, kBinary);
+  out.insert(out.end(), data.begin(), data.end());
+  fill_up(out, 0);
+  return out;
+}
+
+std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name) {
+  Guard guard(name);
+  nlohmann::json::sax_parse(text.begin(), text.end(), &guard);
+  return guard.embedded();
+}
 
 nlohmann::json& gltf_list(nlohmann::json& object, const char* key) {
   nlohmann::json& found = object[key];
@@ -398,7 +391,7 @@ GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string
                   : loader.LoadASCIIFromString(&out.gltf, &error, &warning,
                                                reinterpret_cast<const char*>(text.data()),
                                                static_cast<unsigned>(text.size()), "");
-  } catch (const std::logic_error&) {  // what tinygltf did not expect in the JSON
+  } catch (const std::logic_error&) {  // JSON that tinygltf did not expect
     error = "is not valid glTF";
   }
   if (!good) refuse(name, error.empty() ? "is not valid glTF" : first_line(error));

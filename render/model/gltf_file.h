@@ -1,4 +1,4 @@
-// The bytes of a glTF file, checked before and parsed by tinygltf.
+// glTF files as bytes: their binary frame, the check of their JSON text, parsing by tinygltf.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -13,41 +13,39 @@
 
 namespace limpid {
 
-// The frame of a binary glTF file.
-
-// To a multiple of four.
+// Appends `filler` up to a multiple of four bytes.
 void fill_up(std::vector<unsigned char>& bytes, unsigned char filler);
 
-// A file of this JSON text and one buffer.
+// Returns a binary file of this JSON text and one buffer.
 std::vector<unsigned char> glb_bytes(const std::string& json,
                                      const std::vector<unsigned char>& data);
 
-// A look through the JSON text of a glTF file before memory is spent on it.
 inline constexpr const char* kOldGltf =
     "is glTF 1.0, which is not read; convert it to glTF 2.0 (gltf-pipeline does)";
 
-// How many buffers stand for the binary chunk (each would be a copy of it). Throws
-// std::runtime_error naming the file for what is no JSON object, nested deeper than 64, of more
-// than 8 million values or 1 million objects, or glTF 1.
+// Checks the JSON text of a glTF file before memory is spent on it. Returns how many buffers stand
+// for the binary chunk (each would be a copy of it). Throws std::runtime_error naming the file for
+// text that is no JSON object, nests deeper than 64, has more than 8 million values or 1 million
+// objects, or is glTF 1.
 std::size_t guard_gltf_json(std::span<const unsigned char> text, const std::string& name);
 
-// The JSON text of a file of either kind. Throws std::runtime_error naming the file.
+// Returns the JSON text of a file of either kind. Throws std::runtime_error naming the file.
 std::span<const unsigned char> gltf_json(std::span<const unsigned char> bytes,
                                          const std::string& name);
 
-// The list of that name, empty if there was none or something else.
+// Returns the list of that name, made empty if there was none or something else.
 nlohmann::json& gltf_list(nlohmann::json& object, const char* key);
 
 struct GltfFile {
   tinygltf::Model gltf;
-  // Encoded as they came, one each image of `gltf`; empty: in a buffer view, or missing.
+  // Encoded images, one for each of `gltf`; empty: in a buffer view, or missing.
   std::vector<std::vector<unsigned char>> pictures;
   std::vector<std::string> warnings;
 };
 
-// Nothing that the file refers to is checked but files, which are read from inside of `folder`
-// only (from nowhere if it is empty). A buffer that is missing is an error, a picture is not.
-// Throws std::runtime_error naming the file.
+// Parses a file; checks none of its references but those to files, which are read from inside of
+// `folder` only (from nowhere if it is empty). A missing buffer is an error, a missing picture is
+// not. Throws std::runtime_error naming the file.
 GltfFile parse_gltf_file(std::span<const unsigned char> bytes, const std::string& name,
                          const std::filesystem::path& folder);
 

@@ -39,7 +39,8 @@ bool is_webp(std::span<const unsigned char> bytes) {
   return bytes.size() > 12 && has("RIFF", 0) && has("WEBP", 8);
 }
 
-// Width and height; false for what is not to be read. Only these kinds: stb would try many more.
+// Finds width and height; false for what is not to be read. Accepts only these kinds: stb would try
+// many more.
 bool measure(std::span<const unsigned char> bytes, int& width, int& height) {
   const auto length = static_cast<int>(bytes.size());
   int channels = 0;
@@ -51,7 +52,7 @@ bool measure(std::span<const unsigned char> bytes, int& width, int& height) {
   return known && width >= 1 && height >= 1 && width <= kLongestEdge && height <= kLongestEdge;
 }
 
-// False for what turns out to be broken.
+// Decodes into image.rgba; returns false for broken bytes.
 bool fill(std::span<const unsigned char> bytes, std::size_t size, Image& image) {
   if (is_webp(bytes)) {
     image.rgba.resize(size);
@@ -67,23 +68,6 @@ bool fill(std::span<const unsigned char> bytes, std::size_t size, Image& image) 
   image.rgba.assign(pixels.get(), pixels.get() + size);
   return true;
 }
-
-}  // namespace
-
-std::optional<Image> ModelImages::decode(std::span<const unsigned char> bytes,
-                                         const std::string& name) {
-  Image image;
-  if (bytes.size() > kMostBytes || !measure(bytes, image.width, image.height)) return std::nullopt;
-  const std::size_t size =
-      4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  encoded_ += bytes.size();
-  decoded_ += size;
-  if (encoded_ > kMostBytes || decoded_ > kMostBytes)
-    throw std::runtime_error(name + ": has more than 1 GiB of pictures");
-  return fill(bytes, size, image) ? std::optional(std::move(image)) : std::nullopt;
-}
-
-namespace {
 
 float unit(double value) {
   return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 1.0)) : 0.0f;
@@ -104,7 +88,7 @@ Eigen::Vector2f pair(const tinygltf::Value& object, const char* key, float other
                                                              : Eigen::Vector2f::Constant(otherwise);
 }
 
-// KHR_texture_transform.
+// Returns the transform of KHR_texture_transform.
 Eigen::Affine2f move_of(const tinygltf::Value& extension) {
   const double turn = number(extension, "rotation", 0);
   const auto c = static_cast<float>(std::cos(turn)), s = static_cast<float>(std::sin(turn));
@@ -123,6 +107,19 @@ Image::Wrap wrap_of(int gl) {
 
 }  // namespace
 
+std::optional<Image> ModelImages::decode(std::span<const unsigned char> bytes,
+                                         const std::string& name) {
+  Image image;
+  if (bytes.size() > kMostBytes || !measure(bytes, image.width, image.height)) return std::nullopt;
+  const std::size_t size =
+      4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  encoded_ += bytes.size();
+  decoded_ += size;
+  if (encoded_ > kMostBytes || decoded_ > kMostBytes)
+    throw std::runtime_error(name + ": has more than 1 GiB of pictures");
+  return fill(bytes, size, image) ? std::optional(std::move(image)) : std::nullopt;
+}
+
 void GltfMaterials::warn(const std::string& what) { add_warning(model_, what); }
 
 const GltfMaterial& GltfMaterials::at(int index) {
@@ -135,7 +132,7 @@ const GltfMaterial& GltfMaterials::at(int index) {
 
 GltfMaterial GltfMaterials::read(const tinygltf::Material& from) {
   GltfMaterial to;
-  bool placed = false;  // whether a texture has said where its coordinates are
+  bool placed = false;  // a texture has named its coordinates
   const auto& pbr = from.pbrMetallicRoughness;
   if (pbr.baseColorFactor.size() == 4) {
     for (int i = 0; i < 3; ++i)
@@ -163,7 +160,7 @@ GltfMaterial GltfMaterials::read(const tinygltf::Material& from) {
   return to;
 }
 
-// One set of coordinates is kept: the one of the material's first texture.
+// Keeps one set of coordinates: that of the material's first texture.
 template <class Info>
 int GltfMaterials::texture(const Info& info, bool srgb, GltfMaterial& to, bool& placed) {
   if (info.index < 0) return -1;

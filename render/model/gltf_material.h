@@ -14,16 +14,15 @@
 
 namespace limpid {
 
-// Pictures of a model: PNG, JPEG and WebP, within limits of size and work.
-
-// How a warning about one that decode() cannot read goes on.
+// End of a warning about a picture that decode() cannot read.
 inline constexpr const char* kUnknownPicture =
     "no PNG, JPEG or WebP that can be read, it is left out";
 
+// Decodes the pictures of a model: PNG, JPEG and WebP, within limits of size and work.
 class ModelImages {
  public:
-  // Nothing for what is no readable PNG, JPEG or WebP. Throws std::runtime_error naming the file
-  // when all pictures so far come to more than 1 GiB, encoded or decoded.
+  // Returns nothing for what is no readable PNG, JPEG or WebP. Throws std::runtime_error naming the
+  // file when all pictures so far come to more than 1 GiB, encoded or decoded.
   std::optional<Image> decode(std::span<const unsigned char> bytes, const std::string& name);
 
  private:
@@ -42,11 +41,11 @@ struct GltfMaterial {
 
 class GltfMaterials {
  public:
-  // Pictures are added to model.images, what is left out to model.warnings.
+  // Adds pictures to model.images, warnings about what is left out to model.warnings.
   GltfMaterials(const GltfFile& source, GltfAccessor& file, const std::string& name, Model& model)
       : source_(source), file_(file), name_(name), model_(model) {}
 
-  // Decodes the pictures of a material that is new. -1: none, plain grey.
+  // Returns a material, decoding its pictures when it is new. -1: none, plain grey.
   const GltfMaterial& at(int index);
 
  private:

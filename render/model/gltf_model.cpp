@@ -50,7 +50,7 @@ class Reader {
   std::vector<int> with_mesh_;          // nodes, in order
   NodePoses poses_;                     // of nodes
   Eigen::Affine3d to_model_;            // from the present primitive
-  std::vector<Eigen::Affine3f> moves_;  // the same of each vertex, where there is a skin
+  std::vector<Eigen::Affine3f> moves_;  // from each vertex to the model, where there is a skin
   GltfRest rest_;
   VertexUse use_;
   IndicesByFinish indices_;
@@ -81,7 +81,7 @@ Eigen::Affine3d Reader::transform(const tinygltf::Node& node) const {
 void Reader::place_node(int index, const Eigen::Affine3d& parent, int depth) {
   if (depth > kDeepestNode) file_.refuse("has nodes nested deeper than 256");
   const tinygltf::Node& node = file_.at(gltf_.nodes, index, "node");
-  // With one parent a node, the work is bounded by the size of the file.
+  // Each node has one parent, so the size of the file bounds the work.
   const auto at = static_cast<std::size_t>(index);
   if (seen_[at])
     file_.refuse("node " + std::to_string(index) + " has two parents or is in a circle");
@@ -115,7 +115,7 @@ void Reader::add_primitive(const tinygltf::Primitive& primitive, int index) {
   const auto first = static_cast<std::uint32_t>(model_.vertices.size());
   add_vertices(primitive, node, used, positions);
 
-  // A skin brings its vertices to the scene itself.
+  // The vertices of a skin come to the scene without to_model_.
   if (moves_.empty() && to_model_.linear().determinant() < 0)
     for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i], corners[i + 1]);
   Finish finish = materials_.at(primitive.material).material;
@@ -148,7 +148,7 @@ void Reader::add_vertices(const tinygltf::Primitive& primitive, const tinygltf::
   add_streams(primitive, used, positions.count);
 }
 
-// The optional streams of the primitive into the fields of the vertices.
+// Puts the optional streams of the primitive into the fields of the vertices.
 void Reader::add_streams(const tinygltf::Primitive& primitive,
                          const std::vector<std::uint32_t>& used, std::size_t count) {
   const GltfMaterial& material = materials_.at(primitive.material);
@@ -173,7 +173,7 @@ void Reader::add_streams(const tinygltf::Primitive& primitive,
   });
 }
 
-// False where there are none.
+// Returns false where there are no normals.
 bool Reader::add_normals(const tinygltf::Primitive& primitive, const tinygltf::Node& node,
                          const std::vector<std::uint32_t>& used, std::size_t count) {
   const int accessor = attribute_of(primitive.attributes, "NORMAL");
@@ -195,7 +195,7 @@ bool Reader::add_normals(const tinygltf::Primitive& primitive, const tinygltf::N
   return true;
 }
 
-// The default scene's nodes; of a file without scenes those that nobody has as a child.
+// Returns the default scene's nodes; of a file without scenes those that no node has as a child.
 std::vector<int> Reader::roots() const {
   if (!gltf_.scenes.empty())
     return file_.at(gltf_.scenes, std::max(0, gltf_.defaultScene), "scene").nodes;
@@ -211,7 +211,7 @@ std::vector<int> Reader::roots() const {
   return all;
 }
 
-// How something looks may be left out, what shape it has may not.
+// Extensions for the look of something may be left out, those for its shape may not.
 bool may_be_left_out(const std::string& extension) {
   constexpr std::array kKnown = {kDracoExtension, "EXT_meshopt_compression",
                                  "KHR_meshopt_compression", "KHR_mesh_quantization"};

@@ -18,15 +18,16 @@
 
 namespace limpid {
 
-// All triangles of the default scene with the nodes' transforms applied. Kept are positions,
+// Reads all triangles of the default scene with the nodes' transforms applied. Kept are positions,
 // normals, one set of texture coordinates, vertex colours and the metallic-roughness material with
 // its textures; left out with a warning are points, lines, textures that cannot be read.
 //
 // Limits and errors: those of model_file.h.
 Model load_gltf(const std::filesystem::path& path, const LoadProgress& progress = {});
 
-// The same from memory; `name` stands for the file in messages. Other files are read from inside
-// of `folder` only; without one all of them are missing: buffers are refused, pictures left out.
+// Reads the same from memory; `name` stands for the file in messages. Other files are read from
+// inside of `folder` only; without one all of them are missing: buffers are refused, pictures left
+// out.
 Model parse_gltf(std::span<const unsigned char> bytes, const std::string& name,
                  const std::filesystem::path& folder = {}, const LoadProgress& progress = {});
 

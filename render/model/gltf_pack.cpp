@@ -25,7 +25,7 @@ bool any_outside(const json& gltf, const char* key) {
          std::any_of(found->begin(), found->end(), lies_outside);
 }
 
-// Where a view, or an extension of one, says which bytes of which buffer it stands for.
+// Moves a view, or an extension of one, from its buffer into the joint first one.
 void move_into_first(json& view, const std::vector<std::size_t>& starts) {
   if (!view.is_object() || !view.contains("buffer") || !view["buffer"].is_number_unsigned()) return;
   const auto buffer = view["buffer"].get<std::size_t>();
@@ -36,7 +36,7 @@ void move_into_first(json& view, const std::vector<std::size_t>& starts) {
       starts[buffer] + (offset.is_number_unsigned() ? offset.get<std::size_t>() : 0);
 }
 
-// One buffer in place of all of them.
+// Joins all buffers into one.
 Bytes join_buffers(json& gltf, const GltfFile& file) {
   Bytes all;
   std::vector<std::size_t> starts;

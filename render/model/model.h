@@ -1,4 +1,4 @@
-// How far a load has come, and whether it is still wanted.
+// A triangle mesh ready to be drawn or touched, and the progress of loading it.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace limpid {
 
-// Either may be null.
+// Progress of a load, and the wish to cancel it; either may be null.
 struct LoadProgress {
   std::atomic<double>* part = nullptr;        // 0 to 1
   const std::atomic<bool>* cancel = nullptr;  // asked several times a second
@@ -23,12 +23,11 @@ struct LoadCancelled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Throws LoadCancelled.
+// Throws LoadCancelled if the load is no longer wanted.
 inline void check_wanted(const LoadProgress& progress) {
   if (progress.cancel && progress.cancel->load()) throw LoadCancelled("loading was cancelled");
 }
 
-// A triangle mesh ready to be drawn or touched: one vertex list, cut into parts by material.
 struct Vertex {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;  // unit
@@ -46,7 +45,7 @@ struct Image {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
-// How a part looks, as far as the vertices do not say. Images are numbers in Model::images, -1 for
+// Look of a part, as far as the vertices do not say. Images are numbers in Model::images, -1 for
 // none.
 struct Finish {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
@@ -57,7 +56,7 @@ struct Finish {
   float bump = 1;               // of the normal texture
   std::array<float, 3> glow{};  // light of its own, linear
   Alpha alpha = Alpha::opaque;
-  float cutoff = 0.5f;  // of Alpha::mask: less opaque is not there
+  float cutoff = 0.5f;  // for Alpha::mask: less opaque points are not drawn
   bool two_sided = false;
   bool flat = false;  // each triangle as it lies, not as the vertices' normals say
 
@@ -69,18 +68,19 @@ struct Part {
   Finish material = {};
 };
 
+// A list of vertices and triangles, cut into parts by material.
 struct Model {
   enum class Up : std::uint8_t { unsaid, y, z };
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
-  std::vector<Part> parts;             // one a material, together all indices in order
+  std::vector<Part> parts;             // one for each material, together all indices in order
   std::vector<Image> images;
-  // Of a large model a version with fewer triangles over the same vertices; else empty.
+  // Coarse version of a large model, with fewer triangles over the same vertices; else empty.
   std::vector<std::uint32_t> coarse;
   std::vector<Part> coarse_parts;
-  double unit = 0;                    // of the coordinates, as the file says [m]; 0: it does not
+  double unit = 0;                    // of the coordinates, by the file [m]; 0: the file has none
   Up up = Up::unsaid;                 // the axis
-  std::vector<std::string> warnings;  // what was left out of the file, a line each
+  std::vector<std::string> warnings;  // parts of the file left out, a line each
 
   Eigen::AlignedBox3d bounds() const {
     Eigen::AlignedBox3d box;

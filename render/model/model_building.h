@@ -1,4 +1,4 @@
-// What every reader of models needs: limits, normals, parts.
+// Common parts of all readers of models: limits, normals, parts.
 #pragma once
 
 #include <map>
@@ -19,16 +19,16 @@ inline constexpr float kFarthest = 1e6f;  // from the origin, of the model's uni
 inline constexpr const char* kNoTriangles =
     "contains no triangles; points and lines cannot be touched";
 
-// Indices by how their triangles look.
+// Indices, sorted by the look of their triangles.
 using IndicesByFinish = std::map<Finish, std::vector<std::uint32_t>>;
 
-// The lists as parts of the model, each emptied once it is there.
+// Adds the lists to the model as parts; empties each once it is there.
 void join_parts(Model& model, IndicesByFinish& lists);
 
-// Vertices of no normal (zero) take the mean direction of their triangles, by their size.
+// Gives vertices without a normal (zero) the mean direction of their triangles, weighted by size.
 void fill_normals(std::span<Vertex> vertices, std::span<const std::uint32_t> corners);
 
-// Colours for the eye (sRGB) as linear light, which is what a Vertex has.
+// Converts colours for the eye (sRGB) to linear light, as in Vertex.
 Eigen::Vector3f linear(const Eigen::Vector3f& srgb);
 
 // Adds a line unless it is there already or there are many.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Unit and axis, as far as the format knows any.
+// Sets unit and axis, as far as the format knows any.
 void take_conventions(std::span<const unsigned char> bytes, const ModelKind& kind, Model& model) {
   model.unit = 0;
   model.up = Model::Up::unsaid;
@@ -46,7 +46,7 @@ Model parse_model(std::span<const unsigned char> bytes, const std::string& name,
                   const fs::path& folder, const LoadProgress& progress,
                   std::vector<unsigned char>* whole) {
   constexpr std::string_view kMagic = "glTF";
-  // In a recording any model that had files beside it is one of these, whatever its name.
+  // A recording keeps models that had files beside them as binary glTF, whatever their names.
   const bool binary =
       bytes.size() >= kMagic.size() && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
   const ModelKind* const kind = model_kind(name);

@@ -18,16 +18,15 @@
 
 namespace limpid {
 
-// All triangles with their nodes' transforms applied; polygons are cut into triangles. Left out
-// with a warning are points, lines, textures that cannot be read. `name` stands for the file in
+// Reads all triangles with their nodes' transforms applied; polygons are cut into triangles. Left
+// out with a warning are points, lines, textures that cannot be read. `name` stands for the file in
 // messages; its suffix says the kind, but binary glTF is known by how it begins. Other files are
 // read from inside of `folder` only; without one all of them are missing. `whole`, if given,
-// becomes the model as one file that reads as the same model without them, or empty if there are
-// none.
+// becomes one file that reads as the same model without others, or empty if there are no others.
 //
-// Throws std::runtime_error with one line naming the file for anything unreadable, broken or
-// larger than is read: 512 MiB of files, 8 million vertices and 6 million triangles over all
-// nodes, 1 GiB of decoded pictures; LoadCancelled when `cancel` was set.
+// Throws std::runtime_error with one line naming the file for anything unreadable, broken or larger
+// than is read: 512 MiB of files, 8 million vertices and 6 million triangles over all nodes, 1 GiB
+// of decoded pictures; LoadCancelled when `cancel` was set.
 Model parse_model(std::span<const unsigned char> bytes, const std::string& name,
                   const std::filesystem::path& folder = {}, const LoadProgress& progress = {},
                   std::vector<unsigned char>* whole = nullptr);

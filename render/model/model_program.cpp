@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
 
 constexpr const char* kProgram = "limpid-model";
-constexpr int kLines = 3;  // the descriptor on which the program says how it goes on
+constexpr int kLines = 3;  // descriptor of the program's lines about its progress
 constexpr std::chrono::milliseconds kBetweenLooks{50};
 constexpr unsigned kPatience = 60;  // [s], and what it takes at a twentieth of a processor
 
@@ -45,7 +45,7 @@ Bytes read_all(int file, const std::string& name) {
   return bytes;
 }
 
-// What becomes of a model.
+// State of a conversion, from the lines of the program.
 struct Following {
   ConvertedModel made;
   std::string error;
@@ -66,7 +66,7 @@ void take_line(const std::string& line, Following& following, const LoadProgress
   }
 }
 
-// What the program says until it ends.
+// Reads the program's lines until it ends.
 void follow(int lines, Following& following, const LoadProgress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();
@@ -74,7 +74,7 @@ void follow(int lines, Following& following, const LoadProgress& progress) {
   std::array<char, 4096> piece{};
   for (;;) {
     check_wanted(progress);
-    // One that waits takes no processor time.
+    // The limit counts time on the wall: a program that waits takes no processor time.
     const std::chrono::seconds most{kPatience + 20 * following.limits.seconds};
     if (Clock::now() - begun > most) {
       following.error = "is not read: what reads it says nothing for too long";

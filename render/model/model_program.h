@@ -1,4 +1,4 @@
-// What the program that reads models may use up, by the size of what it reads.
+// limpid-model: the program that turns other models into glTF, and what it may use up.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,9 @@ struct ReaderLimits {
   unsigned seconds;    // of processor time
 };
 
-// `bytes`: of the model and of all the files that it refers to, as far as they are known. Text
-// takes most: a face of an OBJ of 8 bytes is some 400 bytes in the library that reads it.
+// Returns the limits for the `bytes` of the model and of all the files that it refers to, as far as
+// they are known. Text takes most: a face of an OBJ of 8 bytes is some 400 bytes in the library
+// that reads it.
 inline ReaderLimits reader_limits(std::size_t bytes) {
   constexpr std::size_t kMost = std::size_t{8} << 30;
   const std::size_t memory = (std::size_t{512} << 20) + 100 * std::min(bytes, kMost);
@@ -36,20 +37,21 @@ inline std::string too_long(const ReaderLimits& limits) {
          " s to be read, which is all that a model of its size gets";
 }
 
-// Models of other kinds than glTF are made glTF by a program of their own, limpid-model: what a
-// broken file does to the library that reads it stays there.
+// A model of another kind, made glTF by a program of its own: what a broken file does to the
+// library that reads it stays there.
 struct ConvertedModel {
   std::vector<unsigned char> glb;
   std::vector<std::string> warnings;
-  bool outside = false;  // files of the folder are in it
+  bool outside = false;  // other files of the folder are in it
 };
 
-// Throws std::runtime_error naming the file; LoadCancelled. `part` gets up to 0.6.
+// Makes a model glTF. Throws std::runtime_error naming the file; LoadCancelled. `part` gets up to
+// 0.6.
 ConvertedModel convert_model(std::span<const unsigned char> bytes, const ModelKind& kind,
                              const std::string& name, const std::filesystem::path& folder,
                              const LoadProgress& progress);
 
-// Why the program ended as the status of waitpid() says; empty if all is well.
+// Returns why the program ended by the status of waitpid(); empty if all is well.
 std::string why_ended(int status, const ReaderLimits& limits);
 
 }  // namespace limpid

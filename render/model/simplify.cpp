@@ -7,11 +7,12 @@
 namespace limpid {
 namespace {
 
-// Of the model's size: what small parts may lose of their shape, though they count few triangles.
+// Largest error as a part of the model's size, for small parts that count few triangles.
 constexpr float kMostError = 0.01f;
 
-// About `wanted` of these indices, or more. Edges are collapsed, which keeps seams and sharp edges;
-// where that does not help, as in a model of single triangles, vertices are merged by a grid.
+// Returns about `wanted` of these indices, or more. Edges are collapsed, which keeps seams and
+// sharp edges; where that does not help, as in a model of single triangles, vertices are merged by
+// a grid.
 std::vector<std::uint32_t> simplified(const std::vector<Vertex>& vertices,
                                       std::span<const std::uint32_t> indices, std::size_t wanted) {
   std::vector<std::uint32_t> out(indices.size());

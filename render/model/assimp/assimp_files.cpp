@@ -14,7 +14,7 @@ namespace limpid {
 
 namespace {
 
-// Bytes in memory, its own or somebody else's.
+// Bytes in memory, owned or borrowed.
 class Stream : public Assimp::IOStream {
  public:
   explicit Stream(std::span<const unsigned char> bytes) : bytes_(bytes) {}
@@ -54,7 +54,7 @@ std::string kind_of(const std::string& file) {
   return kind;
 }
 
-// Models made elsewhere name files as their own system does.
+// Makes names portable: models made elsewhere name files as their own system does.
 std::string portable(std::string file) {
   std::replace(file.begin(), file.end(), '\\', '/');
   while (file.starts_with("./")) file.erase(0, 2);
@@ -63,39 +63,11 @@ std::string portable(std::string file) {
   return file;
 }
 
-}  // namespace
-
-Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
-  if (std::strchr(mode, 'w') != nullptr) return nullptr;
-  if (file == main_) return new Stream(bytes_);
-  if (std::string_view(file).starts_with(kStem)) return nullptr;
-  auto found = read(file);
-  if (auto better = readable(found, kind_of(file))) found = std::move(*better);
-  return found.empty() ? nullptr : new Stream(std::move(found));
-}
-
-std::vector<unsigned char> AssimpFiles::read(const std::string& file) {
-  std::string why = " is missing";
-  try {
-    if (auto found = companions_.none() ? std::nullopt : companions_.read(portable(file))) {
-      any_read_ = true;
-      found_(found->size());
-      return std::move(*found);
-    }
-  } catch (const std::runtime_error&) {
-    why = " lies outside of the model's folder, or is too large";
-  }
-  warnings_.push_back("\"" + one_line(file) + "\"" + why + ", it is left out");
-  return {};
-}
-
-namespace {
-
 std::string_view text_of(std::span<const unsigned char> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// The number that `text` begins with, or none.
+// Returns the number that `text` begins with, 0 for none.
 std::size_t number_in(std::string_view text) {
   while (!text.empty() && (text[0] == ' ' || text[0] == '\t' || text[0] == '"' || text[0] == '\''))
     text.remove_prefix(1);
@@ -104,7 +76,7 @@ std::size_t number_in(std::string_view text) {
   return end.ec == std::errc::result_out_of_range ? ~std::size_t{0} : number;
 }
 
-// Behind each `word` in the text there is a number of things, of which each takes a byte at least.
+// Refuses a count behind a `word` in the text above `size`: each thing takes at least a byte.
 void guard(std::string_view text, std::string_view word, std::size_t size) {
   for (auto at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
     std::string_view rest = text.substr(at + word.size());
@@ -116,23 +88,6 @@ void guard(std::string_view text, std::string_view word, std::size_t size) {
   }
 }
 
-}  // namespace
-
-void guard_counts(std::span<const unsigned char> bytes, const std::string& kind) {
-  const std::string_view text = text_of(bytes);
-  if (kind == "ply") {
-    const auto end = text.find("end_header");
-    if (end == text.npos) throw std::runtime_error("is cut off: its header has no end_header");
-    guard(text.substr(0, end), "element ", text.size());
-  }
-  if (kind == "dae") {
-    for (const std::string_view word : {"count=", "stride=", "offset="})
-      guard(text, word, text.size());
-  }
-}
-
-namespace {
-
 constexpr std::string_view kBlanks = " \t\r\n";
 
 std::string readable_dae(std::string_view text) {
@@ -141,7 +96,7 @@ std::string readable_dae(std::string_view text) {
   return out;
 }
 
-// Each line, with its end, through `change`, which appends what becomes of it.
+// Passes each line, with its end, through `change`, which appends what becomes of it.
 template <class Change>
 std::string by_lines(std::string_view text, Change change) {
   std::string out;
@@ -178,7 +133,7 @@ std::string readable_obj(std::string_view text) {
 }
 
 std::string readable_stl(std::string_view text) {
-  std::string solid;  // as far as it has come
+  std::string solid;  // text of the present solid so far
   bool empty = true;
   std::string out = by_lines(text, [&](std::string_view line, std::string& done) {
     const std::string_view word = first_word(line);
@@ -193,7 +148,8 @@ std::string readable_stl(std::string_view text) {
   return first_word(out).empty() ? std::string(text) : out;
 }
 
-// The header of a binary file, renamed; its data, behind a byte that is no end of a line.
+// Renames unknown elements in a binary file's header; puts a byte before data that begin with the
+// end of a line.
 std::string readable_ply(std::string_view text) {
   constexpr std::array<std::string_view, 5> kKnown{"vertex", "face", "tristrips", "edge",
                                                    "material"};
@@ -228,7 +184,7 @@ bool is_binary_ply(std::string_view text) {
   return text.substr(0, text.find("end_header")).find("format binary") != text.npos;
 }
 
-// As assimp tells it: a number of facets that fits says that it is no text.
+// Tells text from binary STL as assimp does: a number of facets that fits the size means binary.
 bool is_text_stl(std::string_view text) {
   if (!text.starts_with("solid")) return false;
   constexpr std::size_t kHeader = 84, kFacet = 50;
@@ -241,6 +197,43 @@ bool is_text_stl(std::string_view text) {
 }
 
 }  // namespace
+
+Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
+  if (std::strchr(mode, 'w') != nullptr) return nullptr;
+  if (file == main_) return new Stream(bytes_);
+  if (std::string_view(file).starts_with(kStem)) return nullptr;
+  auto found = read(file);
+  if (auto better = readable(found, kind_of(file))) found = std::move(*better);
+  return found.empty() ? nullptr : new Stream(std::move(found));
+}
+
+std::vector<unsigned char> AssimpFiles::read(const std::string& file) {
+  std::string why = " is missing";
+  try {
+    if (auto found = companions_.none() ? std::nullopt : companions_.read(portable(file))) {
+      any_read_ = true;
+      found_(found->size());
+      return std::move(*found);
+    }
+  } catch (const std::runtime_error&) {
+    why = " lies outside of the model's folder, or is too large";
+  }
+  warnings_.push_back("\"" + one_line(file) + "\"" + why + ", it is left out");
+  return {};
+}
+
+void guard_counts(std::span<const unsigned char> bytes, const std::string& kind) {
+  const std::string_view text = text_of(bytes);
+  if (kind == "ply") {
+    const auto end = text.find("end_header");
+    if (end == text.npos) throw std::runtime_error("is cut off: its header has no end_header");
+    guard(text.substr(0, end), "element ", text.size());
+  }
+  if (kind == "dae") {
+    for (const std::string_view word : {"count=", "stride=", "offset="})
+      guard(text, word, text.size());
+  }
+}
 
 std::optional<std::vector<unsigned char>> readable(std::span<const unsigned char> bytes,
                                                    const std::string& kind) {

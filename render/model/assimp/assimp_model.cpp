@@ -39,7 +39,7 @@ AssimpMaterial AssimpMaterials::read(const aiMaterial& from) {
     if (!to.plain) to.color.setOnes();
   }
   aiColor4D diffuse;
-  // Beside a picture black is what many exporters write for nothing.
+  // Black beside a picture is what many exporters write for nothing.
   if (from.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse) == aiReturn_SUCCESS &&
       (to.plain || !diffuse.IsBlack())) {
     to.color = linear({diffuse.r, diffuse.g, diffuse.b});
@@ -79,17 +79,17 @@ class Progress : public Assimp::ProgressHandler {
   const std::function<void(double)>& tell_;
 };
 
-// Only the importer of this kind: assimp guesses at others by what a file contains.
+// Keeps only the importer of this kind: assimp guesses at others by what a file contains.
 void keep_importer(Assimp::Importer& importer, const ModelKind& kind) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* const each = importer.GetImporter(i);
     if (importer.GetImporter(std::string(kind.suffix).c_str()) == each) continue;
     importer.UnregisterLoader(each);
-    delete each;  // whose it is now
+    delete each;  // it is the caller's now
   }
 }
 
-// What assimp says about a file of points or lines only means nothing to its owner.
+// Says in words for the owner what assimp says about a file of points or lines only.
 std::string in_words(const std::string& why) {
   for (const char* said : {"No meshes remaining", "invalid primitive type", "no facets"})
     if (why.find(said) != why.npos) return kNoTriangles;
@@ -129,7 +129,7 @@ class Builder {
   IndicesByFinish indices_;
 };
 
-// Formats that list corners, not vertices, have each vertex many times.
+// Welds equal vertices: formats that list corners have each vertex many times.
 std::size_t Builder::weld(const aiMesh& mesh, bool normals, std::vector<unsigned>& place) const {
   std::vector<meshopt_Stream> streams{{mesh.mVertices, sizeof(aiVector3D), sizeof(aiVector3D)}};
   const auto also = [&](const auto* values) {
@@ -139,7 +139,7 @@ std::size_t Builder::weld(const aiMesh& mesh, bool normals, std::vector<unsigned
   also(mesh.mTextureCoords[0]);
   also(mesh.mColors[0]);
   place.resize(mesh.mNumVertices);
-  // Whole triangles are wanted, of which the vertices here may be no multiple.
+  // The list is filled up to whole triangles, which the library wants.
   std::vector<unsigned> all((std::size_t{mesh.mNumVertices} + 2) / 3 * 3, mesh.mNumVertices - 1);
   std::iota(all.begin(), all.begin() + mesh.mNumVertices, 0u);
   return meshopt_generateVertexRemapMulti(place.data(), all.data(), all.size(), mesh.mNumVertices,

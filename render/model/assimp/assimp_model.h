@@ -1,4 +1,4 @@
-// Materials as assimp has them, with the files of the pictures they use.
+// STL, OBJ, PLY and Collada models read by assimp, with their materials and pictures.
 #pragma once
 
 #include <functional>
@@ -26,12 +26,12 @@ struct AssimpMaterial {
 
 class AssimpMaterials {
  public:
-  // All of these outlive this.
+  // Keeps references to all; they must outlive this.
   AssimpMaterials(const aiScene& scene, const ModelKind& kind, AssimpFiles& files)
       : scene_(scene), kind_(kind), files_(files) {}
 
   const AssimpMaterial& at(unsigned index);
-  // Encoded as they came; Finish::color is a number in this list.
+  // Returns the pictures, still encoded; Finish::color is a number in this list.
   const std::vector<std::vector<unsigned char>>& pictures() const { return pictures_; }
 
  private:
@@ -46,17 +46,17 @@ class AssimpMaterials {
   std::vector<std::vector<unsigned char>> pictures_;
 };
 
-// STL, OBJ, PLY and Collada models, read by assimp. It trusts files in places, so only a program of
-// its own does this: limpid-model.
+// A model that assimp read. Assimp trusts files in places, so only a program of its own does this:
+// limpid-model.
 struct AssimpModel {
   Model model;                                       // without images
   std::vector<std::vector<unsigned char>> pictures;  // encoded; Finish::color is a number in it
   bool outside = false;                              // other files were read, too
 };
 
-// No other kind is tried. Coordinates are those of the file; of Collada in metres, its up axis is
-// not turned. `progress` is called with 0 to 1. `files` has the model and goes to assimp. Throws
-// std::runtime_error with one line.
+// Reads a file as this kind only. Coordinates are those of the file; Collada's are in metres, its
+// up axis is not turned. `progress` is called with 0 to 1. `files` has the model and goes to
+// assimp. Throws std::runtime_error with one line.
 AssimpModel read_with_assimp(AssimpFiles* files, const ModelKind& kind,
                              const std::function<void(double)>& progress);
 

@@ -23,7 +23,7 @@ class Writer {
  private:
   int view(const void* bytes, std::size_t size);
   int accessor(int view, int component, const char* type, std::size_t count);
-  // One number after the other of each vertex.
+  // Adds the numbers of a field, vertex by vertex.
   template <class Field>
   int stream(const char* type, Field field);
   json material(const Finish& finish) const;

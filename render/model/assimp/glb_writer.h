@@ -8,9 +8,10 @@
 
 namespace limpid {
 
-// What parse_gltf() reads as the same model, triangle for triangle and bit for bit, but for its
-// images: those are `pictures`, encoded, of which the parts' Finish::color are numbers. Vertices
-// have the metallic and roughness of a new Vertex. Throws std::runtime_error for what is too large.
+// Writes a model as binary glTF that parse_gltf() reads as the same model, triangle for triangle
+// and bit for bit. Its images are `pictures`, encoded, which the parts' Finish::color number.
+// Vertices have the metallic and roughness of a new Vertex. Throws std::runtime_error for what is
+// too large.
 std::vector<unsigned char> glb_of(const Model& model,
                                   const std::vector<std::vector<unsigned char>>& pictures);
 
