@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeastSpeed = 0.05;  // that is motion [rad/s]
+constexpr double kLeastSpeed = 0.05;  // least speed that counts as motion [rad/s]
 
-// About that time the joint moves in the direction of v all along, faster than one that sticks or
-// an encoder that flickers.
+// Returns whether the joint moves in the direction of v throughout the window about `time`, faster
+// than stiction or a flickering encoder.
 bool moves_on(const MotionRecord& record, const Smoothing& window, double time, Index joint,
               double v, double step) {
   const double piece = std::max(window.sigma, 0.01);
@@ -122,7 +122,7 @@ Matrix4d triangle(const LinkParameters& d) {
 
 PlausibleLink::PlausibleLink(const LinkParameters& guess) {
   Matrix4d J = pseudo_inertia(guess);
-  // In units in which all of a body is about one: its mass and its size squared.
+  // Scales to units in which every body is about one: its mass and its size squared.
   const double mass = std::max(guess[0], 1e-9);
   const double size2 = std::max(J.topLeftCorner<3, 3>().trace() / mass, 1e-8);
   Eigen::Vector4d unit = Eigen::Vector4d::Constant(std::sqrt(mass * size2));
@@ -169,7 +169,7 @@ using Eigen::VectorXd;
 constexpr Index kLeastRows = 100;
 constexpr double kHuber = 2;  // deviations from which on a miss counts less
 
-// The least squares of A z = b for many b.
+// Least squares solutions of A z = b for many b.
 class Projection {
  public:
   explicit Projection(const MatrixXd& A) : scale_(A.colwise().norm().transpose()) {
@@ -188,7 +188,7 @@ class Projection {
   Eigen::ColPivHouseholderQR<MatrixXd> qr_;
 };
 
-// The least of a function that has one in there: a grid, then golden sections about the best.
+// The minimum of a function with one minimum there: a grid, then golden sections about the best.
 template <class F>
 double least_of(const F& f, double low, double high) {
   constexpr int kGrid = 24;
@@ -210,8 +210,8 @@ double least_of(const F& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Bodies near the guess and friction that fit R z = y, deviations all 1: what is asked of the
-// library's Levenberg and Marquardt.
+// Bodies near the guess and friction that fit R z = y with unit deviations, in the form that
+// Eigen's Levenberg-Marquardt asks for.
 struct Nearest : Eigen::DenseFunctor<double> {
   Nearest(const ArmDescription& guess, const MatrixXd& A, const VectorXd& b, const VectorXd& torque)
       : DenseFunctor<double>(static_cast<int>(A.cols()), static_cast<int>(2 * A.cols())) {
@@ -219,8 +219,8 @@ struct Nearest : Eigen::DenseFunctor<double> {
     const Eigen::HouseholderQR<MatrixXd> qr(A);
     R = qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>();
     y = (qr.householderQ().adjoint() * b).head(A.cols());
-    // At the start a body is known to a factor of e; of friction nothing; a spring is rather not
-    // there, where weight explains as much.
+    // The prior knows a body to a factor of e, and nothing of friction. It favours weight over a
+    // spring where both explain as much.
     prior = VectorXd::Ones(A.cols());
     for (Index j = 0; j < bodies_size(); ++j) {
       const double spring = 1 / (0.3 * torque[j]);
@@ -300,7 +300,7 @@ class Fit {
     return fit.miss(weight_.cwiseProduct(torque(delay)));
   }
 
-  // Rows by how far they miss: each joint has its own noise.
+  // Weighs rows by the noise of their joint, found from the misses.
   void weigh() {
     const Projection fit(weight_.asDiagonal() * rows_.A);
     delay_ = least_of([&](double d) { return miss(fit, d); }, 0.0, settings_.longest_delay);
@@ -367,7 +367,7 @@ class Fit {
       set_parameters(out.arm.links[J_], z.segment<kLinkParameters>(kLinkParameters * j));
       out.arm.joints[J_].damping = std::max(0.0, joint.viscous.value);
       out.arm.joints[J_].friction = std::max(0.0, joint.coulomb.value);
-      out.arm.joints[J_].spring = joint.spring.value;  // with the weight it may be below 0
+      out.arm.joints[J_].spring = joint.spring.value;  // below 0 if it cancels part of the weight
       out.arm.joints[J_].offset = joint.offset.value;
     }
     out.arm.gravity = settings_.gravity;
@@ -394,7 +394,7 @@ class Fit {
     return out;
   }
 
-  // From how fast the misses grow beside their least.
+  // Standard deviation of the delay, from the curvature of the misses about their minimum [s].
   double delay_deviation() const {
     constexpr double kStep = 2e-4;  // [s]
     const Projection fit(weight_.asDiagonal() * rows_.A);

@@ -7,7 +7,7 @@
 namespace limpid {
 namespace {
 
-// The same with every standard library.
+// Random numbers that are the same with every standard library.
 class Drawn {
  public:
   explicit Drawn(unsigned seed) : engine_(seed) {}
@@ -43,7 +43,7 @@ ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_fri
 
 Unlikeness drawn_bench(const ArmDescription& file, unsigned seed, const Vec3& gravity) {
   constexpr double kTurn = 2 * 3.14159265358979323846;
-  Drawn drawn(seed + 1000003);  // other numbers than the arm's
+  Drawn drawn(seed + 1000003);  // other numbers than unlike() draws
   const double cells = drawn.between(0, 1) < 0.5 ? 1 << 10 : 1 << 16;
   double widest = 0;
   for (const Joint& joint : file.joints) {
