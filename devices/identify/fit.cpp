@@ -35,59 +35,6 @@ bool moves_on(const MotionRecord& record, const Smoothing& window, double time, 
   return true;
 }
 
-}  // namespace
-
-Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
-                                  double longest_delay) {
-  const double margin = 1.5 * window.reach() + longest_delay;
-  const double spacing = window.independent();
-  const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
-  if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
-  const auto count = static_cast<Index>(length / spacing);
-  return Eigen::VectorXd::LinSpaced(count, margin,
-                                    margin + static_cast<double>(count - 1) * spacing);
-}
-
-Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
-                       const Smoothing& window, const Eigen::VectorXd& times) {
-  const Motion3 motion = motion_at(record, window, times);
-  const Eigen::VectorXd step = encoder_steps(record);
-  const Arm<kAnyDof> arm(guess);
-  const Index n = record.joints(), of_links = kLinkParameters * n;
-  Equations out;
-  std::vector<Eigen::RowVectorXd> lines;
-  for (Index k = 0; k < times.size(); ++k) {
-    const Eigen::MatrixXd Y =
-        regressor(arm, motion.x.row(k).transpose(), motion.v.row(k).transpose(),
-                  motion.a.row(k).transpose(), gravity);
-    for (Index j = 0; j < n; ++j) {
-      const double v = motion.v(k, j);
-      if (!moves_on(record, window, times[k], j, v, step[j])) continue;
-      Eigen::RowVectorXd line = Eigen::RowVectorXd::Zero(of_links + kOwnParameters * n);
-      line.head(of_links) = Y.row(j);
-      line.segment<kOwnParameters>(of_links + kOwnParameters * j) << v, v > 0 ? 1 : -1, 1,
-          motion.x(k, j);
-      lines.push_back(std::move(line));
-      out.time.push_back(k);
-      out.joint.push_back(j);
-    }
-  }
-  out.A.resize(static_cast<Index>(lines.size()), of_links + kOwnParameters * n);
-  for (Index i = 0; i < out.A.rows(); ++i) out.A.row(i) = lines[static_cast<std::size_t>(i)];
-  return out;
-}
-
-Eigen::VectorXd Equations::of(const Eigen::MatrixXd& torque) const {
-  Eigen::VectorXd b(A.rows());
-  for (Index i = 0; i < b.size(); ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    b[i] = torque(time[row], joint[row]);
-  }
-  return b;
-}
-
-namespace {
-
 using Eigen::Matrix4d;
 
 Matrix4d pseudo_inertia(const LinkParameters& p) {
@@ -118,51 +65,6 @@ Matrix4d triangle(const LinkParameters& d) {
   return E;
 }
 
-}  // namespace
-
-PlausibleLink::PlausibleLink(const LinkParameters& guess) {
-  Matrix4d J = pseudo_inertia(guess);
-  // Scales to units in which every body is about one: its mass and its size squared.
-  const double mass = std::max(guess[0], 1e-9);
-  const double size2 = std::max(J.topLeftCorner<3, 3>().trace() / mass, 1e-8);
-  Eigen::Vector4d unit = Eigen::Vector4d::Constant(std::sqrt(mass * size2));
-  unit[3] = std::sqrt(mass);
-  Matrix4d scaled = unit.cwiseInverse().asDiagonal() * J * unit.cwiseInverse().asDiagonal();
-  for (double more = 1e-3;; more *= 2) {
-    const Eigen::LLT<Matrix4d> factor(scaled);
-    const Matrix4d L = factor.matrixL();
-    if (factor.info() == Eigen::Success && L.diagonal().minCoeff() > 0.01) {
-      L0_ = unit.asDiagonal() * L;
-      return;
-    }
-    scaled.diagonal().array() += more;
-  }
-}
-
-LinkParameters PlausibleLink::at(const LinkParameters& d) const {
-  const Matrix4d L = L0_ * triangle(d);
-  return parameters_of(Matrix4d(L * L.transpose()));
-}
-
-Eigen::Matrix<double, kLinkParameters, kLinkParameters> PlausibleLink::slope(
-    const LinkParameters& d) const {
-  const Matrix4d E = triangle(d);
-  Eigen::Matrix<double, kLinkParameters, kLinkParameters> out;
-  Eigen::Index k = 0;
-  for (Eigen::Index j = 0; j < 4; ++j) {
-    for (Eigen::Index i = j; i < 4; ++i) {
-      Matrix4d dE = Matrix4d::Zero();
-      dE(i, j) = i == j ? E(j, j) : 1;
-      const Matrix4d half = L0_ * dE * E.transpose() * L0_.transpose();
-      out.col(k++) = parameters_of(Matrix4d(half + half.transpose()));
-    }
-  }
-  return out;
-}
-
-namespace {
-
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -417,6 +319,95 @@ class Fit {
 };
 
 }  // namespace
+
+Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
+                                  double longest_delay) {
+  const double margin = 1.5 * window.reach() + longest_delay;
+  const double spacing = window.independent();
+  const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
+  if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
+  const auto count = static_cast<Index>(length / spacing);
+  return Eigen::VectorXd::LinSpaced(count, margin,
+                                    margin + static_cast<double>(count - 1) * spacing);
+}
+
+Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
+                       const Smoothing& window, const Eigen::VectorXd& times) {
+  const Motion3 motion = motion_at(record, window, times);
+  const Eigen::VectorXd step = encoder_steps(record);
+  const Arm<kAnyDof> arm(guess);
+  const Index n = record.joints(), of_links = kLinkParameters * n;
+  Equations out;
+  std::vector<Eigen::RowVectorXd> lines;
+  for (Index k = 0; k < times.size(); ++k) {
+    const Eigen::MatrixXd Y =
+        regressor(arm, motion.x.row(k).transpose(), motion.v.row(k).transpose(),
+                  motion.a.row(k).transpose(), gravity);
+    for (Index j = 0; j < n; ++j) {
+      const double v = motion.v(k, j);
+      if (!moves_on(record, window, times[k], j, v, step[j])) continue;
+      Eigen::RowVectorXd line = Eigen::RowVectorXd::Zero(of_links + kOwnParameters * n);
+      line.head(of_links) = Y.row(j);
+      line.segment<kOwnParameters>(of_links + kOwnParameters * j) << v, v > 0 ? 1 : -1, 1,
+          motion.x(k, j);
+      lines.push_back(std::move(line));
+      out.time.push_back(k);
+      out.joint.push_back(j);
+    }
+  }
+  out.A.resize(static_cast<Index>(lines.size()), of_links + kOwnParameters * n);
+  for (Index i = 0; i < out.A.rows(); ++i) out.A.row(i) = lines[static_cast<std::size_t>(i)];
+  return out;
+}
+
+Eigen::VectorXd Equations::of(const Eigen::MatrixXd& torque) const {
+  Eigen::VectorXd b(A.rows());
+  for (Index i = 0; i < b.size(); ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    b[i] = torque(time[row], joint[row]);
+  }
+  return b;
+}
+
+PlausibleLink::PlausibleLink(const LinkParameters& guess) {
+  Matrix4d J = pseudo_inertia(guess);
+  // Scales to units in which every body is about one: its mass and its size squared.
+  const double mass = std::max(guess[0], 1e-9);
+  const double size2 = std::max(J.topLeftCorner<3, 3>().trace() / mass, 1e-8);
+  Eigen::Vector4d unit = Eigen::Vector4d::Constant(std::sqrt(mass * size2));
+  unit[3] = std::sqrt(mass);
+  Matrix4d scaled = unit.cwiseInverse().asDiagonal() * J * unit.cwiseInverse().asDiagonal();
+  for (double more = 1e-3;; more *= 2) {
+    const Eigen::LLT<Matrix4d> factor(scaled);
+    const Matrix4d L = factor.matrixL();
+    if (factor.info() == Eigen::Success && L.diagonal().minCoeff() > 0.01) {
+      L0_ = unit.asDiagonal() * L;
+      return;
+    }
+    scaled.diagonal().array() += more;
+  }
+}
+
+LinkParameters PlausibleLink::at(const LinkParameters& d) const {
+  const Matrix4d L = L0_ * triangle(d);
+  return parameters_of(Matrix4d(L * L.transpose()));
+}
+
+Eigen::Matrix<double, kLinkParameters, kLinkParameters> PlausibleLink::slope(
+    const LinkParameters& d) const {
+  const Matrix4d E = triangle(d);
+  Eigen::Matrix<double, kLinkParameters, kLinkParameters> out;
+  Eigen::Index k = 0;
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    for (Eigen::Index i = j; i < 4; ++i) {
+      Matrix4d dE = Matrix4d::Zero();
+      dE(i, j) = i == j ? E(j, j) : 1;
+      const Matrix4d half = L0_ * dE * E.transpose() * L0_.transpose();
+      out.col(k++) = parameters_of(Matrix4d(half + half.transpose()));
+    }
+  }
+  return out;
+}
 
 Identified identify(const ArmDescription& guess, const MotionRecord& record,
                     const FitSettings& settings) {

@@ -23,6 +23,16 @@ std::span<const double> span_of(const Eigen::VectorXd& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
 }
 
+ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
+  arm.gravity = unlike.gravity;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    arm.joints[i].spring = unlike.spring.size() > 0 ? unlike.spring[k] : 0;
+    arm.joints[i].offset = unlike.offset.size() > 0 ? unlike.offset[k] : 0;
+  }
+  return arm;
+}
+
 }  // namespace
 
 ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_friction) {
@@ -67,20 +77,6 @@ ArmDescription loaded(ArmDescription arm, double mass) {
   set_parameters(arm.links.back(), parameters_of(arm.links.back()) + parameters_of(load));
   return arm;
 }
-
-namespace {
-
-ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
-  arm.gravity = unlike.gravity;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    arm.joints[i].spring = unlike.spring.size() > 0 ? unlike.spring[k] : 0;
-    arm.joints[i].offset = unlike.offset.size() > 0 ? unlike.offset[k] : 0;
-  }
-  return arm;
-}
-
-}  // namespace
 
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
     : device_(with(truth, unlike)), traits_(device_.traits()), torque_scale_(unlike.torque_scale) {

@@ -97,6 +97,17 @@ template <int M>
   }
 }
 
+constexpr int kShare = 5;                // substeps that share a linearization
+constexpr double kFar = 0.05;            // linearizations farther apart are not extrapolated [rad]
+constexpr double kStictionSpeed = 1e-3;  // below it friction acts as a damper [rad/s]
+constexpr double kStopDepth = 0.01;      // a stop yields by this at the motor's limit [rad]
+
+template <int N>
+SubstepState<N, Pair> side_by_side(const std::array<SubstepState<N, double>, 2>& states) {
+  const auto& [one, two] = states;
+  return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
+}
+
 }  // namespace
 
 template <>
@@ -124,21 +135,6 @@ LIMPID_WIDE void run_substeps<7>(const WideSubsteps& steps) {
     wide_substeps<7>(steps);
   }
 }
-
-namespace {
-
-constexpr int kShare = 5;                // substeps that share a linearization
-constexpr double kFar = 0.05;            // linearizations farther apart are not extrapolated [rad]
-constexpr double kStictionSpeed = 1e-3;  // below it friction acts as a damper [rad/s]
-constexpr double kStopDepth = 0.01;      // a stop yields by this at the motor's limit [rad]
-
-template <int N>
-SubstepState<N, Pair> side_by_side(const std::array<SubstepState<N, double>, 2>& states) {
-  const auto& [one, two] = states;
-  return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
-}
-
-}  // namespace
 
 template <int N>
 VirtualArm<N>::VirtualArm(const ArmDescription& arm)
