@@ -13,9 +13,7 @@
 
 namespace limpid {
 
-// Numbers as bytes, the lowest first, whatever the computer's own order.
-
-// The bytes at..at + sizeof(T) - 1 must exist.
+// Little-endian numbers in bytes, on any computer. The bytes at..at + sizeof(T) - 1 must exist.
 template <std::unsigned_integral T>
 T load_le(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint64_t value = 0;
@@ -117,7 +115,7 @@ class RawProtocol final : public HidProtocol {
   std::uint32_t command_sequence_ = 0;
 };
 
-// Of all but the last four bytes of a report, into these.
+// Writes the CRC of a report, of all but its last four bytes, into these.
 void seal_raw_report(std::span<std::uint8_t, RawProtocol::kReportSize> report);
 
 }  // namespace limpid

@@ -5,7 +5,8 @@
 
 namespace limpid {
 
-// One row a tick, one column a joint. A row's torque is the one sent after its reading.
+// A record with one row a tick and one column a joint. A row's torque is the one sent after its
+// reading.
 struct MotionRecord {
   double T = 0.001;        // time between rows [s]
   Eigen::MatrixXd x;       // read [rad]
@@ -15,7 +16,7 @@ struct MotionRecord {
   Eigen::Index joints() const { return x.cols(); }
 };
 
-// One Gaussian window for positions and torques, without a shift in time. A linear law between
+// The same Gaussian window for positions and torques, without a shift in time. A linear law between
 // their derivatives stays exact, as both lose the same.
 struct Smoothing {
   double sigma;                               // [s]
