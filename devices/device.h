@@ -66,7 +66,8 @@ struct DeviceTruth {
   std::span<const double> motor_torque;  // the torque that acted over the last tick [N m]
 };
 
-// All but traits() belongs to the haptic thread: it never allocates, locks, throws, or waits.
+// A haptic device. All but traits() belongs to the haptic thread, and never allocates, locks,
+// throws or waits.
 class Device {
  public:
   virtual ~Device() = default;

@@ -1,5 +1,5 @@
-// TOML tables read strictly. Keys that are unknown, values of the wrong type and out of range are
-// refused with file, line, key, what was found and what is allowed.
+// TOML tables read strictly. Unknown keys, values of the wrong type and out of range are refused
+// with file, line, key, what was found and what is allowed.
 #pragma once
 
 #include <toml++/toml.h>

@@ -11,9 +11,9 @@
 //   AxisCheck check(device.traits());
 //   device.write(check.step({reading.x, T, well}));
 //
-// `well` says that the device is there, its newest reading is fresh, it reports no fault and the
-// hand on it, and nobody has cut the force. Once it is false, nothing moves on: begin with a new
-// check. When check.done(), the torque stays zero, and the device may be trusted if check.passed();
+// `well`: the device is there, its newest reading is fresh, it reports no fault and the hand on it,
+// and nobody has cut the force. Once `well` is false the check has ended: begin a new one. When
+// check.done(), the torque stays zero, and the device may be trusted if check.passed();
 // remember_check (device_store.h) then stores it. A panel shows axis() and what_to_do(stage())
 // while it runs, afterwards explain(verdict) of axis().
 #pragma once

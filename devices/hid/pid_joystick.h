@@ -22,8 +22,7 @@ struct PidSettings {
   double effort = 0.5;            // torque at full force [N m]
   double duration = 0.010;        // of an effect that is not started again, at most 0.1 [s]
   double restart = 0.004;         // time until it is started again, less than the duration [s]
-  std::array<bool, 2> reverse{};  // of each joint: the device pushes the wrong way; products
-                                  // differ, axis_check.h finds it
+  std::array<bool, 2> reverse{};  // joints pushed the wrong way; products differ (axis_check.h)
 };
 
 // Driver with joints X (positive to the right) and Y (positive towards the user), or X alone.

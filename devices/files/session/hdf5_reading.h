@@ -1,9 +1,8 @@
 // HDF5 files that anybody may have made, read with distrust; owners of HDF5's identifiers.
 //
 // A file of this format can name other files (external storage, virtual datasets, links), whose
-// bytes would then be read as its own, and can name code to load (filters). It can also claim far
-// more than it stores. Such files, and what is in them, are opened through this header, which
-// refuses all of that.
+// bytes would be read as its own. It can name code to load (filters), and claim far more than it
+// stores. Such files, and what is in them, are opened through this header, which refuses all that.
 #pragma once
 
 #include <hdf5.h>
@@ -113,8 +112,7 @@ File open_to_read(const std::filesystem::path& file);
 bool has(hid_t root, const std::string& path, const std::filesystem::path& file);
 
 // Open a dataset or a group. Errors: FileError for what does not exist, is of another kind, is not
-// reached by hard links, is stored outside of this file, or is packed by a filter that does not
-// belong to HDF5.
+// reached by hard links, or is stored outside of this file; for filters that do not belong to HDF5.
 Dataset open_dataset(hid_t root, const std::string& path, const std::filesystem::path& file);
 Group open_group(hid_t root, const std::string& path, const std::filesystem::path& file);
 

@@ -65,8 +65,7 @@ struct SessionInfo {
   // The arm of the rows. Readers leave it out, as device_urdf has it. A file that is written
   // without it has neither tips nor names of joints.
   std::shared_ptr<const ArmDescription> arm;
-  std::vector<bool>
-      slides;  // of each joint, as far as the file says; empty: none is known to slide
+  std::vector<bool> slides;         // joints that slide, as far as known; empty: none
   std::vector<std::string> bodies;  // names of the objects that move, in the rows' order
   // All parameters at row 0 of a second run on the same hand (TOML); nothing if there is one run.
   std::optional<std::string> twin;

@@ -362,8 +362,7 @@ void SessionLane::sort_in(std::span<const double> rows) {
   for (auto from = rows.begin(); from != rows.end();) {
     for (Place& place : places) {
       for (int i = 0; i < place.width; ++i, ++from) {
-        *place.to++ =
-            place.byte ? static_cast<std::uint8_t>(*from) : *from;  // as it will be stored
+        *place.to++ = place.byte ? static_cast<std::uint8_t>(*from) : *from;  // as stored
       }
     }
   }
