@@ -30,12 +30,11 @@ namespace limpid {
 // Reads CLOCK_MONOTONIC, or simulates it; both threads call it. It must neither wait nor allocate.
 using ReadClock = std::function<nanoseconds()>;
 
-// The state of both directions. read, write and stop belong to the haptic thread; step and finish
-// to the I/O thread.
+// Exchange with one device. read, write and stop belong to the haptic thread; step and finish to
+// the I/O thread.
 class HidExchange {
  public:
-  // Age of the newest command from which no torque is sent; less than 10 ms with the turn that
-  // notices it.
+  // Longest life of a command's torque; less than 10 ms with the turn that notices its end.
   static constexpr nanoseconds kTorqueLife = std::chrono::milliseconds(7);
   static constexpr nanoseconds kSendPeriod = std::chrono::milliseconds(1);
   // Longest silence towards the device: it drops its force by itself after 10 ms, and a PID effect
