@@ -1,4 +1,4 @@
-// A device as its user wants it: axes turned round, scaled, and with its zero where it should be.
+// A device as its user wants it: axes inverted, scaled, and with its zero where it should be.
 #pragma once
 
 #include <memory>
@@ -9,21 +9,22 @@ namespace limpid {
 
 struct AxisAdjustment {
   double zero = 0;   // the device's reading where the joint is at zero [rad]
-  double scale = 1;  // joint angle a device angle, above 0 [-]
+  double scale = 1;  // joint angle per device angle, above 0 [-]
   bool inverted = false;
-  bool reversed = false;  // its motor pushes the other way than its reading counts
+  bool reversed = false;  // the motor pushes against the direction of the reading
 
   double factor() const { return inverted ? -scale : scale; }
   friend bool operator==(const AxisAdjustment&, const AxisAdjustment&) = default;
 };
 
-// A motor that is reversed is told the opposite, so that it does what it is told. Then angles
-// become factor * (x - zero), torques are multiplied by the factor too: the power at the joint is
-// the power at the device, so that nothing passive becomes active. A device whose motors give
-// `torque_scale` times what they are told is told so much less, and its limits are so much higher.
+// Applies each axis' adjustment and the scale of the motors' torque. A reversed motor is told the
+// opposite, so that it does what it is told. Angles become factor * (x - zero), torques are
+// multiplied by the factor too. The power at the joint thus is the power at the device: nothing
+// passive becomes active. Motors that give `torque_scale` times what they are told are told that
+// much less; their limits rise as much.
 class AdjustedDevice final : public Device {
  public:
-  // One adjustment a joint; joints without one are left as they are. torque_scale: above 0.
+  // Takes one adjustment a joint; joints without one stay as they are. torque_scale: above 0.
   AdjustedDevice(std::unique_ptr<Device> device, std::span<const AxisAdjustment> axes,
                  double torque_scale = 1);
 

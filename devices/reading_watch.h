@@ -1,33 +1,33 @@
-// Whether a device can be where its readings say that it is.
+// Plausibility of a device's readings: whether it can be where they say.
 #pragma once
 
 #include "devices/device.h"
 
 namespace limpid {
 
-// A reading can arrive whole and be wrong: a counter that loses a turn, a bit that falls over. Such
-// a reading is not to reach a law, an observer or an account of energy, so it is judged before all
-// of them, whatever protocol it came by: by the range that the device says it has, and by how far
-// its fastest joint can have gone since the last one that was believed (safety_limits.h). That one
-// may have been up to kStaleReading old when it was read.
+// Judges readings before any law, observer or account of energy sees them, whatever their protocol.
+// A reading can arrive whole and be wrong: a counter that loses a turn, a flipped bit. It has to
+// lie in the device's range, and no farther from the last believed reading than the fastest joint
+// can go (safety_limits.h). The believed one may have been up to kStaleReading old when it was
+// read.
 class ReadingWatch {
  public:
-  // Begins with a device that was just plugged in: its first reading is judged by its range alone.
+  // Begins with a device just plugged in: its first reading is judged by its range alone.
   void start() { *this = {}; }
 
-  void wait(double dt) noexcept { since_ += dt; }  // so much time passes [s]
-  // Whether this reading, the newest one, is believed. One that is not stays so until another one
-  // comes.
+  void wait(double dt) noexcept { since_ += dt; }  // lets time pass [s]
+  // Returns whether this reading, the newest one, is believed. The verdict holds until another
+  // reading comes.
   bool believes(const DeviceReading& now, const DeviceTraits& traits) noexcept;
 
  private:
-  std::array<double, kMaxDof> judged_{}, last_{};  // last: of those believed [rad]
-  std::uint64_t count_ = 0;                        // of the one judged last
-  double since_ = 0;                               // the last believed one was new [s]
+  std::array<double, kMaxDof> judged_{}, last_{};  // judged last; believed last [rad]
+  std::uint64_t count_ = 0;                        // of the reading judged last
+  double since_ = 0;                               // time since the last believed new reading [s]
   bool any_ = false, believed_ = true;
 };
 
-// Whether every joint is somewhere, and no further beyond the device's range than kOutside.
+// Returns whether every position is finite and at most kOutside beyond the device's range.
 bool within_reach(const DeviceReading& reading, const DeviceTraits& traits) noexcept;
 
 }  // namespace limpid

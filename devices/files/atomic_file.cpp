@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
   throw FileError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(code)));
 }
 
-// A pipe or a device, as /dev/stdout: another file in its place would be the end of it.
+// Writes into a pipe or a device, as /dev/stdout, which no file may replace.
 void write_into(const fs::path& file, std::span<const unsigned char> bytes) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0) fail(file, errno);
@@ -34,7 +34,7 @@ void write_into(const fs::path& file, std::span<const unsigned char> bytes) {
   if (code != 0) fail(file, code);
 }
 
-// The name itself survives a power cut only once its folder is on the disk, too.
+// Makes a new name survive a power cut: that takes its folder on the disk, too.
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -46,10 +46,62 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// A name that nobody else takes, on whatever computer. Short: names have 255 bytes at most.
+// A name that nobody else takes, on any computer. Short, as names have at most 255 bytes.
 fs::path fresh_name(const fs::path& folder) {
   std::random_device chance;
   return folder / fmt::format(".limpid-{:08x}{:08x}.new", chance(), chance());
+}
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::size_t kLongest = 1 << 20;              // of a file [bytes]
+constexpr auto kPatience = std::chrono::seconds(2);    // others hold it for milliseconds
+constexpr auto kPause = std::chrono::milliseconds(5);  // between two tries
+
+// A lock that keeps out others, also threads of this program, while it lives.
+class Lock {
+ public:
+  explicit Lock(const fs::path& file)
+      : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666)) {
+    if (descriptor_ < 0) fail(file, std::strerror(errno));
+    const auto end = SteadyClock::now() + kPatience;
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK && SteadyClock::now() < end) {
+        std::this_thread::sleep_for(kPause);
+      } else if (errno != EINTR) {
+        const int code = errno;
+        ::close(descriptor_);
+        fail(file, code == EWOULDBLOCK ? "another program has held it for two seconds"
+                                       : std::strerror(code));
+      }
+    }
+  }
+  ~Lock() { ::close(descriptor_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  [[noreturn]] static void fail(const fs::path& file, const char* why) {
+    throw FileError(fmt::format("{}: cannot be locked: {}", file.string(), why));
+  }
+
+  int descriptor_;
+};
+
+constexpr const char* kPart = ".part";
+// The longest name without the endings put behind it: .part, and .frames of a video [bytes].
+constexpr std::size_t kLongestName = NAME_MAX - 12;
+
+[[noreturn]] void fail(const fs::path& file, const char* what, int code) {
+  throw FileError(fmt::format("{}: {}: {}", file.string(), what, std::strerror(code)));
+}
+
+void sync(const fs::path& file, int flags) {
+  const int descriptor = ::open(file.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) fail(file, "cannot open", errno);
+  const int code = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (code != 0) fail(file, "cannot write", code);
 }
 
 }  // namespace
@@ -58,7 +110,7 @@ Draft::Draft(const fs::path& file)
     : file_(file),
       descriptor_(::open(folder_of(file).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666)) {
   if (descriptor_ >= 0) return;
-  // Some file systems have no files without a name.
+  // File systems without nameless files get one with a temporary name.
   name_ = fresh_name(folder_of(file));
   descriptor_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(file, errno);
@@ -109,47 +161,6 @@ std::string try_write_atomically(const std::filesystem::path& file, std::string_
   }
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-using SteadyClock = std::chrono::steady_clock;
-
-constexpr std::size_t kLongest = 1 << 20;              // of a file [bytes]
-constexpr auto kPatience = std::chrono::seconds(2);    // another one takes milliseconds
-constexpr auto kPause = std::chrono::milliseconds(5);  // between two tries
-
-// Held while it lives, also against others of this program.
-class Lock {
- public:
-  explicit Lock(const fs::path& file)
-      : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666)) {
-    if (descriptor_ < 0) fail(file, std::strerror(errno));
-    const auto end = SteadyClock::now() + kPatience;
-    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      if (errno == EWOULDBLOCK && SteadyClock::now() < end) {
-        std::this_thread::sleep_for(kPause);
-      } else if (errno != EINTR) {
-        const int code = errno;
-        ::close(descriptor_);
-        fail(file, code == EWOULDBLOCK ? "another program has held it for two seconds"
-                                       : std::strerror(code));
-      }
-    }
-  }
-  ~Lock() { ::close(descriptor_); }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-
- private:
-  [[noreturn]] static void fail(const fs::path& file, const char* why) {
-    throw FileError(fmt::format("{}: cannot be locked: {}", file.string(), why));
-  }
-
-  int descriptor_;
-};
-
-}  // namespace
-
 void update_file_under_lock(const fs::path& file,
                             const std::function<std::string(const std::string& text)>& change) {
   try {
@@ -170,28 +181,6 @@ void keep_unread(const fs::path& file) {
   fs::copy_file(file, kept, error);
   if (error) throw FileError(fmt::format("{}: {}", kept.string(), error.message()));
 }
-
-namespace fs = std::filesystem;
-
-namespace {
-
-constexpr const char* kPart = ".part";
-// The longest name, less the endings that go behind it: .part, and .frames of a video [bytes].
-constexpr std::size_t kLongestName = NAME_MAX - 12;
-
-[[noreturn]] void fail(const fs::path& file, const char* what, int code) {
-  throw FileError(fmt::format("{}: {}: {}", file.string(), what, std::strerror(code)));
-}
-
-void sync(const fs::path& file, int flags) {
-  const int descriptor = ::open(file.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) fail(file, "cannot open", errno);
-  const int code = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  if (code != 0) fail(file, "cannot write", code);
-}
-
-}  // namespace
 
 fs::path part_of(const fs::path& out) {
   fs::path part = out;

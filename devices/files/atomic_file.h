@@ -1,4 +1,4 @@
-// Files that are either as they were or as they shall be, whatever happens meanwhile.
+// Files that are replaced whole: as they were or as they shall be, whatever happens meanwhile.
 #pragma once
 
 #include <signal.h>
@@ -12,10 +12,8 @@
 
 namespace limpid {
 
-// Writing past a limit of the shell as an error, not as a signal.
-
-// Past the file size limit of the shell (ulimit -f) the kernel sends a deadly signal with the
-// error. While this lives the thread sees the error alone.
+// Makes writing past the file size limit of the shell (ulimit -f) an error alone. Without it the
+// kernel also sends this thread a deadly signal.
 class NoFileSizeSignal {
  public:
   NoFileSizeSignal() {
@@ -36,11 +34,11 @@ class NoFileSizeSignal {
   sigset_t before_{};
 };
 
-// A new file in the folder of `file`, without a name of its own where the file system has such. It
-// is gone, also with the process, unless it is kept.
+// A new file in the folder of `file`, without a name of its own if the file system can do that.
+// Unless it is kept, it is gone with this object or the process.
 class Draft {
  public:
-  // Errors of both: FileError naming `file`.
+  // Errors, also of keep(): FileError naming `file`.
   explicit Draft(const std::filesystem::path& file);
   ~Draft();
   Draft(const Draft&) = delete;
@@ -48,8 +46,8 @@ class Draft {
 
   int descriptor() const { return descriptor_; }  // for reading and writing
   bool has_name() const { return !name_.empty(); }
-  // Goes on to the disk and takes the name `file`, in place of what has it. A link is replaced:
-  // see past_links().
+  // Brings it to the disk and gives it the name `file`, in place of what has that name. A link is
+  // replaced: see past_links().
   void keep();
 
  private:
@@ -57,44 +55,41 @@ class Draft {
   int descriptor_;
 };
 
-// The file that a link leads to; any other file itself.
+// The file that a link leads to; any other file is returned as it is.
 std::filesystem::path past_links(const std::filesystem::path& file);
 
-// Puts the bytes on the disk beside `file` and gives them its name then. Errors: FileError; the
-// file is then as it was. Pipes and devices are written into instead.
+// Writes the bytes to the disk beside `file`, then gives them its name. Errors: FileError; the file
+// is then as it was. Pipes and devices are written into instead.
 void write_atomically(const std::filesystem::path& file, std::span<const unsigned char> bytes);
 
-// The same for text and a folder that may not be there yet, for what is not worth losing work over:
-// returns what went wrong, empty if nothing did.
+// Writes text likewise, and makes the folder if needed. Returns the error instead of throwing,
+// empty if none: for files not worth losing work over.
 std::string try_write_atomically(const std::filesystem::path& file, std::string_view text);
 
-// Files that several programs change: one after the other, and each only its own part.
-
-// Hands `change` the text of the file as it is now, empty where there is none, and puts what it
-// returns in the file's place. Nobody else who comes this way reads or writes it meanwhile: they
-// lock FILE.lock, which stays. The folder is made if need be. Errors: FileError where it cannot be
-// read or written, or where another program holds the lock for more than two seconds; the file is
-// then as it was, as it is when `change` throws.
+// Changes a file that several programs change, each its own part. Hands `change` its present text,
+// empty if there is no file, and writes what `change` returns. FILE.lock, which stays, is locked
+// meanwhile: others that use this function wait. Makes the folder if needed. Errors: FileError if
+// it cannot be read or written, or if another program holds the lock for more than two seconds.
+// After these, and if `change` throws, the file is as it was.
 void update_file_under_lock(const std::filesystem::path& file,
                             const std::function<std::string(const std::string& text)>& change);
 
-// Before something else takes the place of a file that cannot be read: its bytes stay beside it, as
-// FILE.unread, or with the first number that makes it a new one. Errors: FileError.
+// Copies a file that cannot be read, before it is replaced, to FILE.unread or the first
+// FILE.unread-N that is new. Errors: FileError.
 void keep_unread(const std::filesystem::path& file);
 
-// Where files that take long to write go: OUT.part while they grow, OUT once they are whole.
-
-// OUT -> OUT.part
+// The file OUT.part, in which a file that takes long to write grows until it is whole.
 std::filesystem::path part_of(const std::filesystem::path& out);
 
-// Whether the name leaves room for what goes behind it. Errors: FileError.
+// Refuses names too long for the endings put behind them. Errors: FileError.
 void check_name(const std::filesystem::path& out);
-// Whether there can be a new file in the folder of `out`, before it is made. Errors: FileError.
+// Refuses an `out` whose folder cannot hold a new file, before it is made. Errors: FileError.
 void check_folder(const std::filesystem::path& out);
-// The same for `out` itself, which must not be a folder, nor, without `force`, a file.
+// Refuses what check_name() or check_folder() refuses, folders, and without `force` any file.
+// Errors: FileError.
 void check_place(const std::filesystem::path& out, bool force);
 
-// Brings a finished file to the disk and gives it its name. Errors: FileError.
+// Brings a finished file to the disk and gives it the name `out`. Errors: FileError.
 void publish(const std::filesystem::path& finished, const std::filesystem::path& out, bool force);
 
 }  // namespace limpid

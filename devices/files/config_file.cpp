@@ -57,7 +57,7 @@ void take_table(Parameters& p, const toml::table& table, const std::string& pref
   }
 }
 
-// `text` as a TOML value, or itself if it is none.
+// `text` as a TOML value; if it is none, as text.
 ParameterValue parse_value(const std::string& text) {
   try {
     const toml::table table = toml::parse("v = " + text);
@@ -117,7 +117,7 @@ void apply_setting(Parameters& p, std::string_view setting) {
 }
 
 std::string config_text(const Parameters& p) {
-  // Whoever owns a key, a table stands once.
+  // Collects the keys of each table, so that every table is written once.
   std::vector<std::pair<std::string_view, std::string>> tables;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(p, info);

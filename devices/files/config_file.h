@@ -15,25 +15,26 @@
 
 namespace limpid {
 
-// Sets what the file says and leaves the rest. Errors: FileError "FILE:LINE: KEY: ..." for text
-// that is not TOML, a key that does not exist (naming the nearest one that does), a value that is
-// not allowed; `p` is then unchanged.
+// Sets what the file says and leaves the rest. Errors: FileError "FILE:LINE: KEY: ..."; `p` is then
+// unchanged. They are for text that is not TOML, for an unknown key (naming the nearest known one),
+// and for a value that is not allowed.
 void apply_config(Parameters& p, const std::filesystem::path& file);
 void apply_config_text(Parameters& p, std::string_view text, const std::string& where);
 
-// The same of one table of a text, key by key: what cannot be taken is left as it is, and said in
-// the words of apply_config. Its key is empty where the table is something else. Errors: FileError
-// for text that is not TOML.
+// A key of a table that was not applied, and why, in the words of apply_config(). The key is empty
+// if the table is no table.
 struct UntakenKey {
   std::string key, why;
 };
+// Applies one table of a text key by key, leaving out what cannot be applied. Errors: FileError for
+// text that is not TOML.
 std::vector<UntakenKey> take_config_table(Parameters& p, const std::string& text,
                                           const std::string& table, const std::string& where);
 
-// One "key=value" of `--set`; bare words stand for text. Errors: ParameterError.
+// Applies one "key=value" of `--set`; bare words are text. Errors: ParameterError.
 void apply_setting(Parameters& p, std::string_view setting);
 
-// TOML that gives these parameters again to the last bit; what is left to the arm is left out.
+// TOML that gives these parameters again to the last bit, without those left to the arm.
 std::string config_text(const Parameters& p);
 
 }  // namespace limpid

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-// Near a pitch of 90 degrees only the sum of roll and yaw matters: yaw is what round-off says, and
-// roll what fits to that.
+// Angles near those of R. Near a pitch of 90 degrees only the sum of roll and yaw matters: yaw is
+// left to round-off, and roll fits to it.
 Vec3 nearby(const Mat3& R) {
   const double across = std::hypot(R(0, 0), R(1, 0));
   const double yaw = across < 1e-9 ? 0 : std::atan2(R(1, 0), R(0, 0));
@@ -22,7 +22,7 @@ Vec3 nearby(const Mat3& R) {
 
 double half_turn_on(double angle) { return angle > 0 ? angle - kHalfTurn : angle + kHalfTurn; }
 
-// The number `steps` further among the doubles; zero stays what it is.
+// The double `steps` after x, before it if negative; zero stays zero.
 double further(double x, int steps) {
   if (x == 0) return 0;
   const double towards = steps < 0 ? -10 : 10;
@@ -53,7 +53,7 @@ Vec3 rpy_of(const Mat3& R) {
       if (rotation(rounded) == R) return rounded + Vec3::Zero();  // no -0
     }
   }
-  constexpr int kSteps = 2;  // of the last place
+  constexpr int kSteps = 2;  // units in the last place
   for (int far = 0; far <= kSteps; ++far) {
     for (int x = -far; x <= far; ++x) {
       for (int y = -far; y <= far; ++y) {

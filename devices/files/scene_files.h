@@ -1,4 +1,4 @@
-// The models of a scene as they are kept: in memory, and inside session files.
+// Models of a scene as bytes: in memory, and inside session files.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@ namespace limpid {
 
 using ModelBytes = std::shared_ptr<const std::vector<unsigned char>>;
 
-// Bytes of models by the names that a scene's text has for them.
+// Bytes of models by their names in a scene's text.
 using SceneFiles = std::map<std::string, ModelBytes>;
 
 }  // namespace limpid

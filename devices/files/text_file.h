@@ -1,4 +1,4 @@
-// Whole text files into memory, and what their lines need.
+// Text files read whole, and FileError, the one error of all that reads or writes files.
 #pragma once
 
 #include <sys/stat.h>
@@ -13,9 +13,7 @@
 
 namespace limpid {
 
-// The one error of everything that reads or writes files.
-
-// What is in a file may hold anything; a message is one line.
+// `text` in one line: control characters, as files may hold them, become blanks.
 inline std::string one_line(std::string text) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
@@ -28,8 +26,8 @@ struct FileError : std::runtime_error {
   explicit FileError(const std::string& what) : std::runtime_error(one_line(what)) {}
 };
 
-// Why there is nothing to be found at `path`, in the system's words or as `absent` if it is simply
-// not there; empty if there is something.
+// The reason why nothing is found at `path`: `absent` if nothing is there, else the system's words.
+// Empty if something is found.
 inline std::string why_not_found(const std::filesystem::path& path, const std::string& absent) {
   struct stat found {};
   if (::stat(path.c_str(), &found) == 0) return {};
@@ -40,7 +38,7 @@ inline std::string why_not_found(const std::filesystem::path& path, const std::s
 // is missing, no regular file, unreadable or longer than `limit` bytes.
 std::string read_text(const std::filesystem::path& file, std::size_t limit);
 
-// Without the blanks, tabs and carriage returns at its ends.
+// Characters that trimmed() takes off the ends of a text: blanks, tabs and carriage returns.
 inline constexpr std::string_view kBlanks = " \t\r";
 std::string_view trimmed(std::string_view text);
 

@@ -25,7 +25,7 @@ std::optional<double> number_in(const toml::node& node, const Range& range) {
   return inside && x <= range.maximum ? std::optional(x) : std::nullopt;
 }
 
-// Of just so many.
+// A list of exactly `count` numbers in range; nothing if the node is anything else.
 std::optional<std::vector<double>> list_in(const toml::node& node, std::size_t count,
                                            const Range& range) {
   const toml::array* list = node.as_array();

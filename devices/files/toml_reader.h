@@ -1,5 +1,5 @@
-// TOML tables read strictly: what is unknown, of the wrong type or out of range is refused with
-// file, line, key, what was found and what is allowed.
+// TOML tables read strictly. Unknown keys, values of the wrong type and out of range are refused
+// with file, line, key, what was found and what is allowed.
 #pragma once
 
 #include <toml++/toml.h>
@@ -18,15 +18,14 @@
 
 namespace limpid {
 
-// Which numbers a file may have somewhere.
-
+// Numbers that a file may have for a key.
 struct Range {
   double minimum;
   double maximum;
   bool exclusive_minimum = false;
   const char* unit = "";
 
-  // The allowed number nearest to x; `otherwise` in place of what is no number.
+  // The allowed number nearest to x; `otherwise` if x is no number.
   double hold(double x, double otherwise) const {
     if (std::isnan(x)) return otherwise;
     const double least =
@@ -35,20 +34,20 @@ struct Range {
   }
 };
 
-// Errors: FileError "WHERE:LINE: ..." for text that is not TOML.
+// Parses TOML. Errors: FileError "WHERE:LINE: ..." for text that is not TOML.
 toml::table parse_toml(std::string_view text, const std::string& where);
 
-// What stands in the file, short, for messages.
+// The value of a node as it stands in the file, shortened for messages.
 std::string found_text(const toml::node& node);
 
 // The candidate nearest to `word` in spelling, or nothing if none resembles it.
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& among);
 
-// Every reader returns nothing where the key is missing and throws FileError where its value is
-// not allowed; `need` turns the former into the latter.
+// A table of a TOML file. Every reader returns nothing if the key is missing, and throws
+// FileError if its value is not allowed. need() refuses a missing key, too.
 class TomlTable {
  public:
-  // `path` names the table in messages, "" the whole file.
+  // `path` names the table in messages; "" is the whole file.
   TomlTable(const toml::table& table, std::string where, std::string path)
       : table_(table), where_(std::move(where)), path_(std::move(path)) {}
 
@@ -61,7 +60,7 @@ class TomlTable {
   std::optional<bool> flag(const char* key) const;
   std::optional<Vec3> vector(const char* key, const Range& each) const;
   std::optional<std::vector<Vec3>> vectors(const char* key, const Range& each) const;
-  // A list of just so many numbers.
+  // A list of exactly `count` numbers.
   std::optional<std::vector<double>> numbers(const char* key, std::size_t count,
                                              const Range& each) const;
   std::optional<std::vector<std::array<double, 2>>> pairs(const char* key, const Range& each) const;
@@ -76,14 +75,14 @@ class TomlTable {
   }
 
   [[noreturn]] void refuse(const char* key, const std::string& allowed) const;
-  // For what was found in words of its own.
+  // Refuses a value, with its own words for what was found.
   [[noreturn]] void refuse_as(const char* key, const std::string& found,
                               const std::string& allowed) const;
   [[noreturn]] void refuse_missing(const char* key) const;
 
  private:
   std::string full(std::string_view key) const;
-  // Lists of `count` numbers each.
+  // A list of lists of `count` numbers each.
   std::optional<std::vector<std::vector<double>>> lists(const char* key, std::size_t count,
                                                         const Range& each) const;
 

@@ -15,9 +15,9 @@ namespace limpid {
 
 namespace {
 
-constexpr double kLeastRange = 1e-3;   // of a joint [rad], of a slide 0.1 mm
-constexpr double kLeastMotion = 1e-6;  // of the tip, for 1 rad of a joint [m]
-constexpr int kPoses = 8;              // in which the tip is looked at
+constexpr double kLeastRange = 1e-3;   // of a joint [rad]; of a slide 0.1 mm
+constexpr double kLeastMotion = 1e-6;  // of the tip a radian of a joint [m]
+constexpr int kPoses = 8;              // number of poses in which the tip is checked
 
 void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
   const double unit = slides(joint) ? kSlideUnit : 1;
@@ -38,7 +38,8 @@ void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
   }
 }
 
-// At the rest pose, and at others: by chance a tip may stand still in one.
+// Returns whether a joint moves the tip, at the rest pose or at others: in one pose it may stand
+// still by chance.
 bool tip_moves(const ArmDescription& description) {
   const Arm<kAnyDof> arm(description);
   std::mt19937 random(1);
@@ -58,7 +59,7 @@ bool tip_moves(const ArmDescription& description) {
   return false;
 }
 
-// Of the frames that the last joint moves the one farthest from its axis; null where all are on it.
+// The frame moved by the last joint that is farthest from its axis; null if all are on the axis.
 const NamedFrame* beside_axis(const ArmDescription& arm) {
   const Vec3& axis = arm.joints.back().axis;
   const NamedFrame* best = nullptr;
@@ -74,24 +75,7 @@ const NamedFrame* beside_axis(const ArmDescription& arm) {
   return best;
 }
 
-}  // namespace
-
-void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places) {
-  for (const Joint& joint : arm.joints) warn_of_joint(joint, places);
-  if (tip_moves(arm)) return;
-  const NamedFrame* const other = beside_axis(arm);
-  places.warn_link(
-      arm.tip_link,
-      fmt::format("the tip lies on the axis of '{}', and no joint moves it: a hand at the tip "
-                  "cannot move the arm; name a link beside the axis with --tip LINK{}",
-                  arm.joints.back().name,
-                  other != nullptr ? fmt::format(" ('{}' is one)", other->name)
-                                   : ", or fix one there in the file"));
-}
-
-namespace {
-
-// Whether it has a length that can be made 1.
+// Returns whether `axis` has a length that can be made 1.
 bool is_direction(const Vec3& axis) {
   return axis.allFinite() && axis.stableNorm() > 1e-9 &&
          std::abs(axis.stableNormalized().norm() - 1) < 1e-9;
@@ -102,7 +86,7 @@ bool has_no_inertia(const Joint& joint, const Link& link) {
   return about_origin(link).isZero(0);
 }
 
-// The last joint stays where it is, and its link becomes a part of the one before.
+// Fixes the last joint, and merges its link into the one before.
 void fix_last(ArmDescription& arm) {
   const Joint& joint = arm.joints.back();
   const double at = std::clamp(0.0, joint.lower, joint.upper);
@@ -127,30 +111,6 @@ void fix_last(ArmDescription& arm) {
   arm.links.pop_back();
   arm.joints.pop_back();
 }
-
-}  // namespace
-
-void shorten_to_mass(ArmDescription& arm, UrdfPlaces& places) {
-  std::vector<std::string> links, joints;
-  while (arm.dof() > 1 && has_no_inertia(arm.joints.back(), arm.links.back())) {
-    links.push_back("'" + arm.links.back().name + "'");
-    joints.push_back("'" + arm.joints.back().name + "'");
-    fix_last(arm);
-  }
-  if (links.empty()) return;
-  std::ranges::reverse(links);
-  std::ranges::reverse(joints);
-  const bool one = links.size() == 1;
-  places.warn(fmt::format(
-      "{} {} at the end of the chain {} no inertia, and so {} held still; the last joint that "
-      "moves "
-      "is '{}'. An <inertial> with mass and inertia lets {} move",
-      one ? "link" : "links", fmt::join(links, ", "), one ? "has" : "have",
-      one ? "joint " + joints[0] + " is" : fmt::format("joints {} are", fmt::join(joints, ", ")),
-      arm.joints.back().name, one ? "it" : "them"));
-}
-
-namespace {
 
 Vec3 vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -209,7 +169,7 @@ class Chain {
  private:
   int moving() const { return arm_.dof() - 1; }
 
-  // What moves may all be in grippers, which are no tips by themselves.
+  // Refuses a way without moving joints; those that move may all be in grippers, which are no tips.
   [[noreturn]] void refuse_still() const {
     for (const auto& [name, joint] : model_.joints_) {
       if (!moves(*joint)) continue;
@@ -225,7 +185,7 @@ class Chain {
         kMaxDof));
   }
 
-  // A link and what it carries besides joint `on`.
+  // Adds a link and all that it carries, without what is behind joint `on`.
   void add_tree(const urdf::Link& link, const Pose& here, const urdf::Joint* on) {
     arm_.frames.push_back({link.name, moving(), here});
     if (link.inertial) add_inertial(link, here);
@@ -270,7 +230,7 @@ class Chain {
     return origin;
   }
 
-  // Where the child of a joint that is not moved stands.
+  // Pose of the child of a joint that is held still.
   Pose held(const urdf::Joint& joint, const Pose& here) {
     Pose there = origin_of(joint, here);
     if (joint.type == urdf::Joint::FIXED) return there;
@@ -286,7 +246,7 @@ class Chain {
     return there;
   }
 
-  // Over joint i of the way; returns the frame of its child in that of the link that moves.
+  // Passes joint i of the way. Returns the frame of its child in the frame of the moving link.
   Pose pass(const urdf::Joint& joint, const Pose& here, std::size_t i) {
     if (joint.mimic && i < last_moving_) {
       places_.refuse_joint(
@@ -342,7 +302,7 @@ class Chain {
     return out;
   }
 
-  // From m, N and N s/m.
+  // Converts a slide from m, N and N s/m to units of its travel.
   static void in_units_of_travel(Joint& joint) {
     joint.kind = Joint::Kind::prismatic;
     joint.lower /= kSlideUnit;
@@ -377,6 +337,39 @@ class Chain {
 };
 
 }  // namespace
+
+void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places) {
+  for (const Joint& joint : arm.joints) warn_of_joint(joint, places);
+  if (tip_moves(arm)) return;
+  const NamedFrame* const other = beside_axis(arm);
+  places.warn_link(
+      arm.tip_link,
+      fmt::format("the tip lies on the axis of '{}', and no joint moves it: a hand at the tip "
+                  "cannot move the arm; name a link beside the axis with --tip LINK{}",
+                  arm.joints.back().name,
+                  other != nullptr ? fmt::format(" ('{}' is one)", other->name)
+                                   : ", or fix one there in the file"));
+}
+
+void shorten_to_mass(ArmDescription& arm, UrdfPlaces& places) {
+  std::vector<std::string> links, joints;
+  while (arm.dof() > 1 && has_no_inertia(arm.joints.back(), arm.links.back())) {
+    links.push_back("'" + arm.links.back().name + "'");
+    joints.push_back("'" + arm.joints.back().name + "'");
+    fix_last(arm);
+  }
+  if (links.empty()) return;
+  std::ranges::reverse(links);
+  std::ranges::reverse(joints);
+  const bool one = links.size() == 1;
+  places.warn(fmt::format(
+      "{} {} at the end of the chain {} no inertia, and so {} held still; the last joint that "
+      "moves "
+      "is '{}'. An <inertial> with mass and inertia lets {} move",
+      one ? "link" : "links", fmt::join(links, ", "), one ? "has" : "have",
+      one ? "joint " + joints[0] + " is" : fmt::format("joints {} are", fmt::join(joints, ", ")),
+      arm.joints.back().name, one ? "it" : "them"));
+}
 
 ArmDescription chain_of(const urdf::ModelInterface& model,
                         const std::vector<urdf::JointConstSharedPtr>& way,

@@ -1,4 +1,4 @@
-// From urdfdom's tree of links to the chain that the loop computes with.
+// The chain that the loop computes with, made from urdfdom's tree of links.
 #pragma once
 
 #include <urdf_model/model.h>
@@ -11,16 +11,14 @@
 
 namespace limpid {
 
-// Masses that move together.
-
 inline bool slides(const Joint& joint) { return joint.kind == Joint::Kind::prismatic; }
 
-// A point mass at r about the origin [kg m^2].
+// Inertia of a point mass at r about the origin [kg m^2].
 inline Mat3 point_inertia(double mass, const Vec3& r) {
   return mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
 }
 
-// About the origin of the link's frame [kg m^2].
+// Inertia of a link about the origin of its frame [kg m^2].
 inline Mat3 about_origin(const Link& link) {
   return link.inertia + point_inertia(link.mass, link.com);
 }
@@ -37,22 +35,18 @@ inline void merge(Link& link, const Link& body, const Pose& at) {
   link.com = com;
 }
 
-// Arms that are described in full and yet cannot move.
-
-// Warns of joints whose friction holds against their own motor, of joints with hardly any range,
-// and of a tip that no joint moves: what was found, and what to change.
+// Warns of arms that are described in full and yet cannot move, and says what to change: joints
+// whose friction resists their own motor, joints with hardly any range, a tip that no joint moves.
 void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places);
 
-// Chains that end in links without any mass.
-
-// Nothing holds back a joint beyond which nothing has mass: no torque could. Such joints at the end
-// of the chain are held still, at 0 or the limit next to it, with a warning, and what they moved is
-// fixed to the last link that has mass; the tip stays the tip. The first joint is left.
+// Holds joints at the chain's end still if nothing beyond them has mass, as no torque could control
+// them. They stay at 0 or the limit next to it, with a warning. What they moved is fixed to the
+// last link with mass; the tip stays the tip. The first joint is left.
 void shorten_to_mass(ArmDescription& arm, UrdfPlaces& places);
 
-// The joints of `way` that move, and everything else held still and merged into the links that they
-// move. What is missing and can be guessed is, with a warning.
-// Errors: FileError, as read_urdf.
+// The arm of the moving joints of `way`. All other joints are held still, and their links merged
+// into the links that move them. Missing data that can be guessed is guessed, with a warning.
+// Errors: FileError, as read_urdf().
 ArmDescription chain_of(const urdf::ModelInterface& model,
                         const std::vector<urdf::JointConstSharedPtr>& way,
                         const LinkShapes& visuals, UrdfPlaces& places);

@@ -20,10 +20,10 @@ namespace limpid {
 
 namespace {
 
-constexpr std::size_t kMostLinks = 5000;  // urdfdom takes a long chain of them apart by recursion
+constexpr std::size_t kMostLinks = 5000;  // urdfdom destroys a long chain of links recursively
 
-// While it lives, urdfdom's complaints come here and not to the terminal. There is one place for
-// them in the program: whoever reads another arm at the same time waits.
+// Collects urdfdom's complaints while it lives, in place of the terminal. The program has one place
+// for them: whoever else reads an arm meanwhile waits.
 class Complaints : public console_bridge::OutputHandler {
  public:
   Complaints() : only_one_(mutex()), before_(console_bridge::getOutputHandler()) {
@@ -58,7 +58,7 @@ class Complaints : public console_bridge::OutputHandler {
   std::string all_;
 };
 
-// Of the whole document, and what is in it.
+// Parses the whole document, and finds the lines of its joints and links.
 void parse_xml(TiXmlDocument& document, const std::string& text, UrdfPlaces& places) {
   document.Parse(text.c_str());
   if (document.Error()) {
@@ -95,7 +95,8 @@ std::string place_named_in(const std::string& complaint, const UrdfPlaces& place
   return places.where;
 }
 
-// So that a recording, which has the text alone, has the same arm.
+// `text` with its tip named inside, so that a recording, which has the text alone, has the same
+// arm.
 std::string with_tip(const std::string& text, const std::string& tip) {
   TiXmlElement own("limpid");
   own.SetAttribute("tip", tip);
@@ -109,7 +110,7 @@ std::string with_tip(const std::string& text, const std::string& tip) {
 urdf::ModelInterfaceSharedPtr parse_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
   const Complaints complaints;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf_dynamics(robot, places));
-  // It drops an inertia that it cannot read and goes on; so whatever it complains of is refused.
+  // urdfdom drops an inertia that it cannot read and goes on; therefore any complaint is refused.
   if (!model || !model->getRoot() || !complaints.none()) {
     const std::string what = complaints.one_line();
     throw FileError(fmt::format("{}: {}", place_named_in(what, places), what));

@@ -1,4 +1,4 @@
-// Arms from URDF files.
+// Arms read from URDF files.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,11 @@
 
 namespace limpid {
 
-// Files in xacro are expanded by the program `xacro`, which runs code that the file contains: only
-// somebody who named the file himself can want that.
-
+// Permission to expand xacro files, by the program `xacro`, which runs code that the file contains.
+// Only somebody who named the file can want that.
 enum class Xacro : std::uint8_t { refuse, expand };
 
-// A file that would have to be expanded, and nobody has said that it may be.
+// Refusal of a file that would have to be expanded without permission.
 struct XacroToExpand : FileError {
   explicit XacroToExpand(std::filesystem::path of)
       : FileError(of.string() +
@@ -30,15 +29,15 @@ struct XacroToExpand : FileError {
   std::filesystem::path file;
 };
 
-// Where a chain of joints may end, in a file of more than one chain.
+// A link at which a chain of joints may end, in a file of more than one chain.
 struct ArmTip {
   std::string link;
-  int joints = 0;  // that move, on the way to it
+  int joints = 0;  // moving joints on the way to it
 
   friend bool operator==(const ArmTip&, const ArmTip&) = default;
 };
 
-// An arm that branches, to ends that could both be meant.
+// Refusal of an arm that branches, to several ends that could be meant.
 struct TipsToChoose : FileError {
   TipsToChoose(const FileError& what, std::string of, std::vector<ArmTip> all)
       : FileError(what), file(std::move(of)), tips(std::move(all)) {}
@@ -47,25 +46,25 @@ struct TipsToChoose : FileError {
   std::vector<ArmTip> tips;  // the ends and the links where it branches, most joints first
 };
 
-// A chain of 1 to 32 joints that turn or slide, from the root to the link `tip`, or where none is
-// named to the one that the text names itself (<limpid tip="LINK"/>), or to the end of the longest
-// chain (way_to_tip in urdf_path.h). Everything else is held still at zero or the limit next to it;
-// links behind joints that do not move are merged into the one that moves them (those before the
-// first joint weigh nothing); the tip is the origin of the last link.
+// Reads an arm: a chain of 1 to 32 joints that turn or slide, from the root to the link `tip`.
+// Without a name, to the one that the text names itself (<limpid tip="LINK"/>), or to the end of
+// the longest chain (way_to_tip in urdf_path.h). All other joints are held still at zero or the
+// limit next to it. Links behind joints that do not move are merged into the link that moves them;
+// those before the first joint weigh nothing. The tip is the origin of the last link.
 //
-// What else the text says of the device is in <limpid>, see urdf_own.h.
+// The text's own elements <limpid> say more of the device: see read_own() in urdf_values.h.
 //
-// What an arm can do without is a line in its `warnings`: pictures that cannot be found (see
-// MeshFinder) or read, efforts of 0, links without inertia, joints that cannot move.
-// Errors: TipsToChoose where a name has to say which tip; XacroToExpand; FileError "FILE:LINE: ..."
+// Faults that an arm can do without are a line each in its `warnings`: pictures that cannot be
+// found (see MeshFinder) or read, efforts of 0, links without inertia, joints that cannot move.
+// Errors: TipsToChoose if a name has to say which tip; XacroToExpand; FileError "FILE:LINE: ..."
 // for what is not URDF or xacro that cannot be expanded, floating and planar joints in the chain, a
 // zero axis, numbers that are not finite, negative damping, friction, effort or mass, crossed
 // limits, and arms without any inertia.
 ArmDescription read_urdf(const std::filesystem::path& file, const std::string& tip = {},
                          Xacro xacro = Xacro::refuse);
 
-// `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
-// one inside a session) meshes with relative names are not found.
+// Reads an arm from text; `where` names it in messages. If `base_dir` is empty (text without a
+// folder, as inside a session), meshes with relative names are not found.
 ArmDescription parse_urdf(const std::string& text, const std::string& where,
                           const std::filesystem::path& base_dir, const std::string& tip = {});
 

@@ -19,7 +19,7 @@ constexpr int kDeepestChain = 500;
 
 bool is_fixed(const urdf::JointConstSharedPtr& joint) { return joint->type == urdf::Joint::FIXED; }
 
-// Recursion below relies on a tree of limited depth.
+// Refuses what is no tree of limited depth, on which recursion below relies.
 void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   if (model.links_.size() > kMostChainLinks) {
     places.refuse(fmt::format("{} links; at most {}", model.links_.size(), kMostChainLinks));
@@ -40,13 +40,13 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   }
 }
 
-// What lies behind a joint, the joint with it.
+// Summary of a joint and everything behind it.
 struct Branch {
-  int moving = 0;          // the most joints that move on one way outwards
-  bool turns = false;      // any of all that move is no slide
-  bool any_joint = false;  // also one that mimics
-  double mass = 0;         // of what its joints move
-  std::string tip;         // at the end of that way
+  int moving = 0;          // most moving joints on one way outwards
+  bool turns = false;      // any moving joint is no slide
+  bool any_joint = false;  // any joint is not fixed, mimics included
+  double mass = 0;         // moved by its joints [kg]
+  std::string tip;         // end of the way with the most moving joints
 };
 
 class Search {
@@ -87,7 +87,7 @@ class Search {
     }
   }
 
-  // Ends, and where hands begin: a palm is a tip as well as its fingers are.
+  // Lists ends, and links where the way branches: a palm is a tip as well as its fingers are.
   void list_tips(const urdf::Link& link, int joints, std::vector<ArmTip>& tips) const {
     int further = 0;
     for (const auto& joint : link.child_joints) {
@@ -130,7 +130,7 @@ class Search {
     return mass;
   }
 
-  // The joint that the arm goes on by; null where it ends.
+  // The joint by which the arm goes on; null where it ends.
   urdf::JointConstSharedPtr choose(const urdf::Link& link) const {
     urdf::JointConstSharedPtr turning, sliding;
     Branch by;
@@ -156,7 +156,7 @@ class Search {
     return with_joints == 1 ? sliding : nullptr;
   }
 
-  // Over fixed joints alone, to a link at their end or one that carries something.
+  // The way over fixed joints alone to the farthest link that is an end or carries a joint.
   Way farthest(const urdf::Link& link) const {
     Way best;
     double most = -1;

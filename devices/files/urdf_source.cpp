@@ -24,7 +24,7 @@ namespace {
 constexpr int kDeepestXml = 100;
 constexpr int kMostAttributes = 1000;  // of an element
 
-// Reads what TinyXML reads, element by element, and stops where it stops.
+// Checks what TinyXML reads, element by element, and stops where it stops.
 class Guard {
  public:
   Guard(std::string_view text, const std::string& where) : text_(text), where_(where) {}
@@ -57,8 +57,8 @@ class Guard {
     at_ = found == std::string_view::npos ? text_.size() : found + end.size();
   }
 
-  // TinyXML takes a '>' inside of quotes for a part of some attributes of <?xml ...?> and not of
-  // others; neither it nor '<' has a place there.
+  // Refuses '<' and '>' inside of <?xml ...?>: TinyXML takes a quoted '>' for a part of some
+  // attributes there and not of others.
   void skip_instruction() {
     const std::size_t end = text_.find("?>", at_);
     if (end != std::string_view::npos &&
@@ -68,7 +68,7 @@ class Guard {
     skip_behind(">", 1);
   }
 
-  // Values stand in quotes and may hold anything else.
+  // Reads an element; attribute values stand in quotes and may hold anything else.
   void read_element() {
     int attributes = 0;
     for (++at_; at_ < text_.size(); ++at_) {
@@ -96,24 +96,13 @@ class Guard {
   int depth_ = 0;
 };
 
-}  // namespace
-
-void check_xml(const std::string& text, const std::string& where) {
-  if (text.size() > kLongestXml) {
-    throw FileError(
-        fmt::format("{}: {} bytes long, at most {} are read", where, text.size(), kLongestXml));
-  }
-  Guard(text, where).look_through();
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestUrdf = 16 << 20;  // [bytes]
-constexpr int kXacroPatience = 60'000;          // with xacro that says nothing [ms]
+constexpr int kXacroPatience = 60'000;          // longest silence of xacro [ms]
 
-// Macros, and not only the declaration of their namespace or comments, which expanded files keep.
+// Returns whether a text has macros: not only their namespace's declaration, or comments, which
+// expanded files keep.
 bool has_macros(const std::string& text) {
   std::size_t at = 0;
   for (;;) {
@@ -149,7 +138,8 @@ struct Pipe {
   void close_in() { close(std::exchange(ends[1], -1)); }
 };
 
-// False when it is over: all is read, too long, or nothing came for too long.
+// Reads some of both streams. False at the end: all is read, too much came, or nothing for too
+// long.
 bool read_some(std::array<pollfd, 2>& from, std::array<std::string, 2>& into) {
   if (from[0].fd < 0 && from[1].fd < 0) return false;
   if (poll(from.data(), from.size(), kXacroPatience) <= 0) return false;
@@ -202,6 +192,14 @@ std::string expanded(const fs::path& program, const fs::path& file) {
 }
 
 }  // namespace
+
+void check_xml(const std::string& text, const std::string& where) {
+  if (text.size() > kLongestXml) {
+    throw FileError(
+        fmt::format("{}: {} bytes long, at most {} are read", where, text.size(), kLongestXml));
+  }
+  Guard(text, where).look_through();
+}
 
 std::string urdf_text(const fs::path& file, Xacro xacro) {
   std::string text = utf8_of(read_text(file, kLongestUrdf));

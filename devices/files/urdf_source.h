@@ -1,4 +1,4 @@
-// URDF files as they lie on the disk: plain ones, and xacro's, which have to be expanded.
+// URDF files on the disk: plain ones, and xacro files, which have to be expanded.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,7 @@
 
 namespace limpid {
 
-// Folders that an environment variable lists.
-
-// As PATH: with colons between; none if it is not set.
+// Folders that an environment variable lists as PATH does, with colons; none if it is not set.
 inline std::vector<std::filesystem::path> search_path(const char* variable) {
   std::vector<std::filesystem::path> folders;
   const char* value = std::getenv(variable);
@@ -27,19 +25,18 @@ inline std::vector<std::filesystem::path> search_path(const char* variable) {
   return folders;
 }
 
-// A look through an XML text before it is parsed: TinyXML recurses for each element inside of
-// another one, and compares each attribute with all others of its element.
+// Longest XML text that is parsed.
 inline constexpr std::size_t kLongestXml = 16 << 20;  // [bytes]
 
-// Errors: FileError naming `where` for texts that are too long, nested too deep, or have too many
-// attributes in an element, as TinyXML reads them.
+// Checks an XML text before TinyXML, which recurses for nested elements and compares each attribute
+// with all others of its element. Errors: FileError naming `where` for texts that are too long,
+// nested too deep, or have too many attributes in an element, as TinyXML reads them.
 void check_xml(const std::string& text, const std::string& where);
 
-// The URDF text of a file. One that is written in xacro (FILE.xacro, or macros inside) goes through
-// the program `xacro`, if that is installed and `xacro` says that it may; any encoding becomes
-// UTF-8. Errors: XacroToExpand where it may not; FileError for files that cannot be read or are
-// longer than 16 MiB; for xacro without the program, saying how to expand it, or with what the
-// program complains of.
+// The URDF text of a file, in UTF-8 whatever its encoding. A xacro file (FILE.xacro, or macros
+// inside) is expanded by the program `xacro`, if `xacro` permits it. Errors: XacroToExpand without
+// permission; FileError for files that cannot be read or are longer than 16 MiB. Also FileError for
+// xacro without the program, saying how to expand it, and with the program's complaint.
 std::string urdf_text(const std::filesystem::path& file, Xacro xacro);
 
 }  // namespace limpid

@@ -27,34 +27,6 @@ std::string at(const std::string& where, const std::map<std::string, int>& lines
                               name, what));
 }
 
-}  // namespace
-
-void UrdfPlaces::refuse(const std::string& why) const {
-  throw FileError(fmt::format("{}: {}", where, why));
-}
-
-void UrdfPlaces::refuse_joint(const std::string& name, const std::string& why) const {
-  throw FileError(at(where, joint_lines, "joint", name, why));
-}
-
-void UrdfPlaces::refuse_link(const std::string& name, const std::string& why) const {
-  throw FileError(at(where, link_lines, "link", name, why));
-}
-
-void UrdfPlaces::warn(const std::string& what) {
-  warnings.push_back(one_line(fmt::format("{}: {}", where, what)));
-}
-
-void UrdfPlaces::warn_joint(const std::string& name, const std::string& what) {
-  warnings.push_back(at(where, joint_lines, "joint", name, what));
-}
-
-void UrdfPlaces::warn_link(const std::string& name, const std::string& what) {
-  warnings.push_back(at(where, link_lines, "link", name, what));
-}
-
-namespace {
-
 TiXmlElement with_children(const TiXmlElement& from, std::initializer_list<std::string_view> kept) {
   TiXmlElement out(from.ValueStr());
   for (const auto* each = from.FirstAttribute(); each; each = each->Next()) {
@@ -72,7 +44,8 @@ void fill_in(TiXmlElement& element, const char* attribute) {
   if (element.Attribute(attribute) == nullptr) element.SetAttribute(attribute, "0");
 }
 
-// As exporters write them where nobody filled in the form.
+// Returns whether all limits are missing or zero, as exporters write them if nobody filled in the
+// form.
 bool says_nothing(const TiXmlElement& limit) {
   for (const char* name : {"lower", "upper", "effort", "velocity"}) {
     const char* text = limit.Attribute(name);
@@ -83,10 +56,10 @@ bool says_nothing(const TiXmlElement& limit) {
   return true;
 }
 
-// What had to be guessed, by the names of the joints.
+// Names of joints whose limits had to be guessed.
 struct Guessed {
-  std::vector<std::string> unlimited;  // limits of zeros: none
-  std::vector<std::string> fixed;      // slides without limits: held still
+  std::vector<std::string> unlimited;  // limits of zeros, taken as none
+  std::vector<std::string> fixed;      // slides without limits, held still
 };
 
 TiXmlElement joint_of(const TiXmlElement& from, Guessed& guessed) {
@@ -116,35 +89,6 @@ TiXmlElement joint_of(const TiXmlElement& from, Guessed& guessed) {
   return joint;
 }
 
-}  // namespace
-
-std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
-  TiXmlElement out("robot");
-  const char* name = robot.Attribute("name");
-  out.SetAttribute("name", name != nullptr ? name : "arm");
-  Guessed guessed;
-  for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
-    if (each->ValueStr() == "link") out.InsertEndChild(with_children(*each, {"inertial"}));
-    if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, guessed));
-  }
-  if (!guessed.unlimited.empty()) {
-    places.warn(
-        fmt::format("limits of zeros: {}; taken as none", fmt::join(guessed.unlimited, ", ")));
-  }
-  if (!guessed.fixed.empty()) {
-    places.warn(fmt::format("slides without a <limit>: {}; held still; a <limit> lets them move",
-                            fmt::join(guessed.fixed, ", ")));
-  }
-  TiXmlDocument document;
-  document.InsertEndChild(out);
-  TiXmlPrinter printer;
-  printer.SetStreamPrinting();
-  document.Accept(&printer);
-  return printer.Str();
-}
-
-namespace {
-
 void set_turn(const TiXmlElement& of, urdf::Rotation& rotation) {
   const TiXmlElement* origin = of.FirstChildElement("origin");
   const char* rpy = origin != nullptr ? origin->Attribute("rpy") : nullptr;
@@ -155,38 +99,18 @@ void set_turn(const TiXmlElement& of, urdf::Rotation& rotation) {
   rotation.setFromQuaternion(q.x(), q.y(), q.z(), q.w());
 }
 
-}  // namespace
-
-void set_turns(const TiXmlElement& robot, urdf::ModelInterface& model) {
-  for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
-    const char* name = each->Attribute("name");
-    if (name == nullptr) continue;
-    if (each->ValueStr() == "joint") {
-      const auto joint = model.joints_.find(name);
-      if (joint == model.joints_.end()) continue;
-      set_turn(*each, joint->second->parent_to_joint_origin_transform.rotation);
-    } else if (const TiXmlElement* body = each->FirstChildElement("inertial")) {
-      const auto link = model.links_.find(name);
-      if (link == model.links_.end() || !link->second->inertial) continue;
-      set_turn(*body, link->second->inertial->origin.rotation);
-    }
-  }
-}
-
-namespace {
-
-constexpr double kLeastShare = 1e-6;   // of what hangs on a link, its own inertia
-constexpr double kGuess = 1e-3;        // where it is less
+constexpr double kLeastShare = 1e-6;   // least own inertia of a link, as a part of what hangs on it
+constexpr double kGuess = 1e-3;        // part of what hangs on it that a link gets else
 constexpr double kGravity = 9.81;      // [m/s^2]
 constexpr double kLeastEffort = 0.01;  // [N m]
 
-// What resists a joint: inertia about it, or of a slide mass along it [kg m^2].
+// Inertia about a joint; for a slide, mass along it in the same units [kg m^2].
 double resistance(const Joint& joint, const Link& link) {
   if (slides(joint)) return link.mass * kSlideUnit * kSlideUnit;
   return joint.axis.dot(about_origin(link) * joint.axis);
 }
 
-// The most that such a joint could be resisted with by a body, whichever way it turned.
+// The largest resistance() of a body in any orientation [kg m^2].
 double most_resistance(const Joint& joint, const Link& body) {
   if (slides(joint)) return resistance(joint, body);
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(about_origin(body), Eigen::EigenvaluesOnly);
@@ -201,7 +125,7 @@ void check_body(const Link& link, const UrdfPlaces& places) {
   }
 }
 
-// Link i with all that hangs on it, at zero, in its frame.
+// Link i with all that hangs on it, joints at zero, in its frame.
 Link outer(const ArmDescription& arm, std::size_t i) {
   Link all;
   Pose at = Pose::Identity();
@@ -216,73 +140,6 @@ std::string list(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-}  // namespace
-
-void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
-  for (const Link& link : arm.links) check_body(link, places);
-  if (const Link all = outer(arm, 0); !(all.mass > 0) && !(all.inertia.norm() > 0)) {
-    places.refuse(
-        "no link that moves has an <inertial>; needed: mass and inertia of each, as from CAD or a "
-        "data sheet");
-  }
-  std::vector<std::string> guessed;
-  for (std::size_t i = arm.links.size(); i-- > 0;) {
-    Link& link = arm.links[i];
-    const Joint& joint = arm.joints[i];
-    const Link all = outer(arm, i);
-    const double most = most_resistance(joint, all);
-    if (resistance(joint, link) > kLeastShare * most) continue;
-    if (!(most > 0 && std::isfinite(most))) {
-      places.refuse_link(
-          link.name,
-          fmt::format("inertia {:.3g} kg m^2 about joint '{}', and nothing beyond it; needed: more "
-                      "than 0 (its <inertial> or that of links fixed to it), or a tip before it "
-                      "(--tip LINK)",
-                      resistance(joint, link), joint.name));
-    }
-    const double least = kGuess * most;
-    if (slides(joint)) {
-      link.mass += kGuess * all.mass;
-    } else {
-      link.inertia += least * Mat3::Identity();
-    }
-    guessed.push_back(fmt::format("'{}' ({:.2g})", link.name, least));
-  }
-  if (guessed.empty()) return;
-  std::ranges::reverse(guessed);
-  places.warn(
-      fmt::format("no inertia of their own: {}; taken as a thousandth of what hangs on them "
-                  "[kg m^2]; an <inertial> says better",
-                  list(guessed)));
-}
-
-void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
-  std::vector<std::string> guessed;
-  double weight = 0, moment = 0;  // of what is beyond, stretched out [N, N m]
-  for (std::size_t i = arm.joints.size(); i-- > 0;) {
-    Joint& joint = arm.joints[i];
-    const Link& link = arm.links[i];
-    if (i + 1 < arm.joints.size()) {
-      moment += weight * arm.joints[i + 1].origin.translation().norm();
-    }
-    moment += kGravity * link.mass * link.com.norm();
-    weight += kGravity * link.mass;
-    if (joint.effort != 0) continue;
-    joint.effort = std::max(kLeastEffort, 2 * (slides(joint) ? weight * kSlideUnit : moment));
-    guessed.push_back(slides(joint)
-                          ? fmt::format("'{}' ({:.2g} N)", joint.name, joint.effort / kSlideUnit)
-                          : fmt::format("'{}' ({:.2g} N m)", joint.name, joint.effort));
-  }
-  if (guessed.empty()) return;
-  std::ranges::reverse(guessed);
-  places.warn(
-      fmt::format("no effort in <limit>: {}; taken as twice what holds the arm stretched "
-                  "out",
-                  list(guessed)));
-}
-
-namespace {
-
 constexpr double kMostGravity = 30;     // [m/s^2]
 constexpr double kStiffest = 1e4;       // [N m/rad]
 constexpr double kLongestDelay = 1;     // [s]
@@ -296,7 +153,7 @@ class Own {
     throw FileError(one_line(
         fmt::format("{}:{}: <{}> {}", places_.where, element_.Row(), element_.ValueStr(), why)));
   }
-  // From `least` to `most`; nothing where it is not said.
+  // A number from `least` to `most`; nothing if the attribute is missing.
   std::optional<double> number(const char* name, double least, double most,
                                const char* unit) const {
     const char* text = element_.Attribute(name);
@@ -339,6 +196,134 @@ void read_spring(const TiXmlElement& element, const UrdfPlaces& places, ArmDescr
 }
 
 }  // namespace
+
+void UrdfPlaces::refuse(const std::string& why) const {
+  throw FileError(fmt::format("{}: {}", where, why));
+}
+
+void UrdfPlaces::refuse_joint(const std::string& name, const std::string& why) const {
+  throw FileError(at(where, joint_lines, "joint", name, why));
+}
+
+void UrdfPlaces::refuse_link(const std::string& name, const std::string& why) const {
+  throw FileError(at(where, link_lines, "link", name, why));
+}
+
+void UrdfPlaces::warn(const std::string& what) {
+  warnings.push_back(one_line(fmt::format("{}: {}", where, what)));
+}
+
+void UrdfPlaces::warn_joint(const std::string& name, const std::string& what) {
+  warnings.push_back(at(where, joint_lines, "joint", name, what));
+}
+
+void UrdfPlaces::warn_link(const std::string& name, const std::string& what) {
+  warnings.push_back(at(where, link_lines, "link", name, what));
+}
+
+std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
+  TiXmlElement out("robot");
+  const char* name = robot.Attribute("name");
+  out.SetAttribute("name", name != nullptr ? name : "arm");
+  Guessed guessed;
+  for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
+    if (each->ValueStr() == "link") out.InsertEndChild(with_children(*each, {"inertial"}));
+    if (each->ValueStr() == "joint") out.InsertEndChild(joint_of(*each, guessed));
+  }
+  if (!guessed.unlimited.empty()) {
+    places.warn(
+        fmt::format("limits of zeros: {}; taken as none", fmt::join(guessed.unlimited, ", ")));
+  }
+  if (!guessed.fixed.empty()) {
+    places.warn(fmt::format("slides without a <limit>: {}; held still; a <limit> lets them move",
+                            fmt::join(guessed.fixed, ", ")));
+  }
+  TiXmlDocument document;
+  document.InsertEndChild(out);
+  TiXmlPrinter printer;
+  printer.SetStreamPrinting();
+  document.Accept(&printer);
+  return printer.Str();
+}
+
+void set_turns(const TiXmlElement& robot, urdf::ModelInterface& model) {
+  for (const auto* each = robot.FirstChildElement(); each; each = each->NextSiblingElement()) {
+    const char* name = each->Attribute("name");
+    if (name == nullptr) continue;
+    if (each->ValueStr() == "joint") {
+      const auto joint = model.joints_.find(name);
+      if (joint == model.joints_.end()) continue;
+      set_turn(*each, joint->second->parent_to_joint_origin_transform.rotation);
+    } else if (const TiXmlElement* body = each->FirstChildElement("inertial")) {
+      const auto link = model.links_.find(name);
+      if (link == model.links_.end() || !link->second->inertial) continue;
+      set_turn(*body, link->second->inertial->origin.rotation);
+    }
+  }
+}
+
+void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
+  for (const Link& link : arm.links) check_body(link, places);
+  if (const Link all = outer(arm, 0); !(all.mass > 0) && !(all.inertia.norm() > 0)) {
+    places.refuse(
+        "no link that moves has an <inertial>; needed: mass and inertia of each, as from CAD or a "
+        "data sheet");
+  }
+  std::vector<std::string> guessed;
+  for (std::size_t i = arm.links.size(); i-- > 0;) {
+    Link& link = arm.links[i];
+    const Joint& joint = arm.joints[i];
+    const Link all = outer(arm, i);
+    const double most = most_resistance(joint, all);
+    if (resistance(joint, link) > kLeastShare * most) continue;
+    if (!(most > 0 && std::isfinite(most))) {
+      places.refuse_link(
+          link.name,
+          fmt::format("inertia {:.3g} kg m^2 about joint '{}', and nothing beyond it; needed: more "
+                      "than 0 (its <inertial> or that of links fixed to it), or a tip before it "
+                      "(--tip LINK)",
+                      resistance(joint, link), joint.name));
+    }
+    const double least = kGuess * most;
+    if (slides(joint)) {
+      link.mass += kGuess * all.mass;
+    } else {
+      link.inertia += least * Mat3::Identity();
+    }
+    guessed.push_back(fmt::format("'{}' ({:.2g})", link.name, least));
+  }
+  if (guessed.empty()) return;
+  std::ranges::reverse(guessed);
+  places.warn(
+      fmt::format("no inertia of their own: {}; taken as a thousandth of what hangs on them "
+                  "[kg m^2]; an <inertial> says better",
+                  list(guessed)));
+}
+
+void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
+  std::vector<std::string> guessed;
+  double weight = 0, moment = 0;  // of all beyond the joint, stretched out [N, N m]
+  for (std::size_t i = arm.joints.size(); i-- > 0;) {
+    Joint& joint = arm.joints[i];
+    const Link& link = arm.links[i];
+    if (i + 1 < arm.joints.size()) {
+      moment += weight * arm.joints[i + 1].origin.translation().norm();
+    }
+    moment += kGravity * link.mass * link.com.norm();
+    weight += kGravity * link.mass;
+    if (joint.effort != 0) continue;
+    joint.effort = std::max(kLeastEffort, 2 * (slides(joint) ? weight * kSlideUnit : moment));
+    guessed.push_back(slides(joint)
+                          ? fmt::format("'{}' ({:.2g} N)", joint.name, joint.effort / kSlideUnit)
+                          : fmt::format("'{}' ({:.2g} N m)", joint.name, joint.effort));
+  }
+  if (guessed.empty()) return;
+  std::ranges::reverse(guessed);
+  places.warn(
+      fmt::format("no effort in <limit>: {}; taken as twice what holds the arm stretched "
+                  "out",
+                  list(guessed)));
+}
 
 std::string own_tip(const TiXmlElement& robot) {
   std::string tip;

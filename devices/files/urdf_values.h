@@ -1,5 +1,4 @@
-// What a URDF says in numbers: attributes, turns, what moves an arm, what is missing and what is
-// Limpid's own.
+// Values in a URDF: numbers, rotations, dynamics, missing data, Limpid's own elements.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +23,8 @@ namespace limpid {
 template <int N>
 using Numbers = Eigen::Matrix<double, N, 1>;
 
-// N finite numbers with spaces between, and nothing else; nothing where it is anything else. Null
-// is an empty text.
+// N finite numbers separated by white space; nothing if the text is anything else. Null is an empty
+// text.
 template <int N>
 std::optional<Numbers<N>> numbers_in(const char* text) {
   Numbers<N> out;
@@ -45,62 +44,59 @@ std::optional<Numbers<N>> numbers_in(const char* text) {
   return at == end ? std::optional(out) : std::nullopt;
 }
 
-// Where joints and links stand in a URDF, and what was found wrong there.
+// Lines of joints and links in a URDF, and what is wrong there.
 struct UrdfPlaces {
   std::string where;
   std::map<std::string, int> joint_lines;
   std::map<std::string, int> link_lines;
   std::vector<std::string> warnings;  // a line each for people
 
-  // Errors: FileError, always.
+  // Refuse a URDF. Errors: FileError, always.
   [[noreturn]] void refuse(const std::string& why) const;
   [[noreturn]] void refuse_joint(const std::string& name, const std::string& why) const;
   [[noreturn]] void refuse_link(const std::string& name, const std::string& why) const;
-  // What an arm can do without, or with a guess.
+  // Warn of faults that an arm can do without, or with a guess.
   void warn(const std::string& what);
   void warn_joint(const std::string& name, const std::string& what);
   void warn_link(const std::string& name, const std::string& what);
 };
 
-// The part of a URDF that moves an arm.
-
-// Links with their inertia and joints, as a URDF of its own: whatever else there is cannot trouble
-// its reader. What the format asks for and real files leave out is filled in: limits of nothing but
-// zeros are none, and slides without limits are held still, with a warning.
+// The links with their inertia and the joints, as a URDF of its own, so that nothing else can
+// trouble its reader. Fills in what the format asks for and real files leave out: limits of zeros
+// are taken as none, and slides without limits are held still, with a warning.
 std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places);
 
-// Rotations of a URDF, the same to the last bit on every processor.
-
-// urdfdom asks the system's mathematical library for them (see core/math/elementary.h): those of
-// joints and of centres of mass are put into the model once more.
+// Sets the rotations of joints and centres of mass once more, the same to the last bit on every
+// processor. urdfdom computes them with the system's mathematical library (see
+// core/math/elementary.h).
 void set_turns(const TiXmlElement& robot, urdf::ModelInterface& model);
 
-// What a URDF may leave out and an arm cannot do without: masses that only count as frames, efforts
-// of 0.
-
-// Every link stores energy as soon as its joint moves, so that M is positive definite in every
-// pose: a link without inertia of its own gets a thousandth of what hangs on it.
-// Errors: FileError for an arm, or an end of it, without any, and for inertias of no body.
+// Completes the inertias of links that only count as frames, so that M is positive definite in
+// every pose: each link has to store energy when its joint moves. A link without inertia of its own
+// gets a thousandth of what hangs on it. Errors: FileError for an arm, or an end of it, without any
+// inertia, and for inertias of no body.
 void complete_inertias(ArmDescription& arm, UrdfPlaces& places);
 
-// An effort of 0 says nothing: it becomes twice what holds the arm stretched out level.
+// Completes efforts of 0, which say nothing: each becomes twice the torque that holds the arm
+// stretched out level.
 void complete_efforts(ArmDescription& arm, UrdfPlaces& places);
 
-// What a URDF says of an arm beyond its format, in elements <limpid> of the robot:
+// Limpid's own elements in a URDF, <limpid> of the robot:
 //
 //     <limpid tip="LINK" gravity="0 0 -9.81" delay="0.002">
 //       <spring joint="JOINT" stiffness="0.12" offset="0.01"/>
 //     </limpid>
 //
 // gravity [m/s^2] in the base's frame, as the arm stands; delay [s] of the device that the arm was
-// identified from; springs in N m/rad and N m, of slides in N/m and N: the joint is pulled by
-// -(stiffness x + offset). Of what is said twice the last one holds.
-
-// The link that it names as its tip; empty: none.
+// identified from. Springs in N m/rad and N m, of slides in N/m and N: each pulls its joint by
+// -(stiffness x + offset). Where something is said twice, the last one holds.
+//
+// own_tip() returns the link named as the tip; empty: none.
 std::string own_tip(const TiXmlElement& robot);
 
-// Everything else. Springs of joints that are not in the chain pull at nothing. Errors: FileError
-// for what is no number or out of range, and joints that the robot does not have.
+// Reads everything else of <limpid> into `arm`. Springs of joints outside of the chain have no
+// effect. Errors: FileError for what is no number or out of range, and for joints that the robot
+// does not have.
 void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescription& arm);
 
 }  // namespace limpid

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostFolders = 4000;                 // that are looked into for one package
+constexpr int kMostFolders = 4000;                 // most folders looked into for one package
 constexpr int kDeepestFolder = 6;                  // below a folder of ROS_PACKAGE_PATH
 constexpr std::size_t kLongestManifest = 1 << 20;  // [bytes]
 
@@ -30,7 +30,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-// What a package.xml calls its package; empty if there is none.
+// The name of a package in its package.xml; empty if there is no such file.
 std::string package_name(const fs::path& folder) {
   const fs::path manifest = folder / "package.xml";
   if (!is_file(manifest)) return {};
@@ -54,11 +54,11 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
     if (each->path().filename().string().starts_with('.')) continue;
     if (each->is_directory(error)) all.push_back(each->path());
   }
-  std::ranges::sort(all);  // the same everywhere
+  std::ranges::sort(all);  // same order everywhere
   return all;
 }
 
-// As ROS crawls: a package has no packages inside.
+// Finds packages below a folder as ROS crawls: packages have no packages inside.
 void crawl(const fs::path& folder, const std::string& name, int depth, int& left,
            std::vector<fs::path>& found) {
   if (--left < 0 || depth > kDeepestFolder) return;
@@ -69,64 +69,12 @@ void crawl(const fs::path& folder, const std::string& name, int depth, int& left
   for (const fs::path& each : folders_in(folder)) crawl(each, name, depth + 1, left, found);
 }
 
-}  // namespace
-
-const std::vector<fs::path>& MeshFinder::packages(const std::string& name) {
-  const auto [place, fresh] = packages_.try_emplace(name);
-  std::vector<fs::path>& found = place->second;
-  if (!fresh) return found;
-  if (!folder_.empty()) {
-    int left = kMostFolders;
-    for (fs::path at = fs::absolute(folder_).lexically_normal();; at = at.parent_path()) {
-      if (at.filename() == name || package_name(at) == name) found.push_back(at);
-      if (is_folder(at / name)) found.push_back(at / name);
-      if (at == at.parent_path()) break;
-      for (const fs::path& each : folders_in(at)) {
-        if (--left > 0 && package_name(each) == name) found.push_back(each);
-      }
-    }
-  }
-  for (const fs::path& path : search_path("ROS_PACKAGE_PATH")) {
-    if (is_folder(path / name)) found.push_back(path / name);
-    int left = kMostFolders;
-    crawl(path, name, 0, left, found);
-  }
-  for (const fs::path& path : search_path("AMENT_PREFIX_PATH")) {
-    found.push_back(path / "share" / name);
-  }
-  return found;
-}
-
-fs::path MeshFinder::find(const std::string& name) {
-  const auto present = [](const fs::path& path) {
-    return is_file(path) ? fs::absolute(path).lexically_normal() : fs::path();
-  };
-  const std::size_t scheme = name.find("://");
-  if (scheme == std::string::npos) {
-    const fs::path file = name;
-    if (file.is_relative() && folder_.empty()) return {};
-    return present(folder_ / file);
-  }
-  const std::string kind = name.substr(0, scheme), rest = name.substr(scheme + 3);
-  if (kind == "file") return present("/" + rest.substr(std::min(rest.find('/') + 1, rest.size())));
-  if (kind != "package" && kind != "model") return {};
-  const std::size_t slash = rest.find('/');
-  if (slash == std::string::npos || slash == 0) return {};
-  const fs::path inside = rest.substr(slash + 1);
-  for (const fs::path& package : packages(rest.substr(0, slash))) {
-    if (const fs::path file = present(package / inside); !file.empty()) return file;
-  }
-  return {};
-}
-
-namespace {
-
-// Why a visual is not shown, for people.
+// Error of a visual that is not shown, with the reason for people.
 struct NotShown {
   std::string why;
 };
 
-// As many finite numbers as asked for.
+// N finite numbers; NotShown if `text` is anything else.
 template <int N>
 Numbers<N> numbers(const char* text, const std::string& what) {
   if (const auto found = numbers_in<N>(text)) return *found;
@@ -148,7 +96,8 @@ Pose origin_of(const TiXmlElement& visual) {
 
 using Colours = std::map<std::string, Eigen::Vector4f>;
 
-// Of a material that says one; colours are decoration within decoration.
+// The colour that a material says; nothing if it is missing or wrong, as colours are mere
+// decoration.
 std::optional<Eigen::Vector4f> colour_in(const TiXmlElement& material) {
   const TiXmlElement* colour = material.FirstChildElement("color");
   if (colour == nullptr) return std::nullopt;
@@ -164,7 +113,7 @@ class Reader {
  public:
   Reader(MeshFinder& meshes, UrdfPlaces& places) : meshes_(meshes), places_(places) {}
 
-  // A material may be described anywhere, and be named elsewhere.
+  // Remembers colours by name: a material may be described anywhere, and named elsewhere.
   void learn_colours(const TiXmlElement& inside, int depth = 0) {
     for (auto* each = inside.FirstChildElement(); each; each = each->NextSiblingElement()) {
       const char* name = each->Attribute("name");
@@ -176,7 +125,7 @@ class Reader {
     }
   }
 
-  // Those that can be read.
+  // The collision shapes that can be read.
   std::vector<Visual> collisions_of(const TiXmlElement& link) {
     std::vector<Visual> all;
     for (auto* each = link.FirstChildElement("collision"); each;
@@ -266,6 +215,54 @@ class Reader {
 
 }  // namespace
 
+const std::vector<fs::path>& MeshFinder::packages(const std::string& name) {
+  const auto [place, fresh] = packages_.try_emplace(name);
+  std::vector<fs::path>& found = place->second;
+  if (!fresh) return found;
+  if (!folder_.empty()) {
+    int left = kMostFolders;
+    for (fs::path at = fs::absolute(folder_).lexically_normal();; at = at.parent_path()) {
+      if (at.filename() == name || package_name(at) == name) found.push_back(at);
+      if (is_folder(at / name)) found.push_back(at / name);
+      if (at == at.parent_path()) break;
+      for (const fs::path& each : folders_in(at)) {
+        if (--left > 0 && package_name(each) == name) found.push_back(each);
+      }
+    }
+  }
+  for (const fs::path& path : search_path("ROS_PACKAGE_PATH")) {
+    if (is_folder(path / name)) found.push_back(path / name);
+    int left = kMostFolders;
+    crawl(path, name, 0, left, found);
+  }
+  for (const fs::path& path : search_path("AMENT_PREFIX_PATH")) {
+    found.push_back(path / "share" / name);
+  }
+  return found;
+}
+
+fs::path MeshFinder::find(const std::string& name) {
+  const auto present = [](const fs::path& path) {
+    return is_file(path) ? fs::absolute(path).lexically_normal() : fs::path();
+  };
+  const std::size_t scheme = name.find("://");
+  if (scheme == std::string::npos) {
+    const fs::path file = name;
+    if (file.is_relative() && folder_.empty()) return {};
+    return present(folder_ / file);
+  }
+  const std::string kind = name.substr(0, scheme), rest = name.substr(scheme + 3);
+  if (kind == "file") return present("/" + rest.substr(std::min(rest.find('/') + 1, rest.size())));
+  if (kind != "package" && kind != "model") return {};
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string::npos || slash == 0) return {};
+  const fs::path inside = rest.substr(slash + 1);
+  for (const fs::path& package : packages(rest.substr(0, slash))) {
+    if (const fs::path file = present(package / inside); !file.empty()) return file;
+  }
+  return {};
+}
+
 LinkShapes urdf_visuals(const TiXmlElement& robot, MeshFinder& meshes, UrdfPlaces& places) {
   Reader reader(meshes, places);
   reader.learn_colours(robot);
@@ -290,7 +287,7 @@ LinkShapes urdf_collisions(const TiXmlElement& robot, MeshFinder& meshes) {
 
 std::vector<Visual> read_collisions(const ArmDescription& arm, const std::filesystem::path& file) {
   TiXmlDocument document;
-  document.Parse(arm.urdf.c_str());  // once more: the arm came from this text
+  document.Parse(arm.urdf.c_str());  // parsed once already, when the arm was made of it
   const TiXmlElement* const robot = document.RootElement();
   if (document.Error() || robot == nullptr) return {};
   MeshFinder meshes(std::filesystem::absolute(file).parent_path());

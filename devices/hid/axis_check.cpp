@@ -7,16 +7,16 @@
 namespace limpid {
 namespace {
 
-constexpr double kShare = 0.1;     // of full force, at most
-constexpr double kFadeIn = 0.5;    // until then it grows [s]
-constexpr double kLongest = 0.7;   // of a push [s]
-constexpr double kStill = 0.2;     // of a rest without a motion [s]
-constexpr double kPatience = 0.5;  // for that [s]; three rests and two pushes are 2.9 s
-constexpr double kEnough = 0.01;   // of its whole way
-constexpr double kAllowed = 0.15;  // of its whole way
-constexpr double kSteps = 8;       // of the encoder, at least enough
-constexpr double kSudden = 0.015;  // so early the torque is too small to have moved it so far [s]
-constexpr double kClear = 2;       // the axis moves so much more than any other
+constexpr double kShare = 0.1;     // part of full force, at most
+constexpr double kFadeIn = 0.5;    // time in which the torque grows [s]
+constexpr double kLongest = 0.7;   // longest push [s]
+constexpr double kStill = 0.2;     // rest without a motion [s]
+constexpr double kPatience = 0.5;  // longest wait for a rest [s]; 3 rests and 2 pushes are 2.9 s
+constexpr double kEnough = 0.01;   // part of the axis' whole way
+constexpr double kAllowed = 0.15;  // part of the axis' whole way
+constexpr double kSteps = 8;       // least kEnough, in steps of the encoder
+constexpr double kSudden = 0.015;  // a motion before this is not the small torque's [s]
+constexpr double kClear = 2;       // least ratio of the axis' motion to any other's
 constexpr int kPhases = 5;
 
 constexpr bool is_push(int phase) { return phase % 2 == 1; }
@@ -136,7 +136,7 @@ void AxisCheck::push() noexcept {
   torque_[i] = (phase_ == 1 ? 1 : -1) * grown * most_[i];
 }
 
-// Something has moved: was it this axis, and the same way as its torque?
+// Judges a motion: whether it was of this axis, and in the same sense of its torque both times.
 void AxisCheck::judge() noexcept {
   const auto i = static_cast<std::size_t>(axis_);
   const double mine = gone(axis_, start_, enough_);
@@ -160,7 +160,7 @@ void AxisCheck::judge() noexcept {
   next();
 }
 
-// To the axis' next phase, at the end of which it is trusted, or to the next axis.
+// Goes on to the axis' next phase, after the last of which it is trusted, or to the next axis.
 void AxisCheck::next() noexcept {
   torque_.fill(0);
   time_ = still_ = 0;

@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A lock that somebody only looks at is free again within microseconds, and the guardian of a
-// program that was killed takes some milliseconds for its stop.
+// Tries before a claim fails. A lock that somebody only looks at is free again within microseconds;
+// the guardian of a killed program takes some milliseconds for its stop.
 constexpr int kClaimTries = 5;
 constexpr std::chrono::milliseconds kPause{10};
 constexpr std::size_t kMostText = 100;  // of a command line that is shown
@@ -49,8 +49,9 @@ std::string file_name(const std::string& key) {
   return name + ".lock";
 }
 
-// Anybody may have made the file, so it is only used if it is a plain file under this one name. In
-// folders like these the kernel lets nobody open another user's file with O_CREAT.
+// Opens or makes the file of a claim. Anybody may have made it: it is used only if it is a plain
+// file under this one name. In such folders the kernel lets nobody open another user's file with
+// O_CREAT.
 int open_file(const fs::path& path) {
   constexpr int kHow = O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
   int file = -1;
@@ -71,7 +72,7 @@ int open_file(const fs::path& path) {
                              path.string(), why));
 }
 
-// Somebody may have removed the file meanwhile: a lock on it would hold nobody back.
+// Returns whether `path` still is this file: a lock on a removed file would hold nobody back.
 bool still_there(int file, const fs::path& path) {
   struct stat is {
   }, named{};
@@ -105,11 +106,11 @@ void write_owner(int file) {
 }
 
 struct Owner {
-  pid_t process = 0;  // 0: it does not say
+  pid_t process = 0;  // 0: unknown
   std::string text = "another program";
 };
 
-// What a file says that anybody can write to.
+// Reads the owner from a file that anybody can write to.
 Owner read_owner(int file) {
   std::array<char, 512> bytes{};
   const ssize_t size = pread(file, bytes.data(), bytes.size(), 0);
@@ -140,7 +141,7 @@ fs::path claim_folder(std::span<const fs::path> among) {
       names));
 }
 
-// The same for all users, whatever their environment says.
+// Has the same places for all users, whatever their environment says.
 fs::path claim_folder() {
   static const std::array<fs::path, 2> kPlaces{"/run/lock", "/tmp"};
   return claim_folder(kPlaces);

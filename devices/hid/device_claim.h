@@ -1,12 +1,12 @@
-// One owner a device, on the whole computer.
+// Claim of a device: one owner a device, on the whole computer.
 //
-// Whoever wants to use a device takes its claim before anything is opened or sent. A claim is a
-// lock on a file that the programs of all users find in the same place. The kernel lets go of it
-// once the last process that has it open ends: the program itself, or the guardian that still has
-// to send its stop. The file stays; it says who took the lock last.
+// A program takes a device's claim before it opens or sends anything. A claim is a lock on a file
+// that the programs of all users find in the same place. The kernel releases it once the last
+// process that has it open ends: the program itself, or the guardian that still has to send its
+// stop. The file stays, and says who took the lock last.
 //
-// A container may have such a place of its own and share the devices: the node of a device itself
-// is locked besides.
+// A container may have a place of its own for these files and share the devices. Therefore a
+// device's node is locked, too.
 #pragma once
 
 #include <filesystem>
@@ -15,26 +15,27 @@
 
 namespace limpid {
 
-// The first of these folders in which every user may make files. Throws HidError if none is one.
+// Returns the first of some folders in which every user may make files. Throws HidError if there is
+// none.
 std::filesystem::path claim_folder();
 std::filesystem::path claim_folder(std::span<const std::filesystem::path> among);
 
 class DeviceClaim {
  public:
-  DeviceClaim() = default;  // of nothing
-  // `key` names the physical thing, not how it is remembered. Throws HidError that says who has it,
-  // or why nobody can tell.
+  DeviceClaim() = default;  // of no device
+  // `key` names the physical device, not its entry in a list. Throws HidError that says who has the
+  // device, or why nobody can tell.
   explicit DeviceClaim(const std::string& key,
                        const std::filesystem::path& folder = claim_folder());
-  // Claims the device's node itself, by whatever name it is known. Throws HidError: another program
-  // has it, or it cannot be opened.
+  // Claims the device's node itself, by whatever name it is known. Throws HidError if another
+  // program has it, or it cannot be opened.
   static DeviceClaim on_node(const std::filesystem::path& node);
   DeviceClaim(DeviceClaim&& other) noexcept;
   DeviceClaim& operator=(DeviceClaim&& other) noexcept;
   ~DeviceClaim();
 
   bool held() const { return file_ >= 0; }
-  // For a process that shall keep the claim as long as it lives; -1: of nothing.
+  // Descriptor for a process that shall keep the claim as long as it lives; -1: of no device.
   int descriptor() const { return file_; }
 
  private:
@@ -43,8 +44,8 @@ class DeviceClaim {
   int file_ = -1;
 };
 
-// Who has it, for people, as "process 1234 (limpid run --live), since 2026-11-23 16:05"; empty if
-// nobody has, or this process itself.
+// The process that has a device, for people, as "process 1234 (limpid run --live), since 2026-11-23
+// 16:05"; empty if none has, or this one.
 std::string claimed_by(const std::string& key,
                        const std::filesystem::path& folder = claim_folder());
 

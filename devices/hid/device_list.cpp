@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 4096;  // of a file in sysfs
+constexpr std::size_t kMostBytes = 4096;  // longest file in sysfs
 
 std::string read_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -39,7 +39,7 @@ std::string read_file(const fs::path& path) {
   return text;
 }
 
-// Of "KEY=value" lines.
+// The value of `key` in "KEY=value" lines.
 std::string value_of(const std::string& uevent, const std::string& key) {
   const std::string text = "\n" + uevent;
   const auto found = text.find("\n" + key + "=");
@@ -53,7 +53,7 @@ struct Product {
   std::string id;
 };
 
-// HID_ID=bus:vendor:product in hexadecimal, HID_UNIQ=serial number.
+// Product in HID_ID=bus:vendor:product in hexadecimal, and HID_UNIQ=serial number.
 Product product_of(const std::string& uevent) {
   const std::string hid = value_of(uevent, "HID_ID");
   unsigned bus = 0, vendor = 0, product = 0;
@@ -82,7 +82,7 @@ std::string what_is_missing(const std::string& path, const fs::path& udev_rule) 
       path, udev_rule.string());
 }
 
-// The node's number is the device's, whatever names lead to it.
+// Key of a HID device: the number of its node, whatever names lead to it.
 std::string hid_claim_key(const FoundDevice& found) {
   struct stat is {};
   if (stat(found.place.path.c_str(), &is) != 0 || !S_ISCHR(is.st_mode)) {
@@ -94,6 +94,137 @@ std::string hid_claim_key(const FoundDevice& found) {
 std::unique_ptr<Device> open_hid_device(const FoundDevice& found, const PidSettings& settings,
                                         const AskForPriority& ask, DeviceClaim claim) {
   return open_hid_device_on(found, open_hidraw, settings, ask, std::move(claim));
+}
+
+constexpr int kLook = 300;      // longest wait for a service when looking for devices [ms]
+constexpr int kConnect = 1000;  // longest wait for a service that is used [ms]
+constexpr std::string_view kKey = "inverse3";
+
+constexpr DeviceKind kInverseKind{.key = "inverse3",
+                                  .name = "Haply Inverse3",
+                                  .use = "its tip in three directions, pushes",
+                                  .pushes = true,
+                                  .arm = "inverse3.urdf",
+                                  .service = true};
+
+bool is_port(const std::string& text) {
+  unsigned port = 0;
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, port);
+  return error == std::errc{} && at == end && port >= 1 && port <= 65535;
+}
+
+std::unique_ptr<Device> open_inverse(const FoundDevice& found, const PidSettings&,
+                                     const AskForPriority& ask, DeviceClaim claim) {
+  try {
+    const auto name = inverse_name(found.place.id);
+    return std::make_unique<HidDevice>(open_web_socket(name.value().address, kConnect),
+                                       std::make_unique<InverseProtocol>(name->id),
+                                       HidPlace{found.place.name, found.place.id, ""}, ask,
+                                       std::move(claim));
+  } catch (const HidError& error) {
+    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
+  }
+}
+
+std::vector<std::string> ids_at(const ServiceAddress& address) {
+  const auto service = open_web_socket(address, kLook);
+  Report first(HidTransport::kMaxMessage);
+  const int size = service->read(first, kLook);
+  return inverse_ids(std::span(first).first(static_cast<std::size_t>(std::max(size, 0))));
+}
+
+// Key of an Inverse3. A name without an id means the service's first device, and claims that one.
+std::string inverse_claim_key(const FoundDevice& found) {
+  const InverseName name = inverse_name(found.place.id).value();
+  std::string id = name.id;
+  if (id.empty()) {
+    const std::vector<std::string> ids = ids_at(name.address);
+    if (!ids.empty()) id = ids.front();
+  }
+  return fmt::format("inverse3:{}:{}", resolved(name.address), id);
+}
+
+FoundDevice entry(const InverseName& name, bool only, const std::string& missing) {
+  const std::string place = name.address.text();
+  const std::string which = only || name.id.empty() ? "" : " " + name.id;
+  return {{fmt::format("Haply Inverse3{} ({})", which, place), name.text(), place},
+          &kInverseKind,
+          missing,
+          open_inverse,
+          inverse_claim_key};
+}
+
+constexpr DeviceKind kSocketKind{
+    .key = "socket", .name = "device on a socket", .use = "its own joints, pushes if it says so"};
+
+// Returns whether somebody listens on a socket; a program that has ended leaves its socket behind.
+// The kernel's error tells, if a connection of another type is asked for; the program does not
+// notice.
+bool somebody_listens(const fs::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string text = path.string();
+  if (text.size() >= sizeof(address.sun_path)) return true;  // opening it says what is wrong
+  text.copy(address.sun_path, text.size());
+  const int file = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return true;
+  const int result = connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
+  const bool refused = result < 0 && errno == ECONNREFUSED;
+  close(file);
+  return !refused;
+}
+
+std::string socket_claim_key(const FoundDevice& found) {
+  std::error_code error;
+  const fs::path path = fs::canonical(found.place.path, error);
+  return "socket:" + (error ? found.place.path : path.string());
+}
+
+std::unique_ptr<Device> open_socket_device(const FoundDevice& found, const PidSettings&,
+                                           const AskForPriority& ask, DeviceClaim claim) {
+  try {
+    // No path for a guardian is needed: the end of this process closes the connection.
+    return std::make_unique<HidDevice>(
+        open_socket(found.place.path), std::make_unique<RawProtocol>(),
+        HidPlace{found.place.name, found.place.id, ""}, ask, std::move(claim));
+  } catch (const HidError& error) {
+    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
+  }
+}
+
+std::vector<FoundDevice> of_services(const DeviceSearch& search) {
+  if (!search.services) return {};
+  try {
+    return list_inverse_devices(inverse_name(search.wanted));
+  } catch (const HidError&) {  // `wanted` is malformed
+    return list_inverse_devices({});
+  }
+}
+
+// Every way by which devices are found, in the order of the list.
+using ListDevices = std::vector<FoundDevice> (*)(const DeviceSearch& search);
+constexpr ListDevices kWaysIn[] = {
+    [](const DeviceSearch& search) { return list_hid_devices(search.udev_rule); },
+    [](const DeviceSearch&) { return list_socket_devices(socket_folder()); },
+    of_services,
+};
+
+// The program that uses a device; empty if nobody can tell, as opening it then says why.
+std::string user_of(const FoundDevice& found) {
+  try {
+    return claimed_by(found.claim_key(found));
+  } catch (const HidError&) {
+    return {};
+  }
+}
+
+DeviceClaim claim(const FoundDevice& found) {
+  try {
+    return DeviceClaim(found.claim_key(found));
+  } catch (const HidError& error) {
+    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
+  }
 }
 
 }  // namespace
@@ -144,69 +275,6 @@ std::vector<FoundDevice> list_hid_devices(const fs::path& udev_rule, const HidRo
             [](const FoundDevice& a, const FoundDevice& b) { return a.place.path < b.place.path; });
   return found;
 }
-
-namespace {
-
-constexpr int kLook = 300;      // longest wait for a service that is looked for [ms]
-constexpr int kConnect = 1000;  // for one that is used [ms]
-constexpr std::string_view kKey = "inverse3";
-
-constexpr DeviceKind kInverseKind{.key = "inverse3",
-                                  .name = "Haply Inverse3",
-                                  .use = "its tip in three directions, pushes",
-                                  .pushes = true,
-                                  .arm = "inverse3.urdf",
-                                  .service = true};
-
-bool is_port(const std::string& text) {
-  unsigned port = 0;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, port);
-  return error == std::errc{} && at == end && port >= 1 && port <= 65535;
-}
-
-std::unique_ptr<Device> open_inverse(const FoundDevice& found, const PidSettings&,
-                                     const AskForPriority& ask, DeviceClaim claim) {
-  try {
-    const auto name = inverse_name(found.place.id);
-    return std::make_unique<HidDevice>(open_web_socket(name.value().address, kConnect),
-                                       std::make_unique<InverseProtocol>(name->id),
-                                       HidPlace{found.place.name, found.place.id, ""}, ask,
-                                       std::move(claim));
-  } catch (const HidError& error) {
-    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
-  }
-}
-
-std::vector<std::string> ids_at(const ServiceAddress& address) {
-  const auto service = open_web_socket(address, kLook);
-  Report first(HidTransport::kMaxMessage);
-  const int size = service->read(first, kLook);
-  return inverse_ids(std::span(first).first(static_cast<std::size_t>(std::max(size, 0))));
-}
-
-// Whoever names none of a service's devices gets its first, and claims that one.
-std::string inverse_claim_key(const FoundDevice& found) {
-  const InverseName name = inverse_name(found.place.id).value();
-  std::string id = name.id;
-  if (id.empty()) {
-    const std::vector<std::string> ids = ids_at(name.address);
-    if (!ids.empty()) id = ids.front();
-  }
-  return fmt::format("inverse3:{}:{}", resolved(name.address), id);
-}
-
-FoundDevice entry(const InverseName& name, bool only, const std::string& missing) {
-  const std::string place = name.address.text();
-  const std::string which = only || name.id.empty() ? "" : " " + name.id;
-  return {{fmt::format("Haply Inverse3{} ({})", which, place), name.text(), place},
-          &kInverseKind,
-          missing,
-          open_inverse,
-          inverse_claim_key};
-}
-
-}  // namespace
 
 std::string InverseName::text() const {
   return fmt::format("{}{}{}@{}", kKey, id.empty() ? "" : ":", id, address.text());
@@ -259,49 +327,6 @@ std::vector<FoundDevice> list_inverse_devices(const std::optional<InverseName>& 
   return found;
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr DeviceKind kSocketKind{
-    .key = "socket", .name = "device on a socket", .use = "its own joints, pushes if it says so"};
-
-// A program that has ended leaves its socket behind. The kernel tells by the error when one asks
-// for a connection of another type, and the program learns nothing of it.
-bool somebody_listens(const fs::path& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string text = path.string();
-  if (text.size() >= sizeof(address.sun_path)) return true;  // opening it says what is wrong
-  text.copy(address.sun_path, text.size());
-  const int file = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (file < 0) return true;
-  const int result = connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
-  const bool refused = result < 0 && errno == ECONNREFUSED;
-  close(file);
-  return !refused;
-}
-
-std::string socket_claim_key(const FoundDevice& found) {
-  std::error_code error;
-  const fs::path path = fs::canonical(found.place.path, error);
-  return "socket:" + (error ? found.place.path : path.string());
-}
-
-std::unique_ptr<Device> open_socket_device(const FoundDevice& found, const PidSettings&,
-                                           const AskForPriority& ask, DeviceClaim claim) {
-  try {
-    // Without a path: the end of this process closes the connection, nobody has to watch over it.
-    return std::make_unique<HidDevice>(
-        open_socket(found.place.path), std::make_unique<RawProtocol>(),
-        HidPlace{found.place.name, found.place.id, ""}, ask, std::move(claim));
-  } catch (const HidError& error) {
-    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
-  }
-}
-
-}  // namespace
-
 fs::path socket_folder() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
   return runtime != nullptr && *runtime != '\0' ? fs::path(runtime) / "limpid" : fs::path();
@@ -324,44 +349,6 @@ std::vector<FoundDevice> list_socket_devices(const fs::path& folder) {
   std::ranges::sort(found, {}, [](const FoundDevice& one) { return one.place.path; });
   return found;
 }
-
-namespace {
-
-std::vector<FoundDevice> of_services(const DeviceSearch& search) {
-  if (!search.services) return {};
-  try {
-    return list_inverse_devices(inverse_name(search.wanted));
-  } catch (const HidError&) {  // a name that nobody could have given it
-    return list_inverse_devices({});
-  }
-}
-
-// Each way by which devices come in, in the order of the list.
-using ListDevices = std::vector<FoundDevice> (*)(const DeviceSearch& search);
-constexpr ListDevices kWaysIn[] = {
-    [](const DeviceSearch& search) { return list_hid_devices(search.udev_rule); },
-    [](const DeviceSearch&) { return list_socket_devices(socket_folder()); },
-    of_services,
-};
-
-// Where nobody can tell, opening it says why.
-std::string user_of(const FoundDevice& found) {
-  try {
-    return claimed_by(found.claim_key(found));
-  } catch (const HidError&) {
-    return {};
-  }
-}
-
-DeviceClaim claim(const FoundDevice& found) {
-  try {
-    return DeviceClaim(found.claim_key(found));
-  } catch (const HidError& error) {
-    throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
-  }
-}
-
-}  // namespace
 
 void refuse_doubles(std::vector<FoundDevice>& all) {
   for (FoundDevice& each : all) {

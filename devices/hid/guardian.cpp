@@ -20,8 +20,8 @@
 
 namespace limpid {
 
-// In memory that both processes see. Whoever is to be watched holds the lock; its thread's end is
-// the lock's release, marked as such by the kernel.
+// Memory that both processes see. The watched thread holds the lock; its end releases the lock,
+// marked as such by the kernel.
 struct Guardian::Watch {
   pthread_mutex_t alive;
   std::atomic<bool> independent{false}, held{false}, dismissed{false};
@@ -38,7 +38,7 @@ struct Guardian::Watch {
     pthread_mutex_lock(&alive);
     held = true;
   }
-  // Until whoever holds it lets go or ends; in its child process.
+  // Waits in the child process until the watched thread releases the lock or ends.
   void wait_for_end(pid_t parent) {
     while (!held && getppid() == parent) poll(nullptr, 0, 1);
     pthread_mutex_lock(&alive);
@@ -47,7 +47,7 @@ struct Guardian::Watch {
 
 namespace {
 
-constexpr int kReportTries = 3;  // of each report
+constexpr int kReportTries = 3;  // for each report
 
 int open_node(const std::string& path) {
   const int device = open(path.c_str(), O_RDWR | O_CLOEXEC);
@@ -55,7 +55,7 @@ int open_node(const std::string& path) {
   return device;
 }
 
-// A guardian hears no signals from its first moment on: it must outlive Ctrl-C.
+// Forks a child that hears no signals from its first moment on: it must outlive Ctrl-C.
 pid_t fork_deaf() {
   sigset_t all, before;
   sigfillset(&all);
@@ -67,16 +67,14 @@ pid_t fork_deaf() {
   return child;
 }
 
-// What follows runs in the child: it is a copy of one thread of a process with many, so it may call
-// nothing that allocates or takes a lock of the process.
-
-// It must outlive the end of the terminal.
+// Outlives the end of the terminal. This and the next two functions run in the child, a copy of one
+// thread of many: they may neither allocate nor take a lock of the process.
 void become_independent() {
   setsid();
   prctl(PR_SET_NAME, "limpid-guardian");
 }
 
-// The window's and other devices' files are none of its business.
+// Closes the window's and other devices' files.
 void close_all_but(int device, int claim) {
   unsigned next = 0;
   for (const int file : {std::min(device, claim), std::max(device, claim)}) {
@@ -120,7 +118,8 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports, int clai
   const int error = errno;
   close(device);
   if (child_ > 0) {
-    // Until then whatever kills us with our group, or hangs up our terminal, kills it too.
+    // Waits: until the child is independent, whatever kills our group or hangs up our terminal
+    // kills it, too.
     while (!watch_->independent && waitpid(child_, nullptr, WNOHANG) == 0) poll(nullptr, 0, 1);
     watch_->hold();
     return;

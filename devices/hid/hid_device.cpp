@@ -39,7 +39,8 @@ HidDevice::~HidDevice() {
   thread_.join();
 }
 
-// The guardian watches over this thread. If the stop at the end does not get through, it tries too.
+// Runs the exchange. The guardian watches over this thread, and also stops the device if the stop
+// at the end does not get through.
 void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexcept {
   std::optional<Guardian> guardian;
   try {

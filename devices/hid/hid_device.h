@@ -1,6 +1,6 @@
-// A real device on the desk, spoken to by a thread of its own.
+// A real device, exchanged with by a thread of its own.
 //
-// If this process dies in any way, a guardian process takes the force away; if both die, or the
+// If this process dies in any way, a guardian process takes the force away. If both die, or the
 // computer does, the device's own watchdog has to (raw protocol: 10 ms, PID: its effects end).
 #pragma once
 
@@ -17,22 +17,22 @@
 
 namespace limpid {
 
-// Where a device is, for people and for the guardian.
+// Place of a device, for people and for the guardian.
 struct HidPlace {
   std::string name;
   std::string id;    // vendor:product:serial
-  std::string path;  // of the hidraw node; empty: the transport knows how to guard it, if at all
+  std::string path;  // of the hidraw node; empty: the transport guards the device, if at all
 };
 
 class HidDevice final : public Device {
  public:
-  // Opens the protocol and starts to talk. Throws HidError. `ask`: see become_realtime(). `claim`:
-  // of the device, which is given back once the device has had its stop. Not for the haptic thread,
-  // nor for one that yielded to it: the device's own thread starts as that.
+  // Opens the protocol and starts the exchange. Throws HidError. `ask`: see become_realtime().
+  // `claim`: of the device; released once the device has had its stop. Not for the haptic thread,
+  // nor for a thread that yielded to it: the device's own thread inherits the scheduling.
   HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<HidProtocol> protocol,
             const HidPlace& place, const AskForPriority& ask = {}, DeviceClaim claim = {});
-  // The device is without force and its motors are off when this returns, if it can be reached. Of
-  // one that hangs the kernel lets go after seconds only; its force was taken away before.
+  // Leaves the device without force and with its motors off, if it can be reached. The kernel
+  // releases a device that hangs only after seconds; its force was taken away before.
   ~HidDevice() override;
 
   HidDevice(const HidDevice&) = delete;
@@ -44,13 +44,13 @@ class HidDevice final : public Device {
   void stop() noexcept override { exchange_->stop(); }
 
   bool lost() const noexcept { return exchange_->lost(); }
-  // Reports so far that were damaged or made no sense.
+  // Number of reports that were damaged or made no sense.
   std::uint64_t unusable() const noexcept { return exchange_->unusable(); }
 
  private:
   void run(const AskForPriority& ask, std::promise<void> guarded) noexcept;
 
-  DeviceClaim claim_;  // first: it goes last
+  DeviceClaim claim_;  // first, so that it is released last
   std::unique_ptr<HidTransport> transport_;
   std::unique_ptr<HidProtocol> protocol_;
   DeviceTraits traits_;

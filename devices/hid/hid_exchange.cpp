@@ -9,7 +9,8 @@
 namespace limpid {
 namespace {
 
-// The kernel keeps 64 reports; a device that floods must not keep the torque from being sent.
+// Reports taken in a turn, as many as the kernel keeps: a device that floods must not keep the
+// torque from being sent.
 constexpr int kMostReports = 64;
 
 }  // namespace
@@ -78,7 +79,7 @@ void HidExchange::take_reading(const DeviceReading& reading) noexcept {
   arrivals_.write(arrival_);
 }
 
-// Many devices say nothing while nothing moves, and that must not pass for a device that hangs.
+// Asks for a reading: many devices are silent while nothing moves, which must not pass for a hang.
 void HidExchange::ask_if_silent() noexcept {
   const std::span<const std::uint8_t> question = protocol_.silent_report();
   const nanoseconds now = clock_();
@@ -109,7 +110,7 @@ void HidExchange::send() noexcept {
   sent_any_ = true;
 }
 
-// Before each report of a torque that is not zero.
+// Delivers a report of a torque that is not zero, if the torque may still be sent.
 void HidExchange::deliver_if_due(std::span<const std::uint8_t> report) noexcept {
   if (overtaken_) return;
   news_ = commands_.update() || news_;
@@ -117,7 +118,7 @@ void HidExchange::deliver_if_due(std::span<const std::uint8_t> report) noexcept 
   if (!overtaken_) deliver(report);
 }
 
-// Whether the newest command pushes, and the loop knew the device as it is.
+// Returns whether the newest command pushes, and the loop knew of all lapses.
 bool HidExchange::wants_torque() const noexcept {
   const Command& command = commands_.front();
   return command.any && command.lapses == arrival_.reading.lapses &&
@@ -153,7 +154,7 @@ HidExchange::Torque HidExchange::withheld() noexcept {
   return {};
 }
 
-// Some endpoints take milliseconds for a report; what comes meanwhile is not to wait for the next.
+// Sends a report, and takes those that came meanwhile: some endpoints take milliseconds for one.
 bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
   const bool delivered = transport_.write(report);
   failures_ = delivered ? 0 : failures_ + 1;
@@ -161,7 +162,7 @@ bool HidExchange::deliver(std::span<const std::uint8_t> report) noexcept {
   if (failures_ >= kMostFailures) lose();
   receive(0);
   ask_if_silent();
-  // A slow endpoint is no stall; what takes longer is, and the next torque is kept back for it.
+  // A slow endpoint is no stall; a longer pause is, and withholds the next torque.
   if (const nanoseconds now = clock_(); now - went_on_ <= kSendGap) went_on_ = now;
   return delivered;
 }

@@ -1,4 +1,4 @@
-// What the bytes of one kind of device mean. HidExchange speaks to all devices through this.
+// Meaning of the bytes of one kind of device. HidExchange speaks to all devices through this.
 #pragma once
 
 #include <chrono>
@@ -19,39 +19,40 @@ using SendReport = std::function<void(std::span<const std::uint8_t>)>;
 enum class Decoded : std::uint8_t {
   unusable,  // not a report of ours, or damaged: nothing was taken from it
   status,    // hand, fault, buttons; no news of the joints
-  reading,   // where the joints are
+  reading,   // positions of the joints
 };
 
 class HidProtocol {
  public:
   virtual ~HidProtocol() = default;
 
-  // What is said when connecting, before any torque. Throws HidError if the device is unfit.
+  // Sends what a device needs when it is connected, before any torque. Throws HidError if the
+  // device is unfit.
   virtual void open(HidTransport& transport) = 0;
 
-  // All but its id, after open(); the name may be empty.
+  // Traits without the id, after open(); the name may be empty.
   virtual const DeviceTraits& traits() const = 0;
 
-  // A device with motors that gives no reading for so long is not to be trusted.
+  // Age of a reading from which a device with motors is not to be trusted.
   virtual nanoseconds stale_after() const = 0;
 
-  // For devices that say nothing while nothing moves: the input report with the joints, empty but
-  // for its id, by which to ask where they are. Nothing where that is not needed.
+  // The input report by which to ask for the joints, with its id alone, of devices that are silent
+  // while nothing moves. Empty if not needed.
   virtual std::span<const std::uint8_t> silent_report() const { return {}; }
 
   // Takes an input report, any bytes at all, into the reading: x, hand, fault and buttons.
   virtual Decoded decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept = 0;
 
-  // Sends what makes the motors hold these torques [N m], one a joint, finite and within the
-  // limits; what makes a joint's zero comes first. `send` may refuse the rest: then undelivered()
-  // and zero on all joints come next. Called about every millisecond.
+  // Sends reports that make the motors hold these torques [N m], one a joint, finite and within the
+  // limits; those that make a joint's torque zero come first. `send` may refuse the rest:
+  // undelivered() and zero for all joints come next. Called about every millisecond.
   virtual void encode(std::span<const double> torque, nanoseconds now,
                       const SendReport& send) noexcept = 0;
 
-  // What encode() has just sent did not get through.
+  // Tells the protocol that a report of encode() did not get through.
   virtual void undelivered() noexcept {}
 
-  // Output reports that take all force away, whatever was said before; fixed after open().
+  // Output reports that take all force away, whatever was sent before; fixed after open().
   virtual const std::vector<Report>& stop_reports() const = 0;
 };
 

@@ -18,14 +18,14 @@ using nlohmann::json;
 using Cursor = std::array<double, 3>;  // [m] or [N]
 
 constexpr std::array kAxes{"x", "y", "z"};
-// Of the data sheet: what it holds in 80 % of its workspace; for a moment it can do 10 N.
+// Data sheet: the force that it holds in 80 % of its workspace; for a moment it can do 10 N.
 constexpr double kForce = 4;          // along each axis [N]
 constexpr double kResolution = 1e-5;  // [m]
-constexpr double kRate = 1000;        // how often it is asked [Hz]
-// As assets/devices/inverse3.urdf has it, which says where from.
+constexpr double kRate = 1000;        // commands a second [Hz]
+// Limits as in assets/devices/inverse3.urdf, which gives their source.
 constexpr Cursor kLower{-0.25, -0.27, 0}, kUpper{0.25, 0.03, 0.32};  // [m]
 
-// Null where there is none; of anything, also what is no object.
+// The value of a key; null if there is none, also in what is no object.
 const json& at(const json& object, const char* key) {
   static const json kNothing;
   if (!object.is_object()) return kNothing;
@@ -52,7 +52,7 @@ std::optional<Cursor> vector_in(const json& object) {
 
 std::string text_of(const json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
-// Null if the message has no such device.
+// The device in a message; null if the message has no such device.
 const json& device_in(const json& message, const std::string& id) {
   static const json kNothing;
   const json& devices = at(message, "inverse3");
@@ -86,8 +86,8 @@ bool moved(const json& transform) {
          vector_in(at(inner, "rotation")).value_or(zero) != zero;
 }
 
-// Another frame than the device's own, for people; empty if it is that. What is not said is as it
-// is at first.
+// A frame that is not the device's own, for people; empty if it is. What the service does not say
+// is as it is initially.
 std::string other_frame(const json& config, const json& workspace) {
   const std::string basis = text_of(at(at(config, "basis"), "permutation"));
   if (!basis.empty() && other_basis(basis)) return fmt::format("the basis {}; needed: XYZ", basis);
@@ -148,7 +148,7 @@ void InverseProtocol::open(HidTransport& transport) {
   stop_reports_ = {command({})};
 }
 
-// A jump that no hand makes is a damaged reading, or another device's.
+// Refuses a jump that no hand makes: it is a damaged reading, or another device's.
 bool InverseProtocol::follows(const Cursor& cursor) {
   double distance = 0;
   for (std::size_t i = 0; i < cursor.size(); ++i) {
@@ -158,8 +158,8 @@ bool InverseProtocol::follows(const Cursor& cursor) {
   return !seen_any_ || distance <= kLeap + kFastest * in_seconds(now_ - seen_);
 }
 
-// Other programs can turn, move or scale the frame at any time. What a message does not say has not
-// changed.
+// Follows the frame, which other programs can turn, move or scale at any time. What a message does
+// not say has not changed.
 template <class Json>
 void InverseProtocol::follow_frame(const Json& config, const Json& workspace) {
   const std::string basis = text_of(at(at(config, "basis"), "permutation"));
@@ -180,7 +180,7 @@ Decoded InverseProtocol::decode(std::span<const std::uint8_t> report,
   const auto cursor = vector_in(at(at(device, "state"), "cursor_position"));
   if (!cursor || !follows(*cursor)) {
     if (!other_frame_.any()) return Decoded::unusable;
-    reading.fault = true;  // it may be elsewhere for that
+    reading.fault = true;  // its position may be in the other frame
     return Decoded::status;
   }
   cursor_ = *cursor;
@@ -204,7 +204,7 @@ Decoded InverseProtocol::decode(std::span<const std::uint8_t> report,
 
 Report InverseProtocol::command(const Cursor& force) const {
   Report report{0};
-  // An id is a string like any other, until somebody puts a quotation mark into it.
+  // Writes the id as JSON: it may contain quotation marks.
   fmt::format_to(std::back_inserter(report),
                  R"({{"inverse3":[{{"device_id":{},"commands":{{"set_cursor_force":{{"values":)"
                  R"({{"x":{:.5f},"y":{:.5f},"z":{:.5f}}}}}}}}}]}})",
@@ -232,7 +232,7 @@ void InverseProtocol::encode(std::span<const double> torque, nanoseconds now,
   send(command(force));
 }
 
-// It waits for no answer then.
+// A lost zero is sent again without waiting for an answer.
 void InverseProtocol::undelivered() noexcept { zero_lost_ = !pushing_; }
 
 }  // namespace limpid

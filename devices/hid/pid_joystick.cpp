@@ -45,8 +45,8 @@ bool PidJoystick::describes(const ReportDescriptor& descriptor) {
          descriptor.find(ReportKind::output, kBlockIndex, kSetConstantForce);
 }
 
-// What moves says so: joysticks and wheels are of the usage Joystick. Pads that shake declare
-// constant forces too, for programs which know no other effect.
+// Refuses game pads. Joysticks and wheels, which move, have the usage Joystick; pads that shake
+// declare constant forces, too, for programs that know no other effect.
 std::string PidJoystick::objection(const ReportDescriptor& descriptor) {
   const ReportField* position = find_position(descriptor, 0);
   if (!position || !position->within(kGamePad)) return {};
@@ -88,7 +88,7 @@ PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& 
   traits_.rate = kUsualRate;
 }
 
-// Stopping all effects also ends the spring with which some devices centre themselves.
+// Stops all effects, which also ends the spring with which some devices centre themselves.
 void PidJoystick::open(HidTransport& transport) {
   send_or_throw(transport, reports_.device_control(kDeviceReset));
   send_or_throw(transport, reports_.device_control(kStopAllEffects));
@@ -125,7 +125,7 @@ int PidJoystick::create_effect(HidTransport& transport) const {
   throw HidError("the PID device does not say where its new effect is");
 }
 
-// Twice over on purpose: whichever of them a device understands, its motors end without force.
+// Makes redundant reports: whichever of them a device understands, its motors end without force.
 void PidJoystick::make_stop_reports() {
   stop_reports_.clear();
   const auto add = [&](const std::optional<Report>& report) {
@@ -149,15 +149,15 @@ Decoded PidJoystick::decode(std::span<const std::uint8_t> report, DeviceReading&
   if (!any && !buttons && !state) return Decoded::unusable;
   reading = read;
   if (!any) return Decoded::status;
-  // Where each axis comes in a report of its own, a reading is done with the last of them.
+  // If each axis comes in a report of its own, the last of them completes a reading.
   for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].news = axes_[i].news || (*positions)[i];
   if (!std::ranges::all_of(axes_, &Axis::news)) return Decoded::status;
   for (Axis& axis : axes_) axis.news = false;
   return Decoded::reading;
 }
 
-// A number outside of its range says that the device does not know where the axis is (USB HID 1.11,
-// null values); then none of its numbers is used.
+// A number out of its range means that the device does not know the axis' position (USB HID 1.11,
+// null values); then none of the report's numbers is used.
 std::optional<std::array<bool, 2>> PidJoystick::decode_positions(
     std::span<const std::uint8_t> report, DeviceReading& reading) const noexcept {
   std::array<bool, 2> here{};
@@ -176,9 +176,9 @@ std::optional<std::array<bool, 2>> PidJoystick::decode_positions(
   return here;
 }
 
-// Firmwares leave bits out which they do not know: OpenFFBoard never closes its safety switch, and
-// says that it is paused when an effect is made and nothing any more once it goes on. So a bit says
-// that something is wrong only after it has said that all was well.
+// A bit reports a fault only after it has reported that all is well, as firmwares leave out bits
+// that they do not know. OpenFFBoard never closes its safety switch; it reports a pause when an
+// effect is made, and nothing more once it goes on.
 bool PidJoystick::decode_state(std::span<const std::uint8_t> report,
                                DeviceReading& reading) noexcept {
   bool any = false;
@@ -204,14 +204,14 @@ bool PidJoystick::decode_state(std::span<const std::uint8_t> report,
   return true;
 }
 
-// Which of them it was is not told: the next forces are sent whatever they are, above all a zero,
-// which would else be lost for as long as the other axis pushes.
+// The lost report's axis is not known, so the next forces are sent whatever they are. A zero, above
+// all, would else be lost as long as the other axis pushes.
 void PidJoystick::undelivered() noexcept {
   for (Axis& axis : axes_) axis.level = kUnknown;
 }
 
-// A force that changes is sent at once, one that ends before others; the effects are started again
-// long before they end, and with their forces, should a report have got lost.
+// Sends a changed force at once, one that ends before others. Starts effects again long before they
+// end, with their forces in case a report was lost.
 void PidJoystick::encode(std::span<const double> torque, nanoseconds now,
                          const SendReport& send) noexcept {
   const auto restart =

@@ -22,9 +22,9 @@ constexpr Usage axis_usage(int axis) {
   return make_usage(0x01, static_cast<std::uint16_t>(0x30 + axis));
 }
 
-// Effects say by an angle from where they push, clockwise from the far side: from the right a
-// positive force pushes to the left, against X; from the far side it pushes towards the user, along
-// Y. Some firmwares have it the other way round, but all of them keep the axes apart.
+// Angles from which effects push, clockwise from the far side. From the right a positive force
+// pushes to the left, against X; from the far side it pushes towards the user, along Y. Some
+// firmwares have it the other way round, but all of them keep the axes apart.
 constexpr double kDegrees[] = {90, 0};
 constexpr double kSign[] = {-1, 1};
 
@@ -33,7 +33,7 @@ void set(Report& report, const ReportField& field, std::int64_t value, std::uint
   throw HidError(fmt::format("report {} has no room for {}", field.report_id, value));
 }
 
-// Says `usage` in a field that lists it, or switches the field that is it on.
+// Chooses `usage` in a field that lists it, or switches on a field of this usage.
 void choose(Report& report, const ReportField& field, Usage usage) {
   if (!field.array) return set(report, field, 1);
   const auto place = std::find(field.usages.begin(), field.usages.end(), usage);
@@ -48,9 +48,9 @@ bool chosen(std::span<const std::uint8_t> report, const ReportField& field, Usag
   return *value == field.logical_min + (place - field.usages.begin());
 }
 
-constexpr double kMostTimes = 2;  // times as long as asked for an effect may last
+constexpr double kMostTimes = 2;  // longest allowed effect, in times of the duration asked for
 
-// The number in a duration field that means so many seconds; at least 1, as 0 may mean for ever.
+// The number in a duration field for so many seconds; at least 1, as 0 may mean for ever.
 std::int64_t to_ticks(const ReportField& field, double seconds) {
   const bool in_seconds = (field.unit >> 12 & 0xF) == 1 && std::abs(field.unit_exponent) <= 9;
   const int exponent = in_seconds ? field.unit_exponent : -3;  // nearly all count milliseconds
@@ -77,8 +77,8 @@ std::int64_t to_ticks(const ReportField& field, double seconds) {
   return static_cast<std::int64_t>(taken);
 }
 
-// How many degrees one of the field's physical numbers is; 0 if it does not say. Most firmwares
-// count hundredths and forget the unit, but nothing other than degrees makes about 360 of a circle.
+// Degrees of one of the field's physical units; 0 if unknown. Most firmwares count hundredths and
+// leave out the unit, but only degrees make about 360 of a circle.
 double degrees_per_number(const ReportField& field) {
   const auto span = static_cast<double>(field.physical_max - field.physical_min);
   const bool radians = (field.unit & 0xF) == 2 && (field.unit >> 4 & 0xF) == 1;
@@ -87,8 +87,8 @@ double degrees_per_number(const ReportField& field) {
   return span > 0 && std::abs(span * one - 360) < 36 ? one : 0;
 }
 
-// The number in a direction field that means this angle. A field that says nothing of degrees holds
-// one circle.
+// The number in a direction field for this angle. A field that says nothing of degrees holds one
+// circle.
 std::int64_t to_direction(const ReportField& field, double degrees) {
   const auto steps = static_cast<double>(field.logical_max - field.logical_min);
   double part = degrees / 360;
@@ -207,10 +207,10 @@ Report PidReports::set_effect(int block, int axis, double duration) const {
   return report;
 }
 
-// By an angle: naming the axis by its enable bit pushes on the wrong one with most firmwares, and
-// some take the angle only if no axis is enabled. Of two direction fields some firmwares read the
-// first for both axes, others one for each axis, so both say the same; where there are three, the
-// second may be an axis that is not to be pushed.
+// Sets the direction by an angle: with most firmwares the axis' enable bit pushes on the wrong
+// axis, and some take the angle only if no axis is enabled. Of two direction fields some firmwares
+// read the first for both axes, others one for each axis; therefore both hold the same. Of three,
+// the second may be an axis that is not to be pushed.
 void PidReports::set_direction(Report& report, int axis) const {
   if (!by_angle_) {
     if (!names_axis(axis)) {
@@ -272,7 +272,7 @@ std::int64_t PidReports::force_level(int axis, double strength) const noexcept {
 }
 
 void PidReports::set_force(Report& constant_force, std::int64_t level) const noexcept {
-  put_field(constant_force, magnitude_, level);  // cannot fail, the constructor has tried it
+  put_field(constant_force, magnitude_, level);  // cannot fail, as the constructor has tried it
 }
 
 Report PidReports::operation(int block, bool start) const {

@@ -1,4 +1,4 @@
-// Usages of the Physical Interface Device page (USB Device Class Definition for PID 1.0).
+// Reports by which a USB PID device is told to push (USB Device Class Definition for PID 1.0).
 #pragma once
 
 #include <optional>
@@ -7,7 +7,10 @@
 #include "devices/hid/hid_protocol.h"
 #include "devices/hid/report_descriptor.h"
 
-namespace limpid::pid {
+namespace limpid {
+
+// Usages of the Physical Interface Device page.
+namespace pid {
 
 constexpr Usage pid_usage(std::uint16_t id) { return make_usage(0x0F, id); }
 
@@ -52,10 +55,9 @@ inline constexpr Usage kActuatorsEnabled = pid_usage(0xA0);
 inline constexpr Usage kSafetySwitch = pid_usage(0xA4);
 inline constexpr Usage kActuatorPower = pid_usage(0xA6);
 
-}  // namespace limpid::pid
-namespace limpid {
+}  // namespace pid
 
-// The reports by which a USB PID device is told to push, filled in as its descriptor says.
+// Fills in reports as the device's descriptor says.
 //
 // PID knows no N m and no fixed bytes: every device chooses its report ids, field sizes and ranges.
 class PidReports {
@@ -63,31 +65,32 @@ class PidReports {
   // Throws HidError naming what the device lacks.
   explicit PidReports(ReportDescriptor descriptor);
 
-  // One of the usages of the Device Control collection; nothing if the device does not know it.
+  // A usage of the Device Control collection; nothing if the device does not know it.
   std::optional<Report> device_control(Usage what) const;
-  // The strength of all effects at its most; nothing if it cannot be set.
+  // Sets the strength of all effects to its maximum; nothing if it cannot be set.
   std::optional<Report> full_gain() const;
 
-  // Feature reports: asks for room for a constant force; how that went, with only its id yet.
+  // Feature reports: create_constant_force() asks for room for a constant force; block_load(), with
+  // its id alone, asks for the result.
   Report create_constant_force() const;
   Report block_load() const;
-  // The index of the new effect in the filled block load report; nothing if it is not ready.
-  // Throws HidError if the device has no room or refuses.
+  // The index of the new effect in the filled block load report; nothing if it is not ready. Throws
+  // HidError if the device has no room or refuses.
   std::optional<int> created(std::span<const std::uint8_t> block_load) const;
 
-  // `axis`: 0 for X, 1 for Y; it lasts for `duration` [s] after each start.
+  // Sets up an effect. `axis`: 0 for X, 1 for Y; `duration` [s] after each start.
   Report set_effect(int block, int axis, double duration) const;
-  // The force of an effect, 0 at first.
+  // The force report of an effect, 0 at first.
   Report constant_force(int block) const;
-  // What to set for -1..1 of full strength, positive towards positive X or Y; equal levels are the
-  // same force.
+  // The level for a strength of -1..1 of full force, positive towards positive X or Y; equal levels
+  // are equal forces.
   std::int64_t force_level(int axis, double strength) const noexcept;
   void set_force(Report& constant_force, std::int64_t level) const noexcept;
   Report start(int block) const { return operation(block, true); }
   Report stop(int block) const { return operation(block, false); }
   std::optional<Report> block_free(int block) const;
 
-  // Whether it can push along this axis.
+  // Returns whether the device can push along this axis.
   bool drives(int axis) const;
 
  private:
@@ -96,9 +99,9 @@ class PidReports {
   Report operation(int block, bool start) const;
   void set_direction(Report& report, int axis) const;
   bool is_direction(const ReportField& field) const;
-  bool by_angle() const;            // effects say where they push from
-  bool names_axis(int axis) const;  // they can be enabled for this axis
-  bool names_axes() const;          // for any
+  bool by_angle() const;            // effects have an angle from which they push
+  bool names_axis(int axis) const;  // effects can be enabled for this axis
+  bool names_axes() const;          // effects can be enabled for any axis
 
   ReportDescriptor descriptor_;
   ReportField magnitude_;

@@ -24,7 +24,7 @@ enum StatusBit : std::uint8_t {
 };
 enum Mode : std::uint8_t { kNoTorque = 0, kTorque = 1 };
 
-// Places in a report, its id not counted.
+// Places in a report, without its id.
 enum At : std::size_t {
   kAtMagic = 0,
   kAtVersion = 1,
@@ -137,7 +137,7 @@ void RawProtocol::open(HidTransport& transport) {
     throw HidError("the device's feature report has a wrong magic, version or CRC");
   }
   traits_ = read_traits(body);
-  // Obeyed whatever its sequence is.
+  // Mode 0 is obeyed whatever its sequence is.
   const auto stop = command(kNoTorque, 0);
   stop_reports_ = {Report(stop.begin(), stop.end())};
 }
@@ -147,7 +147,7 @@ Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading&
   const Payload body = report.subspan(1);
   if (!undamaged(body) || body[kAtJoints] != traits_.dof) return Decoded::unusable;
 
-  // Frozen firmware repeats itself, and a repetition must not pass for news.
+  // Drops repetitions: frozen firmware repeats itself, which must not pass for news.
   const auto sequence = load_le<std::uint32_t>(body, kAtSequence);
   if (reading_sequence_ && static_cast<std::int32_t>(sequence - *reading_sequence_) <= 0) {
     return Decoded::unusable;
@@ -163,7 +163,7 @@ Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading&
   const std::uint8_t status = body[kAtFlags];
   reading.hand = status & kHand;
   reading.fault = (status & kFault) || !(status & kCalibrated);
-  // As long as it says so, it did not get what was sent.
+  // The device did not get the torques sent as long as this bit is set.
   if (status & kCut) ++reading.lapses;
   reading_sequence_ = sequence;
   time_stamp_ = load_le<std::uint64_t>(body, kAtTimeStamp);

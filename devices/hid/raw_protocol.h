@@ -13,9 +13,7 @@
 
 namespace limpid {
 
-// Numbers as bytes, the lowest first, whatever the computer's own order.
-
-// The bytes at..at + sizeof(T) - 1 must exist.
+// Little-endian numbers in bytes, on any computer. The bytes at..at + sizeof(T) - 1 must exist.
 template <std::unsigned_integral T>
 T load_le(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint64_t value = 0;
@@ -81,15 +79,18 @@ inline void store_float_le(std::span<std::uint8_t> bytes, std::size_t at, float 
 //   36 u16[6]  torque limits [1e-3 N m]
 //   48 char[12]  name, ASCII, padded with zeros
 //
-// What firmware must do, since a hand is on the device: start with no torque; use no command whose
-// magic, version, joints or CRC is wrong, or with a torque that is not finite, or in mode 1 one
-// whose sequence did not go up; obey mode 0 whatever its sequence is, and count on from that (a
-// session begins with mode 0, sequence 1 and ends with mode 0, sequence 0); limit torques itself;
-// cut the torque when no usable command came for the watchdog's time, and say so in bit 4 until the
-// next; better still, use none in mode 1 then before one in mode 0 has come, as the computer may
-// not have heard of it. The computer does the same: a reading that is damaged, is not finite or
-// whose sequence did not go up is not used, and 5 ms without a usable one mean mode 0; one with bit
-// 4 has it send mode 0, and torques that begin at nothing.
+// Since a hand is on the device, firmware must
+// - start with no torque, and limit torques itself;
+// - use no command whose magic, version, joints or CRC is wrong, whose torque is not finite, or, in
+//   mode 1, whose sequence did not go up;
+// - obey mode 0 whatever its sequence is, and count on from that: a session begins with mode 0,
+//   sequence 1 and ends with mode 0, sequence 0;
+// - cut the torque when no usable command came for the watchdog's time, and say so in bit 4 until
+//   the next one. Better still, it then uses none in mode 1 before one in mode 0 has come, as the
+//   computer may not have heard of the cut.
+// The computer does the same. It uses no reading that is damaged, not finite or whose sequence did
+// not go up. After 5 ms without a usable one it sends mode 0; after one with bit 4 it sends mode 0,
+// then torques that begin at zero.
 class RawProtocol final : public HidProtocol {
  public:
   static constexpr std::size_t kReportSize = 1 + 64;  // with the id, which is 0
@@ -117,7 +118,7 @@ class RawProtocol final : public HidProtocol {
   std::uint32_t command_sequence_ = 0;
 };
 
-// Of all but the last four bytes of a report, into these.
+// Writes the CRC of a report, of all but its last four bytes, into these.
 void seal_raw_report(std::span<std::uint8_t, RawProtocol::kReportSize> report);
 
 }  // namespace limpid

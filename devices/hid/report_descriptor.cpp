@@ -13,54 +13,13 @@ namespace {
 constexpr std::uint8_t kLongItem = 0xFE;
 constexpr const char* kCutOff = "the item is cut off";
 
-}  // namespace
-
-std::int64_t ReportItem::as_signed() const {
-  if (size == 1) return static_cast<std::int8_t>(value);
-  if (size == 2) return static_cast<std::int16_t>(value);
-  return static_cast<std::int32_t>(value);
-}
-
-void refuse(const ReportItem& item, std::string_view what) {
-  throw HidError(fmt::format("report descriptor, byte {}: {}", item.offset, what));
-}
-
-std::optional<ReportItem> ReportItems::next() {
-  skip_long_items();
-  if (at_ == bytes_.size()) return std::nullopt;
-  const std::uint8_t prefix = bytes_[at_];
-  ReportItem item;
-  item.offset = at_;
-  item.type = (prefix >> 2) & 3;
-  item.tag = prefix >> 4;
-  item.size = (prefix & 3) == 3 ? 4 : prefix & 3;
-  if (bytes_.size() - at_ - 1 < item.size) refuse(item, kCutOff);
-  for (std::size_t i = 0; i < item.size; ++i) {
-    item.value |= static_cast<std::uint32_t>(bytes_[at_ + 1 + i]) << (8 * i);
-  }
-  at_ += 1u + item.size;
-  return item;
-}
-
-void ReportItems::skip_long_items() {
-  while (at_ < bytes_.size() && bytes_[at_] == kLongItem) {
-    ReportItem item;
-    item.offset = at_;
-    const std::size_t left = bytes_.size() - at_;
-    if (left < 2 || left < 3u + bytes_[at_ + 1]) refuse(item, kCutOff);
-    at_ += 3u + bytes_[at_ + 1];
-  }
-}
-
-namespace {
-
-constexpr std::size_t kMaxDescriptor = 4096;  // as the kernel
+constexpr std::size_t kMaxDescriptor = 4096;  // as in the kernel
 constexpr std::size_t kMaxFields = 2048;
 constexpr std::size_t kMaxUsages = 1024;  // of an item; more are left out
 constexpr std::size_t kMaxDepth = 16;     // of collections, and of pushes
 constexpr std::uint32_t kMaxReportBits = 8 * HidTransport::kMaxReport;
 
-// A maximum's sign is known only with its minimum.
+// A maximum of a field, whose sign is known only with the minimum.
 struct Bound {
   std::int64_t as_signed = 0;
   std::int64_t as_unsigned = 0;
@@ -88,7 +47,7 @@ struct Locals {
   std::vector<LocalUsage> usages;
   LocalUsage minimum;
   bool in_delimiter = false;
-  bool alternative = false;  // to one taken already
+  bool alternative = false;  // to a usage taken already
 };
 
 std::int64_t pick(std::int64_t minimum, const Bound& maximum) {
@@ -164,7 +123,7 @@ class Parser {
     }
   }
 
-  // Four bits by the letter, a signed number in many devices.
+  // Reads an exponent: four bits by the standard, a signed number in many devices.
   static int exponent(const ReportItem& item) {
     if (item.value <= 0xF)
       return item.value < 8 ? static_cast<int>(item.value) : static_cast<int>(item.value) - 16;
@@ -199,7 +158,8 @@ class Parser {
     if (locals_.usages.size() < kMaxUsages) locals_.usages.push_back(usage);
   }
 
-  // In a set of alternatives a range as a whole would be one of them; none is known to do that.
+  // Adds a range of usages. In a set of alternatives it counts as a single one; no device is known
+  // to do that.
   void add_usage_range(const LocalUsage& maximum) {
     if (locals_.alternative) return;
     locals_.alternative = locals_.in_delimiter;
@@ -238,7 +198,7 @@ class Parser {
       add(item, std::move(field));
       return;
     }
-    // One field for each usage; the last is that of all values which remain.
+    // Adds a field for each usage; the last one has all remaining values.
     const std::size_t fields = std::clamp<std::size_t>(locals_.usages.size(), 1, count);
     for (std::size_t i = 0; i < fields; ++i) {
       ReportField one = field;
@@ -283,7 +243,64 @@ class Parser {
   bool any_report_ = false;
 };
 
+// The first bit of the value; nothing if the value is not wholly in the report.
+std::optional<std::uint64_t> first_bit(std::size_t bytes, const ReportField& field,
+                                       std::uint32_t index) {
+  const std::uint64_t first = field.bit_offset + static_cast<std::uint64_t>(index) * field.bit_size;
+  if (field.bit_size < 1 || field.bit_size > 32 || index >= field.count ||
+      first + field.bit_size > 8 * static_cast<std::uint64_t>(bytes)) {
+    return std::nullopt;
+  }
+  return first;
+}
+
+bool fits(std::int64_t value, const ReportField& field) {
+  const std::int64_t values = std::int64_t{1} << field.bit_size;
+  if (field.logical_min < 0) return value >= -values / 2 && value < values / 2;
+  return value >= 0 && value < values;
+}
+
+constexpr Usage kFirst = make_usage(0x09, 1);
+constexpr Usage kLast = make_usage(0x09, 32);
+
 }  // namespace
+
+std::int64_t ReportItem::as_signed() const {
+  if (size == 1) return static_cast<std::int8_t>(value);
+  if (size == 2) return static_cast<std::int16_t>(value);
+  return static_cast<std::int32_t>(value);
+}
+
+void refuse(const ReportItem& item, std::string_view what) {
+  throw HidError(fmt::format("report descriptor, byte {}: {}", item.offset, what));
+}
+
+std::optional<ReportItem> ReportItems::next() {
+  skip_long_items();
+  if (at_ == bytes_.size()) return std::nullopt;
+  const std::uint8_t prefix = bytes_[at_];
+  ReportItem item;
+  item.offset = at_;
+  item.type = (prefix >> 2) & 3;
+  item.tag = prefix >> 4;
+  item.size = (prefix & 3) == 3 ? 4 : prefix & 3;
+  if (bytes_.size() - at_ - 1 < item.size) refuse(item, kCutOff);
+  for (std::size_t i = 0; i < item.size; ++i) {
+    item.value |= static_cast<std::uint32_t>(bytes_[at_ + 1 + i]) << (8 * i);
+  }
+  at_ += 1u + item.size;
+  return item;
+}
+
+void ReportItems::skip_long_items() {
+  while (at_ < bytes_.size() && bytes_[at_] == kLongItem) {
+    ReportItem item;
+    item.offset = at_;
+    const std::size_t left = bytes_.size() - at_;
+    if (left < 2 || left < 3u + bytes_[at_ + 1]) refuse(item, kCutOff);
+    at_ += 3u + bytes_[at_ + 1];
+  }
+}
 
 bool ReportField::within(Usage collection) const {
   return std::find(collections.begin(), collections.end(), collection) != collections.end();
@@ -311,27 +328,6 @@ ReportDescriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) {
   return Parser(bytes).parse();
 }
 
-namespace {
-
-// The first bit of the value, or nothing if the value is not all in the report.
-std::optional<std::uint64_t> first_bit(std::size_t bytes, const ReportField& field,
-                                       std::uint32_t index) {
-  const std::uint64_t first = field.bit_offset + static_cast<std::uint64_t>(index) * field.bit_size;
-  if (field.bit_size < 1 || field.bit_size > 32 || index >= field.count ||
-      first + field.bit_size > 8 * static_cast<std::uint64_t>(bytes)) {
-    return std::nullopt;
-  }
-  return first;
-}
-
-bool fits(std::int64_t value, const ReportField& field) {
-  const std::int64_t values = std::int64_t{1} << field.bit_size;
-  if (field.logical_min < 0) return value >= -values / 2 && value < values / 2;
-  return value >= 0 && value < values;
-}
-
-}  // namespace
-
 std::optional<std::int64_t> get_field(std::span<const std::uint8_t> report,
                                       const ReportField& field, std::uint32_t index) {
   const auto first = first_bit(report.size(), field, index);
@@ -358,13 +354,6 @@ bool put_field(std::span<std::uint8_t> report, const ReportField& field, std::in
   }
   return true;
 }
-
-namespace {
-
-constexpr Usage kFirst = make_usage(0x09, 1);
-constexpr Usage kLast = make_usage(0x09, 32);
-
-}  // namespace
 
 std::vector<ReportField> button_fields(const ReportDescriptor& descriptor) {
   std::vector<ReportField> buttons;

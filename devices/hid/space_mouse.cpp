@@ -21,7 +21,7 @@ const ReportField* find_axis(const ReportDescriptor& descriptor, std::size_t axi
   return usable ? field : nullptr;
 }
 
-// A cap may go a little beyond the range that it declares.
+// Part of full deflection; a cap may go a little beyond its declared range.
 double deflection(const ReportField& axis, std::int64_t value) {
   const auto full = static_cast<double>(std::min(-axis.logical_min, axis.logical_max));
   return std::clamp(static_cast<double>(value) / full, -1.0, 1.0);

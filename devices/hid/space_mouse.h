@@ -1,8 +1,8 @@
-// 3Dconnexion's hand controllers: a cap that is pushed and turned, six numbers and no motors.
+// 3Dconnexion's hand controllers: a cap that is pushed and turned, with six numbers and no motors.
 //
-// Which bytes they are stands in the report descriptor. Two kinds are in use: translation in report
-// 1 and rotation in report 2, or all six in report 1; some devices send the latter and describe
-// the former.
+// The report descriptor tells which bytes they are. Two kinds are in use: translation in report 1
+// and rotation in report 2, or all six in report 1. Some devices send the latter and describe the
+// former.
 #pragma once
 
 #include <array>
@@ -12,8 +12,9 @@
 
 namespace limpid {
 
-// Six "joints": X, Y, Z, Rx, Ry, Rz of the cap in -1..1 of full deflection, in the device's own
-// axes (X right, Y towards the user, Z down). Silent while the cap rests.
+// Driver with six "joints": X, Y, Z, Rx, Ry, Rz of the cap in -1..1 of full deflection, in the
+// device's own axes (X right, Y towards the user, Z down). The device is silent while the cap
+// rests.
 class SpaceMouse final : public HidProtocol {
  public:
   static bool describes(const ReportDescriptor& descriptor);
@@ -35,7 +36,7 @@ class SpaceMouse final : public HidProtocol {
 
   DeviceTraits traits_;
   std::array<ReportField, kAxes> axes_;
-  std::vector<ReportField> joined_;  // rotation behind translation, where that is not described
+  std::vector<ReportField> joined_;  // rotation behind translation, if that is not described
   std::vector<ReportField> buttons_;
   std::vector<Report> no_reports_;
 };

@@ -26,7 +26,7 @@ namespace limpid {
 
 namespace {
 
-constexpr int kFirstPacket = 500;  // longest wait for it [ms]
+constexpr int kFirstPacket = 500;  // longest wait for the first packet [ms]
 
 int connect_to(const std::string& path) {
   sockaddr_un address{};
@@ -72,7 +72,7 @@ class SocketTransport final : public HidTransport {
       size = receive(report);
     }
     if (size > 0) return static_cast<int>(size) + 1;
-    // An empty packet is no report; none can be told from the end.
+    // An empty packet is no report, and cannot be told from the end.
     return size < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : -1;
   }
 
@@ -93,7 +93,7 @@ class SocketTransport final : public HidTransport {
   const std::vector<std::uint8_t>& report_descriptor() const override { return no_descriptor_; }
 
  private:
-  // Behind the id, which is 0: nobody numbers packets.
+  // Receives behind the id, which is 0, as nobody numbers packets.
   ssize_t receive(std::span<std::uint8_t> report) const noexcept {
     report[0] = 0;
     return recv(file_, report.data() + 1, report.size() - 1, 0);
@@ -103,19 +103,11 @@ class SocketTransport final : public HidTransport {
   std::vector<std::uint8_t> feature_, no_descriptor_;
 };
 
-}  // namespace
-
-std::unique_ptr<HidTransport> open_socket(const std::string& path) {
-  return std::make_unique<SocketTransport>(path);
-}
-
-namespace {
-
 [[noreturn]] void refuse(const std::string& path) {
   throw HidError(fmt::format("{}: {}", path, std::strerror(errno)));
 }
 
-// hidapi 0.13 has no call for it.
+// Reads a report descriptor, for which hidapi 0.13 has no call.
 std::vector<std::uint8_t> read_descriptor(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) refuse(path);
@@ -138,9 +130,9 @@ struct CloseHid {
 };
 using Handle = std::unique_ptr<hid_device, CloseHid>;
 
-// Asks for input reports. A device that hangs lets a question wait for seconds, so a thread of its
-// own asks, through a handle of its own. Nobody waits for that thread either: it shares what it
-// needs and ends when the kernel has given up.
+// Asks for input reports by a thread and a handle of its own, as a device that hangs lets a
+// question wait for seconds. Nobody waits for that thread either: it shares what it needs and ends
+// when the kernel has given up.
 class Questions {
  public:
   explicit Questions(std::string path) : path_(std::move(path)) {}
@@ -162,7 +154,7 @@ class Questions {
     shared_->changed.notify_one();
   }
 
-  // The size of the answer if it has come, else 0.
+  // Takes the answer. Returns its size, or 0 if it has not come.
   int take(std::span<std::uint8_t> report) noexcept {
     if (!shared_) return 0;
     const std::lock_guard lock(shared_->mutex);
@@ -181,7 +173,7 @@ class Questions {
     bool busy = false, answered = false, quit = false;
   };
 
-  // In the thread that asks first, whose priority the new one takes over.
+  // Starts the thread from the thread that asks first, whose priority it takes over.
   bool start() noexcept {
     try {
       const auto shared = std::make_shared<Shared>();
@@ -193,15 +185,18 @@ class Questions {
     return true;
   }
 
+  // Opens the device at a question, and again at the next one where that was refused.
   static void answer(Shared& shared, const std::string& path) {
-    const Handle device(hid_open_path(path.c_str()));
+    Handle device;
     std::unique_lock lock(shared.mutex);
-    while (device) {
+    while (true) {
       shared.changed.wait(lock, [&] { return shared.quit || (shared.busy && !shared.answered); });
       if (shared.quit) return;
       std::vector<std::uint8_t> report = shared.report;
       lock.unlock();
-      const int size = hid_get_input_report(device.get(), report.data(), report.size());
+      if (!device) device.reset(hid_open_path(path.c_str()));
+      const int size =
+          device ? hid_get_input_report(device.get(), report.data(), report.size()) : 0;
       lock.lock();
       shared.busy = shared.answered = size > 0;
       report.resize(std::min(static_cast<std::size_t>(std::max(size, 0)), report.size()));
@@ -225,7 +220,7 @@ class HidapiTransport final : public HidTransport {
   }
 
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
-    // The kernel gives no id where there are none.
+    // The kernel gives no id if the device numbers none.
     const std::size_t skipped = numbered_ ? 0 : 1;
     if (report.size() <= skipped) return 0;
     if (const int answer = questions_.take(report)) return answer;
@@ -263,7 +258,7 @@ class HidapiTransport final : public HidTransport {
     std::string id = fmt::format("{:04x}:{:04x}{}", info->vendor_id, info->product_id,
                                  serial.empty() ? "" : ":");
     for (const wchar_t c : serial) {
-      if (c < 0 || c > 127) return {};  // as the locale has it
+      if (c < 0 || c > 127) return {};  // else its meaning depends on the locale
       id.push_back(static_cast<char>(c));
     }
     return id;
@@ -278,6 +273,10 @@ class HidapiTransport final : public HidTransport {
 };
 
 }  // namespace
+
+std::unique_ptr<HidTransport> open_socket(const std::string& path) {
+  return std::make_unique<SocketTransport>(path);
+}
 
 std::unique_ptr<HidTransport> open_hidraw(const std::string& path) {
   return std::make_unique<HidapiTransport>(path);

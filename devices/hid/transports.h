@@ -1,4 +1,4 @@
-// A HID device of this computer, by Linux's hidraw.
+// Transports of HID devices: Linux's hidraw, and Unix sockets of programs.
 #pragma once
 
 #include <memory>
@@ -8,15 +8,14 @@
 
 namespace limpid {
 
-// A device that is another program of this computer, spoken to through a Unix socket.
+// Connects to a device that is another program of this computer, and waits a moment for the first
+// packet. Throws HidError with the reason.
 //
 // The program listens on a SOCK_SEQPACKET socket and takes one connection at a time. Its packets
-// are the 64-byte reports of the raw protocol (protocols/raw_protocol.h), without an id: first the
-// feature report, then input reports; it is sent output reports. What firmware must do it must do
-// too: above all have no torque when the connection ends, or 10 ms pass without a command. No
-// guardian process is needed: however this program ends, the kernel closes the connection.
-
-// Connects and waits a moment for the first packet. Throws HidError with the reason.
+// are the 64-byte reports of the raw protocol (raw_protocol.h), without an id: first the feature
+// report, then input reports; it is sent output reports. It must do what firmware must do: above
+// all have no torque when the connection ends, or 10 ms pass without a command. No guardian process
+// is needed: however this program ends, the kernel closes the connection.
 std::unique_ptr<HidTransport> open_socket(const std::string& path);
 
 // Opens a hidraw node, such as /dev/hidraw3. Throws HidError with the reason.

@@ -31,10 +31,10 @@ namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kWriteTime{2};    // for a message to leave
-constexpr std::chrono::milliseconds kCloseTime{100};  // for the other side to say goodbye
+constexpr std::chrono::milliseconds kWriteTime{2};    // longest time for a message to leave
+constexpr std::chrono::milliseconds kCloseTime{100};  // longest time for the other side's goodbye
 
-// A whole message as a client sends it, its mask 0: for whoever has nothing but the descriptor.
+// A whole message as a client sends it, its mask 0: for a guardian, which has only the descriptor.
 Report text_frame(std::span<const std::uint8_t> text) {
   constexpr std::uint8_t kTextAndLast = 0x81, kMasked = 0x80, kTwoBytes = 126;
   Report frame{kTextAndLast};
@@ -50,20 +50,20 @@ Report text_frame(std::span<const std::uint8_t> text) {
   return frame;
 }
 
-// Only an address of this computer's own can be had.
+// Returns whether an address is this computer's: only such a one can be bound.
 bool is_here(const addrinfo& place) {
   const int file = socket(place.ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (file < 0) return false;
   sockaddr_storage any_port{};
   std::memcpy(&any_port, place.ai_addr, place.ai_addrlen);
-  // The port is at the same place in both kinds of addresses.
+  // Both kinds of addresses have the port at the same place.
   reinterpret_cast<sockaddr_in&>(any_port).sin_port = 0;
   const bool here = bind(file, reinterpret_cast<const sockaddr*>(&any_port), place.ai_addrlen) == 0;
   close(file);
   return here;
 }
 
-// All of it happens in the calls below, on the thread that calls.
+// Transport whose work all happens in the calls below, on the calling thread.
 class WebSocketTransport final : public HidTransport {
  public:
   WebSocketTransport(const ServiceAddress& address, std::chrono::milliseconds time) {
@@ -126,7 +126,7 @@ class WebSocketTransport final : public HidTransport {
   }
 
   bool write(std::span<const std::uint8_t> report) noexcept override {
-    if (lost_ || writing_) return false;  // the one before has not left yet
+    if (lost_ || writing_) return false;  // the message before has not left yet
     outgoing_.assign(report.begin() + 1, report.end());
     writing_ = true;
     stream_.async_write(asio::buffer(outgoing_), [this](error_code error, std::size_t) {
@@ -151,7 +151,7 @@ class WebSocketTransport final : public HidTransport {
   const std::vector<std::uint8_t>& report_descriptor() const override { return no_descriptor_; }
 
  private:
-  // What waits below is done, until the condition holds or the time is up; at least once.
+  // Runs handlers until the condition holds or the time is up; at least once.
   template <class Condition>
   void run_until(Clock::time_point end, const Condition& condition) noexcept {
     context_.restart();
@@ -170,7 +170,7 @@ class WebSocketTransport final : public HidTransport {
     });
   }
 
-  // The handlers that are left must run while there still is what they refer to.
+  // Runs the handlers that are left while what they refer to still exists.
   void abandon() noexcept {
     error_code ignored;
     stream_.next_layer().socket().close(ignored);
@@ -196,7 +196,7 @@ std::string resolved(const ServiceAddress& address) {
   if (getaddrinfo(address.host.c_str(), address.port.c_str(), &wanted, &found) != 0) {
     return address.text();
   }
-  // The least of several, since their order changes.
+  // The least of several addresses, since their order changes.
   std::string least;
   for (const addrinfo* place = found; place != nullptr; place = place->ai_next) {
     std::array<char, NI_MAXHOST> text{};

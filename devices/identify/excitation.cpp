@@ -12,17 +12,17 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kFollow = 2 * pi * 5;  // of the controller on the guessed inertia [rad/s]
+constexpr double kFollow = 2 * pi * 5;  // bandwidth on the guessed inertia [rad/s]
 constexpr double kZeta = 0.7;
-constexpr double kSmooth = 0.004;   // of its velocity [s]
-constexpr double kIntegral = 2;     // of its error [1/s]
-constexpr double kEnvelope = 1;     // in and out of each part [s]
-constexpr double kFade = 0.5;       // at the end [s]
+constexpr double kSmooth = 0.004;   // time constant of the velocity's filter [s]
+constexpr double kIntegral = 2;     // integral gain on the error [1/s]
+constexpr double kEnvelope = 1;     // fade in and out of each part [s]
+constexpr double kFade = 0.5;       // fade at the end [s]
 constexpr double kApproach = 0.4;   // speed towards the middle [rad/s]
-constexpr double kPatience = 0.6;   // with a joint that does not follow [s]
-constexpr double kSweep = 1.0 / 3;  // periods a second
+constexpr double kPatience = 0.6;   // longest time that a joint may not follow [s]
+constexpr double kSweep = 1.0 / 3;  // periods a second [Hz]
 
-// From 0 to 1 and back within a part of this length, without corners.
+// Weight from 0 to 1 and back within a part of this length, smooth.
 double envelope(double t, double length) {
   const double edge = std::min({1.0, t / kEnvelope, (length - t) / kEnvelope});
   return edge > 0 ? 0.5 - 0.5 * std::cos(pi * edge) : 0;
@@ -60,13 +60,13 @@ Excitation::Excitation(const ArmDescription& arm, const DeviceTraits& traits,
   for (int j = 0; j < n; ++j) {
     const Joint& joint = arm.joints[static_cast<std::size_t>(j)];
     const double half = plan.range * (joint.upper - joint.lower) / 2;
-    // The middle is a pose at rest, which may be off the range's own.
+    // The middle is a pose at rest, which may not be the middle of the range.
     const double room = 0.9 * std::min(middle_[j] - joint.lower, joint.upper - middle_[j]);
     amplitude_[j] = std::min({plan.amplitude, half, room});
     limit_[j] = plan.torque * std::min(joint.effort, traits.effort[static_cast<std::size_t>(j)]);
     auto& tones = frequency_[static_cast<std::size_t>(j)];
     auto& share = share_[static_cast<std::size_t>(j)];
-    // Tones of their own for each joint; high ones are small, as accelerations are what is wanted.
+    // Each joint has tones of its own. High ones are small, as accelerations matter.
     double sum = 0;
     for (int m = 0; m < kTones; ++m) {
       const auto M = static_cast<std::size_t>(m);
@@ -86,11 +86,11 @@ Excitation::Excitation(const ArmDescription& arm, const DeviceTraits& traits,
   moderate(J);
   stiffness_ = kFollow * kFollow * M.diagonal();
   damping_ = 2 * kZeta * kFollow * M.diagonal();
-  duration_ = n * plan.sweep + plan.shake + kFade;  // and the approach, once it has begun
+  duration_ = n * plan.sweep + plan.shake + kFade;  // begin() adds the approach
 }
 
-// Amplitudes with which neither joints nor tip get near their greatest speed: the peak of so many
-// tones is about two and a half times their root mean square.
+// Limits amplitudes so that joints and tip stay well below their greatest speed. The peak of so
+// many tones is about two and a half times their root mean square.
 void Excitation::moderate(const Jacobian<kAnyDof>& J) {
   constexpr double kPeak = 2.5, kPart = 0.75;
   double tip2 = 0, joint = 0;
@@ -121,12 +121,12 @@ void Excitation::begin(const Vector& x) noexcept {
   started_ = true;
 }
 
-// Of a joint's tones at their time, between -1 and 1.
+// Sum of a joint's tones at time t, from -1 to 1.
 double Excitation::reach(Eigen::Index joint, double t) const noexcept {
   const auto j = static_cast<std::size_t>(joint);
   double sum = 0;
   for (std::size_t m = 0; m < kTones; ++m) {
-    const double phase = pi * static_cast<double>(m * m) / kTones;  // Schroeder's
+    const double phase = pi * static_cast<double>(m * m) / kTones;  // Schroeder's phases
     sum += share_[j][m] * std::sin(2 * pi * frequency_[j][m] * t - phase);
   }
   return std::clamp(sum, -1.0, 1.0);
@@ -194,8 +194,8 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   Jacobian<kAnyDof> J;
   arm_.frames(x, f);
   arm_.point_jacobian(f, arm_.dof() - 1, arm_.tip(f), J);
-  // Friction and a coarse encoder stand still where a sweep turns round: whether readings go along
-  // is judged by how far they are from the path (follows()), and Safety hears of no torque here.
+  // Joints stand still where a sweep turns round, by friction and coarse encoders. follows()
+  // therefore judges them by their distance from the path, and Safety is told of no torque.
   const Vector none = Vector::Zero(x.size());
   const Objections against =
       safety_.judge(in.health, !torque.allFinite(), {x, v_, J, none, put_out, in.T});
@@ -203,7 +203,7 @@ std::span<const double> Excitation::step(const Tick& in) noexcept {
   torque_ = motors_.pass(torque, {limit_, J, safety_.tip_force()}, gate_.gain(), in.T,
                          SafetyLimits::kSlew);
 
-  // An open switch cuts the device's torque, which looks like a gap as well.
+  // An open switch cuts the device's torque, which also looks like a gap.
   if (!in.health.hand) finish(ExcitationEnd::let_go);
   if (against.fault != ForceState::on || against.gap) finish(ExcitationEnd::not_well);
   if (against.ceiling < 1) finish(ExcitationEnd::limit);

@@ -1,17 +1,16 @@
-// Moves a device by its own motors so that it shows what it is: each joint in turn through a slow
-// sweep (friction), then all at once through many frequencies (inertia, gravity, delay).
+// Motion of a device by its own motors for identification. Each joint in turn makes a slow sweep
+// (friction), then all move at many frequencies (inertia, gravity, delay).
 //
-// A gentle controller follows a path about the middle of the range; the torque passes the same
-// stages as the loop's own: arming and fading, the limits of safety, the slew. Whatever they object
-// to, a hand that holds on, and a joint that does not follow end it, and nothing goes on from
-// there.
+// A gentle controller follows a path about the middle of the range. Its torque passes the same
+// stages as the loop's: arming and fading, the safety limits, the slew. An objection of theirs, a
+// hand that holds on, or a joint that does not follow ends the motion for good.
 //
-// To drive it, at every tick and with nothing else pushing:
+// Use, at every tick and with nothing else pushing:
 //
 //   Excitation motion(arm, device.traits(), plan);
 //   device.write(motion.step({reading.x, T, health}));
 //
-// until motion.end() is no longer `running`: the torque is zero for good.
+// until motion.end() is no longer `running`; the torque then stays zero.
 #pragma once
 
 #include <array>
@@ -30,10 +29,10 @@ enum class ExcitationEnd : std::uint8_t {
   running,
   complete,
   cancelled,
-  not_well,  // the device: lost, silent, at fault, or the loop stood still
-  let_go,    // its dead-man switch opened
+  not_well,  // the device is lost, silent or at fault, or the loop stood still
+  let_go,    // the dead-man switch opened
   limit,     // too fast, too far, or too much energy
-  held,      // something holds it: it does not follow
+  held,      // a joint does not follow: something holds it
 };
 const char* explain(ExcitationEnd end);  // for people, a sentence
 
@@ -41,10 +40,10 @@ enum class ExcitationStage : std::uint8_t { approach, sweep, shake, fade };
 
 struct ExcitationPlan {
   double range = 0.6;      // part of each joint's range that is used
-  double torque = 0.6;     // part of each joint's limit
-  double amplitude = 0.5;  // most, to either side [rad]
-  double sweep = 6;        // of each joint [s]
-  double shake = 24;       // of all joints [s]
+  double torque = 0.6;     // part of each joint's torque limit
+  double amplitude = 0.5;  // largest, to either side [rad]
+  double sweep = 6;        // duration for each joint [s]
+  double shake = 24;       // duration for all joints together [s]
   SafetyLimits limits{.joint_speed = 12, .tip_speed = 1.5, .tip_force = 6, .energy = 1, .range = 1};
 };
 
@@ -52,24 +51,24 @@ class Excitation {
  public:
   struct Tick {
     std::span<const double> x;  // positions of the joints [rad]
-    double T = 0.001;           // since the last tick [s]
+    double T = 0.001;           // time since the last tick [s]
     DeviceHealth health;
   };
 
-  // Its inertia is guessed from the arm: a factor of two either way does no harm.
-  // Throws std::invalid_argument if it has no motors, or other joints than the arm.
+  // Guesses the device's inertia from the arm: a factor of two either way does no harm. Throws
+  // std::invalid_argument if the device has no motors, or other joints than the arm.
   Excitation(const ArmDescription& arm, const DeviceTraits& traits, const ExcitationPlan& plan);
 
-  // The torque to be held until the next tick [N m]. Allocates nothing.
+  // Returns the torque to be held until the next tick [N m]. Allocates nothing.
   std::span<const double> step(const Tick& in) noexcept;
   void cancel() noexcept { finish(ExcitationEnd::cancelled); }
 
   ExcitationEnd end() const { return end_; }
   ExcitationStage stage() const { return stage_; }
   ForceState objection() const { return gate_.why(); }
-  int joint() const { return joint_; }           // being swept, or the one that did not follow
-  double duration() const { return duration_; }  // all of it [s]
-  double time() const { return time_; }          // gone of it [s]
+  int joint() const { return joint_; }  // the joint being swept, or the one that did not follow
+  double duration() const { return duration_; }  // of the whole motion [s]
+  double time() const { return time_; }          // since its start [s]
 
  private:
   using Vector = Vec<kAnyDof>;

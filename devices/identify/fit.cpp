@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeastSpeed = 0.05;  // that is motion [rad/s]
+constexpr double kLeastSpeed = 0.05;  // least speed that counts as motion [rad/s]
 
-// About that time the joint moves in the direction of v all along, faster than one that sticks or
-// an encoder that flickers.
+// Returns whether the joint moves in the direction of v throughout the window about `time`, faster
+// than stiction or a flickering encoder.
 bool moves_on(const MotionRecord& record, const Smoothing& window, double time, Index joint,
               double v, double step) {
   const double piece = std::max(window.sigma, 0.01);
@@ -34,59 +34,6 @@ bool moves_on(const MotionRecord& record, const Smoothing& window, double time, 
   }
   return true;
 }
-
-}  // namespace
-
-Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
-                                  double longest_delay) {
-  const double margin = 1.5 * window.reach() + longest_delay;
-  const double spacing = window.independent();
-  const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
-  if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
-  const auto count = static_cast<Index>(length / spacing);
-  return Eigen::VectorXd::LinSpaced(count, margin,
-                                    margin + static_cast<double>(count - 1) * spacing);
-}
-
-Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
-                       const Smoothing& window, const Eigen::VectorXd& times) {
-  const Motion3 motion = motion_at(record, window, times);
-  const Eigen::VectorXd step = encoder_steps(record);
-  const Arm<kAnyDof> arm(guess);
-  const Index n = record.joints(), of_links = kLinkParameters * n;
-  Equations out;
-  std::vector<Eigen::RowVectorXd> lines;
-  for (Index k = 0; k < times.size(); ++k) {
-    const Eigen::MatrixXd Y =
-        regressor(arm, motion.x.row(k).transpose(), motion.v.row(k).transpose(),
-                  motion.a.row(k).transpose(), gravity);
-    for (Index j = 0; j < n; ++j) {
-      const double v = motion.v(k, j);
-      if (!moves_on(record, window, times[k], j, v, step[j])) continue;
-      Eigen::RowVectorXd line = Eigen::RowVectorXd::Zero(of_links + kOwnParameters * n);
-      line.head(of_links) = Y.row(j);
-      line.segment<kOwnParameters>(of_links + kOwnParameters * j) << v, v > 0 ? 1 : -1, 1,
-          motion.x(k, j);
-      lines.push_back(std::move(line));
-      out.time.push_back(k);
-      out.joint.push_back(j);
-    }
-  }
-  out.A.resize(static_cast<Index>(lines.size()), of_links + kOwnParameters * n);
-  for (Index i = 0; i < out.A.rows(); ++i) out.A.row(i) = lines[static_cast<std::size_t>(i)];
-  return out;
-}
-
-Eigen::VectorXd Equations::of(const Eigen::MatrixXd& torque) const {
-  Eigen::VectorXd b(A.rows());
-  for (Index i = 0; i < b.size(); ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    b[i] = torque(time[row], joint[row]);
-  }
-  return b;
-}
-
-namespace {
 
 using Eigen::Matrix4d;
 
@@ -118,58 +65,13 @@ Matrix4d triangle(const LinkParameters& d) {
   return E;
 }
 
-}  // namespace
-
-PlausibleLink::PlausibleLink(const LinkParameters& guess) {
-  Matrix4d J = pseudo_inertia(guess);
-  // In units in which all of a body is about one: its mass and its size squared.
-  const double mass = std::max(guess[0], 1e-9);
-  const double size2 = std::max(J.topLeftCorner<3, 3>().trace() / mass, 1e-8);
-  Eigen::Vector4d unit = Eigen::Vector4d::Constant(std::sqrt(mass * size2));
-  unit[3] = std::sqrt(mass);
-  Matrix4d scaled = unit.cwiseInverse().asDiagonal() * J * unit.cwiseInverse().asDiagonal();
-  for (double more = 1e-3;; more *= 2) {
-    const Eigen::LLT<Matrix4d> factor(scaled);
-    const Matrix4d L = factor.matrixL();
-    if (factor.info() == Eigen::Success && L.diagonal().minCoeff() > 0.01) {
-      L0_ = unit.asDiagonal() * L;
-      return;
-    }
-    scaled.diagonal().array() += more;
-  }
-}
-
-LinkParameters PlausibleLink::at(const LinkParameters& d) const {
-  const Matrix4d L = L0_ * triangle(d);
-  return parameters_of(Matrix4d(L * L.transpose()));
-}
-
-Eigen::Matrix<double, kLinkParameters, kLinkParameters> PlausibleLink::slope(
-    const LinkParameters& d) const {
-  const Matrix4d E = triangle(d);
-  Eigen::Matrix<double, kLinkParameters, kLinkParameters> out;
-  Eigen::Index k = 0;
-  for (Eigen::Index j = 0; j < 4; ++j) {
-    for (Eigen::Index i = j; i < 4; ++i) {
-      Matrix4d dE = Matrix4d::Zero();
-      dE(i, j) = i == j ? E(j, j) : 1;
-      const Matrix4d half = L0_ * dE * E.transpose() * L0_.transpose();
-      out.col(k++) = parameters_of(Matrix4d(half + half.transpose()));
-    }
-  }
-  return out;
-}
-
-namespace {
-
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kLeastRows = 100;
 constexpr double kHuber = 2;  // deviations from which on a miss counts less
 
-// The least squares of A z = b for many b.
+// Least squares solutions of A z = b for many b.
 class Projection {
  public:
   explicit Projection(const MatrixXd& A) : scale_(A.colwise().norm().transpose()) {
@@ -188,7 +90,7 @@ class Projection {
   Eigen::ColPivHouseholderQR<MatrixXd> qr_;
 };
 
-// The least of a function that has one in there: a grid, then golden sections about the best.
+// The minimum of a function with one minimum there: a grid, then golden sections about the best.
 template <class F>
 double least_of(const F& f, double low, double high) {
   constexpr int kGrid = 24;
@@ -210,8 +112,8 @@ double least_of(const F& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-// Bodies near the guess and friction that fit R z = y, deviations all 1: what is asked of the
-// library's Levenberg and Marquardt.
+// Bodies near the guess and friction that fit R z = y with unit deviations, in the form that
+// Eigen's Levenberg-Marquardt asks for.
 struct Nearest : Eigen::DenseFunctor<double> {
   Nearest(const ArmDescription& guess, const MatrixXd& A, const VectorXd& b, const VectorXd& torque)
       : DenseFunctor<double>(static_cast<int>(A.cols()), static_cast<int>(2 * A.cols())) {
@@ -219,8 +121,8 @@ struct Nearest : Eigen::DenseFunctor<double> {
     const Eigen::HouseholderQR<MatrixXd> qr(A);
     R = qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>();
     y = (qr.householderQ().adjoint() * b).head(A.cols());
-    // At the start a body is known to a factor of e; of friction nothing; a spring is rather not
-    // there, where weight explains as much.
+    // The prior knows a body to a factor of e, and nothing of friction. It favours weight over a
+    // spring where both explain as much.
     prior = VectorXd::Ones(A.cols());
     for (Index j = 0; j < bodies_size(); ++j) {
       const double spring = 1 / (0.3 * torque[j]);
@@ -300,7 +202,7 @@ class Fit {
     return fit.miss(weight_.cwiseProduct(torque(delay)));
   }
 
-  // Rows by how far they miss: each joint has its own noise.
+  // Weighs rows by the noise of their joint, found from the misses.
   void weigh() {
     const Projection fit(weight_.asDiagonal() * rows_.A);
     delay_ = least_of([&](double d) { return miss(fit, d); }, 0.0, settings_.longest_delay);
@@ -367,7 +269,7 @@ class Fit {
       set_parameters(out.arm.links[J_], z.segment<kLinkParameters>(kLinkParameters * j));
       out.arm.joints[J_].damping = std::max(0.0, joint.viscous.value);
       out.arm.joints[J_].friction = std::max(0.0, joint.coulomb.value);
-      out.arm.joints[J_].spring = joint.spring.value;  // with the weight it may be below 0
+      out.arm.joints[J_].spring = joint.spring.value;  // below 0 if it cancels part of the weight
       out.arm.joints[J_].offset = joint.offset.value;
     }
     out.arm.gravity = settings_.gravity;
@@ -394,7 +296,7 @@ class Fit {
     return out;
   }
 
-  // From how fast the misses grow beside their least.
+  // Standard deviation of the delay, from the curvature of the misses about their minimum [s].
   double delay_deviation() const {
     constexpr double kStep = 2e-4;  // [s]
     const Projection fit(weight_.asDiagonal() * rows_.A);
@@ -417,6 +319,95 @@ class Fit {
 };
 
 }  // namespace
+
+Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
+                                  double longest_delay) {
+  const double margin = 1.5 * window.reach() + longest_delay;
+  const double spacing = window.independent();
+  const double length = static_cast<double>(record.rows()) * record.T - 2 * margin;
+  if (length < spacing) throw std::invalid_argument("the recorded motion is too short");
+  const auto count = static_cast<Index>(length / spacing);
+  return Eigen::VectorXd::LinSpaced(count, margin,
+                                    margin + static_cast<double>(count - 1) * spacing);
+}
+
+Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
+                       const Smoothing& window, const Eigen::VectorXd& times) {
+  const Motion3 motion = motion_at(record, window, times);
+  const Eigen::VectorXd step = encoder_steps(record);
+  const Arm<kAnyDof> arm(guess);
+  const Index n = record.joints(), of_links = kLinkParameters * n;
+  Equations out;
+  std::vector<Eigen::RowVectorXd> lines;
+  for (Index k = 0; k < times.size(); ++k) {
+    const Eigen::MatrixXd Y =
+        regressor(arm, motion.x.row(k).transpose(), motion.v.row(k).transpose(),
+                  motion.a.row(k).transpose(), gravity);
+    for (Index j = 0; j < n; ++j) {
+      const double v = motion.v(k, j);
+      if (!moves_on(record, window, times[k], j, v, step[j])) continue;
+      Eigen::RowVectorXd line = Eigen::RowVectorXd::Zero(of_links + kOwnParameters * n);
+      line.head(of_links) = Y.row(j);
+      line.segment<kOwnParameters>(of_links + kOwnParameters * j) << v, v > 0 ? 1 : -1, 1,
+          motion.x(k, j);
+      lines.push_back(std::move(line));
+      out.time.push_back(k);
+      out.joint.push_back(j);
+    }
+  }
+  out.A.resize(static_cast<Index>(lines.size()), of_links + kOwnParameters * n);
+  for (Index i = 0; i < out.A.rows(); ++i) out.A.row(i) = lines[static_cast<std::size_t>(i)];
+  return out;
+}
+
+Eigen::VectorXd Equations::of(const Eigen::MatrixXd& torque) const {
+  Eigen::VectorXd b(A.rows());
+  for (Index i = 0; i < b.size(); ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    b[i] = torque(time[row], joint[row]);
+  }
+  return b;
+}
+
+PlausibleLink::PlausibleLink(const LinkParameters& guess) {
+  Matrix4d J = pseudo_inertia(guess);
+  // Scales to units in which every body is about one: its mass and its size squared.
+  const double mass = std::max(guess[0], 1e-9);
+  const double size2 = std::max(J.topLeftCorner<3, 3>().trace() / mass, 1e-8);
+  Eigen::Vector4d unit = Eigen::Vector4d::Constant(std::sqrt(mass * size2));
+  unit[3] = std::sqrt(mass);
+  Matrix4d scaled = unit.cwiseInverse().asDiagonal() * J * unit.cwiseInverse().asDiagonal();
+  for (double more = 1e-3;; more *= 2) {
+    const Eigen::LLT<Matrix4d> factor(scaled);
+    const Matrix4d L = factor.matrixL();
+    if (factor.info() == Eigen::Success && L.diagonal().minCoeff() > 0.01) {
+      L0_ = unit.asDiagonal() * L;
+      return;
+    }
+    scaled.diagonal().array() += more;
+  }
+}
+
+LinkParameters PlausibleLink::at(const LinkParameters& d) const {
+  const Matrix4d L = L0_ * triangle(d);
+  return parameters_of(Matrix4d(L * L.transpose()));
+}
+
+Eigen::Matrix<double, kLinkParameters, kLinkParameters> PlausibleLink::slope(
+    const LinkParameters& d) const {
+  const Matrix4d E = triangle(d);
+  Eigen::Matrix<double, kLinkParameters, kLinkParameters> out;
+  Eigen::Index k = 0;
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    for (Eigen::Index i = j; i < 4; ++i) {
+      Matrix4d dE = Matrix4d::Zero();
+      dE(i, j) = i == j ? E(j, j) : 1;
+      const Matrix4d half = L0_ * dE * E.transpose() * L0_.transpose();
+      out.col(k++) = parameters_of(Matrix4d(half + half.transpose()));
+    }
+  }
+  return out;
+}
 
 Identified identify(const ArmDescription& guess, const MotionRecord& record,
                     const FitSettings& settings) {

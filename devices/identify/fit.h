@@ -1,4 +1,4 @@
-// What a device is, from how it moved: inertia, gravity, friction, springs and delay.
+// Identification of a device from its motion: inertia, gravity, friction, springs and delay.
 #pragma once
 
 #include <vector>
@@ -8,32 +8,31 @@
 
 namespace limpid {
 
-// The equations of motion that a record gives, for what is unknown in them.
-
-// Of a joint besides its link's: viscous, Coulomb, offset, spring.
+// Number of a joint's own parameters, besides its link's: viscous, Coulomb, offset, spring.
 inline constexpr Eigen::Index kOwnParameters = 4;
 
-// tau = A z, a row for each time and joint that can be trusted: a joint that moves on throughout
-// the window, as friction is what it is taken for only there. z: the links' parameters one after
-// another, then the joints' own.
+// Equations of motion of a record, tau = A z, a row for each time and joint that can be trusted.
+// Such a joint moves on throughout the window: only there friction is as modelled. z: the
+// parameters of all links in turn, then those of the joints.
 struct Equations {
   Eigen::MatrixXd A;
   std::vector<Eigen::Index> time, joint;  // of each row
 
-  // The torques of these rows; `torque`: a row for each time, a column for each joint.
+  // The torques of these rows; `torque` has a row for each time and a column for each joint.
   Eigen::VectorXd of(const Eigen::MatrixXd& torque) const;
 };
 
-// Moments at which noise is independent, far enough within the record [s]. Errors:
-// std::invalid_argument where it is too short for any.
+// Times with independent noise, far enough inside the record [s]. Errors: std::invalid_argument if
+// the record is too short for any.
 Eigen::VectorXd independent_times(const MotionRecord& record, const Smoothing& window,
                                   double longest_delay);
 
-// `times` as in motion_at(); `gravity` in the base's frame [m/s^2].
+// Equations of motion at `times`, which are as for motion_at(); `gravity` in the base's frame
+// [m/s^2].
 Equations equations_of(const ArmDescription& guess, const MotionRecord& record, const Vec3& gravity,
                        const Smoothing& window, const Eigen::VectorXd& times);
 
-// Inertial parameters of links that some body has, near those of a guess.
+// Physically consistent inertial parameters of a link, near those of a guess.
 //
 // A body's second moments about its origin, Sigma = int r r^T dm = (tr I / 2) 1 - I, its first
 // moment h = m c and its mass make the pseudo-inertia
@@ -44,11 +43,11 @@ Equations equations_of(const ArmDescription& guess, const MotionRecord& record, 
 // e^d, every vector of ten numbers is a body, and the zero vector is the guess.
 class PlausibleLink {
  public:
-  // A guess without extent is given a little.
+  // A guess without extent is given a little extent.
   explicit PlausibleLink(const LinkParameters& guess);
 
   LinkParameters at(const LinkParameters& d) const;
-  // Its derivative, a column for each number.
+  // Derivative of at(), a column for each number.
   Eigen::Matrix<double, kLinkParameters, kLinkParameters> slope(const LinkParameters& d) const;
 
  private:
@@ -66,43 +65,42 @@ struct JointFinding {
   Found gravity;  // torque of the links' weight there [N m]
   Found viscous;  // [N m s/rad]
   Found coulomb;  // [N m]
-  Found offset;   // torque that is always there: of a spring's middle, or friction that differs
-                  // by direction [N m]
+  Found offset;   // constant torque of a spring's middle, or friction differing by direction [N m]
   Found spring;   // [N m/rad]
-  double residual = 0;       // of the torque, root mean square [N m]
-  double torque = 0;         // root mean square of what was there to explain [N m]
-  Eigen::Index samples = 0;  // independent ones that were used
+  double residual = 0;       // root mean square error of the torque [N m]
+  double torque = 0;         // root mean square of the torque to explain [N m]
+  Eigen::Index samples = 0;  // number of independent samples used
 };
 
-// What there was to explain of a joint that moved on, at some moment.
+// Torque of a moving joint at one moment, and its parts in the model.
 struct Explained {
   double time = 0;  // since the first row [s]
   Eigen::Index joint = 0;
   double velocity = 0;  // [rad/s]
   double torque = 0;    // of the motor [N m]
-  double bodies = 0;    // of it, for inertia and weight of the links [N m]
-  double springs = 0;   // of it, for the joint's spring and offset [N m]
-  double friction = 0;  // of it, Coulomb and viscous [N m]
+  double bodies = 0;    // part of it: inertia and weight of the links [N m]
+  double springs = 0;   // part of it: the joint's spring and offset [N m]
+  double friction = 0;  // part of it: Coulomb and viscous friction [N m]
 };
 
 struct Identified {
-  ArmDescription arm;  // the guess with what was found in it, gravity as it was said to be
+  ArmDescription arm;  // the guess with the found values, and the gravity of the settings
   std::vector<JointFinding> joints;
-  Eigen::VectorXd middle;  // where inertia and gravity are given [rad]
+  Eigen::VectorXd middle;  // pose at which inertia and gravity are given [rad]
   Found delay;             // from a reading to the torque that answers it, beyond the tick [s]
   std::vector<Explained> moments{};
 };
 
 struct FitSettings {
-  Vec3 gravity = Vec3::Zero();   // in the base's frame; zero: there is none, or it is compensated
+  Vec3 gravity = Vec3::Zero();   // in the base's frame [m/s^2]; zero: none, or compensated
   double longest_delay = 0.012;  // [s]
 };
 
-// The chain is the guess's: its axes and lengths are taken as they are, its masses as a start that
-// is only left where the motion says so. tau = Y(x, v, a) pi + viscous v + coulomb sign(v) + offset
-// + spring x, over windows, torques shifted by the delay that explains them best; weighted by each
-// joint's noise, large misses for less (Huber), the links' parameters plausible throughout.
-// Errors: std::invalid_argument for too little motion: no joint may be nearly at rest, and each
+// Fits the device's parameters to a record. The guess gives axes and lengths as they are, and
+// masses that change only where the motion says so. Fits tau = Y(x, v, a) pi + viscous v + coulomb
+// sign(v) + offset + spring x over windows. Torques are shifted by the delay that explains them
+// best. Rows are weighted by their joint's noise, large misses less (Huber); the links' parameters
+// stay plausible. Errors: std::invalid_argument for too little motion: every joint has to move, and
 // needs at least 100 independent samples.
 Identified identify(const ArmDescription& guess, const MotionRecord& record,
                     const FitSettings& settings);

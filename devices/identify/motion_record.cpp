@@ -39,7 +39,7 @@ Smoothing smoothing_for(const MotionRecord& record) {
   const Eigen::VectorXd step = encoder_steps(record);
   for (const double sigma : {0.008, 0.010}) {
     const Smoothing window{sigma};
-    // White noise of step^2 / 12 a row, through the second derivative of the Gaussian.
+    // Noise gain: white noise of step^2 / 12 a row, through the second derivative of the Gaussian.
     const double passed = record.T * 3 / (8 * std::sqrt(std::numbers::pi) * std::pow(sigma, 5));
     const double length = static_cast<double>(record.rows()) * record.T - 2 * window.reach();
     const auto count = std::max<Eigen::Index>(1, static_cast<Eigen::Index>(length / sigma));
@@ -59,7 +59,8 @@ Motion3 motion_at(const MotionRecord& record, const Smoothing& window,
   const double s2 = window.sigma * window.sigma;
   for (Eigen::Index k = 0; k < times.size(); ++k) {
     const auto [first, last] = rows_about(record, window, times[k]);
-    // About the row in the middle, so that derivatives are not small differences of large numbers.
+    // Positions are taken relative to the middle row, so that derivatives are no small differences
+    // of large numbers.
     const Eigen::RowVectorXd middle = record.x.row((first + last) / 2);
     double weight = 0;
     for (Eigen::Index i = first; i <= last; ++i) {
@@ -78,7 +79,7 @@ Motion3 motion_at(const MotionRecord& record, const Smoothing& window,
   return out;
 }
 
-// A torque that is held for a tick has the window's integral over it.
+// A torque that is held for a tick is weighted by the window's integral over the tick.
 Eigen::MatrixXd torque_at(const MotionRecord& record, const Smoothing& window,
                           const Eigen::VectorXd& times, double delay) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(times.size(), record.joints());

@@ -16,8 +16,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastScale = 0.1, kMostScale = 10;  // that is believed
-constexpr double kUnsure = 0.2;                       // deviation, of the scale, that is too much
+constexpr double kLeastScale = 0.1, kMostScale = 10;  // believed range
+constexpr double kUnsure = 0.2;                       // deviation of the scale that is too large
 
 // The equations of a motion, each divided by its joint's noise.
 struct Weighed {
@@ -39,7 +39,7 @@ Weighed weighed(const Identified& found, const MotionRecord& record, const FitSe
   return out;
 }
 
-// s, where A z = b and the last of z is 1 / s.
+// The scale s, where A z = b and the last element of z is 1 / s.
 Found scale_in(const MatrixXd& A, const VectorXd& b) {
   VectorXd inverse = A.colwise().norm().transpose();
   for (double& s : inverse) s = s > 0 ? 1 / s : 0;

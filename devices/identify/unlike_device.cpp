@@ -7,7 +7,7 @@
 namespace limpid {
 namespace {
 
-// The same with every standard library.
+// Random numbers that are the same with every standard library.
 class Drawn {
  public:
   explicit Drawn(unsigned seed) : engine_(seed) {}
@@ -21,6 +21,16 @@ class Drawn {
 
 std::span<const double> span_of(const Eigen::VectorXd& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
+  arm.gravity = unlike.gravity;
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    arm.joints[i].spring = unlike.spring.size() > 0 ? unlike.spring[k] : 0;
+    arm.joints[i].offset = unlike.offset.size() > 0 ? unlike.offset[k] : 0;
+  }
+  return arm;
 }
 
 }  // namespace
@@ -43,7 +53,7 @@ ArmDescription unlike(const ArmDescription& file, unsigned seed, double most_fri
 
 Unlikeness drawn_bench(const ArmDescription& file, unsigned seed, const Vec3& gravity) {
   constexpr double kTurn = 2 * 3.14159265358979323846;
-  Drawn drawn(seed + 1000003);  // other numbers than the arm's
+  Drawn drawn(seed + 1000003);  // other numbers than unlike() draws
   const double cells = drawn.between(0, 1) < 0.5 ? 1 << 10 : 1 << 16;
   double widest = 0;
   for (const Joint& joint : file.joints) {
@@ -67,20 +77,6 @@ ArmDescription loaded(ArmDescription arm, double mass) {
   set_parameters(arm.links.back(), parameters_of(arm.links.back()) + parameters_of(load));
   return arm;
 }
-
-namespace {
-
-ArmDescription with(ArmDescription arm, const Unlikeness& unlike) {
-  arm.gravity = unlike.gravity;
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    arm.joints[i].spring = unlike.spring.size() > 0 ? unlike.spring[k] : 0;
-    arm.joints[i].offset = unlike.offset.size() > 0 ? unlike.offset[k] : 0;
-  }
-  return arm;
-}
-
-}  // namespace
 
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
     : device_(with(truth, unlike)), traits_(device_.traits()), torque_scale_(unlike.torque_scale) {

@@ -1,4 +1,4 @@
-// A simulated device that is not what its file says. To try identification on.
+// A simulated device that differs from its file, to try identification on.
 #pragma once
 
 #include "core/dynamics/regressor.h"
@@ -7,8 +7,8 @@
 
 namespace limpid {
 
-// Reads before it is moved, as a real one does, and says no more than a real one; one write is one
-// tick of 1 ms. Whoever drives it through a rig holds it, too.
+// Behaves as a real device: can be read before it is moved, and has no truth(). One write is one
+// tick of 1 ms. A rig that drives it also is the hand that holds it.
 class UnlikeDevice final : public Device {
  public:
   UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike);
@@ -17,14 +17,14 @@ class UnlikeDevice final : public Device {
   bool read(DeviceReading& newest) noexcept override { return device_.read(newest); }
   void write(std::span<const double> torque) noexcept override;
   void stop() noexcept override { write({}); }
-  // Of the parameters it is told the hand's alone: it is what it is.
+  // Uses only the hand's parameters of `p`; the arm's errors stay as constructed.
   void expect(const Parameters& p, const HandInput& hand) noexcept override;
-  // Somewhere at rest, the hand's target on the tip [rad].
+  // Puts it at rest, the hand's target on the tip [rad].
   void put(const Eigen::VectorXd& x);
-  // What nobody who drives it is told.
+  // The true arm, hidden from whoever drives the device.
   const VirtualArm<kAnyDof>& arm() const { return device_.arm; }
 
-  Eigen::VectorXd push;  // of somebody, besides [N m]
+  Eigen::VectorXd push;  // torque of somebody besides [N m]
 
  private:
   VirtualDevice<kAnyDof> device_;

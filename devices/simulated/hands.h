@@ -1,4 +1,4 @@
-// A hand moved by the mouse: its 60 to 125 events a second become a smooth path at the tick rate.
+// Hands that hold the arm: one moved by the mouse, one led by a device without force.
 #pragma once
 
 #include <algorithm>
@@ -9,30 +9,29 @@
 
 namespace limpid {
 
-// A hand led by a device with six axes and no force, as a SpaceMouse.
-
-// The cap's deflection is a speed: where the hand wants the tip moves on as long as it is pushed.
-// Little near the middle, so that it can be led finely.
+// A hand led by a device with six axes and no force, as a SpaceMouse. The cap's deflection is a
+// speed: where the hand wants the tip moves on as long as the cap is pushed, slowly near the middle
+// for fine motions.
 class GuidedHand {
  public:
   void reset(const Vec3& at) { goal_ = at; }
 
-  // One tick of length T [s]. True while the cap is off its rest.
+  // Takes one tick of length T [s]. True while the cap is off its rest.
   bool step(const DeviceReading& reading, double T) {
-    // Of the cap x points right, y to the user, z down; of the arm x points away, y left, z up.
+    // The cap's x points right, y to the user, z down; the arm's x points away, y left, z up.
     const Vec3 push(-axis(reading.x[1]), -axis(reading.x[0]), -axis(reading.x[2]));
     goal_ += kFastest * T * push;
     return push.squaredNorm() > 0;
   }
   const Vec3& goal() const { return goal_; }
-  // No further than this from where the tip is: the hand does not wander off [m].
+  // Keeps the goal within `distance` of the tip, so that the hand does not wander off [m].
   void stay_near(const Vec3& tip, double distance) {
     const Vec3 out = goal_ - tip;
     if (out.norm() > distance) goal_ = tip + distance / out.norm() * out;
   }
 
  private:
-  static constexpr double kRest = 0.06;     // of the full deflection
+  static constexpr double kRest = 0.06;     // part of the full deflection
   static constexpr double kFastest = 0.25;  // [m/s]
 
   static double axis(double deflection) {
@@ -43,10 +42,11 @@ class GuidedHand {
   Vec3 goal_ = Vec3::Zero();
 };
 
+// A hand moved by the mouse, whose 60 to 125 events a second become a smooth path at the tick rate.
 // The target follows the mouse as a critically damped second-order system of a hand's bandwidth,
-// stepped exactly; the grip closes and opens within a twentieth of a second. The hand pulls with a
-// few newtons at most: its target stays that near to the tip. One that has let go stays with the
-// tip, so that it takes hold again where it is.
+// stepped exactly. The grip closes and opens within a twentieth of a second. The hand pulls with a
+// few newtons at most: its target stays that near to the tip. A hand that has let go stays with the
+// tip, so that it takes hold again there.
 class MouseHand {
  public:
   void reset(const Vec3& at) {
@@ -55,7 +55,7 @@ class MouseHand {
     grip_ = 0;
   }
 
-  // One tick of length T [s]: `goal` is where the mouse wants the tip, `tip` where it is [m];
+  // Takes one tick of length T [s]. `goal` is where the mouse wants the tip, `tip` where it is [m];
   // `stiffness` is the grip's [N/m].
   HandInput step(bool grab, const Vec3& goal, const Vec3& tip, double stiffness, double T) {
     grip_ = std::clamp(grip_ + (grab ? T : -T) / kGripTime, 0.0, 1.0);

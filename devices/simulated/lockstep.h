@@ -1,4 +1,4 @@
-// Several rigs on one hand: what differs between them is all that makes a difference.
+// Several rigs on one hand, to compare what their differences change.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace limpid {
 
-// Each has its own device, loop, parameters and row; the same hand leads all of them.
+// Every lane has its own device, loop, parameters and row; the same hand leads all of them.
 class Lockstep {
  public:
   struct Lane {
@@ -21,18 +21,18 @@ class Lockstep {
     std::vector<double> row;  // of the last step
   };
 
-  // With a simulated device; allocates.
+  // Adds a lane with a simulated device; allocates.
   Lane& add(const ArmDescription& arm, const Scene& scene, const Parameters& p) {
     return *lanes_.emplace_back(std::make_unique<Lane>(arm, scene, p));
   }
   std::size_t size() const { return lanes_.size(); }
   Lane& operator[](std::size_t i) { return *lanes_[i]; }
 
-  // All where the hand is. Precondition: arms of as many joints as `start`.
+  // Starts all lanes where the hand is. Precondition: arms of as many joints as `start`.
   void start(const RigStart& start) {
     for (const auto& lane : lanes_) lane->rig.start(lane->parameters, start);
   }
-  // The same tick in all of them. Allocates nothing.
+  // Runs the same tick in all lanes. Allocates nothing.
   void step(const RigInput& input) noexcept {
     for (const auto& lane : lanes_) lane->rig.step(lane->parameters, input, lane->row);
   }

@@ -10,9 +10,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kAway = 0.008;  // of the start from the planes [m]
+constexpr double kAway = 0.008;  // distance of the start from the planes [m]
 
-// At rest in any pose.
+// A start at rest in a random pose.
 RigStart anywhere(const ArmDescription& description, Random& random) {
   const int dof = description.dof();
   const Arm<kAnyDof> arm(description);
@@ -54,7 +54,7 @@ LimitedCorner limited_corner(unsigned seed, const CornerWidth& width,
   for (int i = 0; i < planes; ++i) {
     Vec3 normal = c.out;
     while (i > 0) {
-      // One by one: the order in which arguments are drawn is no compiler's business.
+      // Draws one number a statement: compilers may evaluate arguments in any order.
       const Vec3 aside = random.direction();
       normal = (c.out + random.between(0.05, 1) * aside).normalized();
       if (normal.dot(c.out) > 0.3) break;

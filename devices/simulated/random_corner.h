@@ -1,4 +1,4 @@
-// Motors at their limit while the tip is between walls: cases that nobody chose.
+// Random test cases: motors at their limit while the tip is between walls.
 #pragma once
 
 #include <initializer_list>
@@ -15,25 +15,25 @@ struct LimitedCorner {
   Scene scene;
   Parameters p;
   RigStart start;
-  Vec3 out, along;          // of the first plane
+  Vec3 out, along;          // of the first plane: its normal, a direction along it
   double press, rise, way;  // [N, s, m]
   double limit;             // of each motor [N m]
 
   static constexpr double kLasts = 0.9;  // [s]
 
-  Vec3 hand(double t) const;  // where it wants the tip [m]
+  Vec3 hand(double t) const;  // where the hand wants the tip [m]
 };
 
-// What is drawn from.
+// Ranges that a corner is drawn from.
 struct CornerWidth {
   std::initializer_list<int> dofs{3};
-  int planes = 3;      // at most
-  double grip = 3000;  // stiffest [N/m]
+  int planes = 3;      // most of them
+  double grip = 3000;  // stiffest grip [N/m]
   std::initializer_list<double> friction{0, 0.3, 0.5, 1};
   std::initializer_list<double> masses{0, 0.02, 0.1};  // of the hand [kg]
-  bool eta = false;                                    // other than 1
+  bool eta = false;                                    // draws eta, else 1
 };
-// Other arms, more walls, more friction, other eta.
+// Wider ranges: other arms, more walls, more friction, other eta.
 inline constexpr CornerWidth kWideCorners{.dofs = {3, 7, 12},
                                           .planes = 6,
                                           .grip = 10'000,
@@ -41,7 +41,7 @@ inline constexpr CornerWidth kWideCorners{.dofs = {3, 7, 12},
                                           .masses = {0, 0.1, 0.5},
                                           .eta = true};
 
-// `desktop`: the arm of three joints; others are random ones.
+// Draws a corner by `seed`. Arms of as many joints as `desktop` are `desktop`; others are random.
 LimitedCorner limited_corner(unsigned seed, const CornerWidth& width,
                              const ArmDescription& desktop);
 

@@ -14,7 +14,7 @@ namespace limpid {
 
 namespace {
 
-// In place of a device: it was never there.
+// Stands in for a device that was never there.
 class NoDevice final : public Device {
  public:
   const DeviceTraits& traits() const override { return traits_; }
@@ -42,14 +42,14 @@ struct Rig::Of {
   Vec<N> of_joints(std::span<const double> values) const;
 
   Tick<N> tick;
-  std::unique_ptr<Device> own;  // in place while nothing is plugged in
+  std::unique_ptr<Device> own;  // used while nothing is plugged in
   Device* device;
-  bool here = false;  // it answered
+  bool here = false;  // the device answered at the last step
   DeviceReading reading;
   ReadingWatch watch;
-  bool believed = true;  // the newest reading, or there was none yet
-  Vec<N> x_before, v;    // as measured at the last step [rad, rad/s]
-  // Of the device's, that are known of; one that has just been plugged in may have had any.
+  bool believed = true;  // false if the newest reading was not believed
+  Vec<N> x_before, v;    // measured at the last step [rad, rad/s]
+  // Number of the device's lapses that are known; nothing: one just plugged in may have had any.
   std::optional<std::uint32_t> lapses = 0;
   RigInput input;
 };
@@ -99,8 +99,8 @@ void Rig::limit(const SafetyLimits& limits) {
   std::visit([&](auto& of) { of->tick.limit(limits); }, of_);
 }
 
-// The reading that the loop sees. A device that says nothing, or what cannot be, is where it was
-// when it last spoke. A virtual arm's reading is not made better: the tick finds that it diverged.
+// Gives the reading that the loop sees. A device that is silent, or reads what cannot be, stays
+// where it last was. A virtual arm's reading is taken as it is: the tick finds that it diverged.
 template <int N>
 Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   device->expect(p, now.hand);
@@ -113,7 +113,7 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   if (heard && believed) x = of_joints(reading.x);
   DeviceHealth health = health_of(reading, here, guarded, now.dt, now.silence, lapses);
   health.wrong = !believed;
-  health.gap = health.gap || (believed && !before);  // where it went meanwhile nobody knows
+  health.gap = health.gap || (believed && !before);  // nobody knows where it went meanwhile
   v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
   const auto truth = device->truth();
@@ -207,7 +207,7 @@ void Rig::present(RigStart& into) const {
         into.reserve = of->tick.reserve();
         into.world.clear();
         if (const BodyWorld* world = of->tick.proxy().contacts().world()) {
-          into.world.reserve(BodyWorld::kMostNumbers);  // the first time, which is not in a tick
+          into.world.reserve(BodyWorld::kMostNumbers);  // allocates once, outside of a tick
           world->write(into.world);
         }
       },
@@ -263,7 +263,7 @@ RigStart start_of(const RowLayout& layout, std::span<const double> row) {
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), layout.width(c)));
   };
   const auto target = layout.in(row, Column::hand_target);
-  // 0 where no law had kept account until then.
+  // 0 if no law kept account until then.
   const double reserve = layout.in(row, Column::energy_ledger)[0];
   return {vector(Column::device_position),
           vector(Column::device_velocity),

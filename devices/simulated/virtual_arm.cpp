@@ -10,8 +10,7 @@ namespace limpid {
 
 namespace {
 
-// The hand's force at an arm that moves so, to the change of what it is where the arm was
-// linearized.
+// Part of the hand's force that the arm's motion since its linearization takes away [N].
 template <int M>
 [[gnu::always_inline]] inline void hold(const WideSubsteps& s, Four& force) {
   const Eigen::Index p = wide::rows<M>(s.n);
@@ -52,8 +51,8 @@ template <int M>
   }
 }
 
-// The same by dv = r - E v + K f, of what A^-1 makes of the rest: of few joints that costs as much
-// as the solves of five substeps, and what each of them waits for is less.
+// Takes the same substeps as dv = r - E v + K f, A^-1 multiplied in beforehand. With few joints
+// that costs as much as the solves of five substeps, and each substep then waits for less.
 template <int M>
 [[gnu::always_inline]] inline void prepared_substeps(const WideSubsteps& s) {
   using namespace wide;
@@ -98,6 +97,17 @@ template <int M>
   }
 }
 
+constexpr int kShare = 5;                // substeps that share a linearization
+constexpr double kFar = 0.05;            // linearizations farther apart are not extrapolated [rad]
+constexpr double kStictionSpeed = 1e-3;  // below it friction acts as a damper [rad/s]
+constexpr double kStopDepth = 0.01;      // a stop yields by this at the motor's limit [rad]
+
+template <int N>
+SubstepState<N, Pair> side_by_side(const std::array<SubstepState<N, double>, 2>& states) {
+  const auto& [one, two] = states;
+  return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
+}
+
 }  // namespace
 
 template <>
@@ -125,21 +135,6 @@ LIMPID_WIDE void run_substeps<7>(const WideSubsteps& steps) {
     wide_substeps<7>(steps);
   }
 }
-
-namespace {
-
-constexpr int kShare = 5;      // substeps that share a linearization
-constexpr double kFar = 0.05;  // linearizations this far apart say nothing of what comes [rad]
-constexpr double kStictionSpeed = 1e-3;  // below it friction is a damper [rad/s]
-constexpr double kStopDepth = 0.01;      // a stop gives by this at the motor's limit [rad]
-
-template <int N>
-SubstepState<N, Pair> side_by_side(const std::array<SubstepState<N, double>, 2>& states) {
-  const auto& [one, two] = states;
-  return {paired<N>(one.u, two.u), paired<N>(one.v, two.v), paired<N>(one.sum_u, two.sum_u)};
-}
-
-}  // namespace
 
 template <int N>
 VirtualArm<N>::VirtualArm(const ArmDescription& arm)
@@ -199,7 +194,7 @@ Drive<N> VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
   return d;
 }
 
-// What the arm is like at both places.
+// Computes the arm's model at both places of linear_.
 template <int N>
 void VirtualArm<N>::linearize(bool drift, const std::optional<Vec3>& gravity) {
   const int last = arm_.dof() - 1;
@@ -226,7 +221,7 @@ bool VirtualArm<N>::within_stops(const Vec<N>& x) const {
   return within;
 }
 
-// A substep with what friction, springs and stops add to A and b around its middle.
+// Takes a substep, with what friction, springs and stops add to A and b around its middle.
 template <int N>
 template <class Under>
 void VirtualArm<N>::resisted_substep(const Drive<N>& d, const Under& model, double t,
@@ -253,8 +248,8 @@ void VirtualArm<N>::resisted_substep(const Drive<N>& d, const Under& model, doub
   at.take(h, solve_symmetric<N>(A, b));
 }
 
-// Where so many substeps lead from t on; one by one where something resists. `within`: the stops,
-// at the start and then at the end.
+// Returns the state after so many substeps from time t, one by one if something resists. `within`:
+// whether the arm is within its stops, before and after them.
 template <int N>
 template <class Under>
 [[gnu::always_inline]] inline SubstepState<N, double> VirtualArm<N>::state_after(
@@ -271,18 +266,18 @@ template <class Under>
   return at;
 }
 
-// Looks at where the arm will be on average over so many substeps from s on, and over as many after
-// them. It gets there in two big steps, by what the last two linearizations would have become.
+// Linearizes at the arm's expected means over `share` substeps from s on, and over as many after
+// them. Predicts them in two big steps, with the last two linearizations extrapolated.
 template <int N>
 void VirtualArm<N>::linearize_ahead(const Drive<N>& d, int s, int share, bool within) {
-  // From the middle of the last share to that of the next two, in shares.
+  // 1.5 shares lie between the middle of the last share and that of the next two together.
   bool near = true;
   for (const Pair& x : linear_.x) near &= std::abs(x[1] - x[0]) < kFar;
   const Linearization<N, double> last = beyond(linear_, near ? 1.5 : 0);
   const double h = share * d.h;
   const LinearSubsteps<N> model(d, h, last);
   SubstepState<N, double> at{x_ - last.x, v_, Vec<N>::Zero(x_.size())};
-  std::array<Vec<N>, 2> u, v;  // on average
+  std::array<Vec<N>, 2> u, v;  // means
   for (std::size_t i = 0; i < 2; ++i) {
     const SubstepState<N, double> from = at;
     at = state_after(d, model, from, s * d.h + static_cast<double>(i) * h, 1, within);
@@ -301,7 +296,7 @@ template <int N>
 void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandInput& hand) {
   const NoSubnormals fast_at_rest;
   const Drive<N> d = drive(p, torque, hand);
-  renewed_ = renewed_ + 1 < x_.size() ? renewed_ + 1 : 0;  // turned angles drift
+  renewed_ = renewed_ + 1 < x_.size() ? renewed_ + 1 : 0;  // as turned angles drift
   arm_.renew(renewed_, linear_.x[renewed_][1], linear_.angles);
   hand_torque_.setZero();
   bool within = within_stops(x_);

@@ -12,9 +12,7 @@
 
 namespace limpid {
 
-// Several substeps of the virtual arm under one linearization: where it is, and how heavy.
-
-// Where the arm was linearized, and what it was like. S: double, or Pair for two places.
+// Model of the arm at the place x, v of its linearization. S: double, or Pair for two places.
 template <int N, class S>
 struct Linearization {
   VecOf<N, S> x, v;
@@ -25,7 +23,7 @@ struct Linearization {
   JacobianOf<N, S> J;    // of the tip
 };
 
-// One of two, as far as substeps ask for it.
+// Model `which` of two, as far as substeps use it.
 template <int N>
 Linearization<N, double> one(const Linearization<N, Pair>& two, int which) {
   Linearization<N, double> at;
@@ -38,8 +36,7 @@ Linearization<N, double> one(const Linearization<N, Pair>& two, int which) {
   return at;
 }
 
-// The second of two, with a model that is as far beyond its own as that is from the first's, times
-// `on`.
+// The second of two models, extrapolated: beyond it by `on` times its difference from the first.
 template <class Both, class One>
 void take_beyond(const Both& both, double on, One& one) {
   one.resize(both.rows(), both.cols());
@@ -62,21 +59,21 @@ Linearization<N, double> beyond(const Linearization<N, Pair>& two, double on) {
   return at;
 }
 
-// What acts on the arm over a tick, and the substep that the tick is taken in.
+// Everything that acts on the arm over a tick, and the tick's substep.
 template <int N>
 struct Drive {
-  double h;                      // [s]
+  double h;                      // length of a substep [s]
   double stiffness, grip, mass;  // of the hand at the tip [N/m, N s/m, kg]
   Vec3 target, target_rate;      // of the hand, at the tick's start [m, m/s]
   Vec<N> torque;                 // of motors and hand [N m]
   Vec<N> damping, friction;      // of the joints [N m s/rad, N m]
   bool rubs, springy;            // some joint has friction; springs pull
-  std::optional<Vec3> gravity;   // of links that weigh something [m/s^2]
+  std::optional<Vec3> gravity;   // set if links weigh something [m/s^2]
 
-  // What the hand makes of the tip's velocity, and of its change, over a substep of dt [N s/m].
+  // Hand's force per velocity of the tip, and per change of it, over a substep of dt [N s/m].
   double along_rate(double dt) const { return grip + dt / 2 * stiffness; }
   double answer(double dt) const { return grip / 2 + dt / 4 * stiffness + mass / dt; }
-  // Its force at t on an arm that stays where it was linearized [N].
+  // Hand's force at t on an arm that stays where it was linearized [N].
   template <class S>
   Vec3Of<S> force_there(const Linearization<N, S>& at, const S& t) const {
     const Vec3 at_start = stiffness * target + grip * target_rate, rate = stiffness * target_rate;
@@ -84,11 +81,11 @@ struct Drive {
   }
 };
 
-// Where substeps have got to under a linearization.
+// State that substeps have reached under a linearization.
 template <int N, class S>
 struct SubstepState {
-  VecOf<N, S> u, v;   // x less the linearization's; v
-  VecOf<N, S> sum_u;  // of u over the substeps that were taken, each where it began
+  VecOf<N, S> u, v;   // x minus the linearization's x; v
+  VecOf<N, S> sum_u;  // sum of u at the start of each substep taken
 
   void take(double h, const VecOf<N, S>& dv) {
     sum_u += u;
@@ -97,7 +94,7 @@ struct SubstepState {
   }
 };
 
-// The hand's force at the tip, summed over so many substeps that led from one to the other [N].
+// The hand's force at the tip, summed over the `substeps` from `from` to `to` [N].
 template <int N, class S>
 Vec3Of<S> hand_force(const Drive<N>& d, const Linearization<N, S>& at, const S& t,
                      const S& substeps, const SubstepState<N, S>& from,
@@ -109,30 +106,30 @@ Vec3Of<S> hand_force(const Drive<N>& d, const Linearization<N, S>& at, const S& 
   return substeps * d.force_there(at, t + S(0.5 * d.h) * substeps) - at.J * moved;
 }
 
-// Substeps of more than three joints, in columns as wide as they are made up to whole fours: n and
-// where the numbers are. `lower`, `corners`: of A, see SymmetricFactor.
+// Arguments of substeps for more than three joints: n, and pointers to columns padded to whole
+// fours. `lower`, `corners`: factors of A, see SymmetricFactor.
 struct WideSubsteps {
   Eigen::Index n;
   const double *lower, *corners;
-  const double *J_T, *steady, *damping;  // 3 columns; what does not change [N m]; of the joints
-  double h, stiffness, along_rate;       // see Drive
-  Vec3 force, force_step;                // of the hand where the arm was linearized; its change [N]
+  const double *J_T, *steady, *damping;  // 3 columns; constant torque [N m]; of the joints
+  double h, stiffness, along_rate;       // as in Drive
+  Vec3 force, force_step;  // of the hand where the arm was linearized; its change a substep [N]
   double *u, *v, *sum_u, *dv;
   int count;
 };
 template <int N>
 void run_substeps(const WideSubsteps& steps);
-// A times `by` and J^T J times `answer` more.
+// Sets A to `by` A + `answer` J^T J.
 template <int N>
 void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double* A);
 
-// A substep from u and v on, its middle at t from the tick's start, has all taken as v would have
-// it there, and the change that it makes of v then corrects:
+// Linearly implicit midpoint rule under one linearization. b takes position and velocity at a
+// substep's middle t as if v did not change; A corrects for its change dv:
 //     A dv = b(t, u, v), x_mid = x + h/2 v + h/4 dv, v_mid = v + dv/2.
 template <int N>
 class LinearSubsteps {
  public:
-  // Both are to live on.
+  // Keeps references to `drive` and `at`; they must outlive it.
   LinearSubsteps(const Drive<N>& drive, double h, const Linearization<N, double>& at)
       : d_(drive), h_(h), linear_(at), A_(widened<N>(at.M)) {
     if constexpr (N == 3) {
@@ -154,9 +151,9 @@ class LinearSubsteps {
   }
 
   double h() const { return h_; }
-  const Vec<N>& x() const { return linear_.x; }  // of the linearization
+  const Vec<N>& x() const { return linear_.x; }  // the linearization's
   double M(Eigen::Index joint) const { return linear_.M(joint, joint); }
-  Mat<N> A() const { return narrowed<N>(A_); }  // its lower triangle
+  Mat<N> A() const { return narrowed<N>(A_); }  // lower triangle
   [[gnu::always_inline]] Vec<N> b(double t, const Vec<N>& u, const Vec<N>& v) const {
     const Vec3 force =
         d_.force_there(linear_, t) - linear_.J * (d_.stiffness * u + d_.along_rate(h_) * v);
@@ -165,7 +162,7 @@ class LinearSubsteps {
     return b;
   }
 
-  // Where so many substeps lead from t on.
+  // Returns the state after so many substeps from `at`, which is at time t.
   SubstepState<N, double> state_after(SubstepState<N, double> at, double t, int substeps) const {
     if constexpr (N == 3) {
       for (int s = 0; s < substeps; ++s) {
@@ -214,7 +211,7 @@ class LinearSubstepsOfTwo {
   std::array<LinearSubsteps<N>, 2> both_of_them_;
 };
 
-// Of three joints both are prepared side by side as dv = P u + Q v + r + t s.
+// For three joints the two linearizations are prepared side by side: dv = P u + Q v + r + t s.
 template <>
 class LinearSubstepsOfTwo<3> {
  public:
@@ -238,7 +235,7 @@ class LinearSubstepsOfTwo<3> {
     s_ = inverse * (two.J.transpose() * rate.cast<Pair>());
   }
 
-  // One of them.
+  // Substeps under one of the two linearizations.
   class Under {
    public:
     Under(const LinearSubstepsOfTwo& both, int which) : both_(both), which_(which) {
@@ -306,23 +303,22 @@ class LinearSubstepsOfTwo<3> {
   Vec3Of<Pair> r_, s_;
 };
 
-// (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper and mass
-// at the tip; gravity counts as compensated and springs as not there, unless p has them. Integrated
-// in substeps of the tick with the motor torque held: linearly implicit midpoint rule, second order
-// and without numerical damping, stable for every grip. Several substeps share one linearization:
-// where the arm is and how heavy, taken where it is on average over them, x + S v/2 + S dv/6, v +
-// dv/2 if v changes by dv in S seconds: what changes evenly then makes no error, and what is left
-// is of second order in the arm's way in S.
+// Equation (5) with viscous damping, Coulomb friction, joint stops, and the hand's spring, damper
+// and mass at the tip. Gravity counts as compensated and springs as absent, unless p has them.
+// Integrates in substeps of the tick, the motor torque held, by the linearly implicit midpoint
+// rule: second order, without numerical damping, stable for every grip. Several substeps share one
+// linearization, taken at the arm's mean over their S seconds: x + S v/2 + S dv/6 and v + dv/2 for
+// a change dv of v. Even changes make no error; the rest is of second order in the arm's way in S.
 template <int N>
 class VirtualArm {
  public:
   explicit VirtualArm(const ArmDescription& arm);
 
-  // Puts it somewhere, the hand's target on the tip [rad, rad/s].
+  // Puts the arm at x and v, the hand's target on the tip [rad, rad/s].
   void place(const Vec<N>& x, const Vec<N>& v, const Vec3& target);
-  // As the encoders have it, and as it is.
+  // Reads the position as encoders have it, and as it is.
   Reading<N> read(double encoder_step) const;
-  // Lives through one tick under this motor torque [N m].
+  // Simulates one tick under this motor torque [N m].
   void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
   Vec3 tip() const { return arm_.tip_at(x_); }
   const Vec<N>& x() const { return x_; }  // [rad]
@@ -349,10 +345,10 @@ class VirtualArm {
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
   Linearization<N, Pair> linear_;  // the newest two
-  Eigen::Index renewed_ = 0;       // joint whose sine was asked for last
+  Eigen::Index renewed_ = 0;       // joint whose sine and cosine were renewed last
 };
 
-// The virtual arm as a device: a write lives through the tick, its torque acts some ticks later.
+// The virtual arm as a device: write() simulates the tick; its torque acts some ticks later.
 template <int N>
 class VirtualDevice final : public Device {
  public:
@@ -376,9 +372,9 @@ class VirtualDevice final : public Device {
   DeviceTraits traits_;
   Parameters p_;
   HandInput hand_;
-  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques, one place a tick in turn [N m]
-  std::size_t newest_ = 0;                   // of them
-  Vec<N> acted_;                             // the one that the motors gave over the last tick
+  std::array<Vec<N>, kMostDelay + 1> sent_;  // ring of torques, one a tick [N m]
+  std::size_t newest_ = 0;                   // its newest place
+  Vec<N> acted_;                             // torque that the motors gave over the last tick
   std::uint64_t count_ = 0;
 };
 

@@ -29,7 +29,7 @@ constexpr std::array kKinds{KindName{Kind::slider, "slider"}, KindName{Kind::hin
 
 const char* name_of(Kind kind) { return std::ranges::find(kKinds, kind, &KindName::kind)->name; }
 
-// Shapes, one of which a body and each of its parts has.
+// Keys of shapes; a body and each of its parts has one of them.
 constexpr std::array kShapeKeys{"box", "sphere", "cylinder", "capsule"};
 
 template <class S>
@@ -38,7 +38,7 @@ S tube(const TomlTable& t, const char* key) {
   return {list[0], list[1]};
 }
 
-// `file` is a shape, too, where `models` may be.
+// Reads a shape; `file` is one, too, if `models` allows it.
 Shape shape_of(const TomlTable& t, bool models) {
   std::vector<std::string> keys(kShapeKeys.begin(), kShapeKeys.end());
   if (models) keys.emplace_back("file");
@@ -72,7 +72,7 @@ BodyPart part(const TomlTable& t) {
           t.vector("color", kColor)};
 }
 
-// Increasing positions, with the force at each.
+// Reads increasing positions, with the force at each.
 std::vector<std::array<double, 2>> travel_of(const TomlTable& t) {
   const auto points = t.pairs("travel", kTravelPoint);
   if (!points) return {};
@@ -117,7 +117,7 @@ Kind kind_of(const TomlTable& t) {
 Vec3 axis_of(const TomlTable& t) {
   Vec3 axis = t.need(t.vector("axis", kDirection), "axis");
   if (!(axis.norm() > 1e-9)) t.refuse("axis", "a direction, not zero");
-  // One that is unit already stays as it is: what was written is read back to the last bit.
+  // A unit vector stays as it is, so that a written one is read back to the last bit.
   if (!(std::abs(axis.squaredNorm() - 1) < 1e-15)) axis.normalize();
   return axis;
 }
@@ -150,7 +150,7 @@ std::string mass_text(double mass) {
 
 bool within(double mass) { return mass >= kMass.minimum && mass <= kMass.maximum; }
 
-// A mesh has a volume when it is built: its density waits for that.
+// Reads mass or density. A mesh has no volume until it is built: its density is kept until then.
 void read_mass(const TomlTable& t, Object& object, SceneDocument& out) {
   const auto density = t.number("density", kDensity);
   const auto mass = t.number("mass", kMass);
@@ -245,7 +245,7 @@ BodySpring spring_of(const TomlTable& t, const std::vector<std::string>& names) 
   return spring;
 }
 
-// Leaves what is as it is without a word.
+// Writes a value unless it is the usual one.
 void put_unless(SceneText& text, const char* key, double value, double usual) {
   if (value != usual) text.put(key, value);
 }
@@ -389,7 +389,7 @@ void hold_joint(BodyJoint& joint) {
   hold_in(joint.stop_stiffness, kStiffness, usual.stop_stiffness);
   hold_in(joint.stop_restitution, kFriction, 0);
   hold_force(joint.force);
-  // What a kind does not have, its file cannot say.
+  // A file cannot say what a kind of joint does not have.
   if (joint.kind == Kind::slider) joint.point = usual.point;
   if (joint.kind == Kind::ball) {
     BodyJoint ball;

@@ -1,4 +1,4 @@
-// What moves, in a scene's file:
+// Bodies and springs in a scene's file:
 //
 //     gravity = [0.0, 0.0, -9.81]  # m/s^2, optional
 //
@@ -54,22 +54,23 @@
 
 namespace limpid {
 
-// The tables [[body]] and [[spring]] and the key gravity of a whole file. Errors as of a scene.
+// Reads the tables [[body]] and [[spring]] and the key gravity of a whole file. Errors: as
+// read_scene().
 void read_bodies(const TomlTable& file, const std::filesystem::path& base_dir,
                  const SceneFiles& files, SceneDocument& out);
 
 void put_gravity(SceneText& text, const Scene& scene);
-// All of them, with their parts, joints and springs.
+// Writes all bodies with their parts and joints, and all springs.
 void put_bodies(SceneText& text, const SceneDocument& document);
 
-// Gives bodies that have a density and a mesh their mass, now that it is built. Errors: FileError.
+// Sets the mass of bodies with a density and a mesh, once the mesh is built. Errors: FileError.
 void settle_masses(SceneDocument& document);
 
-// Holds what goes with moving within what a file may say.
+// Holds the values of a body or a spring within what a file may say.
 void hold_body(Object& object);
 void hold(BodySpring& spring);
 
-// Whether a body hangs on itself, over how many joints it may be; `place` is its place.
+// Returns whether joints lead from the body at `place` back to itself.
 bool joint_leads_round(const Scene& scene, std::size_t place);
 
 }  // namespace limpid

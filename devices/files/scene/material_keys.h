@@ -1,5 +1,5 @@
-// The keys of a material, the same in every table of a scene file that has one, and what they may
-// be: for its reader, its writer, and whoever edits it.
+// Keys of a material, the same in every table of a scene file, and their ranges: for reader, writer
+// and editor.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ struct MaterialKey {
   const char* key;
   double Material::*field;
   Range range;
-  bool required;      // in files; else it is as a Material has it
+  bool required;      // in files; else the default of Material
   const char* label;  // of its slider
   double slider_minimum, slider_maximum;
   bool logarithmic;
@@ -39,7 +39,7 @@ inline constexpr std::array kMaterialKeys{
                 "by the predictive coupling."},
 };
 
-// Within what a file may say.
+// Holds a material within what a file may say.
 inline void hold(Material& material) {
   for (const MaterialKey& each : kMaterialKeys) {
     double& value = material.*each.field;
@@ -47,7 +47,7 @@ inline void hold(Material& material) {
   }
 }
 
-// Materials that everybody knows, as a hand feels them through a device.
+// A material that everybody knows, as a hand feels it through a device.
 struct UsualMaterial {
   const char* name;
   Material material;
@@ -62,7 +62,7 @@ inline constexpr std::array kUsualMaterials{
     UsualMaterial{"glass", {4000, 0, 0.1, 0.08}},     UsualMaterial{"brass", {5000, 0, 0.25, 0.2}},
     UsualMaterial{"ice", {3000, 0, 0.03, 0.02}}};
 
-// Null for one of the user's own.
+// The usual material with these values; null if there is none.
 inline const UsualMaterial* usual_material(const Material& material) {
   for (const UsualMaterial& each : kUsualMaterials) {
     const Material& usual = each.material;

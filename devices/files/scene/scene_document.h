@@ -15,9 +15,10 @@
 #include "devices/files/scene_files.h"
 #include "devices/files/toml_reader.h"
 
-namespace limpid::scene_limits {
+namespace limpid {
 
-// What a scene may hold: for its file, and for whoever edits it.
+// Limits of a scene, for its file and its editors.
+namespace scene_limits {
 
 inline constexpr std::size_t kMostContacts = 64;
 inline constexpr std::size_t kMostProbes = 64;                        // with the tip
@@ -32,7 +33,7 @@ inline constexpr Range kDamping{0, 1000, false, "N s/m"};
 inline constexpr Range kFriction{0, 1, false, ""};
 inline constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
 inline constexpr Range kScale{0, 1e4, true, ""};
-// Of what moves.
+// Limits of what moves.
 inline constexpr std::size_t kMostSprings = 128;
 inline constexpr double kForever = std::numeric_limits<double>::infinity();
 inline constexpr Range kGravity{-100, 100, false, "m/s^2"};
@@ -50,10 +51,9 @@ inline constexpr Range kBreaking{0, kForever, true, "N"};
 inline constexpr Range kDirection{-1e6, 1e6, false, ""};
 inline constexpr Range kColor{0, 1, false, ""};
 
-}  // namespace limpid::scene_limits
-namespace limpid {
+}  // namespace scene_limits
 
-// The units that a model's coordinates may be in.
+// A unit that a model's coordinates may be in.
 struct ModelUnit {
   const char* name;  // in scene files
   double metres;
@@ -63,7 +63,7 @@ inline constexpr std::array kModelUnits{ModelUnit{"m", 1}, ModelUnit{"cm", 0.01}
                                         ModelUnit{"mm", 0.001}, ModelUnit{"in", 0.0254},
                                         ModelUnit{"ft", 0.3048}};
 
-// Null for what is none of them.
+// The unit of so many metres; null if there is none.
 inline const ModelUnit* model_unit(double metres) {
   for (const ModelUnit& each : kModelUnits) {
     if (each.metres == metres) return &each;
@@ -71,19 +71,19 @@ inline const ModelUnit* model_unit(double metres) {
   return nullptr;
 }
 
-// Where a scene does not say the unit [m].
+// The unit of a model file if the scene says none [m].
 inline double usual_unit(const std::filesystem::path& file) {
   const ModelKind* const kind = model_kind(file);
   return kind == nullptr ? 1 : kind->unit;
 }
 
-// Of any kind that is read.
+// A model of any kind that can be read.
 struct ModelFile {
   std::string path;  // where it was found; empty: inside a recorded session
-  ModelBytes bytes;  // with all it refers to, once its shape was built
+  ModelBytes bytes;  // with all files that it refers to, once its shape is built
 };
 
-// Something to look at only.
+// A model to look at only.
 struct SceneVisual {
   std::string file;  // of a model, absolute path
   Pose pose = Pose::Identity();
@@ -96,12 +96,12 @@ struct SceneDocument {
   std::string about;  // one sentence for people
   std::vector<SceneVisual> visuals;
   std::map<std::string, ModelFile> models;  // by Mesh::model
-  // Of bodies whose mass waits for their mesh to be built, by name: settle_masses() [kg/m^3].
+  // Densities by name, of bodies whose mass waits for their mesh: see settle_masses() [kg/m^3].
   std::map<std::string, double> densities;
   std::string toml;  // the text it came from
 };
 
-// The models that its meshes have, as a recording keeps them; not others that may be left.
+// The models of the document's meshes, as a recording keeps them, without models left over.
 inline SceneFiles files_of(const SceneDocument& document) {
   SceneFiles files;
   for (const Object& object : document.scene.objects) {

@@ -27,7 +27,7 @@ Pose optional_pose(const TomlTable& t) {
   return pose_of(t, t.vector("position", kPosition).value_or(Vec3::Zero()), "rpy");
 }
 
-// These keys, and those of everything that has a surface.
+// Allows these keys, and those of everything that has a surface.
 void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
   keys.insert(keys.begin(), "name");
   for (const MaterialKey& each : kMaterialKeys) keys.push_back(each.key);
@@ -36,22 +36,22 @@ void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
 
 void hold(double& x, const Range& range, double otherwise) { x = range.hold(x, otherwise); }
 
-// The same of a simple solid, which may have a color.
+// Allows these keys and those of a simple solid, which may have a color.
 void allow_with_color(const TomlTable& t, Object& object, std::vector<const char*> keys) {
   keys.emplace_back("color");
   allow_with_common(t, std::move(keys));
   object.color = t.vector("color", kColor);
 }
 
-// What a shape is in a file: how its tables are called, what is read from one besides name and
-// material, what is written to one, and what a shape is held within.
+// Forms of each shape in files: table_of() names its table, read() reads it without name and
+// material, write() writes it, hold() keeps it within limits.
 const char* table_of(const Plane&) { return "plane"; }
 
 void read(const TomlTable& t, const ArmDescription&, Object& object, Plane& plane) {
   allow_with_common(t, {"point", "normal"});
   plane.normal = t.need(t.vector("normal", kDirection), "normal");
   if (!(plane.normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
-  // One that is unit already stays as it is: what was written is read back to the last bit.
+  // A unit vector stays as it is, so that a written one is read back to the last bit.
   if (!(std::abs(plane.normal.squaredNorm() - 1) < 1e-15)) plane.normal.normalize();
   object.pose = pose_at(point_of(t, "point"));
 }
@@ -104,7 +104,7 @@ void hold(Object&, Box& box) {
   for (double& edge : box.size) hold(edge, kLength, Box{}.size.x());
 }
 
-// Cylinders and capsules alike.
+// Reads a cylinder or a capsule.
 template <class S>
 void read_tube(const TomlTable& t, Object& object, S& tube) {
   allow_with_color(t, object, {"radius", "length", "position", "rotation"});
@@ -219,7 +219,7 @@ void hold(Object& object, JointStop& stop) {
   hold(object.material.stiffness, kJointStiffness, JointStop::kUsualStiffness);
 }
 
-// One of each, in the order of files.
+// A shape of each kind, in the order of files.
 template <std::size_t... I>
 std::array<Shape, sizeof...(I)> every_shape(std::index_sequence<I...>) {
   return {Shape(std::in_place_index<I>)...};
@@ -244,7 +244,8 @@ void read_objects(const TomlTable& t, const ArmDescription& arm, const fs::path&
   }
 }
 
-// Links of the file that were merged into a moving one will do: the ends are moved along.
+// The named frame of a link that moves. Links of the file that were merged into a moving one count,
+// too; the probe's ends move along.
 const NamedFrame& named_frame(const TomlTable& t, const ArmDescription& arm) {
   const std::string wanted = t.need(t.text("link"), "link");
   std::vector<std::string> names;
@@ -265,7 +266,7 @@ Probe probe(const TomlTable& t, const ArmDescription& arm) {
           t.need(t.number("radius", kRadius), "radius")};
 }
 
-// The frame that the ends are written in: the link's own where the file has a name for it.
+// The frame in which a probe's ends are written: the link's own if the file has a name for it.
 const NamedFrame& frame(const Probe& probe, const ArmDescription& arm) {
   const NamedFrame* found = nullptr;
   for (const NamedFrame& each : arm.frames) {
@@ -289,7 +290,7 @@ void put_probe(SceneText& text, const Probe& probe, const ArmDescription& arm) {
   text.put("radius", probe.radius);
 }
 
-// False for one that is left out.
+// Reads a visual; false if it is left out.
 bool visual(const TomlTable& t, const fs::path& base_dir, SceneVisual& out) {
   t.allow_only({"file", "position", "rpy", "scale"});
   const fs::path file = model_of(t);

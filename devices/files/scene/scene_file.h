@@ -78,24 +78,25 @@
 
 namespace limpid {
 
-// Errors: FileError "FILE:LINE: KEY: found; allowed". Unknown keys are errors, a file without any
-// contact is not (free space). Pairs of a contact and a probe, tip included, are at most 64 x 64.
+// Reads a scene. Errors: FileError "FILE:LINE: KEY: found; allowed", also for unknown keys. A file
+// without any contact is free space. Pairs of a contact and a probe, tip included, are at most 64 x
+// 64.
 SceneDocument read_scene(const std::filesystem::path& file, const ArmDescription& arm);
 
-// `where` names the text in messages. With an empty `base_dir` (a text that has no folder, as the
-// one inside a session) visuals that are not there are left out. Meshes come from `files` if they
-// are there, else from the folder; their shapes are still to be built.
+// Reads a scene from text; `where` names it in messages. If `base_dir` is empty (text without a
+// folder, as inside a session), visuals that do not exist are left out. Meshes come from `files` if
+// they are there, else from the folder; their shapes are still to be built.
 SceneDocument parse_scene(const std::string& text, const std::string& where,
                           const std::filesystem::path& base_dir, const ArmDescription& arm,
                           const SceneFiles& files = {});
 
 // Text from which parse_scene() makes this scene again, to the last bit (rotations that no angles
-// give exactly: to round-off). Meshes are named as the scene names them, visuals relative to
-// `folder` where they lie inside of it. Comments of a text the scene came from are not in it.
+// give exactly: to round-off). Meshes keep their names; visuals inside of `folder` are named
+// relative to it. Comments of a text that the scene came from are lost.
 std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
                        const std::filesystem::path& folder = {});
 
-// Holds an object within what a file may say, its rotation at one that a file says exactly.
+// Holds an object within what a file may say, and its rotation at one that a file says exactly.
 void hold(Object& object);
 
 }  // namespace limpid

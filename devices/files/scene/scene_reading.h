@@ -1,4 +1,4 @@
-// What tables of a scene's file have in common.
+// Readers of what the tables of a scene's file have in common.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,22 @@
 
 namespace limpid {
 
-// A pose at a position, turned as `key` says, if it says something.
+// The pose at `position`, turned as `key` says, if it is there.
 Pose pose_of(const TomlTable& t, const Vec3& position, const char* key);
 Vec3 point_of(const TomlTable& t, const char* key);
 std::string name_of(const TomlTable& t);
 
-// Where `needed`, a table has to have the keys that every material needs.
+// Reads a material. If `needed`, the keys that every material needs have to be there.
 Material material_of(const TomlTable& t, bool needed);
 
-// The key `file`, of a kind that is read.
+// Reads the key `file`: a model of a kind that can be read.
 std::string model_of(const TomlTable& t);
-// Of a file that exists.
+// The absolute path of a model. Errors: FileError if the file does not exist.
 std::filesystem::path model_path(const TomlTable& t, const std::string& file,
                                  const std::filesystem::path& base_dir);
-// Model, scale and axes of a mesh.
+// Reads model, scale and axes of a mesh.
 void read_model_keys(const TomlTable& t, Mesh& mesh);
-// Takes the model of a mesh into the document, if it is not there: from `files`, else the folder.
+// Takes a mesh's model into the document, unless it has it: from `files`, else from the folder.
 void take_model(const TomlTable& t, const Mesh& mesh, const std::filesystem::path& base_dir,
                 const SceneFiles& files, SceneDocument& out);
 

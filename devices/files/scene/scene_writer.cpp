@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostCompanions = 1000;
 
-// What a line says that begins with one of the words that name files; empty: nothing.
+// The file names in a line of a model or its materials; empty if the line names no files.
 std::string_view named_in(std::string_view line, bool materials) {
   line = trimmed(line);
   const std::size_t end = std::min(line.find_first_of(kBlanks), line.size());
@@ -48,7 +48,8 @@ class Companions {
   std::vector<fs::path> all() && { return std::move(all_); }
 
  private:
-  // A name may hold blanks; else it is the last word behind a picture's options, or one of several.
+  // Takes a name with blanks; else the last word behind a picture's options, or each of several
+  // names.
   void take(std::string_view words, bool pictures) {
     if (words.empty() || take_file(std::string(words), pictures)) return;
     while (!words.empty()) {
@@ -83,17 +84,6 @@ class Companions {
   std::vector<fs::path> all_;
 };
 
-}  // namespace
-
-std::vector<fs::path> obj_companions(const fs::path& obj) {
-  Companions companions(obj);
-  companions.look_into(obj, false);
-  return std::move(companions).all();
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
 
 Bytes read_bytes(const fs::path& file) {
@@ -117,12 +107,12 @@ bool is_there(const fs::path& file) {
   return fs::exists(fs::symlink_status(file, none));
 }
 
-// The name of the i-th thing of one name.
+// The i-th of several different things called `name`.
 std::string numbered(const std::string& name, int i) {
   return i == 1 ? name : fmt::format("{}-{}", name, i);
 }
 
-// The models of a scene, brought to where its file can name them.
+// Brings the models of a scene to where its file can name them.
 class Models {
  public:
   explicit Models(fs::path folder) : folder_(std::move(folder)) {}
@@ -135,7 +125,7 @@ class Models {
   Models(const Models&) = delete;
   Models& operator=(const Models&) = delete;
 
-  // The name for a model at `path`, or with these bytes if it has none.
+  // Returns the name for a model at `path`; for a model without a path, it has these bytes.
   std::string place(const fs::path& path, const std::string& name, const Bytes* bytes) {
     const auto [known, is_new] = names_.try_emplace(path.empty() ? fs::path(name) : path);
     if (is_new) known->second = find_place(path, name, bytes);
@@ -165,7 +155,8 @@ class Models {
     }
   }
 
-  // It names its companions, which therefore keep their names: in a folder of their own.
+  // Copies an OBJ model into a folder of its own: it names its companions, which have to keep their
+  // names.
   std::string copy_obj(const fs::path& path) {
     std::vector<fs::path> files = obj_companions(path);
     if (files.empty()) return copy(path.filename(), read_bytes(path));
@@ -208,6 +199,12 @@ class Models {
 
 }  // namespace
 
+std::vector<fs::path> obj_companions(const fs::path& obj) {
+  Companions companions(obj);
+  companions.look_into(obj, false);
+  return std::move(companions).all();
+}
+
 SceneDocument save_scene(const SceneDocument& document, const ArmDescription& arm,
                          const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
@@ -233,7 +230,7 @@ SceneDocument save_scene(const SceneDocument& document, const ArmDescription& ar
     visual.file = (folder / name).lexically_normal().string();
   }
   out.toml = scene_text(out, arm, folder);
-  // What could not be read again never takes the place of what can.
+  // Refuses to replace a file with one that could not be read again.
   parse_scene(out.toml, file.string(), folder, arm, files_of(out));
   write_atomically(
       file, std::span(reinterpret_cast<const unsigned char*>(out.toml.data()), out.toml.size()));

@@ -1,5 +1,5 @@
-// What a session file has beside the columns of the rows, and what is worked out of them: where the
-// tips are and how fast they move, and how hard the proxy is pushed altogether.
+// Columns of a session file that are derived from the columns of the rows: positions and velocities
+// of the tips, and the total force on the proxy.
 #pragma once
 
 #include <array>
@@ -34,14 +34,14 @@ class DerivedColumns {
  public:
   explicit DerivedColumns(const ArmDescription& arm) : arm_(arm) {}
 
-  // What of a row they follow from, as it is in memory.
+  // The values of a row that the columns are derived from, as they are in memory.
   struct From {
     std::span<const double> x1, v1, x2, v2;  // of device and proxy
     std::span<const double> forces;          // of the contacts
   };
   static From from(const RowLayout& layout, std::span<const double> row);
 
-  // In the order of kDerivedInfo.
+  // Derived values in the order of kDerivedInfo.
   using Values = std::array<Vec3, kDerived>;
   Values of(const From& from) const;
 
@@ -49,7 +49,7 @@ class DerivedColumns {
   Arm<kAnyDof> arm_;
 };
 
-// The arm of a recording, read from its text where that is all there is; null where it cannot be.
+// The arm of a recording, read from its text if that is all there is; null if it cannot be read.
 std::shared_ptr<const ArmDescription> recorded_arm(const SessionInfo& info);
 
 }  // namespace limpid

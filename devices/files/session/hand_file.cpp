@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kLongestCsv = std::size_t{1} << 30;  // [bytes]
 constexpr double kFarthest = 10;                           // [m]
 constexpr double kLongestTime = 1e6;                       // [s]
-constexpr std::string_view kSource = "# source: ";         // of a line before the header
+constexpr std::string_view kSource = "# source: ";         // begins a line before the header
 constexpr std::size_t kLongestSource = 200;                // [bytes]
 constexpr std::array<std::string_view, 4> kHeader{"time_s", "x_m", "y_m", "z_m"};
 
@@ -31,7 +31,7 @@ std::string_view take_field(std::string_view& line) {
   return field;
 }
 
-// With bytes that are no text for a terminal as '?'.
+// `text` with '?' for bytes that are no text for a terminal.
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return std::iscntrl(static_cast<unsigned char>(c)); },
@@ -42,7 +42,7 @@ std::string printable(std::string text) {
 struct Csv {
   const std::string& where;
   int line = 0;
-  bool magnet = false;  // the fifth column
+  bool magnet = false;  // there is a fifth column, magnet
 
   [[noreturn]] void refuse(const std::string& why) const {
     throw FileError(fmt::format("{}:{}: {}", where, line, printable(why)));
@@ -99,7 +99,7 @@ double slope(double h0, double d0, double h1, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// The hand starts and ends at rest, so that the path stays smooth where it is held.
+// Velocities at the samples. The hand starts and ends at rest, so that the path stays smooth there.
 void find_velocities(HandPath& path) {
   const std::size_t n = path.time.size();
   path.velocity.assign(n, Vec3::Zero());
@@ -119,9 +119,40 @@ void start_at_zero(HandPath& path) {
   for (double& t : path.time) t -= start;
 }
 
-// The last sample at or before t; t must not lie before the first.
+// The last sample at or before t, which must not lie before the first.
 std::size_t before(const std::vector<double>& time, double t) {
   return static_cast<std::size_t>(std::upper_bound(time.begin(), time.end(), t) - time.begin()) - 1;
+}
+
+// The position in row k. Errors: FileError if it is farther off than a hand may be.
+Vec3 place_of(const Session& session, std::size_t k, Column column, const std::string& where) {
+  const auto at = session.at(k, column);
+  for (const double x : at) {
+    if (std::abs(x) <= kFarthest) continue;
+    throw FileError(fmt::format("{}: {}: row {}: {} is not allowed; allowed: from -{} to {} m",
+                                where, kColumnInfo[static_cast<std::size_t>(column)].path, k, x,
+                                kFarthest, kFarthest));
+  }
+  return {at[0], at[1], at[2]};
+}
+
+// Pulls of the rows; empty if there are none. Errors: FileError.
+std::vector<BodyPull> pulls_of(const Session& session, const std::string& where) {
+  std::vector<BodyPull> pulls;
+  for (std::size_t k = 0; k < session.size(); ++k) {
+    const double number = session.at(k, Column::hand_pull)[0];
+    if (!(number >= 0 && number <= kMostBodies)) {
+      throw FileError(
+          fmt::format("{}: /hand/pull: row {}: {} is not allowed; allowed: 0 to {}, of the "
+                      "bodies, from 1 on",
+                      where, k, number, kMostBodies));
+    }
+    if (number == 0) continue;
+    if (pulls.empty()) pulls.resize(session.size());
+    pulls[k] = {static_cast<int>(number) - 1, place_of(session, k, Column::pull_point, where),
+                place_of(session, k, Column::pull_target, where)};
+  }
+  return pulls;
 }
 
 }  // namespace
@@ -163,41 +194,6 @@ bool HandPath::magnet_sample(std::size_t k, double T) const {
 BodyPull HandPath::pull_sample(std::size_t k, double T) const {
   return pull.empty() ? BodyPull{} : pull[row(k, T)];
 }
-
-namespace {
-
-// Errors: FileError where it is further off than a hand may be.
-Vec3 place_of(const Session& session, std::size_t k, Column column, const std::string& where) {
-  const auto at = session.at(k, column);
-  for (const double x : at) {
-    if (std::abs(x) <= kFarthest) continue;
-    throw FileError(fmt::format("{}: {}: row {}: {} is not allowed; allowed: from -{} to {} m",
-                                where, kColumnInfo[static_cast<std::size_t>(column)].path, k, x,
-                                kFarthest, kFarthest));
-  }
-  return {at[0], at[1], at[2]};
-}
-
-// Empty where nothing was pulled on. Errors: FileError.
-std::vector<BodyPull> pulls_of(const Session& session, const std::string& where) {
-  std::vector<BodyPull> pulls;
-  for (std::size_t k = 0; k < session.size(); ++k) {
-    const double number = session.at(k, Column::hand_pull)[0];
-    if (!(number >= 0 && number <= kMostBodies)) {
-      throw FileError(
-          fmt::format("{}: /hand/pull: row {}: {} is not allowed; allowed: 0 to {}, of the "
-                      "bodies, from 1 on",
-                      where, k, number, kMostBodies));
-    }
-    if (number == 0) continue;
-    if (pulls.empty()) pulls.resize(session.size());
-    pulls[k] = {static_cast<int>(number) - 1, place_of(session, k, Column::pull_point, where),
-                place_of(session, k, Column::pull_target, where)};
-  }
-  return pulls;
-}
-
-}  // namespace
 
 HandPath hand_of(const Session& session, const std::string& where) {
   if (session.size() == 0) {

@@ -17,11 +17,11 @@ namespace limpid::hdf5 {
 
 namespace {
 
-// HDF5's own part of it comes first.
+// A file of this driver; HDF5's own part has to come first.
 struct OpenFile {
   H5FD_t common{};
   int descriptor = -1;
-  haddr_t announced = 0;  // bytes that HDF5 counts with
+  haddr_t announced = 0;  // bytes that HDF5 has reserved
 };
 
 OpenFile& own(H5FD_t* file) { return *reinterpret_cast<OpenFile*>(file); }
@@ -79,7 +79,7 @@ haddr_t size(const H5FD_t* file, H5FD_mem_t) {
   return ::fstat(own(file).descriptor, &about) == 0 ? static_cast<haddr_t>(about.st_size) : 0;
 }
 
-// Behind the end there are zeros.
+// Reads; behind the end of the file there are zeros.
 herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, size_t left, void* into) {
   auto* to = static_cast<unsigned char*>(into);
   while (left > 0) {
@@ -115,7 +115,7 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
   return failed("truncate");
 }
 
-// HDF5 marks a file as being written only where its driver has these functions.
+// Do nothing: HDF5 marks a file as being written only if its driver has them.
 herr_t lock(H5FD_t*, hbool_t) { return 0; }
 herr_t unlock(H5FD_t*) { return 0; }
 
@@ -123,7 +123,7 @@ H5FD_class_t driver() {
   H5FD_class_t all{};
 #ifdef H5FD_CLASS_VERSION
   all.version = H5FD_CLASS_VERSION;
-  all.value = static_cast<H5FD_class_value_t>(600);  // from 512 on nobody's
+  all.value = static_cast<H5FD_class_value_t>(600);  // values from 512 on are free
 #endif
   all.name = "limpid-descriptor";
   all.maxaddr = static_cast<haddr_t>(std::numeric_limits<off_t>::max());

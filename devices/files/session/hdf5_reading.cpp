@@ -29,7 +29,8 @@ struct Reasons {
   std::string innermost;
 };
 
-// HDF5 hides errno in its text: "file write failed: ..., errno = 28, error message = ...".
+// Collects reasons. HDF5 hides errno in its text: "file write failed: ..., errno = 28, error
+// message = ...".
 herr_t collect(unsigned, const H5E_error2_t* error, void* data) {
   auto& reasons = *static_cast<Reasons*>(data);
   const std::string text = error->desc ? error->desc : "";
@@ -68,6 +69,140 @@ Datatype text_type() {
   H5Tset_size(type.get(), H5T_VARIABLE);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
+}
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kSignature = "GCOL\1\0\0\0"sv;  // with version 1
+constexpr std::uint64_t kHeader = 16;                      // of a heap, and of each object in it
+constexpr std::size_t kBlock = 1 << 20;
+
+// `size` bytes at `at`; fewer at the end of the file.
+std::string bytes_at(std::ifstream& in, std::uint64_t at, std::uint64_t size) {
+  std::string bytes(size, '\0');
+  in.clear();
+  in.seekg(static_cast<std::streamoff>(at));
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
+}
+
+template <class T>
+T number_at(std::string_view bytes, std::uint64_t at) {
+  T x;
+  std::memcpy(&x, bytes.data() + at, sizeof x);
+  return x;
+}
+
+// Returns whether objects fill a heap, by the "HDF5 File Format Specification", III.E, Disk Format:
+// Level 1E - Global Heap. Each has number, count, reserved, size; then that many bytes, padded to
+// 8. Object 0 is free space, with its header in its size.
+bool whole(std::string_view heap) {
+  std::bitset<65536> seen;
+  std::uint64_t at = kHeader;
+  while (heap.size() - at >= kHeader) {
+    const auto number = number_at<std::uint16_t>(heap, at);
+    const auto size = number_at<std::uint64_t>(heap, at + 8);
+    const std::uint64_t room = heap.size() - at;
+    if (size > room || seen[number]) return false;
+    seen.set(number);
+    const std::uint64_t taken = number == 0 ? size : kHeader + (size + 7) / 8 * 8;
+    if (taken < kHeader || taken > room) return false;
+    at += taken;
+  }
+  return true;
+}
+
+void check_heap(std::ifstream& in, std::uint64_t at, std::uint64_t file_size,
+                const std::filesystem::path& file) {
+  const std::string header = bytes_at(in, at, kHeader);
+  if (header.size() == kHeader) {
+    const auto size = number_at<std::uint64_t>(header, 8);
+    if (size >= kHeader && size <= file_size - at && whole(bytes_at(in, at, size))) return;
+  }
+  throw FileError(fmt::format("{}: damaged (text at byte {})", file.string(), at));
+}
+
+namespace fs = std::filesystem;
+
+constexpr H5Z_filter_t kLastOwnFilter = 255;           // filters above are loaded as plugins
+constexpr std::uint64_t kLargestChunk = 256ULL << 20;  // [bytes] that HDF5 unpacks at once
+constexpr std::uint64_t kMostPerByte = 1100;           // deflate packs 1032 bytes into one
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& path, const std::string& why) {
+  throw FileError(fmt::format("{}: {}: {}", file.string(), path, why));
+}
+
+const char* kind_of_link(H5L_type_t type) {
+  switch (type) {
+    case H5L_TYPE_SOFT: return "a soft link";
+    case H5L_TYPE_EXTERNAL: return "a link to another file";
+    default: return "a link that another program defined";
+  }
+}
+
+// Returns whether `path` exists. Follows links one by one: HDF5 would open what they name.
+bool reached(hid_t root, const std::string& path, const fs::path& file) {
+  std::size_t end = 0;
+  const std::string inside = path.starts_with('/') ? path.substr(1) : path;
+  do {
+    end = std::min(inside.find('/', end + 1), inside.size());
+    const std::string way = inside.substr(0, end);
+    H5L_info_t link{};
+    if (H5Lexists(root, way.c_str(), H5P_DEFAULT) <= 0) return false;
+    if (H5Lget_info(root, way.c_str(), &link, H5P_DEFAULT) < 0) return false;
+    if (link.type != H5L_TYPE_HARD) {
+      refuse(file, "/" + way,
+             fmt::format("is {}; allowed: hard links only", kind_of_link(link.type)));
+    }
+  } while (end < inside.size());
+  return true;
+}
+
+void check_filters(hid_t creation, const std::string& path, const fs::path& file) {
+  const int filters = H5Pget_nfilters(creation);
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0, configuration = 0;
+    std::size_t values = 0;
+    std::array<char, 64> name{};
+    const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values,
+                                           nullptr, name.size(), name.data(), &configuration);
+    if (id >= 0 && id <= kLastOwnFilter) continue;
+    name.back() = '\0';
+    refuse(file, path,
+           fmt::format("is packed by filter {} (\"{}\"); allowed: those of HDF5 itself, as gzip",
+                       id, name.data()));
+  }
+}
+
+void check_chunks(hid_t creation, hid_t dataset, const std::string& path, const fs::path& file) {
+  if (H5Pget_nfilters(creation) <= 0) return;
+  std::array<hsize_t, H5S_MAX_RANK> extent{};
+  const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, extent.data());
+  const Datatype type(H5Dget_type(dataset));
+  auto bytes = static_cast<double>(H5Tget_size(type.get()));
+  for (int i = 0; i < rank; ++i) {
+    bytes *= static_cast<double>(extent[static_cast<std::size_t>(i)]);
+  }
+  if (bytes > static_cast<double>(kLargestChunk)) {
+    refuse(file, path,
+           fmt::format("is packed in chunks of {:.0f} MiB; allowed: at most {}", bytes / 0x1p20,
+                       kLargestChunk >> 20));
+  }
+}
+
+void check_storage(const Dataset& dataset, const std::string& path, const fs::path& file) {
+  const Properties creation(H5Dget_create_plist(dataset.get()));
+  if (!creation) refuse(file, path, "not a dataset that can be read");
+  if (H5Pget_external_count(creation.get()) != 0) {
+    refuse(file, path, "is stored in other files; allowed: in this file");
+  }
+  const H5D_layout_t layout = H5Pget_layout(creation.get());
+  if (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) {
+    refuse(file, path, "is put together from other datasets; allowed: stored in this file");
+  }
+  check_filters(creation.get(), path, file);
+  if (layout == H5D_CHUNKED) check_chunks(creation.get(), dataset.get(), path, file);
 }
 
 }  // namespace
@@ -186,164 +321,19 @@ unsigned long long read_count(hid_t object, const char* name, const std::filesys
   return value;
 }
 
-}  // namespace limpid::hdf5
-// The format: "HDF5 File Format Specification", III.E, Disk Format: Level 1E - Global Heap.
-
-namespace limpid::hdf5 {
-namespace {
-
-using namespace std::string_view_literals;
-
-constexpr std::string_view kSignature = "GCOL\1\0\0\0"sv;  // and version 1
-constexpr std::uint64_t kHeader = 16;                      // of a heap, and of each object in it
-constexpr std::size_t kBlock = 1 << 20;
-
-// `size` bytes at `at`; fewer at the end of the file.
-std::string bytes_at(std::ifstream& in, std::uint64_t at, std::uint64_t size) {
-  std::string bytes(size, '\0');
-  in.clear();
-  in.seekg(static_cast<std::streamoff>(at));
-  in.read(bytes.data(), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
-template <class T>
-T number_at(std::string_view bytes, std::uint64_t at) {
-  T x;
-  std::memcpy(&x, bytes.data() + at, sizeof x);
-  return x;
-}
-
-// Objects follow each other to the end of the heap: number, count, reserved, size; then that many
-// bytes, padded to 8. Object 0 is free space, with its header in its size.
-bool whole(std::string_view heap) {
-  std::bitset<65536> seen;
-  std::uint64_t at = kHeader;
-  while (heap.size() - at >= kHeader) {
-    const auto number = number_at<std::uint16_t>(heap, at);
-    const auto size = number_at<std::uint64_t>(heap, at + 8);
-    const std::uint64_t room = heap.size() - at;
-    if (size > room || seen[number]) return false;
-    seen.set(number);
-    const std::uint64_t taken = number == 0 ? size : kHeader + (size + 7) / 8 * 8;
-    if (taken < kHeader || taken > room) return false;
-    at += taken;
-  }
-  return true;
-}
-
-void check_heap(std::ifstream& in, std::uint64_t at, std::uint64_t file_size,
-                const std::filesystem::path& file) {
-  const std::string header = bytes_at(in, at, kHeader);
-  if (header.size() == kHeader) {
-    const auto size = number_at<std::uint64_t>(header, 8);
-    if (size >= kHeader && size <= file_size - at && whole(bytes_at(in, at, size))) return;
-  }
-  throw FileError(fmt::format("{}: damaged (text at byte {})", file.string(), at));
-}
-
-}  // namespace
-
 void check_heaps(const std::filesystem::path& file) {
   const std::uint64_t size = std::filesystem::file_size(file);
   std::ifstream in(file, std::ios::binary);
   // Blocks overlap, so that no signature is cut in two.
   for (std::uint64_t from = 0; from < size; from += kBlock) {
     const std::string block = bytes_at(in, from, kBlock + kSignature.size() - 1);
-    // By its first letter, which numbers seldom have: memmem() looks at every byte of them.
+    // find() looks for the first letter, which numbers seldom have; memmem() looks at every byte.
     for (auto at = block.find(kSignature); at != std::string::npos;
          at = block.find(kSignature, at + 1)) {
       check_heap(in, from + at, size, file);
     }
   }
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr H5Z_filter_t kLastOwnFilter = 255;           // those above are loaded as plugins
-constexpr std::uint64_t kLargestChunk = 256ULL << 20;  // [bytes] that HDF5 unpacks at once
-constexpr std::uint64_t kMostPerByte = 1100;           // deflate packs 1032 bytes into one
-
-[[noreturn]] void refuse(const fs::path& file, const std::string& path, const std::string& why) {
-  throw FileError(fmt::format("{}: {}: {}", file.string(), path, why));
-}
-
-const char* kind_of_link(H5L_type_t type) {
-  switch (type) {
-    case H5L_TYPE_SOFT: return "a soft link";
-    case H5L_TYPE_EXTERNAL: return "a link to another file";
-    default: return "a link that another program defined";
-  }
-}
-
-// Links are followed one by one: HDF5 itself would open what they name.
-bool reached(hid_t root, const std::string& path, const fs::path& file) {
-  std::size_t end = 0;
-  const std::string inside = path.starts_with('/') ? path.substr(1) : path;
-  do {
-    end = std::min(inside.find('/', end + 1), inside.size());
-    const std::string way = inside.substr(0, end);
-    H5L_info_t link{};
-    if (H5Lexists(root, way.c_str(), H5P_DEFAULT) <= 0) return false;
-    if (H5Lget_info(root, way.c_str(), &link, H5P_DEFAULT) < 0) return false;
-    if (link.type != H5L_TYPE_HARD) {
-      refuse(file, "/" + way,
-             fmt::format("is {}; allowed: hard links only", kind_of_link(link.type)));
-    }
-  } while (end < inside.size());
-  return true;
-}
-
-void check_filters(hid_t creation, const std::string& path, const fs::path& file) {
-  const int filters = H5Pget_nfilters(creation);
-  for (int i = 0; i < filters; ++i) {
-    unsigned flags = 0, configuration = 0;
-    std::size_t values = 0;
-    std::array<char, 64> name{};
-    const H5Z_filter_t id = H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &values,
-                                           nullptr, name.size(), name.data(), &configuration);
-    if (id >= 0 && id <= kLastOwnFilter) continue;
-    name.back() = '\0';
-    refuse(file, path,
-           fmt::format("is packed by filter {} (\"{}\"); allowed: those of HDF5 itself, as gzip",
-                       id, name.data()));
-  }
-}
-
-void check_chunks(hid_t creation, hid_t dataset, const std::string& path, const fs::path& file) {
-  if (H5Pget_nfilters(creation) <= 0) return;
-  std::array<hsize_t, H5S_MAX_RANK> extent{};
-  const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, extent.data());
-  const Datatype type(H5Dget_type(dataset));
-  auto bytes = static_cast<double>(H5Tget_size(type.get()));
-  for (int i = 0; i < rank; ++i) {
-    bytes *= static_cast<double>(extent[static_cast<std::size_t>(i)]);
-  }
-  if (bytes > static_cast<double>(kLargestChunk)) {
-    refuse(file, path,
-           fmt::format("is packed in chunks of {:.0f} MiB; allowed: at most {}", bytes / 0x1p20,
-                       kLargestChunk >> 20));
-  }
-}
-
-void check_storage(const Dataset& dataset, const std::string& path, const fs::path& file) {
-  const Properties creation(H5Dget_create_plist(dataset.get()));
-  if (!creation) refuse(file, path, "not a dataset that can be read");
-  if (H5Pget_external_count(creation.get()) != 0) {
-    refuse(file, path, "is stored in other files; allowed: in this file");
-  }
-  const H5D_layout_t layout = H5Pget_layout(creation.get());
-  if (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) {
-    refuse(file, path, "is put together from other datasets; allowed: stored in this file");
-  }
-  check_filters(creation.get(), path, file);
-  if (layout == H5D_CHUNKED) check_chunks(creation.get(), dataset.get(), path, file);
-}
-
-}  // namespace
 
 void check_regular_file(const fs::path& file) {
   if (const std::string why = why_not_found(file, "no such file"); !why.empty()) {
@@ -398,7 +388,8 @@ std::uint64_t physical_memory() {
 Claims::Claims(fs::path file, std::uint64_t most)
     : file_(std::move(file)), file_size_(fs::file_size(file_)), most_(most) {}
 
-// Several datasets may claim the same bytes, but all of them together lie in the file.
+// Adds a dataset's size. Several datasets may claim the same bytes, but all of them lie in the
+// file.
 void Claims::stored(const Dataset& dataset) {
   H5G_stat_t object{};
   if (H5Gget_objinfo(dataset.get(), ".", true, &object) < 0) return;

@@ -1,4 +1,8 @@
-// Small owners of HDF5 identifiers, and HDF5's errors as messages for people.
+// HDF5 files that anybody may have made, read with distrust; owners of HDF5's identifiers.
+//
+// A file of this format can name other files (external storage, virtual datasets, links), whose
+// bytes would be read as its own. It can name code to load (filters), and claim far more than it
+// stores. Such files, and what is in them, are opened through this header, which refuses all that.
 #pragma once
 
 #include <hdf5.h>
@@ -25,7 +29,7 @@ class Handle {
   }
   ~Handle() { close(); }
 
-  // Whether closing worked; an identifier is closed once at most.
+  // Returns whether closing worked; an identifier is closed at most once.
   bool close() { return id_ < 0 || Close(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
   void leave_open() { id_ = H5I_INVALID_HID; }
   hid_t get() const { return id_; }
@@ -43,14 +47,14 @@ using Datatype = Handle<H5Tclose>;
 using Attribute = Handle<H5Aclose>;
 using Properties = Handle<H5Pclose>;
 
-// While it lives, HDF5 prints nothing on this thread. Every public entry to HDF5 code holds one,
-// first: HDF5 must not clean up when the program ends (files are closed long before), because
-// after a failed write it never gets done with it.
+// Keeps HDF5 from printing on this thread while it lives. Every public entry to HDF5 code holds
+// one, first. It also keeps HDF5 from cleaning up at the program's end, which never finishes after
+// a failed write; files are closed long before.
 class Quiet {
  public:
   Quiet() {
     H5dont_atexit();
-    H5PLset_loading_state(0);  // files can name filters, which are code that HDF5 would look for
+    H5PLset_loading_state(0);  // files can name filters: code to load
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
@@ -63,78 +67,67 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-// Why the last HDF5 call on this thread failed: the system's reason ("No space left on device")
-// if there is one, else what HDF5's innermost function said.
+// The reason why the last HDF5 call on this thread failed: the system's ("No space left on device")
+// if there is one, else that of HDF5's innermost function.
 std::string last_error();
 
 // Throws FileError "FILE: WHAT: reason" unless `ok`.
 void check(bool ok, const std::filesystem::path& file, const char* what);
 
-// A scalar UTF-8 attribute of any length, which h5py reads as str.
+// Writes a scalar UTF-8 attribute of any length, which h5py reads as str.
 void write_text(hid_t object, const char* name, const std::string& text,
                 const std::filesystem::path& file);
-// A list of such texts.
+// Writes a list of such texts.
 void write_texts(hid_t object, const char* name, const std::vector<std::string>& texts,
                  const std::filesystem::path& file);
 void write_scalar(hid_t object, const char* name, hid_t stored_as, hid_t held_as, const void* value,
                   const std::filesystem::path& file);
 
-// Errors of the readers: FileError if there is no such attribute or it is of another kind.
+// Read attributes. Errors: FileError if there is no such attribute or it is of another kind.
 std::string read_text(hid_t object, const char* name, const std::filesystem::path& file);
-// At most `most` of them.
+// Reads at most `most` texts.
 std::vector<std::string> read_texts(hid_t object, const char* name, std::size_t most,
                                     const std::filesystem::path& file);
 double read_number(hid_t object, const char* name, const std::filesystem::path& file);
 unsigned long long read_count(hid_t object, const char* name, const std::filesystem::path& file);
 
-}  // namespace limpid::hdf5
-// HDF5 protects all of its bookkeeping with checksums, but for the "global heaps" that hold text
-// of variable length. A damaged one sends the library round for ever, so they are walked first.
-
-namespace limpid::hdf5 {
-
-// Errors: FileError for a heap whose objects do not fill it exactly.
+// Walks a file's "global heaps", which hold text of variable length: HDF5 has no checksums for
+// them, and a damaged one makes it loop for ever. Errors: FileError for a heap whose objects do not
+// fill it exactly.
 void check_heaps(const std::filesystem::path& file);
 
-}  // namespace limpid::hdf5
-// HDF5 files that anybody may have made. A file of this format can name other files (external
-// storage, virtual datasets, links), whose bytes would then be read as its own, and can name code
-// to load (filters); it can also claim far more than it stores. Whatever reads such files opens
-// them, and what is in them, through this header, which refuses all of that.
-
-namespace limpid::hdf5 {
-
-// Errors: FileError for what is missing, or no regular file (a pipe would make the program wait).
+// Checks a file before it is opened. Errors: FileError if it is missing, or no regular file (a pipe
+// would make the program wait).
 void check_regular_file(const std::filesystem::path& file);
 
-// Of a whole HDF5 file, before it is opened. Errors: as check_regular_file(); FileError for other
-// formats and damaged texts (see check_heaps()).
+// Checks a whole HDF5 file before it is opened. Errors: as check_regular_file(); FileError for
+// other formats and damaged texts (see check_heaps()).
 void check_before_opening(const std::filesystem::path& file);
 
-// A file that has been checked that way. Errors: FileError.
+// Opens a file that has passed check_before_opening(). Errors: FileError.
 File open_to_read(const std::filesystem::path& file);
 
-// Whether there is something at `path`, seen from `root`. Errors: FileError where the way to it is
-// not made of hard links only.
+// Returns whether there is something at `path`, seen from `root`. Errors: FileError if the path has
+// other than hard links.
 bool has(hid_t root, const std::string& path, const std::filesystem::path& file);
 
-// Errors: FileError for what is not there, no dataset (group), not reached by hard links, or stored
-// elsewhere than in this file, or packed by a filter that does not belong to HDF5.
+// Open a dataset or a group. Errors: FileError for what does not exist, is of another kind, is not
+// reached by hard links, or is stored outside of this file; for filters that do not belong to HDF5.
 Dataset open_dataset(hid_t root, const std::string& path, const std::filesystem::path& file);
 Group open_group(hid_t root, const std::string& path, const std::filesystem::path& file);
 
 std::uint64_t physical_memory();  // [bytes]
 
-// What all that is read of one file takes in memory, held against what the file stores.
+// Memory claimed by all that is read of one file, limited by what the file stores.
 class Claims {
  public:
   explicit Claims(std::filesystem::path file, std::uint64_t most = physical_memory());
 
   void stored(const Dataset& dataset);  // will be read; counts once, however many links it has
-  // Before values are read in turn. Errors: FileError where all that was asked for is more than the
-  // datasets can unpack to.
+  // Announces values that are read in turn. Errors: FileError if all of them together are more than
+  // the datasets can unpack to.
   void pass(std::uint64_t count, std::uint64_t size, const std::string& what);
-  // Before memory is taken for all of them. Errors: as pass(), and for more than `most`.
+  // Announces values that are all in memory at once. Errors: as pass(), and for more than `most`.
   void take(std::uint64_t count, std::uint64_t size, const std::string& what);
 
  private:

@@ -1,11 +1,11 @@
-// limpid-session: reads an HDF5 file of anybody and says what is in it. What a broken or hostile
-// file does to HDF5's library ends this program, not the one at a device.
+// limpid-session: reads an HDF5 file of anybody and tells its contents. A broken or hostile file
+// may make HDF5's library end this program, not the one at a device.
 //
 //   limpid-session session|table FILE >answer
 //   limpid-session marks FILE <order 3<>copy >answer
 //
-// FILE is all that is within its reach (see sandbox.h), and descriptor 3, a copy of FILE, which
-// gets the marks. session_program.h has order and answer.
+// The program can reach only FILE (see sandbox.h), and descriptor 3, a copy of FILE, which gets the
+// marks. session_program.h has order and answer.
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -20,7 +20,8 @@
 
 namespace {
 
-// Some broken files are read for ever. A mebibyte that is packed as well as can be takes 10 s.
+// Limits processor time, as some broken files are read for ever. A mebibyte packed as tightly as
+// possible takes 10 s.
 void limit_self(const char* file) {
   struct stat about {};
   const rlim_t mebibytes = stat(file, &about) == 0 ? static_cast<rlim_t>(about.st_size >> 20) : 0;
@@ -62,7 +63,7 @@ int main(int count, char** words) {
     return 2;
   }
   limpid::wire::Writer to(STDOUT_FILENO);
-  // Its locks would keep nobody out who is not meant to be.
+  // Switches off HDF5's locks, which would only keep out permitted readers.
   setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
   try {
     limit_self(words[2]);

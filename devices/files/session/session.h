@@ -1,4 +1,4 @@
-// Names and sizes that writer and reader of session files agree on.
+// Session files: recorded ticks as HDF5, readable while being written, recoverable when killed.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@
 namespace limpid {
 
 inline constexpr const char* kSessionFormat = "limpid-session";
-// In version 1 joints that slide counted in units of 0.1 m, and contacts that were not there were
-// at zero. Both are read.
+// Version 1 counts the travel of slides in units of 0.1 m, and has zeros for contacts that are not
+// there. Both versions are read.
 inline constexpr int kSessionVersion = 2;
 inline constexpr std::size_t kSettingLength = 120;
 inline constexpr const char* kEventRowPath = "/events/row";
-inline constexpr const char* kTwinGroup = "twin";  // of the second run, if there is one
+inline constexpr const char* kTwinGroup = "twin";  // group of the second run, if there is one
 inline constexpr const char* kRoundingPath = "/check/rounding";
 inline constexpr const char* kJointTypes = "joint_types";  // attribute of the root
-inline constexpr const char* kSlidingType = "prismatic";   // URDF's words
+inline constexpr const char* kSlidingType = "prismatic";   // in URDF's words
 inline constexpr const char* kTurningType = "revolute";
 inline constexpr const char* kEventSettingPath = "/events/setting";
 inline constexpr const char* kMarkTickPath = "/marks/tick";
@@ -35,18 +35,17 @@ inline constexpr std::size_t kMostMarks = 100'000;
 inline constexpr const char* kWorldPath = "/objects/state";
 inline constexpr std::size_t kMostWorld = 100'000;  // numbers
 inline constexpr const char* kStory = "story";      // attribute of the root
-inline constexpr const char* kBodyNames = "names";  // attribute of what is said of each body
+inline constexpr const char* kBodyNames = "names";  // attribute of datasets of bodies
 
-// What a row reads as that was announced but never written, in recordings of the first edition: a
+// Value of rows that were announced but never written, in recordings of the first edition: a
 // not-a-number that no arithmetic makes.
 inline constexpr std::uint64_t kNeverWritten = 0x7ff8'6c69'6d70'6964;
 
-// The same below a group: a session's datasets stand at the root, a twin's in a group of its own.
+// The same path below a group: a session's datasets are at the root, a twin's in a group.
 inline const char* within_group(const char* path) { return path + 1; }
 
 inline std::size_t column_index(Column c) { return static_cast<std::size_t>(c); }
 
-// Session files: recorded ticks as HDF5, readable while being written, recoverable when killed.
 struct ArmDescription;
 
 struct SessionInfo {
@@ -54,22 +53,21 @@ struct SessionInfo {
   int dof = 3;
   std::string created;  // ISO 8601; filled in by the writer if empty
   std::string app_version;
-  std::string build;  // what program on what kind of processor made it; empty: it does not say
+  std::string build;  // program and kind of processor that made it; empty: unknown
   std::uint64_t seed = 0;
-  std::string source;       // what the hand was
+  std::string source;       // kind of hand
   std::string config;       // all parameters at row 0 (TOML)
   std::string safety;       // the safety limits in force (TOML); empty if none were recorded
   std::string device_urdf;  // whole text
   std::string scene;        // whole text (TOML)
-  std::string story;        // that it tells: captions and the like; empty: none
-  SceneFiles models;        // that the scene's text names
-  // Whose rows they are. Readers leave it out: device_urdf has it. A file that is written without
-  // it has neither tips nor names of joints.
+  std::string story;        // the story that it tells: captions and the like; empty: none
+  SceneFiles models;        // models that the scene's text names
+  // The arm of the rows. Readers leave it out, as device_urdf has it. A file that is written
+  // without it has neither tips nor names of joints.
   std::shared_ptr<const ArmDescription> arm;
-  std::vector<bool>
-      slides;  // of each joint, as far as the file says; empty: none is known to slide
-  std::vector<std::string> bodies;  // what the objects that move are called, in the rows' order
-  // All parameters at row 0 of a second run on the same hand (TOML); none: there is one run.
+  std::vector<bool> slides;         // joints that slide, as far as known; empty: none
+  std::vector<std::string> bodies;  // names of the objects that move, in the rows' order
+  // All parameters at row 0 of a second run on the same hand (TOML); nothing if there is one run.
   std::optional<std::string> twin;
 
   RowLayout layout() const { return RowLayout(dof, static_cast<int>(bodies.size())); }
@@ -78,12 +76,12 @@ struct SessionInfo {
 // A parameter that changed while recording: from `row` on, `setting` ("coupling.k_vc = 8") holds.
 struct SettingChange {
   std::uint64_t row = 0;
-  std::string setting;  // at most 120 characters; no value: back to the arm's own
+  std::string setting;  // at most 120 characters; without a value: back to the arm's own
 
   std::string_view key() const { return std::string_view(setting).substr(0, setting.find(' ')); }
 };
 
-// What somebody noted at a moment of a recording: a comment, or why it is worth another look.
+// A note at a moment of a recording: a comment, or a reason to look at it again.
 struct Mark {
   std::uint64_t tick = 0;  // its row
   std::string text;        // at most kMarkLength bytes
@@ -97,11 +95,11 @@ struct Session {
   LargeVector<double> rows;  // N x layout.stride(), row-major
   std::vector<SettingChange> changes;
   std::vector<Mark> marks;  // in the order of their ticks
-  // All that the loop keeps of its bodies at the first row, as RigStart has it. Empty: they begin
-  // as the scene has them, or it is not known.
+  // State of all bodies at the first row, as RigStart has it. Empty: as the scene has them, or
+  // unknown.
   std::vector<double> world;
   // The second run on the same hand, as a session of its own: as many rows, its own parameters and
-  // changes, the same world. Null: there is one run.
+  // changes, the same world. Null if there is one run.
   std::shared_ptr<const Session> twin;
 
   std::size_t size() const { return rows.size() / static_cast<std::size_t>(layout.stride()); }
@@ -112,17 +110,17 @@ struct Session {
   std::span<const double> at(std::size_t k, Column c) const { return layout.in(row(k), c); }
 };
 
-// Which of a twin's runs.
+// Lanes of a twin's two runs.
 inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 
-// Whether a session that is complete is packed. That takes several times as long as writing it.
+// Choice whether a complete session is packed, which takes several times as long as writing it.
 enum class Packing { no, yes };
 
-// Writes OUT.h5.part while running (SWMR: readable live), which OUT.h5 takes the place of when it
-// is closed: the same, packed where the file system has files without a name and room for it. Rows
-// reach the disk at least every three quarters of a second of ticks. Not for the haptic thread.
-// Errors: FileError if OUT exists and `force` is not set, the place cannot be written, or a write
-// fails (disk full); after a failed write the .part keeps what had been flushed.
+// Writes OUT.h5.part while recording (SWMR: readable live). close() replaces it by OUT.h5: the
+// same, packed if the file system has nameless files and room. Rows reach the disk at least every
+// three quarters of a second of ticks. Not for the haptic thread. Errors: FileError if OUT exists
+// and `force` is not set, the place cannot be written, or a write fails (disk full). After a failed
+// write the .part keeps everything flushed before.
 class SessionWriter {
  public:
   SessionWriter(std::filesystem::path out, const SessionInfo& info, bool force,
@@ -131,17 +129,17 @@ class SessionWriter {
   SessionWriter(const SessionWriter&) = delete;
   SessionWriter& operator=(const SessionWriter&) = delete;
 
-  // Any whole number of rows. Of a twin both runs get as many.
+  // Appends any whole number of rows. Both runs of a twin get as many.
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
   void append(const Mark& mark);
-  // What the loop keeps of bodies at the first row, at most kMostWorld numbers; at most once, and
-  // before that row. Of a session without bodies nothing is kept.
+  // Writes the state of bodies at the first row, at most kMostWorld numbers; at most once, and
+  // before that row. Does nothing in a session without bodies.
   void append_world(std::span<const double> world, std::size_t lane = kMainLane);
-  // Flush, close, rename. `warnings`: sentences about the run, one a line, for the attribute of
-  // that name; empty: there is none.
+  // Flushes, closes and renames. `warnings`: sentences about the run, one a line, for the attribute
+  // of that name; empty: none.
   void close(const std::string& warnings = {});
-  std::uint64_t rows_written() const;  // handed over so far
+  std::uint64_t rows_written() const;  // handed over until now
   const std::filesystem::path& part() const;
   bool is_locked() const;  // against other programs; false where the file system has no locks
 
@@ -155,13 +153,13 @@ class SessionWriter {
 // session, of another version, of inconsistent shapes, or with times that are not finite.
 Session read_session(const std::filesystem::path& file);
 
-// Errors: FileError naming `file`, for a text that is longer than is kept.
+// Refuses a text that is longer than kMarkLength. Errors: FileError naming `file`.
 void check_mark(const Mark& mark, const std::filesystem::path& file);
-// Puts `marks` in place of the marks of a session that is complete; what is neither among them nor
-// `known` is another program's mark, and stays. A copy gets them, by a program in a sandbox, and
-// takes the session's place once it is on the disk: the session is there, whole, at any moment.
-// Errors: FileError, and the session is as before; for one that another program changed meanwhile,
-// or where there would be more than kMostMarks.
+// Replaces the marks of a complete session by `marks`. Marks that are neither among these nor
+// `known` are another program's, and stay. A program in a sandbox writes them into a copy, which
+// replaces the session once it is on the disk: the session is whole at any moment. Errors:
+// FileError if another program changed the session meanwhile, or for more than kMostMarks; the
+// session is then as before.
 void write_marks(const std::filesystem::path& session, std::span<const Mark> marks,
                  std::span<const Mark> known);
 
@@ -171,13 +169,14 @@ class NothingRecorded : public FileError {
   using FileError::FileError;
 };
 
-// Makes OUT.h5 (or `to`, where that is given) of OUT.h5.part (through a clean copy) and removes the
-// .part. Returns the new path and the rows saved. Errors: as read_session; FileError if the new
-// file exists and not `force`, or there are no rows; the .part stays then.
+// Path and number of rows of a recovered session.
 struct Recovered {
   std::filesystem::path file;
   std::uint64_t rows = 0;
 };
+// Makes OUT.h5 (or `to`, if given) of OUT.h5.part through a clean copy, and removes the .part.
+// Errors: as read_session(); FileError if the new file exists and not `force`, or there are no
+// rows; the .part stays then.
 Recovered recover_session(const std::filesystem::path& part, bool force,
                           const std::filesystem::path& to = {});
 

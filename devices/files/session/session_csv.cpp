@@ -36,7 +36,7 @@ std::string with_unit(const std::string& name, std::string unit) {
   return name + "_" + unit;
 }
 
-// What a body is called, without what means something in such a file.
+// A body's name with '_' for characters that mean something in such a file.
 std::string plain_body(std::string name) {
   for (char& c : name) {
     const bool kept = std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0;
@@ -45,8 +45,8 @@ std::string plain_body(std::string name) {
   return name;
 }
 
-// "/objects/pose" of a die becomes "objects_die_x_m" to "objects_die_qz", its velocity
-// "objects_die_vx_m_s" to "objects_die_wz_rad_s".
+// The name of a body's column: "/objects/pose" of a die becomes "objects_die_x_m" to
+// "objects_die_qz", its velocity "objects_die_vx_m_s" to "objects_die_wz_rad_s".
 std::string body_column_name(bool velocity, int part, const std::string& body,
                              const std::string& unit) {
   constexpr std::array kPose{"x", "y", "z", "qw", "qx", "qy", "qz"};
@@ -55,7 +55,7 @@ std::string body_column_name(bool velocity, int part, const std::string& body,
   return with_unit(fmt::format("objects_{}_{}", body, velocity ? kVelocity[i] : kPose[i]), unit);
 }
 
-// "/device/position" of joint 2 in rad becomes "device_position_2_rad".
+// The name of a column: "/device/position" of joint 2 in rad becomes "device_position_2_rad".
 std::string column_name(const ColumnInfo& info, int width, int i, const std::string& unit) {
   std::string name = plain(info.path);
   if (info.width == ColumnWidth::contacts) name += fmt::format("_{}", i / 3 + 1);
@@ -67,7 +67,7 @@ std::string column_name(const ColumnInfo& info, int width, int i, const std::str
   return with_unit(name, unit);
 }
 
-// A run's rows as the session's file has them.
+// Rows of a run in the units of the session's file.
 class Table {
  public:
   Table(const Session& run, const ArmDescription* arm)
@@ -133,16 +133,12 @@ class Table {
   SessionUnits units_;
   std::optional<DerivedColumns> derived_;
   std::vector<double> row_;
-  std::vector<std::string> bodies_;  // as names of columns, each its own
+  std::vector<std::string> bodies_;  // names for columns, each its own
 };
-
-}  // namespace
-
-namespace {
 
 constexpr std::size_t kAtOnce = 1 << 16;  // bytes
 
-// Lines to a descriptor, some at a time.
+// Writes lines to a descriptor, many at a time.
 class Lines {
  public:
   Lines(const std::filesystem::path& out, int to) : out_(out), to_(to) {}

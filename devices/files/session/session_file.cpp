@@ -54,6 +54,23 @@ void write_arm(hid_t root, const SessionInfo& info, const std::filesystem::path&
   hdf5::write_text(root, "tip", info.arm->tip_link, file);
 }
 
+constexpr const char* kGroup = "/models";
+constexpr std::size_t kMostModels = 64;
+
+std::string dataset_path(std::size_t i) { return fmt::format("{}/{}", kGroup, i); }
+
+using hdf5::check;
+
+constexpr hsize_t kPage = 4096;  // bytes
+
+// Keeps HDF5 from placing anything small across the end of a page.
+hdf5::Properties placed_within_pages() {
+  hdf5::Properties creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
+  H5Pset_file_space_page_size(creation.get(), kPage);
+  return creation;
+}
+
 }  // namespace
 
 void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem::path& file) {
@@ -78,15 +95,6 @@ void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem
   if (!info.story.empty()) hdf5::write_text(root, kStory, info.story, file);
   write_arm(root, info, file);
 }
-
-namespace {
-
-constexpr const char* kGroup = "/models";
-constexpr std::size_t kMostModels = 64;
-
-std::string dataset_path(std::size_t i) { return fmt::format("{}/{}", kGroup, i); }
-
-}  // namespace
 
 void write_models(hid_t root, const SceneFiles& models, const std::filesystem::path& file) {
   const hdf5::Properties links(H5Pcreate(H5P_LINK_CREATE));
@@ -128,22 +136,6 @@ SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Clai
   return models;
 }
 
-namespace {
-
-using hdf5::check;
-
-constexpr hsize_t kPage = 4096;  // bytes
-
-// Nothing small is placed across the end of a page.
-hdf5::Properties placed_within_pages() {
-  hdf5::Properties creation(H5Pcreate(H5P_FILE_CREATE));
-  H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
-  H5Pset_file_space_page_size(creation.get(), kPage);
-  return creation;
-}
-
-}  // namespace
-
 SessionFile::SessionFile(std::filesystem::path path, int descriptor, const SessionInfo& about,
                          Storage storage)
     : path_(std::move(path)), descriptor_(descriptor), storage_(storage), layout_(about.layout()) {
@@ -173,8 +165,8 @@ void SessionFile::create(const SessionInfo& info) {
   const hdf5::Properties creation = placed_within_pages();
   const hdf5::Properties access = hdf5::access_by(descriptor_, path_);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  // Without a cache for them (the file's: starting to write makes HDF5 forget a dataset's own) and
-  // without filling, rows are written where they belong and nowhere else.
+  // Writes rows to their places and nowhere else: without a cache (the file's, as starting to write
+  // drops a dataset's own) and without filling.
   check(H5Pset_cache(access.get(), 0, 0, 0, 0) >= 0, path_, "cannot create");
   file_ = hdf5::File(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   check(static_cast<bool>(file_), path_, "cannot create");
@@ -241,12 +233,12 @@ void SessionFile::append_world(std::span<const double> world, std::size_t lane) 
   guarded([&] { lanes_.at(lane).append_world(world); });
 }
 
-// While others may read along no attribute can be made: it comes once the file is closed.
+// Writes the attribute after the file is closed: while others may read along, none can be made.
 void SessionFile::write_warnings(const std::string& warnings) {
   const hdf5::Properties access = hdf5::access_by(descriptor_, path_);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   hdf5::File again(H5Fopen(path_.c_str(), H5F_ACC_RDWR, access.get()));
-  // A recording that somebody has opened meanwhile goes without: its rows say the same.
+  // A recording that somebody has opened meanwhile gets none: its rows say the same.
   if (!again) return;
   hdf5::write_text(again.get(), "warnings", warnings, path_);
   check(again.close(), path_, "cannot write");
@@ -259,7 +251,7 @@ void SessionFile::close(const std::string& warnings) {
     marks_.flush(path_);
     const bool packed = storage_ == Storage::packed;
     if (packed && !warnings.empty()) hdf5::write_text(file_.get(), "warnings", warnings, path_);
-    // Closing hides errors of the last writes; flushing tells them.
+    // Closing hides errors of the last writes; flushing reports them.
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, path_, "cannot write");
     for (SessionLane& lane : lanes_) lane.close();
     check(marks_.close(), path_, "cannot write");

@@ -1,5 +1,5 @@
-// One HDF5 session file being written, wherever it lies. SessionWriter adds where it may lie and
-// what it is called when done.
+// HDF5 session file that is being written, wherever it lies. SessionWriter adds where it may lie,
+// and its name when it is complete.
 #pragma once
 
 #include <hdf5.h>
@@ -17,33 +17,30 @@
 
 namespace limpid {
 
-// What a session file says of itself and of its input, beside the rows.
-
-// Writes the attributes of the `root` group. Errors: FileError naming `file`.
+// Writes the attributes of the `root` group: what the file says of itself and of its input. Errors:
+// FileError naming `file`.
 void write_attributes(hid_t root, const SessionInfo& info, const std::filesystem::path& file);
 
-// The models of a scene inside a session file: /models/0, /models/1, ... as bytes, each with the
-// name that the scene's text has for it as the attribute "name".
-
-// Before the first row. Errors: FileError.
+// Writes a scene's models before the first row: /models/0, /models/1, ... as bytes. Each has its
+// name in the scene's text as the attribute "name". Errors: FileError.
 void write_models(hid_t root, const SceneFiles& models, const std::filesystem::path& file);
 
-// None in a session that has none. Errors: FileError for what is no such dataset or claims more
-// than a file of this size can hold.
+// Reads the models, if a session has some. Errors: FileError for what is no such dataset or claims
+// more than a file of this size can hold.
 SceneFiles read_models(hid_t root, const std::filesystem::path& file, hdf5::Claims& claims);
 
 // A file that survives being killed, by HDF5's rules (single writer, multiple readers: everything
-// is created before writing starts) and one of its own. HDF5 rewrites some things in place: how
-// long a column is, where its chunks lie. The kernel may cut such a write short where one page of
-// memory ends and the next begins; so each of them must lie within a page.
+// is created before writing starts) and one of its own. HDF5 rewrites some things in place: lengths
+// of columns, places of their chunks. The kernel may cut such a write short at the end of a page of
+// memory; therefore each lies within a page.
 //
-// A packed file has none of this until it is closed.
+// A packed file does not survive that until it is closed.
 //
-// Errors: FileError naming `path`. After one, the file stays as the last flush left it and takes
+// Errors: FileError naming `path`. After one, the file stays as the last flush left it, and takes
 // nothing more.
 class SessionFile {
  public:
-  // `descriptor`: of an empty file, open for reading and writing for as long as this is.
+  // `descriptor` is of an empty file, open for reading and writing as long as this lives.
   SessionFile(std::filesystem::path path, int descriptor, const SessionInfo& info, Storage storage);
   ~SessionFile();  // without close(): the file stays as the last flush left it
   SessionFile(const SessionFile&) = delete;
@@ -53,7 +50,7 @@ class SessionFile {
   void append(const SettingChange& change, std::size_t lane = kMainLane);
   void append(const Mark& mark);
   void append_world(std::span<const double> world, std::size_t lane);
-  // Writes what is pending and closes for good. `warnings`: as SessionWriter has them.
+  // Writes everything pending and closes for good. `warnings` are as for SessionWriter.
   void close(const std::string& warnings = {});
   std::uint64_t rows() const { return lanes_.front().rows(); }
 

@@ -15,10 +15,17 @@
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_source.h"
 
-namespace limpid::hdf5 {
+namespace limpid {
 namespace {
 
-constexpr unsigned kLevel = 1;  // the fastest
+using hdf5::append_to;
+using hdf5::check;
+using hdf5::create_growing;
+using hdf5::Dataset;
+using hdf5::Dataspace;
+using hdf5::Datatype;
+
+constexpr unsigned kLevel = 1;  // of deflate: the fastest
 
 Dataset create_names(hid_t root, const char* name, const std::vector<std::string>& names,
                      const std::filesystem::path& file) {
@@ -41,7 +48,58 @@ Dataset create_names(hid_t root, const char* name, const std::vector<std::string
   return dataset;
 }
 
+constexpr double kFlushSeconds = 0.75;  // rows reach the disk at least this often
+constexpr double kMostBlockRows = 16384;
+constexpr std::uint64_t kMostRows = 4096;  // at once: more would leave the processor's cache
+constexpr std::uint64_t kBlocksPerChunk = 16;
+constexpr hsize_t kMostChunkBytes = 1 << 20;  // of a packed chunk
+constexpr hdf5::Chunks kEventChunk{64};
+constexpr hdf5::Chunks kSumChunk{64};
+constexpr hdf5::Chunks kWorldChunk{1024};
+
+constexpr hdf5::RowShape kOne;
+constexpr hdf5::RowShape table(hsize_t width) { return {2, width}; }
+
+hdf5::Datatype setting_type() {
+  hdf5::Datatype type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), kSettingLength);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+// The usual value of a column, if it has one. Blocks of nothing else are not written, and chunks of
+// nothing else take no room in the file; HDF5 reads them as this value.
+std::optional<double> mostly(Column column) {
+  switch (column) {
+    case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
+    case Column::contact_force:
+    case Column::body_velocity:  // bodies sleep
+    case Column::magnet:
+    case Column::hand_pull:
+    case Column::pull_point:
+    case Column::pull_target:
+    case Column::energy_pulled:
+    case Column::compensation_torque:
+    case Column::energy_compensation: return 0.0;
+    default: return std::nullopt;
+  }
+}
+
+bool nothing_but(std::span<const double> numbers, double fill) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  return std::ranges::all_of(numbers, [&](double x) { return bits(x) == bits(fill); });
+}
+
+// Rows of a block; `tick` [s].
+std::uint64_t rows_of_block(double tick) {
+  return std::bit_floor(
+      static_cast<std::uint64_t>(std::clamp(kFlushSeconds / tick, 1.0, kMostBlockRows)));
+}
+
 }  // namespace
+
+namespace hdf5 {
 
 Scales create_scales(hid_t root, const ArmDescription& arm, const std::vector<std::string>& bodies,
                      const std::filesystem::path& file) {
@@ -73,7 +131,7 @@ void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimensi
 Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, Chunks how,
                        std::optional<double> fill) {
   const Properties creation(H5Pcreate(H5P_DATASET_CREATE));
-  // The last chunk is packed whole, and must not hold what was in memory by chance.
+  // The last chunk is packed whole, and must not hold leftovers of memory.
   const bool filled = fill || how.packed;
   H5Pset_fill_time(creation.get(), filled ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
   if (fill) H5Pset_fill_value(creation.get(), H5T_NATIVE_DOUBLE, &*fill);
@@ -111,65 +169,7 @@ void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row
         file, "cannot write");
 }
 
-}  // namespace limpid::hdf5
-namespace limpid {
-
-namespace {
-
-using hdf5::append_to;
-using hdf5::check;
-using hdf5::create_growing;
-
-constexpr double kFlushSeconds = 0.75;  // rows reach the disk at least this often
-constexpr double kMostBlockRows = 16384;
-constexpr std::uint64_t kMostRows = 4096;  // at once: more would not stay in the processor's cache
-constexpr std::uint64_t kBlocksPerChunk = 16;
-constexpr hsize_t kMostChunkBytes = 1 << 20;  // of one that is packed
-constexpr hdf5::Chunks kEventChunk{64};
-constexpr hdf5::Chunks kSumChunk{64};
-constexpr hdf5::Chunks kWorldChunk{1024};
-
-constexpr hdf5::RowShape kOne;
-constexpr hdf5::RowShape table(hsize_t width) { return {2, width}; }
-
-hdf5::Datatype setting_type() {
-  hdf5::Datatype type(H5Tcopy(H5T_C_S1));
-  H5Tset_size(type.get(), kSettingLength);
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  return type;
-}
-
-// What a column mostly holds, if it does: blocks of nothing else are not written then, and a chunk
-// of nothing else takes no room in the file. HDF5 reads them as this.
-std::optional<double> mostly(Column column) {
-  switch (column) {
-    case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
-    case Column::contact_force:
-    case Column::body_velocity:  // they sleep
-    case Column::magnet:
-    case Column::hand_pull:
-    case Column::pull_point:
-    case Column::pull_target:
-    case Column::energy_pulled:
-    case Column::compensation_torque:
-    case Column::energy_compensation: return 0.0;
-    default: return std::nullopt;
-  }
-}
-
-bool nothing_but(std::span<const double> numbers, double fill) {
-  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
-  return std::ranges::all_of(numbers, [&](double x) { return bits(x) == bits(fill); });
-}
-
-// Of ticks of so long [s].
-std::uint64_t rows_of_block(double tick) {
-  return std::bit_floor(
-      static_cast<std::uint64_t>(std::clamp(kFlushSeconds / tick, 1.0, kMostBlockRows)));
-}
-
-}  // namespace
+}  // namespace hdf5
 
 SessionLane::SessionLane(std::filesystem::path path, const SessionInfo& info, Storage storage)
     : path_(std::move(path)),
@@ -196,8 +196,8 @@ void SessionLane::create(hid_t group) {
   create_check(group);
 }
 
-// The names of its columns stand together at the beginning of the file, where others look for what
-// it is (assets/desktop/limpid.xml); of more than eight HDF5 would put them behind.
+// Creates /device with the names of its columns together at the beginning of the file, where others
+// look for its type (assets/desktop/limpid.xml). HDF5 would move more than eight elsewhere.
 void SessionLane::create_device(hid_t group) {
   const hdf5::Properties compact(H5Pcreate(H5P_GROUP_CREATE));
   H5Pset_link_phase_change(compact.get(), 32, 16);
@@ -346,7 +346,7 @@ double* SessionLane::pending(Column column) const {
   return pending_.get() + static_cast<std::size_t>(layout_.offset(column)) * most_rows_;
 }
 
-// Rows as columns, one behind the other.
+// Sorts rows into columns, one behind the other.
 void SessionLane::sort_in(std::span<const double> rows) {
   struct Place {
     double* to;
@@ -362,15 +362,14 @@ void SessionLane::sort_in(std::span<const double> rows) {
   for (auto from = rows.begin(); from != rows.end();) {
     for (Place& place : places) {
       for (int i = 0; i < place.width; ++i, ++from) {
-        *place.to++ =
-            place.byte ? static_cast<std::uint8_t>(*from) : *from;  // as it will be stored
+        *place.to++ = place.byte ? static_cast<std::uint8_t>(*from) : *from;  // as stored
       }
     }
   }
   pending_rows_ += rows.size() / static_cast<std::size_t>(layout_.stride());
 }
 
-// Changes go first and the sums last: what they stand for is complete.
+// Writes changes first and sums last: what the sums stand for is then complete.
 void SessionLane::flush() {
   write_changes();
   if (pending_rows_ == 0) return;
@@ -406,7 +405,7 @@ void SessionLane::write_check() {
   flushed_sums_ += blocks;
 }
 
-// Out of what the rows say, before it is in the file's units.
+// Derives columns from the rows before these are in the file's units.
 void SessionLane::derive() {
   if (!deriver_) return;
   for (auto& column : derived_) column.clear();
@@ -424,7 +423,7 @@ void SessionLane::derive() {
   }
 }
 
-// To what the file has of it.
+// Converts pending rows to the file's units.
 void SessionLane::convert() {
   const auto& scaled = units_.scaled();
   rounding_.resize(pending_rows_ * scaled.size());

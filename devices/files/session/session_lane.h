@@ -1,5 +1,5 @@
-// The datasets of one run in a session file: rows, what changed while they were made, and sums that
-// tell what was really written.
+// Datasets of one run in a session file: rows, changed settings, and sums that show what was really
+// written.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_units.h"
 
-namespace limpid::hdf5 {
+namespace limpid {
+namespace hdf5 {
 
-// What the rows and columns of a session's datasets stand for, in HDF5's own way: dimension scales.
-
-// The scales that the whole file has once: /joint, the names of the joints, /axis, x, y, z, and
-// /contact_axis, those of each contact. Where bodies move /object has their names, /pose and
-// /motion what is said of each. Invalid in a file whose arm is not known.
+// Dimension scales of a file, by which HDF5 names rows and columns: /joint, the names of the
+// joints; /axis, x, y, z; /contact_axis, those of each contact. With bodies also /object, their
+// names; /pose and /motion, the parts of their poses and velocities. Invalid in a file whose arm is
+// not known.
 struct Scales {
   Dataset joint, axis, contact, object, pose, motion;
 };
@@ -31,77 +31,69 @@ Scales create_scales(hid_t root, const ArmDescription& arm, const std::vector<st
                      const std::filesystem::path& file);
 
 void make_scale(const Dataset& dataset, const char* name, const std::filesystem::path& file);
-// Says that `scale` numbers the dataset's rows (0), columns (1), or what is within those (2).
+// Makes `scale` name the dataset's rows (0), its columns (1), or parts of these (2).
 void attach_scale(const Dataset& dataset, const Dataset& scale, unsigned dimension,
                   const std::filesystem::path& file);
 
-}  // namespace limpid::hdf5
-// Datasets of HDF5 that rows are appended to.
-
-namespace limpid::hdf5 {
-
-// What one row of a dataset is: a single number (rank 1), so many (rank 2), or so many of each of
-// some bodies (rank 3).
+// Shape of a dataset's row: one number (rank 1), `width` numbers (rank 2), or `each_body` numbers
+// for each of `width` bodies (rank 3).
 struct RowShape {
   int rank = 1;
   hsize_t width = 1;
-  hsize_t each_body = 1;  // of rank 3; `width` counts bodies then
+  hsize_t each_body = 1;  // of rank 3
 };
 
-// How rows lie in a file.
+// Layout of rows in a file.
 struct Chunks {
-  hsize_t rows = 1;     // in one
-  bool packed = false;  // by deflate, after their bytes were put in another order
+  hsize_t rows = 1;     // in one chunk
+  bool packed = false;  // by deflate, after shuffling their bytes
 };
 
-// A list or table of such rows; invalid if it cannot be created. `fill`: what rows read as that are
-// announced and never written; none: as anything.
+// Creates a list or table of such rows; invalid if that fails. `fill`: value of rows that are
+// announced and never written; nothing: undefined.
 Dataset create_growing(hid_t file, const char* path, hid_t type, RowShape row, Chunks chunks,
                        std::optional<double> fill = std::nullopt);
 
-// Appends `count` rows behind the first `from` and flushes them; without data they are what the
-// dataset is filled with. Errors: FileError naming `file`; asked for at once, as closing any handle
-// makes HDF5 forget them.
+// Appends `count` rows behind the first `from` and flushes them; without data they have the fill
+// value. Errors: FileError naming `file`, checked at once, as closing any handle makes HDF5 forget
+// them.
 void append_to(const Dataset& dataset, hsize_t from, hsize_t count, RowShape row, hid_t type,
                const void* data, const std::filesystem::path& file);
 
-}  // namespace limpid::hdf5
-namespace limpid {
+}  // namespace hdf5
 
 // Purpose of a session's file: `safe` may be killed at any moment while it is written, `packed`
 // takes little room once it is closed.
 enum class Storage { safe, packed };
 
-// Rows go straight behind those that are there, in blocks, without a filter, so that nothing that
-// was written is ever written again. A block is a power of two of rows, 512 at 1 kHz: what the
-// kernel is given then begins and ends where pages of memory do, which is half the work for it.
-// Blocks that are handed over together are written together, but never more than there is already:
-// a disk that is full in the middle of it keeps half of the recording at least.
+// Appends rows of one run in blocks, without a filter, so that nothing written is written again. A
+// block is a power of two of rows, 512 at 1 kHz: its data then begin and end at pages of memory,
+// which halves the kernel's work. Blocks handed over together are written together, but at most as
+// many as are there already. A disk that becomes full meanwhile thus keeps at least half of the
+// recording.
 //
-// The list of where a column's chunks lie grows in blocks, which outgrow a page of memory from
-// chunk 8176 on. A chunk therefore holds eight seconds of ticks, 16 blocks: a recording may last
-// 18 hours.
+// HDF5's list of a column's chunks grows in blocks, which outgrow a page of memory from chunk 8176
+// on. A chunk therefore holds eight seconds of ticks, 16 blocks: a recording may last 18 hours.
 //
-// A packed lane has blocks of at least 4096 rows, and chunks that a block fills whole: each is
-// packed once.
+// A packed lane has blocks of at least 4096 rows, each a whole chunk, so that each is packed once.
 //
 // Errors of all but the constructor: FileError naming `path`.
 class SessionLane {
  public:
-  // Nothing is created yet.
+  // Creates nothing yet.
   SessionLane(std::filesystem::path path, const SessionInfo& info, Storage storage);
 
-  void create(hid_t group);  // of the file: its root, or a group below
-  // Says of each dataset what its rows and columns stand for.
+  void create(hid_t group);  // the file's root, or a group below
+  // Attaches to each dataset the scales of its rows and columns.
   void attach(const hdf5::Scales& scales) const;
-  // Takes rows in; true once they are whole blocks, which have to be flushed before more come.
-  // `rows` is left with those that were not taken.
+  // Takes in rows. True once they are whole blocks, which have to be flushed before more come.
+  // Leaves in `rows` those that were not taken.
   bool take(std::span<const double>& rows);
   void append(SettingChange change) { changes_.push_back(std::move(change)); }
   void append_world(std::span<const double> world);  // written at once
   void flush();
   void close();    // after a flush
-  void abandon();  // without one
+  void abandon();  // without a flush
   std::uint64_t rows() const { return flushed_rows_ + pending_rows_; }
 
  private:
@@ -128,17 +120,17 @@ class SessionLane {
   Storage storage_;
   RowLayout layout_;
   std::vector<std::string> bodies_;
-  std::uint64_t sum_rows_;    // that each of the sums is over
-  std::uint64_t block_rows_;  // as many of those as are written together
-  std::uint64_t most_rows_;   // that are written at once: whole blocks
+  std::uint64_t sum_rows_;    // rows of each sum
+  std::uint64_t block_rows_;  // rows of a block, a multiple of sum_rows_
+  std::uint64_t most_rows_;   // most rows written at once: whole blocks
   std::uint64_t flushed_rows_ = 0;
   std::uint64_t pending_rows_ = 0;
   std::uint64_t flushed_changes_ = 0;
   std::uint64_t flushed_sums_ = 0;
-  std::unique_ptr<double[]> pending_;  // not written yet: room for most_rows_, column by column
+  std::unique_ptr<double[]> pending_;  // room for most_rows_, column by column
   SessionUnits units_;
-  std::vector<std::int8_t> rounding_;        // of pending rows: of each, all that are scaled
-  std::unique_ptr<DerivedColumns> deriver_;  // null: the arm is not known
+  std::vector<std::int8_t> rounding_;        // of pending rows, for each their scaled numbers
+  std::unique_ptr<DerivedColumns> deriver_;  // null if the arm is not known
   std::array<std::vector<double>, kDerived> derived_;  // of pending rows
   std::vector<SettingChange> changes_;                 // not written yet
   std::vector<std::uint8_t> bytes_;

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr hdf5::Chunks kMarkChunk{16};  // of texts less than a page of memory, 4096 bytes
+constexpr hdf5::Chunks kMarkChunk{16};  // its texts take less than a page of memory, 4096 bytes
 constexpr hdf5::RowShape kSingle;
 
 hdf5::Datatype mark_type() {
@@ -34,6 +34,58 @@ hdf5::Datatype mark_type() {
   H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
+}
+
+// Marks that the file then has to hold: those of `order`, and all of other programs.
+std::vector<Mark> merged(const MarkOrder& order, const std::vector<Mark>& found) {
+  std::set<std::pair<std::uint64_t, std::string>> own;
+  for (const auto* const marks : {&order.known, &order.marks}) {
+    for (const Mark& mark : *marks) own.emplace(mark.tick, mark.text);
+  }
+  std::vector<Mark> all = order.marks;
+  for (const Mark& mark : found) {
+    if (!own.contains({mark.tick, mark.text})) all.push_back(mark);
+  }
+  return all;
+}
+
+constexpr auto kPatience = std::chrono::seconds(10);  // for others who change the same recording
+
+// Identity of a file, and the time of its last change.
+struct Version {
+  dev_t device;
+  ino_t number;
+  off_t size;
+  timespec changed;
+
+  static Version of(const struct stat& about) {
+    return {about.st_dev, about.st_ino, about.st_size, about.st_mtim};
+  }
+  bool operator==(const Version& other) const {
+    return device == other.device && number == other.number && size == other.size &&
+           changed.tv_sec == other.changed.tv_sec && changed.tv_nsec == other.changed.tv_nsec;
+  }
+};
+
+struct stat about(const fs::path& file) {
+  struct stat now {};
+  if (::stat(file.c_str(), &now) != 0) {
+    throw FileError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
+  }
+  return now;
+}
+
+void copy_whole(const fs::path& file, int from, int to, const struct stat& as) {
+  ::fchmod(to, as.st_mode & 07777);
+  constexpr std::size_t kCopiedAtOnce = 1 << 30;
+  while (true) {
+    const ssize_t copied = ::sendfile(to, from, nullptr, kCopiedAtOnce);
+    if (copied == 0) return;
+    if (copied < 0 && errno != EINTR) {
+      throw FileError(fmt::format("{}: cannot be copied for its marks: {}", file.string(),
+                                  std::strerror(errno)));
+    }
+  }
 }
 
 }  // namespace
@@ -110,23 +162,6 @@ std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const fs::path& fil
   return marks;
 }
 
-namespace {
-
-// Marks that the file has to hold then: these, and all of other programs.
-std::vector<Mark> merged(const MarkOrder& order, const std::vector<Mark>& found) {
-  std::set<std::pair<std::uint64_t, std::string>> own;
-  for (const auto* const marks : {&order.known, &order.marks}) {
-    for (const Mark& mark : *marks) own.emplace(mark.tick, mark.text);
-  }
-  std::vector<Mark> all = order.marks;
-  for (const Mark& mark : found) {
-    if (!own.contains({mark.tick, mark.text})) all.push_back(mark);
-  }
-  return all;
-}
-
-}  // namespace
-
 void write_marks_here(const fs::path& file, int descriptor, const MarkOrder& order) {
   const hdf5::Quiet quiet;
   const NoFileSizeSignal no_signal;
@@ -157,49 +192,6 @@ void write_marks_here(const fs::path& file, int descriptor, const MarkOrder& ord
   hdf5::check(H5Fflush(root, H5F_SCOPE_GLOBAL) >= 0, file, "cannot write its marks");
   hdf5::check(table.close() && opened.close(), file, "cannot write its marks");
 }
-
-namespace {
-
-constexpr auto kPatience = std::chrono::seconds(10);  // with others who change the same recording
-
-// Which file it is, and as of when.
-struct Version {
-  dev_t device;
-  ino_t number;
-  off_t size;
-  timespec changed;
-
-  static Version of(const struct stat& about) {
-    return {about.st_dev, about.st_ino, about.st_size, about.st_mtim};
-  }
-  bool operator==(const Version& other) const {
-    return device == other.device && number == other.number && size == other.size &&
-           changed.tv_sec == other.changed.tv_sec && changed.tv_nsec == other.changed.tv_nsec;
-  }
-};
-
-struct stat about(const fs::path& file) {
-  struct stat now {};
-  if (::stat(file.c_str(), &now) != 0) {
-    throw FileError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
-  }
-  return now;
-}
-
-void copy_whole(const fs::path& file, int from, int to, const struct stat& as) {
-  ::fchmod(to, as.st_mode & 07777);
-  constexpr std::size_t kCopiedAtOnce = 1 << 30;
-  while (true) {
-    const ssize_t copied = ::sendfile(to, from, nullptr, kCopiedAtOnce);
-    if (copied == 0) return;
-    if (copied < 0 && errno != EINTR) {
-      throw FileError(fmt::format("{}: cannot be copied for its marks: {}", file.string(),
-                                  std::strerror(errno)));
-    }
-  }
-}
-
-}  // namespace
 
 void write_marks(const fs::path& session, std::span<const Mark> marks,
                  std::span<const Mark> known) {

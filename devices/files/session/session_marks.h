@@ -1,4 +1,4 @@
-// Marks of a session: what people noted at moments of it, beside what was recorded.
+// Marks of a session: notes of people at moments of it, beside the recording.
 //
 // They are two lists below the group /marks, one for their ticks and one for their texts. The lists
 // have no unit, so that programs which take every list with a unit for a channel pass them by.
@@ -14,13 +14,13 @@
 
 namespace limpid {
 
-// The lists of a file that is being written. Errors of all: FileError naming `file`.
+// The lists of marks in a file that is being written. Errors of all: FileError naming `file`.
 class MarkTable {
  public:
   void create(hid_t root, const std::filesystem::path& file);
   void append(const Mark& mark) { waiting_.push_back(mark); }
   void flush(const std::filesystem::path& file);
-  bool close();  // whether it worked; what was not flushed is given up
+  bool close();  // false if it failed; drops what was not flushed
   std::uint64_t count() const { return written_ + waiting_.size(); }
 
  private:
@@ -29,7 +29,7 @@ class MarkTable {
   std::vector<Mark> waiting_;
 };
 
-// Those of a file with so many rows. Of a leftover those at rows that are not there stay away.
+// Reads the marks of a file with so many rows. A leftover's marks at missing rows are left out.
 // Errors: FileError.
 std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const std::filesystem::path& file,
                              hdf5::Claims& claims);
@@ -38,8 +38,8 @@ std::vector<Mark> read_marks(hid_t root, std::uint64_t rows, const std::filesyst
 struct MarkOrder {
   std::vector<Mark> marks, known;
 };
-// In this process, as only limpid-session does it: into the file of `descriptor`, a copy of `file`.
-// Errors: FileError; the copy is then worth nothing.
+// Writes marks in this process, as only limpid-session does: into the file of `descriptor`, a copy
+// of `file`. Errors: FileError; the copy is then worthless.
 void write_marks_here(const std::filesystem::path& file, int descriptor, const MarkOrder& order);
 
 }  // namespace limpid

@@ -20,30 +20,15 @@
 #include "devices/files/session/session_reader.h"
 #include "devices/files/session/session_source.h"
 
-namespace limpid::wire {
-
-void Writer::bytes(std::span<const unsigned char> all) {
-  if (!write_all(to_, all)) throw Broken("nobody reads");
-}
-
-void Reader::bytes(std::span<unsigned char> all) {
-  if (all.size() > left_) throw Broken("too much");
-  left_ -= all.size();
-  while (!all.empty()) {
-    const ssize_t read = ::read(from_, all.data(), all.size());
-    if (read < 0 && errno == EINTR) continue;
-    if (read <= 0) throw Broken("cut off");
-    all = all.subspan(static_cast<std::size_t>(read));
-  }
-}
-
-std::size_t Reader::taken(std::size_t size) {
-  const auto count = number<std::uint64_t>();
-  if (count > left_ / size) throw Broken("too much");
-  return static_cast<std::size_t>(count);
-}
-
+namespace limpid {
 namespace {
+
+namespace fs = std::filesystem;
+
+using wire::Answer;
+using wire::Broken;
+using wire::Reader;
+using wire::Writer;
 
 void put_run(Writer& to, const Session& run) {
   to.list(std::span<const double>(run.world));
@@ -85,7 +70,7 @@ std::vector<Mark> take_marks(Reader& from) {
   return marks;
 }
 
-// Each text of SessionInfo, in the same order at both ends.
+// Calls `work` with each text of SessionInfo, in the same order at both ends.
 template <class Info, class Work>
 void each_text(Info& info, Work work) {
   for (auto* const text :
@@ -95,7 +80,122 @@ void each_text(Info& info, Work work) {
   }
 }
 
+SessionInfo take_info(Reader& from) {
+  SessionInfo info;
+  info.tick = from.number<double>();
+  info.dof = from.number<int>();
+  // Checks as check_session_info() does, which names what is wrong with a file.
+  if (!(info.tick > 0 && info.tick <= 0.1) || info.dof < 1 || info.dof > kMaxDof) {
+    throw Broken("no arm of that kind");
+  }
+  info.seed = from.number<std::uint64_t>();
+  each_text(info, [&](std::string& text) { text = from.text(); });
+  const std::size_t models = from.taken(2 * sizeof(std::uint64_t));
+  for (std::size_t i = 0; i < models; ++i) {
+    const std::string name = from.text();
+    info.models[name] =
+        std::make_shared<const std::vector<unsigned char>>(from.list<std::vector<unsigned char>>());
+  }
+  const auto slides = from.list<std::vector<unsigned char>>();
+  if (!slides.empty() && slides.size() != static_cast<std::size_t>(info.dof)) {
+    throw Broken("joints that the arm does not have");
+  }
+  for (const unsigned char slide : slides) info.slides.push_back(slide != 0);
+  const std::size_t bodies = from.taken(sizeof(std::uint64_t));
+  if (bodies > kMostBodies) throw Broken("more bodies than there can be");
+  for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
+  return info;
+}
+
+// Reads pieces of rows. Returns the number of rows.
+std::uint64_t take_rows(Reader& from, const Session& about, const TakeRows& take) {
+  const auto stride = static_cast<std::size_t>(about.layout.stride());
+  std::uint64_t rows = 0;
+  while (true) {
+    from.begin_piece();
+    const auto next = from.number<Answer>();
+    if (next == Answer::refusal) throw FileError(from.text());
+    if (next == Answer::end) return rows;
+    if (next != Answer::rows) throw Broken("no piece of a session");
+    const auto some = from.list<std::vector<double>>(), twin = from.list<std::vector<double>>();
+    if (some.size() % stride != 0) throw Broken("rows that are not whole");
+    if (twin.size() != (about.twin ? some.size() : 0)) {
+      throw Broken("two runs that are not as long as each other");
+    }
+    rows += some.size() / stride;
+    take(some, twin);
+  }
+}
+
+constexpr int kPipeBytes = 1 << 20;
+
+// The reason for the program's end; empty if it was killed as nobody wanted to hear more.
+std::string why_ended(int status) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return {};
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
+    return "takes far longer to be read than a file of its size needs";
+  }
+  return why_failed(status, kSessionProgram);
+}
+
+// Returns the program's answer about `file`, read by `take`; the program gets the descriptors
+// `given`.
+template <class Take>
+auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> given = {}) {
+  std::array<int, 2> ends{-1, -1};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    refuse(file, "cannot be read, there are too many open files");
+  }
+  const Descriptor answers(ends[0]);
+  Descriptor other_end(ends[1]);
+  ::fcntl(*answers, F_SETPIPE_SZ, kPipeBytes);
+  const std::string at = beside_this_program(kSessionProgram).string();
+  given.push_back({*other_end, STDOUT_FILENO});
+  Child child({at, what, file.string()}, given);
+  if (!child.started()) {
+    refuse(file,
+           fmt::format("cannot be read: the program {}, which reads it, cannot be started", at));
+  }
+  other_end.close();
+  try {
+    wire::Reader from(*answers, hdf5::physical_memory());
+    if (from.number<wire::Answer>() != wire::Answer::contents) throw FileError(from.text());
+    return take(from);
+  } catch (const wire::Broken& broken) {
+    const std::string why = why_ended(child.end());
+    refuse(file,
+           why.empty() ? fmt::format("what reads it answers wrongly: {}", broken.what()) : why);
+  } catch (const NoRoom& none) {
+    refuse(file, fmt::format("larger than this computer has room for: {}", none.what()));
+  } catch (const std::bad_alloc&) {
+    refuse(file, "larger than this computer's memory");
+  }
+}
+
 }  // namespace
+
+namespace wire {
+
+void Writer::bytes(std::span<const unsigned char> all) {
+  if (!write_all(to_, all)) throw Broken("nobody reads");
+}
+
+void Reader::bytes(std::span<unsigned char> all) {
+  if (all.size() > left_) throw Broken("too much");
+  left_ -= all.size();
+  while (!all.empty()) {
+    const ssize_t read = ::read(from_, all.data(), all.size());
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) throw Broken("cut off");
+    all = all.subspan(static_cast<std::size_t>(read));
+  }
+}
+
+std::size_t Reader::taken(std::size_t size) {
+  const auto count = number<std::uint64_t>();
+  if (count > left_ / size) throw Broken("too much");
+  return static_cast<std::size_t>(count);
+}
 
 void put_about(Writer& to, const Session& session, std::uint64_t rows) {
   const SessionInfo& info = session.info;
@@ -138,57 +238,6 @@ void put_session(Writer& to, const Session& session) {
            session.twin ? std::span<const double>(session.twin->rows) : std::span<const double>());
   put_rest(to, session);
 }
-
-namespace {
-
-SessionInfo take_info(Reader& from) {
-  SessionInfo info;
-  info.tick = from.number<double>();
-  info.dof = from.number<int>();
-  // As check_session_info() has it, which names what is wrong with a file.
-  if (!(info.tick > 0 && info.tick <= 0.1) || info.dof < 1 || info.dof > kMaxDof) {
-    throw Broken("no arm of that kind");
-  }
-  info.seed = from.number<std::uint64_t>();
-  each_text(info, [&](std::string& text) { text = from.text(); });
-  const std::size_t models = from.taken(2 * sizeof(std::uint64_t));
-  for (std::size_t i = 0; i < models; ++i) {
-    const std::string name = from.text();
-    info.models[name] =
-        std::make_shared<const std::vector<unsigned char>>(from.list<std::vector<unsigned char>>());
-  }
-  const auto slides = from.list<std::vector<unsigned char>>();
-  if (!slides.empty() && slides.size() != static_cast<std::size_t>(info.dof)) {
-    throw Broken("joints that the arm does not have");
-  }
-  for (const unsigned char slide : slides) info.slides.push_back(slide != 0);
-  const std::size_t bodies = from.taken(sizeof(std::uint64_t));
-  if (bodies > kMostBodies) throw Broken("more bodies than there can be");
-  for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
-  return info;
-}
-
-// Returns how many there were.
-std::uint64_t take_rows(Reader& from, const Session& about, const TakeRows& take) {
-  const auto stride = static_cast<std::size_t>(about.layout.stride());
-  std::uint64_t rows = 0;
-  while (true) {
-    from.begin_piece();
-    const auto next = from.number<Answer>();
-    if (next == Answer::refusal) throw FileError(from.text());
-    if (next == Answer::end) return rows;
-    if (next != Answer::rows) throw Broken("no piece of a session");
-    const auto some = from.list<std::vector<double>>(), twin = from.list<std::vector<double>>();
-    if (some.size() % stride != 0) throw Broken("rows that are not whole");
-    if (twin.size() != (about.twin ? some.size() : 0)) {
-      throw Broken("two runs that are not as long as each other");
-    }
-    rows += some.size() / stride;
-    take(some, twin);
-  }
-}
-
-}  // namespace
 
 Session take_session(Reader& from, const std::function<void(const Session&, std::uint64_t)>& begins,
                      const TakeRows& take) {
@@ -278,58 +327,7 @@ Table take_table(Reader& from) {
   return table;
 }
 
-}  // namespace limpid::wire
-namespace limpid {
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr int kPipeBytes = 1 << 20;
-
-// Empty for one that was ended because nobody wanted to hear more.
-std::string why_ended(int status) {
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return {};
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) {
-    return "takes far longer to be read than a file of its size needs";
-  }
-  return why_failed(status, kSessionProgram);
-}
-
-// The program's answer about `file`, as `take` understands it; `given`: descriptors that it gets.
-template <class Take>
-auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> given = {}) {
-  std::array<int, 2> ends{-1, -1};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    refuse(file, "cannot be read, there are too many open files");
-  }
-  const Descriptor answers(ends[0]);
-  Descriptor other_end(ends[1]);
-  ::fcntl(*answers, F_SETPIPE_SZ, kPipeBytes);
-  const std::string at = beside_this_program(kSessionProgram).string();
-  given.push_back({*other_end, STDOUT_FILENO});
-  Child child({at, what, file.string()}, given);
-  if (!child.started()) {
-    refuse(file,
-           fmt::format("cannot be read: the program {}, which reads it, cannot be started", at));
-  }
-  other_end.close();
-  try {
-    wire::Reader from(*answers, hdf5::physical_memory());
-    if (from.number<wire::Answer>() != wire::Answer::contents) throw FileError(from.text());
-    return take(from);
-  } catch (const wire::Broken& broken) {
-    const std::string why = why_ended(child.end());
-    refuse(file,
-           why.empty() ? fmt::format("what reads it answers wrongly: {}", broken.what()) : why);
-  } catch (const NoRoom& none) {
-    refuse(file, fmt::format("larger than this computer has room for: {}", none.what()));
-  } catch (const std::bad_alloc&) {
-    refuse(file, "larger than this computer's memory");
-  }
-}
-
-}  // namespace
+}  // namespace wire
 
 void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin) {
   session.rows = std::move(rows);
@@ -372,7 +370,7 @@ wire::Table read_table(const fs::path& file) {
 }
 
 void write_marks_into(const fs::path& file, int descriptor, const MarkOrder& order) {
-  // In memory and not through a pipe, which the program may close before all is written.
+  // The order goes through memory: the program may close a pipe before all of it is written.
   const Descriptor orders(::memfd_create("marks", MFD_CLOEXEC));
   try {
     wire::Writer to(*orders);

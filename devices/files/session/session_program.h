@@ -1,5 +1,5 @@
-// What limpid-session says of a file, as bytes through a pipe: numbers as they are in memory, and
-// before each text and list how many there are. Both ends are of one build.
+// Exchange with the program limpid-session, as bytes through a pipe. Numbers are as in memory;
+// before each text and list stands its length. Both ends are of one build.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,15 @@
 #include "devices/files/session/session_marks.h"
 #include "devices/files/session/session_stream.h"
 
-namespace limpid::wire {
+namespace limpid {
+namespace wire {
 
-// The other end is gone, or what it says is no session, story or table.
+// Error: the other end is gone, or sends no session, story or table.
 struct Broken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The first number of all, and before each piece of a session's rows: what follows.
+// First number of all, and before each piece of a session's rows: the kind of what follows.
 enum class Answer : std::uint64_t { refusal, contents, rows, end };
 
 class Writer {
@@ -47,10 +48,10 @@ class Writer {
   int to_;
 };
 
-// Trusts nothing: memory is taken as the bytes arrive.
+// Reads with distrust: takes memory as the bytes arrive.
 class Reader {
  public:
-  // `most`: [bytes] in all, or in each piece.
+  // `most`: bytes in all, or in each piece.
   Reader(int from, std::uint64_t most) : from_(from), most_(most), left_(most) {}
 
   void begin_piece() { left_ = most_; }
@@ -78,7 +79,8 @@ class Reader {
     return values;
   }
   std::string text() { return list<std::string>(); }
-  // How many follow, of at least `size` bytes each. Errors: Broken where those would be too many.
+  // Reads how many things of at least `size` bytes follow. Errors: Broken if they would be too
+  // many.
   std::size_t taken(std::size_t size);
 
  private:
@@ -86,14 +88,14 @@ class Reader {
   std::uint64_t most_, left_;
 };
 
-// A session in pieces: what it is of, how many rows it claims and what changed at them; rows as
-// often as there are some; all else, with the changes at rows that are there.
+// Write a session in pieces: first its contents, the number of rows that it claims, and changes;
+// rows as often as there are some; then all else, with the changes at rows that exist.
 void put_about(Writer& to, const Session& session, std::uint64_t rows);
 void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin);
 void put_rest(Writer& to, const Session& session);
-void put_session(Writer& to, const Session& session);  // one after the other
-// `begins` hears how many rows are claimed. Errors: Broken; FileError for what the other end
-// refuses on the way.
+void put_session(Writer& to, const Session& session);  // all pieces
+// Reads a session; `begins` is told how many rows are claimed. Errors: Broken; FileError for what
+// the other end refuses on the way.
 Session take_session(Reader& from,
                      const std::function<void(const Session& about, std::uint64_t rows)>& begins,
                      const TakeRows& take);
@@ -101,7 +103,7 @@ Session take_session(Reader& from);
 void put_order(Writer& to, const MarkOrder& order);
 MarkOrder take_order(Reader& from);
 
-// The attributes and columns of a file of numbers that is no session.
+// Attributes and columns of a file of numbers that is no session.
 struct Table {
   std::map<std::string, std::string> texts;
   std::map<std::string, std::uint64_t> counts;
@@ -110,19 +112,18 @@ struct Table {
 void put_table(Writer& to, const Table& table);
 Table take_table(Reader& from);
 
-}  // namespace limpid::wire
-namespace limpid {
+}  // namespace wire
 
-// The program limpid-session, seen from the one that calls it.
+// Name of the program.
 inline constexpr const char* kSessionProgram = "limpid-session";
-inline constexpr int kCopyToChange = 3;  // its descriptor there
+inline constexpr int kCopyToChange = 3;  // descriptor of the copy in the program
 
-// The texts, whole numbers and columns of a sweep's table. Errors: FileError for what is no table,
-// damaged, or crashes what reads it.
+// Reads texts, whole numbers and columns of a sweep's table. Errors: FileError for what is no
+// table, is damaged, or crashes its reader.
 wire::Table read_table(const std::filesystem::path& file);
 
-// Does what write_marks() does to the copy of a session that `descriptor` is open for. Errors:
-// FileError naming `file`.
+// Writes marks, as write_marks() does, into the copy of a session that `descriptor` is open for.
+// Errors: FileError naming `file`.
 void write_marks_into(const std::filesystem::path& file, int descriptor, const MarkOrder& order);
 
 }  // namespace limpid

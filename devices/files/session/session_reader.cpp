@@ -26,16 +26,12 @@ namespace limpid {
 
 namespace fs = std::filesystem;
 
-// Reads session files, trusting nothing in them.
-
 namespace {
 
-namespace fs = std::filesystem;
+constexpr std::size_t kBlockRows = 4096;    // rows read at once, or more if a sum is over more
+constexpr std::size_t kMostUnit = 1 << 20;  // rows that sums of two runs are over
 
-constexpr std::size_t kBlockRows = 4096;    // read at once, or more where a sum is over more
-constexpr std::size_t kMostUnit = 1 << 20;  // over which sums of two runs are
-
-// What foreign programs need not write, and what it then is.
+// The value of a column that foreign programs need not write, if it is missing.
 std::optional<double> default_of(Column column) {
   switch (column) {
     case Column::hand_grip:
@@ -59,7 +55,7 @@ std::optional<double> default_of(Column column) {
     case Column::pull_target:
     case Column::energy_pulled:
     case Column::energy_ledger: return 0.0;
-    // What the human and objects were given, and that nothing touched, is not known.
+    // Unknown: what the human and objects were given, and whether something touched.
     case Column::energy_port:
     case Column::energy_to_objects:
     case Column::energy_objects:
@@ -73,7 +69,7 @@ std::optional<double> default_of(Column column) {
 
 hdf5::File open_as(const fs::path& file, unsigned flags) {
   const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS));
-  // A broken leftover would keep HDF5 rereading it for ever.
+  // A limit, as HDF5 would reread a broken leftover for ever.
   if (flags & H5F_ACC_SWMR_READ) H5Pset_metadata_read_attempts(access.get(), 5);
   return hdf5::File(H5Fopen(file.c_str(), flags, access.get()));
 }
@@ -94,7 +90,7 @@ hdf5::File open(const fs::path& file) {
   refuse(file, "cannot open: " + reason);
 }
 
-// Sessions whose arm nobody knows do not say.
+// Flags of the joints that slide; empty in sessions whose arm is not known.
 std::vector<bool> read_slides(hid_t root, int dof, const fs::path& file) {
   if (H5Aexists(root, kJointTypes) <= 0) return {};
   std::vector<bool> slides;
@@ -112,7 +108,7 @@ std::vector<bool> read_slides(hid_t root, int dof, const fs::path& file) {
   return slides;
 }
 
-// Of all objects that move, as many as there are poses of.
+// Names of all objects that move, as many as they have poses.
 std::vector<std::string> read_bodies(hid_t root, const fs::path& file) {
   const char* path = kColumnInfo[column_index(Column::body_pose)].path;
   if (!hdf5::has(root, path, file)) return {};
@@ -184,7 +180,7 @@ Source open_rounding(hid_t group, hsize_t width, const fs::path& file) {
   return source;
 }
 
-// A row's numbers from the file's units to its own. False where these cannot have come from any.
+// Converts a row's numbers from the file's units. False if no numbers can have given them.
 bool take_units_off(const std::vector<SessionUnits::Scaled>& scaled, const std::int8_t* rounding,
                     const RowLayout& layout, std::span<double> row) {
   for (std::size_t i = 0; i < scaled.size(); ++i) {
@@ -218,7 +214,7 @@ void read_world(hid_t group, Session& session, const fs::path& file, hdf5::Claim
   session.world.clear();
 }
 
-// Which settings changed in a session of so many rows, and when.
+// Reads the changed settings of a session of so many rows.
 void read_changes(hid_t root, std::size_t size, Session& session, const fs::path& file,
                   hdf5::Claims& claims) {
   if (!hdf5::has(root, kEventRowPath, file) || !hdf5::has(root, kEventSettingPath, file)) return;
@@ -263,8 +259,8 @@ class RunReader {
   const RowLayout& layout() const { return layout_; }
   std::size_t rows() const { return rows_; }  // as the file claims
   std::size_t block() const { return sums_ ? sums_->block() : 1; }
-  // Rows in turn: `count` more, a multiple of block() but for the last ones. Fewer are whole only
-  // in a leftover. Errors: FileError.
+  // Reads `count` more rows, a multiple of block() but for the last ones. Gives fewer only in a
+  // leftover, those that are whole. Errors: FileError.
   void read(std::size_t count, std::vector<double>& rows) {
     const auto stride = static_cast<std::size_t>(layout_.stride());
     rows.resize(count * stride);
@@ -319,7 +315,7 @@ class RunReader {
     const auto stride = static_cast<std::size_t>(layout_.stride());
     numbers_.resize(count * width);
     if (count > 0 && !read_block(source, from_, count, numbers_.data())) {
-      // Some of them may be there: as many as can be read one after the other.
+      // Some rows may be there: takes as many as can be read in turn.
       if (is_leftover(file_)) return count > 1 ? read_column(source, column, count / 2, rows) : 0;
       refuse(file_, fmt::format("{}: rows {} to {} cannot be read: {}", source.path, from_,
                                 from_ + count - 1, hdf5::last_error()));
@@ -332,7 +328,7 @@ class RunReader {
     return count;
   }
 
-  // From the file's units. Returns how many from the first are whole.
+  // Converts rows from the file's units. Returns how many from the first are whole.
   std::size_t take_units_off(std::span<double> rows) {
     const auto stride = static_cast<std::size_t>(layout_.stride());
     const std::size_t count = rows.size() / stride;
@@ -368,10 +364,10 @@ class RunReader {
   std::optional<CheckSums> sums_;
   RowCheck check_;
   std::vector<Source> sources_;
-  std::vector<Column> columns_;                     // of each of them
-  std::vector<std::pair<Column, double>> missing_;  // and what they are instead
+  std::vector<Column> columns_;                     // of each source
+  std::vector<std::pair<Column, double>> missing_;  // with their values
   std::optional<Source> rounding_;
-  std::size_t rows_ = 0, from_ = 0;  // from_: the next one
+  std::size_t rows_ = 0, from_ = 0;  // next row: from_
   std::vector<double> numbers_;
   std::vector<std::int8_t> roundings_;
 };
@@ -398,6 +394,44 @@ std::size_t read_rows(RunReader& first, RunReader* second, const fs::path& file,
     if (whole < count) break;
   }
   return read;
+}
+
+constexpr const char* kDone = "done";
+constexpr const char* kMeasures = "measure";
+
+std::vector<std::string> attributes_of(hid_t root) {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5A_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  H5Aiterate2(root, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
+  return names;
+}
+
+std::vector<std::string> links_of(hid_t group) {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t {
+    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
+  return names;
+}
+
+std::vector<double> column(hid_t root, const std::string& path, const fs::path& file,
+                           hdf5::Claims& claims) {
+  const hdf5::Dataset dataset = hdf5::open_dataset(root, path, file);
+  const hdf5::Dataspace space(H5Dget_space(dataset.get()));
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (count < 0) refuse(file, fmt::format("damaged: {}: no list of numbers", path));
+  claims.stored(dataset);
+  claims.take(static_cast<std::uint64_t>(count), sizeof(double), path);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  const bool read = values.empty() || H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
+                                              H5P_DEFAULT, values.data()) >= 0;
+  hdf5::check(read, file, ("damaged: " + path).c_str());
+  return values;
 }
 
 }  // namespace
@@ -459,7 +493,7 @@ Session read_session_here(const fs::path& file,
   begins(session, first.rows());
   const std::size_t rows = read_rows(first, second ? &*second : nullptr, file, take);
   session.marks = read_marks(opened.get(), rows, file, claims);
-  // A leftover may have lost the rows that something changed at.
+  // A leftover may have lost the rows of some changes.
   const auto lost = [&](const SettingChange& change) { return change.row >= rows; };
   if (rows < first.rows()) std::erase_if(session.changes, lost);
   if (rows < first.rows() && twin) std::erase_if(twin->changes, lost);
@@ -478,56 +512,10 @@ Session read_session_here(const fs::path& file) {
   return session;
 }
 
-// Tables of sweeps: numbers in columns, all of one length.
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kDone = "done";
-constexpr const char* kMeasures = "measure";
-
-std::vector<std::string> attributes_of(hid_t root) {
-  std::vector<std::string> names;
-  const auto add = [](hid_t, const char* name, const H5A_info_t*, void* into) -> herr_t {
-    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
-    return 0;
-  };
-  H5Aiterate2(root, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
-  return names;
-}
-
-std::vector<std::string> links_of(hid_t group) {
-  std::vector<std::string> names;
-  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* into) -> herr_t {
-    static_cast<std::vector<std::string>*>(into)->emplace_back(name);
-    return 0;
-  };
-  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &names);
-  return names;
-}
-
-std::vector<double> column(hid_t root, const std::string& path, const fs::path& file,
-                           hdf5::Claims& claims) {
-  const hdf5::Dataset dataset = hdf5::open_dataset(root, path, file);
-  const hdf5::Dataspace space(H5Dget_space(dataset.get()));
-  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
-  if (count < 0) refuse(file, fmt::format("damaged: {}: no list of numbers", path));
-  claims.stored(dataset);
-  claims.take(static_cast<std::uint64_t>(count), sizeof(double), path);
-  std::vector<double> values(static_cast<std::size_t>(count));
-  const bool read = values.empty() || H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
-                                              H5P_DEFAULT, values.data()) >= 0;
-  hdf5::check(read, file, ("damaged: " + path).c_str());
-  return values;
-}
-
-}  // namespace
-
 wire::Table read_table_here(const fs::path& file) {
   const hdf5::Quiet quiet;
   hdf5::check_regular_file(file);
-  // Recordings may be large, and are told from tables without looking through all of them.
+  // Recordings may be large: they are told from tables without a look through all of them.
   {
     const hdf5::File looked_at(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     if (!looked_at || H5Lexists(looked_at.get(), kMeasures, H5P_DEFAULT) <= 0) {

@@ -1,4 +1,4 @@
-// Reads session files, of this version and older ones.
+// Reading of session files, of this version and older ones.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,22 @@
 
 namespace limpid {
 
-// Reads HDF5 files in this process, as only limpid-session does: what a broken or hostile file does
-// to HDF5's library ends that program. The others have read_session(), write_marks() and
+// Reads a session in this process, as only limpid-session does: a broken or hostile file may make
+// HDF5's library end that program. Other programs use read_session(), write_marks() and
 // read_table(), which call it.
 Session read_session_here(const std::filesystem::path& file);
-// The same in pieces, for a session that need not fit into memory: what it is of, what changes and
-// how many rows it claims; its rows in turn. Returns all but rows. A leftover may have fewer rows.
+// Reads it in pieces, so that it need not fit into memory. `begins` gets its contents, changes and
+// claimed number of rows, `take` its rows in turn. Returns all but rows. A leftover may have fewer
+// rows.
 Session read_session_here(
     const std::filesystem::path& file,
     const std::function<void(const Session& about, std::uint64_t rows)>& begins,
     const TakeRows& take);
-// All texts and whole numbers at the root, and the columns /done and /measure/... Errors: FileError
-// for files that have none.
+// Reads a table of a sweep: texts and whole numbers at the root, and the columns /done and
+// /measure/..., all of one length. Errors: FileError for files that have none.
 wire::Table read_table_here(const std::filesystem::path& file);
 
-// Looks at rows in turn for times that do not increase, and laws that there are not.
+// Checks rows in turn for times that do not increase, and for unknown laws.
 class RowCheck {
  public:
   RowCheck(const RowLayout& layout, std::filesystem::path file)

@@ -17,7 +17,7 @@ namespace {
 constexpr hsize_t kMostColumns = 256;
 constexpr unsigned long long kMostBlockRead = 1 << 20;
 
-// Which columns the sums are over; none: one that this program does not know.
+// The columns that the sums are over; nothing for one that this program does not know.
 std::vector<std::optional<Column>> columns_in(const std::string& paths) {
   std::vector<std::optional<Column>> columns;
   for (std::size_t at = 0; at < paths.size();) {
@@ -35,6 +35,19 @@ std::vector<std::optional<Column>> columns_in(const std::string& paths) {
 std::uint64_t stirred(std::uint64_t sum, double x) {
   sum = (sum ^ std::bit_cast<std::uint64_t>(x)) * 0x9e37'79b9'7f4a'7c15;
   return sum ^ sum >> 32;
+}
+
+bool read_as(const Source& source, hsize_t from, hsize_t count, hid_t type, void* out) {
+  const hdf5::Dataspace in_file(H5Dget_space(source.dataset.get()));
+  const hsize_t each = source.each_body;
+  const std::array<hsize_t, 3> start{from, 0, 0};
+  const std::array<hsize_t, 3> block{count, each > 0 ? source.width / each : source.width, each};
+  // Has the file's rank, as HDF5 goes through other shapes number by number.
+  const int rank = H5Sget_simple_extent_ndims(in_file.get());
+  const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
+  return H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
+                             nullptr) >= 0 &&
+         H5Dread(source.dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, out) >= 0;
 }
 
 }  // namespace
@@ -114,7 +127,7 @@ CheckSums::Checked CheckSums::check(const RowLayout& layout, std::span<const dou
       const auto column = static_cast<std::size_t>(*columns_[i]);
       if (found[column] == wanted[i]) continue;
       const char* path = kColumnInfo[column].path;
-      if (!hdf5::has(root_, path, file_)) continue;  // a column that somebody left out
+      if (!hdf5::has(root_, path, file_)) continue;  // somebody left it out
       return {at, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
                               "another program (which then has to delete /check)",
                               path, these)};
@@ -163,23 +176,6 @@ Source open_column(hid_t root, const ColumnInfo& column, const RowLayout& layout
   }
   return source;
 }
-
-namespace {
-
-bool read_as(const Source& source, hsize_t from, hsize_t count, hid_t type, void* out) {
-  const hdf5::Dataspace in_file(H5Dget_space(source.dataset.get()));
-  const hsize_t each = source.each_body;
-  const std::array<hsize_t, 3> start{from, 0, 0};
-  const std::array<hsize_t, 3> block{count, each > 0 ? source.width / each : source.width, each};
-  // Of the file's rank: HDF5 goes through other shapes number by number.
-  const int rank = H5Sget_simple_extent_ndims(in_file.get());
-  const hdf5::Dataspace in_memory(H5Screate_simple(rank, block.data(), nullptr));
-  return H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
-                             nullptr) >= 0 &&
-         H5Dread(source.dataset.get(), type, in_memory.get(), in_file.get(), H5P_DEFAULT, out) >= 0;
-}
-
-}  // namespace
 
 bool read_block(const Source& source, hsize_t from, hsize_t count, double* out) {
   return read_as(source, from, count, H5T_NATIVE_DOUBLE, out);

@@ -1,4 +1,4 @@
-// Sessions that need not fit into memory: their rows in turn.
+// Sessions that need not fit into memory: reading of rows in turn.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,16 @@
 
 namespace limpid {
 
-// Rows of a session in turn, whole ones, and as many of its twin's; empty: it has none.
+// Takes whole rows of a session in turn, and as many of its twin; empty if it has none.
 using TakeRows = std::function<void(std::span<const double> rows, std::span<const double> twin)>;
 
-// Reads a session in pieces: `begins` hears what it is of and what changes, `take` its rows.
-// Returns all but rows. A leftover may lack its last rows; changes at them are not returned.
-// Errors: as read_session(file).
+// Reads a session in pieces: `begins` gets contents and changes, `take` the rows. Returns all but
+// rows. A leftover may lack its last rows; changes at these are left out. Errors: as
+// read_session(file).
 Session read_session(const std::filesystem::path& file,
                      const std::function<void(const Session& about)>& begins, const TakeRows& take);
 
-// Gives a session that was read so its rows.
+// Puts rows into a session that was read without them.
 void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin);
 
 }  // namespace limpid

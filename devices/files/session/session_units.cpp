@@ -12,7 +12,7 @@
 namespace limpid {
 namespace {
 
-// Exact, where 0.1 is not: dividing by it rounds once.
+// Exact, unlike 0.1: dividing by it rounds once.
 constexpr double kUnitsPerMetre = 10;
 static_assert(kSlideUnit * kUnitsPerMetre == 1);
 
@@ -24,6 +24,20 @@ std::string_view unit_of_slide(std::string_view unit_of_turn) {
   if (unit_of_turn == "rad/s") return "m/s";
   if (unit_of_turn == "N m") return "N";
   return unit_of_turn;
+}
+
+// Calls `work` with each contact's three numbers.
+template <class Work>
+void each_contact(std::span<double> points, std::span<const double> forces, const Work& work) {
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    work(points.subspan(i, 3), forces.subspan(i, 3));
+  }
+}
+
+bool zero(std::span<const double> v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+// Returns whether a point was never set: a zero with a sign was computed.
+bool never_set(std::span<const double> v) {
+  return zero(v) && !std::signbit(v[0]) && !std::signbit(v[1]) && !std::signbit(v[2]);
 }
 
 }  // namespace
@@ -63,7 +77,7 @@ SessionUnits::Filed SessionUnits::filed(const Scaled& scaled, double x) {
   const double value = scaled_up(scaled.effort, x);
   const double back = scaled_back(scaled.effort, value);
   const auto apart = std::bit_cast<std::int64_t>(x) - std::bit_cast<std::int64_t>(back);
-  // Further apart are only numbers that no double of the other unit can hold.
+  // Numbers farther apart fit into no double of the other unit.
   const bool close = std::abs(apart) <= std::numeric_limits<std::int8_t>::max();
   return {value, static_cast<std::int8_t>(close ? apart : 0)};
 }
@@ -85,24 +99,6 @@ NormUnits norm_units(const std::vector<bool>& slides) {
   if (sliding == std::ssize(slides)) return {"m", "mm", "N", kSlideUnit, kUnitsPerMetre};
   return {"rad, dm", "mrad, 0.1 mm", "N m, daN"};
 }
-
-namespace {
-
-// The first number of each contact's three.
-template <class Work>
-void each_contact(std::span<double> points, std::span<const double> forces, const Work& work) {
-  for (std::size_t i = 0; i < points.size(); i += 3) {
-    work(points.subspan(i, 3), forces.subspan(i, 3));
-  }
-}
-
-bool zero(std::span<const double> v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
-// A zero with a sign is something that was reckoned.
-bool never_set(std::span<const double> v) {
-  return zero(v) && !std::signbit(v[0]) && !std::signbit(v[1]) && !std::signbit(v[2]);
-}
-
-}  // namespace
 
 void file_points(std::span<double> points, std::span<const double> forces) {
   each_contact(points, forces, [](std::span<double> point, std::span<const double> force) {

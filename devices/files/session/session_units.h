@@ -1,10 +1,10 @@
-// What a session file says otherwise than a row in memory does: metres and newtons of joints that
-// slide, and that a contact which is not there has no place.
+// Units of a session file where they differ from a row's: metres and newtons of joints that slide,
+// and no place for a contact that is not there.
 //
-// A row counts the travel of a slide in kSlideUnit; the file has SI. Scaling rounds, and several
-// numbers of rows become the same number of the file. So the file also holds how many doubles lie
-// between the number that scaling back gives and the one that the row had: every row comes back to
-// the last bit.
+// A row counts the travel of a slide in kSlideUnit; the file has SI. Scaling rounds, so that
+// several numbers of rows become one number of the file. The file therefore also holds how many
+// doubles lie between the row's number and the one scaled back. Every row comes back to the last
+// bit.
 #pragma once
 
 #include <cstdint>
@@ -19,35 +19,35 @@ namespace limpid {
 
 struct ArmDescription;
 
-std::vector<bool> slides_of(const ArmDescription& arm);  // each joint
+std::vector<bool> slides_of(const ArmDescription& arm);  // of each joint
 
 class SessionUnits {
  public:
-  // `slides`: whether each joint does; empty: none.
+  // `slides`: of each joint; empty: none slides.
   SessionUnits(const RowLayout& layout, const std::vector<bool>& slides);
 
-  // A number of each row that the file has in another unit.
+  // A number of each row that has another unit in the file.
   struct Scaled {
     Column column;
-    int part;     // of the column
-    bool effort;  // torques become forces, else angles become lengths
+    int part;     // index within the column
+    bool effort;  // torques become forces; else angles become lengths
   };
   const std::vector<Scaled>& scaled() const { return scaled_; }
 
-  // The file's unit of each part of a column; one where all have the same, and those of one body
-  // where all bodies have the same.
+  // The file's units of a column's parts; a single one if all have the same. For bodies, those of
+  // one body.
   std::vector<std::string> units(const ColumnInfo& column) const;
 
-  // Of a row's number: as the file has it, and how many doubles further on it lies than what
-  // scaling that back gives.
+  // A row's number in the file: the value, and how many doubles the row's number lies beyond the
+  // value scaled back.
   struct Filed {
     double value;
     std::int8_t rounding;
   };
   static Filed filed(const Scaled& scaled, double x);
-  // And back; nothing where the two cannot have come from any number.
+  // Gives the row's number back; nothing if no number can have given these two.
   static std::optional<double> unfiled(const Scaled& scaled, const Filed& filed);
-  // As near as it goes where a file has but the value.
+  // Gives it as near as possible from the value alone.
   static double unfiled(const Scaled& scaled, double value);
 
  private:
@@ -56,15 +56,15 @@ class SessionUnits {
   std::vector<Scaled> scaled_;
 };
 
-// What a length over all joints counts in, for people. Where some joints turn and others slide, it
-// has a decimetre beside each radian and 10 N beside each N m, as the rows have.
+// Units of a norm over all joints, for people. If some joints turn and others slide, a radian
+// counts as a decimetre and 1 N m as 10 N, as in the rows.
 struct NormUnits {
   const char *angle, *milliangle, *torque;
-  double angles = 1, torques = 1;  // of these units in one of the rows'
+  double angles = 1, torques = 1;  // so many of these units make one of the rows'
 };
 NormUnits norm_units(const std::vector<bool>& slides);
 
-// Points of contacts: not a number where nothing touches, which rows have at zero; and back.
+// Convert points of contacts: not a number in the file, and zero in rows, where nothing touches.
 void file_points(std::span<double> points, std::span<const double> forces);
 void unfile_points(std::span<double> points, std::span<const double> forces);
 

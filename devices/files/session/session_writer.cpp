@@ -28,34 +28,9 @@ constexpr const char* kPart = ".part";
   throw FileError(fmt::format("{}: {}: {}", file.string(), what, std::strerror(code)));
 }
 
-}  // namespace
-
-fs::path recovered_name(const fs::path& part) {
-  if (part.extension() != kPart || part.stem().empty()) {
-    throw FileError(fmt::format("{}: not the .part file of a recording", part.string()));
-  }
-  return part.parent_path() / part.stem();
-}
-
-void check_session_info(const SessionInfo& info, const fs::path& file) {
-  if (!(info.tick > 0 && info.tick <= 0.1)) {
-    throw FileError(
-        fmt::format("{}: tick {} s; allowed: more than 0, up to 0.1", file.string(), info.tick));
-  }
-  if (info.dof < 1 || info.dof > kMaxDof) {
-    throw FileError(fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
-  }
-  if (info.bodies.size() > kMostBodies) {
-    throw FileError(fmt::format("{}: {} objects that move; allowed: 0 to {}", file.string(),
-                                info.bodies.size(), kMostBodies));
-  }
-}
-
-namespace {
-
 constexpr auto kPause = std::chrono::milliseconds(20);  // between two tries
 
-// Network file systems may have none.
+// Returns whether the error means no locks, as on some network file systems.
 bool has_no_locks(int code) { return code == ENOLCK || code == EOPNOTSUPP || code == ENOSYS; }
 
 int open_no_link(const fs::path& file, int flags) {
@@ -67,48 +42,17 @@ int open_no_link(const fs::path& file, int flags) {
   fail(file, "cannot open", errno);
 }
 
-}  // namespace
-
-WriteLock::WriteLock(const fs::path& file, Make make, std::chrono::milliseconds patience)
-    : descriptor_(open_no_link(file, make == Make::yes ? O_CREAT : 0)) {
-  // A lock of the open file, not of the process, so that it works between threads too.
-  struct flock whole {};
-  whole.l_type = F_WRLCK;
-  whole.l_whence = SEEK_SET;
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while (::fcntl(descriptor_, F_OFD_SETLK, &whole) != 0) {
-    const int code = errno;
-    if (has_no_locks(code)) return;
-    const bool taken = code == EAGAIN || code == EACCES;
-    if (taken && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(kPause);
-      continue;
-    }
-    ::close(descriptor_);
-    if (!taken) fail(file, "cannot lock", code);
-    throw FileError(
-        fmt::format("{}: is still being recorded, or changed by another program", file.string()));
-  }
-  held_ = true;
-}
-
-WriteLock::~WriteLock() { ::close(descriptor_); }
-
-// Where a session may be written, and how it gets its name when it is complete.
-
-namespace {
-
-// Below this the disk is left to the recording itself [bytes].
+// Disk space that is left to the recording itself [bytes].
 constexpr std::uint64_t kRoomForOthers = 64 << 20;
 
-// The recording once more, packed, in a file without a name: what OUT.h5 becomes. Whatever goes
-// wrong with it, OUT.h5.part has all.
+// A packed second copy of the recording in a file without a name, which becomes OUT.h5. If anything
+// fails here, OUT.h5.part still has all.
 class PackedCopy {
  public:
   PackedCopy(const fs::path& out, const SessionInfo& info) {
     attempt([&] {
       draft_.emplace(out);
-      // A draft with a name would stay when the program is killed.
+      // A draft with a name would stay if the program is killed.
       if (draft_->has_name()) throw FileError("no files without a name");
       file_.emplace(out, draft_->descriptor(), info, Storage::packed);
     });
@@ -118,7 +62,7 @@ class PackedCopy {
   void with(Work work) {
     if (file_) attempt([&] { check_room(), work(*file_); });
   }
-  // Whether it has taken the name.
+  // Returns whether the copy has taken the name.
   bool keep(const std::string& warnings) {
     with([&](SessionFile& file) {
       file.close(warnings);
@@ -151,13 +95,59 @@ class PackedCopy {
 
 }  // namespace
 
+fs::path recovered_name(const fs::path& part) {
+  if (part.extension() != kPart || part.stem().empty()) {
+    throw FileError(fmt::format("{}: not the .part file of a recording", part.string()));
+  }
+  return part.parent_path() / part.stem();
+}
+
+void check_session_info(const SessionInfo& info, const fs::path& file) {
+  if (!(info.tick > 0 && info.tick <= 0.1)) {
+    throw FileError(
+        fmt::format("{}: tick {} s; allowed: more than 0, up to 0.1", file.string(), info.tick));
+  }
+  if (info.dof < 1 || info.dof > kMaxDof) {
+    throw FileError(fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
+  }
+  if (info.bodies.size() > kMostBodies) {
+    throw FileError(fmt::format("{}: {} objects that move; allowed: 0 to {}", file.string(),
+                                info.bodies.size(), kMostBodies));
+  }
+}
+
+WriteLock::WriteLock(const fs::path& file, Make make, std::chrono::milliseconds patience)
+    : descriptor_(open_no_link(file, make == Make::yes ? O_CREAT : 0)) {
+  // Locks the open file, not the process, so that it works between threads, too.
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (::fcntl(descriptor_, F_OFD_SETLK, &whole) != 0) {
+    const int code = errno;
+    if (has_no_locks(code)) return;
+    const bool taken = code == EAGAIN || code == EACCES;
+    if (taken && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(kPause);
+      continue;
+    }
+    ::close(descriptor_);
+    if (!taken) fail(file, "cannot lock", code);
+    throw FileError(
+        fmt::format("{}: is still being recorded, or changed by another program", file.string()));
+  }
+  held_ = true;
+}
+
+WriteLock::~WriteLock() { ::close(descriptor_); }
+
 struct SessionWriter::File {
   fs::path out;
   fs::path part;
   bool force;
   std::optional<WriteLock> lock;
   std::optional<SessionFile> session;
-  std::optional<PackedCopy> packed;  // none: it is not packed
+  std::optional<PackedCopy> packed;  // nothing: not packed
 
   template <class... What>
   void append(const What&... what) {
@@ -174,7 +164,7 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force, 
   file_->force = force;
   check_place(file_->out, force);
   const bool left = fs::exists(fs::symlink_status(file_->part));
-  if (left) WriteLock(file_->part, WriteLock::Make::no);  // nobody records there
+  if (left) WriteLock(file_->part, WriteLock::Make::no);  // refuses if somebody records there
   if (!force && left) {
     throw FileError(fmt::format(
         "{0}: left by a recording that was not closed; `limpid recover {0}` saves it, --force "

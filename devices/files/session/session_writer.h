@@ -1,4 +1,4 @@
-// Recordings that were cut off, and who may write one.
+// Recovery of recordings that were cut off, and the lock of those being written.
 #pragma once
 
 #include <chrono>
@@ -8,26 +8,26 @@
 
 namespace limpid {
 
-// OUT.h5.part -> OUT.h5. Errors: FileError if the name does not end in .part.
+// The path OUT.h5 for OUT.h5.part. Errors: FileError if the name does not end in .part.
 std::filesystem::path recovered_name(const std::filesystem::path& part);
 
-// Tick and number of joints. Errors: FileError naming `file`.
+// Checks tick and number of joints. Errors: FileError naming `file`.
 void check_session_info(const SessionInfo& info, const std::filesystem::path& file);
 
-// Tells a recording that is running from one that was killed, and keeps programs that change one
-// recording apart: held while writing, gone with the process. Errors: FileError if the file cannot
-// be opened, is a link, or somebody else still holds it after so long. Where the file system has no
-// locks nobody is kept out.
+// Lock of a recording while it is written or changed; gone with the process. It tells a running
+// recording from one that was killed, and keeps programs that change one apart. Errors: FileError
+// if the file cannot be opened, is a link, or somebody else still holds the lock after `patience`.
+// A file system without locks keeps nobody out.
 class WriteLock {
  public:
-  enum class Make { no, yes };  // the file, if it is not there
+  enum class Make { no, yes };  // make the file if it does not exist
   WriteLock(const std::filesystem::path& file, Make make, std::chrono::milliseconds patience = {});
   ~WriteLock();
   WriteLock(const WriteLock&) = delete;
   WriteLock& operator=(const WriteLock&) = delete;
 
   int descriptor() const { return descriptor_; }  // for reading and writing
-  bool held() const { return held_; }             // false: there are no locks
+  bool held() const { return held_; }             // false: the file system has no locks
 
  private:
   int descriptor_;
