@@ -23,7 +23,8 @@ fs::path beside_this_program(const char* name) {
 }
 
 Child::Child(std::vector<std::string> words, std::span<const Given> given) {
-  constexpr int kAboveAll = 10;  // copies first: the numbers there may be others' here
+  constexpr int kAboveAll =
+      10;  // numbers of copies start here: given.there may be in use in this process
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   std::deque<Descriptor> copies;
