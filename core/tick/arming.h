@@ -8,8 +8,6 @@
 namespace limpid {
 
 // Why there is no force, or less of it, in the order of the session file's /device/force_state.
-
-// The order is that of the session file's /device/force_state.
 enum class ForceState : std::uint8_t {
   on,
   off,        // not armed

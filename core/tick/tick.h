@@ -1,4 +1,4 @@
-// One tick of the loop: the paper, from a device's reading to the motors' torque.
+// A tick of the loop: the paper, from a device's reading to the motors' torque.
 #pragma once
 
 #include <memory>
