@@ -1,5 +1,5 @@
-// The sandbox of processes that read strangers' files: it takes away for ever what reading does not
-// need.
+// The sandbox of processes that read strangers' files: it takes away for ever all rights that
+// reading does not need.
 #pragma once
 
 #include <filesystem>

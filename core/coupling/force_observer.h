@@ -86,7 +86,7 @@ class VelocityEstimator {
 // second-order accurate, and with -0.21 < E < 1 stable for every alpha and T; one factorisation is
 // enough for both powers.
 //
-// The difference of two sampled velocities averages the accelerations of the last two ticks, so the
+// The difference of two sampled velocities averages the accelerations of the last two ticks. So the
 // torque beside it is the mean of the last two.
 template <int N>
 class ForceObserver {

@@ -1,5 +1,5 @@
-// Passive networks that make the hand feel less or more inertia than there is. Each joint has a
-// ladder of two springs, a mass and dampers (eta < 1), or a mass on a spring and damper (eta > 1).
+// Passive networks that make the hand feel less or more inertia than there is. For eta < 1 each
+// joint has a ladder of two springs, a mass and dampers; for eta > 1 a mass on a spring and damper.
 #pragma once
 
 #include <complex>
@@ -39,7 +39,7 @@ std::complex<double> network_impedance(const AddedMass& added, double band, doub
 
 // A network for each joint, driven by the device's motion through R_N, M-like: N = R_N R_N^T. All
 // time dependence of eta and of the inertia is in R_N. So for every eta(t) the work given over a
-// tick is at most the storage lost and b_e |dx1|^2/T, b_e a few percent of the device's damping.
+// tick is at most the storage lost and b_e |dx1|^2/T. b_e is a few percent of the device's damping.
 template <int N>
 class InertiaNetwork : InertiaShape {
  public:

@@ -71,8 +71,8 @@ class Ledger {
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
-  // Takes the energy that is stored now [J]. At first it is nobody's debt. Neither is its growth
-  // while no torque reaches the motors (idle): the hand alone brought it there.
+  // Takes the energy that is stored now [J]. The first one is no debt. Neither is its growth while
+  // no torque reaches the motors (idle): the hand alone brought it there.
   void settle(double E0, double stored, bool idle = false) {
     E0_ = E0;
     const double added = stored - std::exchange(stored_, stored);

@@ -18,8 +18,8 @@ struct LinearTorque {
 // the proxy with the forces f2(u) of their laws:
 //     D0 w           = drive + authority tau1,      p = clip(tE + on_f2 f2),   tau1 = clip(p + tL)
 //     (impedance) u  = momentum - p + rest + f2(u).
-// For a proxy without mass the work of p is the loss of the convex storage sum_i limit_i |x_E,i|,
-// in every tick and whatever contacts and hand do.
+// For a proxy without mass the work of p is the loss of the convex storage sum_i limit_i |x_E,i|.
+// This holds in every tick, for all contacts and hands.
 template <int N>
 struct LimitedSolve {
   LinearTorque<N> tE;    // wanted between device and proxy

@@ -24,11 +24,11 @@ template <int N>
 Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
               Proxy<N>& proxy);
 
-// The proxy's half of couple(), (2), with what its side knows of the device.
+// The proxy's half of couple(), (2), from its side's knowledge of the device.
 template <int N>
 void move_proxy(const SpringDamper& p, double T, const FromDevice<N>& device,
                 const Feedforward<N>& ff, Proxy<N>& proxy);
-// The device's half, (1), with what its side knows of the proxy.
+// The device's half, (1), from its side's knowledge of the proxy.
 template <int N>
 Vec<N> on_device(const SpringDamper& p, const LawInput<N>& in, const FromProxy<N>& proxy,
                  const Feedforward<N>& ff);

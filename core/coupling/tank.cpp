@@ -125,7 +125,7 @@ void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in)
 
 // Moves the proxy. A damper holds its drive back instead of weakening it: a proxy at rest on a wall
 // is pressed as hard as ever, which takes no energy. While no torque reaches the motors the hand
-// alone moves it, at nobody's cost.
+// alone moves it, and the tank does not pay.
 template <int N>
 void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                           const FromDevice<N>& device, Proxy<N>& proxy) {

@@ -3,7 +3,7 @@
 //
 // Energy that a side gives comes out of its tank, energy it takes goes in; energy sent to the other
 // side leaves one tank before it enters the other. So both together never give more than they held
-// at the start and took in, whatever delays, loses or reorders packets.
+// at the start and took in, however the link delays, loses or reorders packets.
 //
 // The accounts hold what the motors and the proxy's drive really did. Two dampers that nothing
 // commands count as intake, as they do in E_c: the device's own, as far as it is sure, and the

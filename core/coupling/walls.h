@@ -39,8 +39,8 @@ double proposed_wall(const TipAlong& tip, const WallSetting& s);
 // Stiffest wall that any linear law can render passively in every hand (Colgate), with its torque a
 // delay late [N/m]: b_d / (T/2 + delay).
 double every_hands_wall(const TipAlong& tip, double T, double delay = 0);
-// Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand, by
-// the energy that this error gives away. Infinite without a mass.
+// Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand. It is
+// bounded by the energy that this error gives away; infinite without a mass.
 double mistaken_wall(const TipAlong& tip, const WallSetting& s);
 
 // Further settings that bound a wall of the predictive coupling.

@@ -77,7 +77,7 @@ class Climb {
     const double top = std::atan2(across, along);
     double t = top + 2 * kPi * std::ceil((j.lower - x[i] - top) / (2 * kPi));
     if (!std::isfinite(t)) t = top;
-    if (x[i] + t > j.upper) {  // out of the limits: the better one of them
+    if (x[i] + t > j.upper) {  // out of the limits: the better limit
       const double down = j.lower - x[i], up = j.upper - x[i];
       t = gain(down) > gain(up) ? down : up;
     }

@@ -29,8 +29,8 @@ bool has_capability(unsigned capability) {
   return (data[capability / 32].effective >> (capability % 32)) & 1u;
 }
 
-// Locking all or nothing. Under a finite limit, locking what will be mapped later makes the OpenGL
-// driver's allocations fail, and a locked stack cannot grow.
+// True if the process may lock all its memory. Under a finite limit, locking future mappings makes
+// the OpenGL driver's allocations fail, and a locked stack cannot grow.
 bool may_lock_everything() {
   if (has_capability(CAP_IPC_LOCK)) return true;
   rlimit limit{};

@@ -16,8 +16,8 @@ namespace limpid {
 bool lock_memory();
 
 // Makes malloc return large blocks to the system as soon as they are freed. By default it learns to
-// keep them, a heap for every few threads, and locked memory cannot be taken out of the middle of a
-// heap. For programs that run for long; to be called before they have threads.
+// keep them, in one heap for every few threads, and locked memory inside a heap cannot be returned.
+// For programs that run for long; to be called before they have threads.
 void give_back_what_is_freed();
 
 // Makes malloc keep large blocks, so that the next run finds memory whose pages are there already.
@@ -40,7 +40,7 @@ struct RealtimeReport {
   bool realtime() const { return scheduling != Scheduling::ordinary; }
 };
 
-// Asks somebody else to give a thread of this process a real-time priority; true if that was done.
+// Asks another process to give a thread of this one a real-time priority; true if that was done.
 using AskForPriority = std::function<bool(pid_t tid, int priority)>;
 
 // Makes the calling thread as punctual as the system permits: FIFO 80, else the highest priority
@@ -50,7 +50,7 @@ using AskForPriority = std::function<bool(pid_t tid, int priority)>;
 RealtimeReport become_realtime(const AskForPriority& ask);
 
 // Puts the calling thread, and threads it creates from now on (those of the OpenGL driver), behind
-// all others, so that an ordinary haptic thread is served first. Only privilege can undo this:
+// all others. So an ordinary haptic thread is served first. Only privilege can undo this:
 // HapticThread must exist before. False if the system refused.
 bool yield_to_haptics() noexcept;
 

@@ -16,8 +16,8 @@ namespace limpid {
 // Free bodies, bodies on joints, springs and contacts among them and with fixed objects. Over a
 // tick all of them are solved together with the arm's contacts. A row is a force between two sides;
 // it asks both for their velocity without it and for their response to it. With converged sweeps,
-// the change of kinetic energy, weight and energy stored in rows is at most the energy given by the
-// arm, for any masses, stiffnesses and ticks.
+// the change of kinetic energy, weight and stored energy is at most the energy given by the arm.
+// This holds for any masses, stiffnesses and ticks.
 //
 // A tick: touch() the bodies near the arm and begin(). Then velocity(), answer() and push() of the
 // arm's rows between sweep()s. Last settle(), book() of each row, and finish(). Nothing is
@@ -54,11 +54,11 @@ class BodyWorld {
     bodies_[at(end.body)].push(end.lever, force);
     pushed_[at(end.body)] = 1;
   }
-  // Sweeps over the rows of what the arm touches and all connected to it, or over all others. Ends
-  // when no force changes by more than `enough`, or after `most` sweeps; returns the last largest
-  // change [N]. The number of plain sweeps grows with the ratio of a heavy body to a light one
-  // below it. So between sweeps forces go on as by conjugate gradients (Silcowitz, Niebe and
-  // Erleben 2010); a sweep comes last.
+  // Sweeps over the rows of all bodies connected to the arm's contacts, or of all others. Ends when
+  // no force changes by more than `enough`, or after `most` sweeps; returns the last largest change
+  // [N]. The number of plain sweeps grows with the ratio of a heavy body to a light one below it.
+  // So between sweeps forces go on as by conjugate gradients (Silcowitz, Niebe and Erleben 2010); a
+  // sweep comes last.
   double sweep(bool touched, double enough, int most);
   // The body that the tip holds as if by a magnet: a spring of zero length from the tip to a point
   // of it.
@@ -103,8 +103,8 @@ class BodyWorld {
 
   double given() const { return given_; }    // by the arm over the last tick [J]
   double energy() const { return energy_; }  // after the last tick: kinetic, weight and stored [J]
-  // Energy at the start of the last tick, beyond the first energy and what the arm and pull() gave
-  // [J].
+  // Energy of bodies at the start of the last tick, less the first one and all that the arm and
+  // pull() gave [J].
   double gain() const { return gain_; }
   double all_given() const { return all_given_; }  // by the arm since the start [J]
   int awake() const;

@@ -357,7 +357,7 @@ double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
   return change.norm() + rub(row, T, normal, force, motion);
 }
 
-// Force of a wall or a room without friction, for a motion v along the row's axes that excludes the
+// Force of a wall or a room without friction. The motion v, along the row's axes, excludes the
 // force's effect on its own body. Returns the slope over v.
 template <int N>
 Mat3 ContactSolve<N>::push(Row& row, double T, const Vec3& v) {
@@ -534,7 +534,7 @@ double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force
   return change.norm();
 }
 
-// True if a row stays apart, whatever the other contacts do by themselves.
+// True if a row stays apart, for any forces of the other contacts alone.
 template <int N>
 bool ContactSolve<N>::apart(const Row& row, double T, const Vec<N>& u) {
   if (row.known || row.magnet != nullptr || !row.push.isZero(0) || !row.friction.isZero(0)) {

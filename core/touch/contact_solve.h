@@ -22,9 +22,9 @@ struct RoomTick {
   Mat3 W;
 };
 
-// Computes the constant force F [N] = mean of -grad U over the segment from center to center + D,
-// minus the damper's in the held directions. The mean of a gradient along a segment does exactly
-// the work that the potential loses. `F`: in, a first guess; out, the force.
+// Computes the constant force F [N] = mean of -grad U over the segment from center to center + D.
+// The damper's force in the held directions is subtracted. The mean of a gradient along a segment
+// does exactly the work that the potential loses. `F`: in, a first guess; out, the force.
 void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F);
 
 // The force of room_force() for a known D = a, and its slope over D [N/m], with the damper's
@@ -76,9 +76,9 @@ class ContactSolve {
   // First, after collect().
   void prepare(const ContactAnswer<N>& answer, double T);
   // Gives bodies of the scene the forces of the last push() and lets them settle; returns the
-  // largest change of the arm's force on one of them [N]. push() then uses their new places. From
-  // the second `turn` on (counted from 0) it uses their response to the last change too: a body
-  // that rests on others yields less than it would alone.
+  // largest change of an arm's force on a body [N]. push() then uses their new places. From the
+  // second `turn` on (counted from 0) it uses their response to the last change too: a body that
+  // rests on others yields less than it would alone.
   double push_bodies(int turn);
   // Holds the bodies that the arm touches, and all connected to them, for the tick: without a
   // solution for their forces they do not move, and so gain no energy.

@@ -63,8 +63,8 @@ inline double friction_stiffness(const Material& m) {
   return std::min(m.stiffness, kStiffestFriction);
 }
 
-// A ball of the arm against a mesh. Its centre c(x2 + dx) = center + J dx is pulled by K (x - c) to
-// the nearest x that the mesh leaves free, within a tick a room of planes.
+// A ball of the arm against a mesh. The nearest x that the mesh leaves free pulls its centre c(x2 +
+// dx) = center + J dx by K (x - c). Within a tick the free places are a room of planes.
 template <int N>
 struct MeshContact {
   MeshContact(const Object& mesh, double radius, Eigen::Index dof)
@@ -164,7 +164,7 @@ class Contacts {
   // Steps the bodies with the forces that push() found, for laws that do not solve for bodies.
   void step_bodies();
 
-  // Energy of all springs at find(), those of friction too [J].
+  // Energy of all springs at find(), with friction's [J].
   double potential() const { return potential_; }
 
  private:

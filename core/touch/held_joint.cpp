@@ -31,7 +31,7 @@ Mat3 symmetric(const Mat3& A) { return 0.5 * (A + A.transpose()); }
 }  // namespace
 
 // The response is W - G^T M^-1 G. Without the springs, M is the response of the springs to each
-// other, G of the springs to the force, W of the joint to the force.
+// other, G that to the force, and W of the joint to the force.
 Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
                   std::span<const JointHold> holds) {
   const auto n = static_cast<int>(holds.size());

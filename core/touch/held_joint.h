@@ -23,8 +23,8 @@ struct JointHold {
   Mat3 directions = Mat3::Identity();  // a projection
 };
 
-// Response of the relative velocity or angular velocity of both sides to a force along the joint or
-// a torque about it, where the springs that hold it yield at once.
+// Response of the sides' relative velocity to a force along the joint, or of their angular velocity
+// to a torque about it. The springs that hold it yield at once.
 Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
                   std::span<const JointHold> holds);
 
@@ -66,9 +66,8 @@ struct HeldJoint {
   void finish(double T, const Vec3& speed);
   // Holds the joint for a tick, with the friction of the last one.
   void hold();
-  // Sets the place to that of its sides, which a tick's own rotation misses by third order; unless
-  // it would store more energy there. `sine`: of the angle from its place to theirs, or the
-  // distance.
+  // Sets the place to the sides' own, which a tick's rotation misses by third order; unless it
+  // would store more energy there. `sine`: of the angle from its place to theirs, or the distance.
   void follow(double sine);
 
   static constexpr std::size_t kNumbers = 14;

@@ -63,8 +63,8 @@ double stored(const BodyJoint& joint, const JointPotential& potential, double pl
   return potential.energy(place) + 0.5 * joint.stop_stiffness * (d * d + anchor * anchor);
 }
 
-// Outside the ball l solves (1 + K T W + m) l = -K (z + T b) with the m > 0 for which |l| is the
-// radius: by Newton's method on 1/|l|, which converges from below (More and Sorensen 1983).
+// Outside the ball l solves (1 + K T W + m) l = -K (z + T b), m > 0 such that |l| is the radius.
+// Newton's method on 1/|l| converges from below (More and Sorensen 1983).
 Vec3 friction_torque(double K, double radius, const Vec3& z, double T, const Vec3& b,
                      const Mat3& W) {
   if (!(radius > 0)) return Vec3::Zero();

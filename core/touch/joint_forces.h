@@ -33,10 +33,10 @@ double sweep_joint(const BodyJoint& joint, const JointPotential& potential, doub
 // Energy stored in a joint: potential, pressed stops and friction's stretch [J].
 double stored(const BodyJoint& joint, const JointPotential& potential, double place, double anchor);
 
-// Friction torque of a ball joint, l = ball[-K (z + T (b + W l))] [N m], ball the projection on the
-// ball of this radius [N m]. z: stretch of its spring [rad]; b: angular velocity without l [rad/s];
-// W: response to a torque [rad/(N m s)]. With z' = -l/K the work of l over the tick and the change
-// of K |z|^2/2 are together not positive.
+// Friction torque l of a ball joint, the projection of -K (z + T (b + W l)) on a ball of this
+// radius [N m]. z: stretch of its spring [rad]; b: angular velocity without l [rad/s]; W: response
+// to a torque [rad/(N m s)]. With z' = -l/K the work of l over the tick and the change of K |z|^2/2
+// are together not positive.
 Vec3 friction_torque(double K, double radius, const Vec3& z, double T, const Vec3& b,
                      const Mat3& W);
 

@@ -57,8 +57,8 @@ class FreeSpace {
 
 // Tracks one ball on one mesh. A free point g follows the ball's centre c as near as the surface
 // lets it (after Zilles and Salisbury's god object). It never crosses the mesh, so it knows the
-// side, even of a sheet without thickness. The planes that stop g (on a face one, in a groove two,
-// in a corner three) bound the free space to which the contact's spring pulls c back. Over a convex
+// side, even of a sheet without thickness. Planes stop g: on a face one, in a groove two, in a
+// corner three. They bound the free space to which the contact's spring pulls c back. Over a convex
 // edge the ball rolls while it is pressed in by less than its radius. Pressed deeper it slips off
 // some edges; the force's anchor then follows at a bounded speed, so that the force never jumps,
 // and slipping only takes energy away.

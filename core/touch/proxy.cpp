@@ -106,7 +106,7 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
 
 // Solves the same system with the forces of contacts that rub and damp:
 //     (2/T M + S + damping) vbar = 2/T L nu + constant + share f2.
-// Torque that a law feeds forward to the device responds to the previous tick's motion, so a damper
+// Torque that a law feeds forward to the device responds to the previous tick's motion. So a damper
 // may ask for no more than is stable with that delay. Forces that do not settle are not used: the
 // proxy and the bodies that it touches stand still for the tick, which gives no energy.
 template <int N>

@@ -16,8 +16,8 @@ namespace limpid {
 namespace {
 
 // Distance within which vertices are one, as a part of the mesh's diagonal. Floats round by about
-// this at its far end, and so do the two sides of a seam that was computed all the way round (sin 2
-// pi is not zero). A larger distance is a gap.
+// this at its far end. So do the two sides of a seam that was computed all the way round (sin 2 pi
+// is not zero). A larger distance is a gap.
 constexpr double kSamePlace = 1e-7;
 
 // Gives vertices within a distance of each other one name: the number of the first one queried.
@@ -66,7 +66,7 @@ class NearNames {
     }
     return h & (buckets_.size() - 1);
   }
-  // Returns the lowest number, in whatever order the bucket is.
+  // Returns the lowest number, for any order in the bucket.
   std::uint32_t nearest_name(std::size_t bucket, const Vec3& at) const {
     std::uint32_t first = kFree;
     for (std::uint32_t other = buckets_[bucket]; other != kFree; other = next_[other]) {
@@ -134,8 +134,8 @@ struct TriangleMesh::Tree {
   const std::atomic<bool>* cancel = nullptr;
   std::atomic<std::ptrdiff_t> bytes{0};
 
-  // One thread: building goes on beside the haptic loop. No cache for tessellated surfaces, else
-  // 128 MB.
+  // Embree gets a thread alone: building goes on beside the haptic loop. It gets no cache for
+  // tessellated surfaces, else 128 MB.
   Tree() : device(rtcNewDevice("threads=1,set_affinity=0,tessellation_cache_size=1")) {
     if (device == nullptr) throw std::runtime_error("Embree cannot be started");
     rtcSetDeviceMemoryMonitorFunction(
