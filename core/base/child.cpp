@@ -23,8 +23,7 @@ fs::path beside_this_program(const char* name) {
 }
 
 Child::Child(std::vector<std::string> words, std::span<const Given> given) {
-  constexpr int kAboveAll =
-      10;  // numbers of copies start here: given.there may be in use in this process
+  constexpr int kAboveAll = 10;  // copies get numbers from here on
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   std::deque<Descriptor> copies;

@@ -37,8 +37,7 @@ void restrict_files(const fs::path& place) {
       ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return;
   landlock_ruleset_attr rules{};
-  rules.handled_access_fs =
-      (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all rights of the first version
+  rules.handled_access_fs = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all of version 1
   if (version >= 2) rules.handled_access_fs |= LANDLOCK_ACCESS_FS_REFER;
   const int set = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0));
   if (set < 0) refuse();

@@ -1,4 +1,4 @@
-// The human force observer, (16)-(18).
+// The human force observer, (16)-(18), and the velocity estimate for it.
 #pragma once
 
 #include <array>

@@ -13,9 +13,8 @@ namespace limpid {
 // to 1.5 % up to the band's edge, found by optimisation; the proof needs r1.
 struct InertiaShape {
   static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
-  static constexpr double kZeta = 0.7;  // damping ratio of the added mass
-  static constexpr double kFastest =
-      2 * std::numbers::pi * 25;  // largest edge of the added mass [rad/s]
+  static constexpr double kZeta = 0.7;                           // damping ratio of the added mass
+  static constexpr double kFastest = 2 * std::numbers::pi * 25;  // its largest edge [rad/s]
   static constexpr double kSlowest = 2 * std::numbers::pi * 2;
 };
 

@@ -5,8 +5,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kEnough =
-    1e-9;  // tolerance of the last step, as a part of the motion and of 1 rad/s
+constexpr double kEnough = 1e-9;        // last step, relative to the motion and to 1 rad/s
 constexpr double kShortest = 1 / 64.0;  // smallest part of a step, tried last and then taken
 
 template <int N>

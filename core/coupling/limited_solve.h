@@ -51,7 +51,7 @@ struct LimitedSolve {
 
  private:
   Motion<N> residual(ContactSolve<N>& contacts, double T, const Motion<N>& m, Mat<N>* slope);
-  using Slopes = CoupledSystem<N, Factor>;  // Factor: with friction the proxy's block may be not
+  using Slopes = CoupledSystem<N, Factor>;  // Factor: with friction the proxy's block need not be
                                             // positive definite
   Slopes slopes(const Mat<N>& f2_on_u) const;
 

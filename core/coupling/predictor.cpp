@@ -6,9 +6,8 @@ namespace limpid {
 namespace {
 
 constexpr double kMostMemory = 0.85;
-constexpr double kQuiet = 1e-4;  // change of the tip's velocity allowed for a step [m/s]
-constexpr double kLightest =
-    0.02;  // lightest tip for which this counts in part; in full from twice on [kg]
+constexpr double kQuiet = 1e-4;     // change of the tip's velocity allowed for a step [m/s]
+constexpr double kLightest = 0.02;  // for tips from this on in part, from twice on in full [kg]
 
 // Largest eigenvalue of a symmetric positive matrix, or up to 15 % more: the eighth root of the sum
 // of the eigenvalues' eighth powers.

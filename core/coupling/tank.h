@@ -81,8 +81,7 @@ class TankLaw::Of {
   double sent1_ = 0, got2_ = 0;  // energy from device to proxy, in all so far [J]
   double sent2_ = 0, got1_ = 0;  // energy from proxy to device
   double reserve_ = 0;           // energy in both tanks and between them when the tick began [J]
-  double left_ =
-      std::numeric_limits<double>::infinity();  // reserve of an earlier part of the run [J]
+  double left_ = std::numeric_limits<double>::infinity();  // of an earlier part of the run [J]
   bool fresh_ = true;
   double elapsed_ = 0;  // since the previous reading; 0 at the first [s]
   double freely_ = 1;   // the proxy's damping over that with its tank's damper [-]

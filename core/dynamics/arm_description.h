@@ -52,9 +52,8 @@ struct Visual {
   Shape shape = Shape::mesh;
   std::string mesh = {};  // absolute path of a model; in glTF y is up, which is turned to z
   Vec3 size = Vec3::Ones();
-  std::optional<Eigen::Vector4f> color =
-      {};  // sRGB and opacity; of a mesh without colours of its own
-  std::shared_ptr<const Model> model = {};  // of the mesh, after it has been read
+  std::optional<Eigen::Vector4f> color = {};  // sRGB and opacity; of a mesh without its own
+  std::shared_ptr<const Model> model = {};    // of the mesh, after it has been read
 };
 
 // A named frame of the file: every URDF link, also those merged through fixed joints.

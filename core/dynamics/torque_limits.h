@@ -35,8 +35,7 @@ struct TorqueLimits {
   // Joint limits that keep the tip's limit for torques in about this direction: clipping to them
   // takes a torque in this direction to the same value as within() [N m].
   Vec<N> along(const Vec<N>& tau) const {
-    constexpr double kAside =
-        0.01;  // part of a joint's limit that stays where the torque has no component
+    constexpr double kAside = 0.01;  // of a joint's limit: left where the torque has no component
     if (!tip_cuts(tau)) return joints;
     return within(tau).cwiseAbs().cwiseMax(kAside * joints);
   }

@@ -74,8 +74,7 @@ Rest far_rest(double x) {
   const int e = static_cast<int>(bits >> 52 & 0x7ff) - 1075;
   const std::uint64_t m = (bits & 0xfffffffffffff) | 0x10000000000000;
 
-  const auto first =
-      static_cast<std::size_t>(64 + e - 2);  // digit; those before it give whole turns
+  const auto first = static_cast<std::size_t>(64 + e - 2);  // digit; before it: whole turns
   const auto digits = [&](std::size_t word) {
     const std::size_t at = first / 64 + word, shift = first % 64;
     return shift == 0 ? kTwoOverPi[at]

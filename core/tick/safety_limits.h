@@ -8,16 +8,14 @@ namespace limpid {
 struct SafetyLimits {
   static constexpr double kStaleReading = 0.005;  // [s]
   static constexpr double kFade = 1.5;            // multiple of a limit at which force is gone
-  static constexpr double kOverrun =
-      0.1;  // distance beyond a joint's range at which force is gone [rad]
+  static constexpr double kOverrun = 0.1;  // beyond a joint's range, where force is gone [rad]
   // Bounds of a believable reading. No hand moves a joint so fast: at the end of a lever of 0.1 m,
   // and of a slide, it is 10 m/s, a boxer's fist. No stop yields so far beyond the reported range.
   static constexpr double kFastest = 100;            // [rad/s]
   static constexpr double kOutside = 10 * kOverrun;  // [rad]
   static constexpr double kSlew = 0.02;              // from no torque to the limit [s]
-  static constexpr double kGap = 0.005;  // longest time between two ticks; more is a stall [s]
-  static constexpr double kSilence =
-      0.2;  // silence of the window from which force fades; at twice this it is gone [s]
+  static constexpr double kGap = 0.005;    // longest time between two ticks; more is a stall [s]
+  static constexpr double kSilence = 0.2;  // of the window; at twice this force is gone [s]
   // Stillness of readings under force from which it fades; at twice this it is gone [s].
   static constexpr double kStill = 0.3;
   // Least push, as a share of a joint's limit and of the largest force at the tip [-].

@@ -22,12 +22,11 @@ namespace limpid {
 // dx1 . dx1 a tick.
 template <int N>
 struct EnergyBooks {
-  double commanded = 0;  // [J]
-  double total = 0;      // [J]
-  double port = 0;       // of motors and own damping alone: given to the human [J]
-  double compensation =
-      0;               // part of `commanded` that the motors gave for the device's own forces [J]
-  double contact = 0;  // work of the contacts on the proxy [J]
+  double commanded = 0;     // [J]
+  double total = 0;         // [J]
+  double port = 0;          // of motors and own damping alone: given to the human [J]
+  double compensation = 0;  // of `commanded`: for the device's own forces [J]
+  double contact = 0;       // work of the contacts on the proxy [J]
 
   // tau1: motor torque held over the tick; dx: motion over it; b_d: the device's damping.
   void add(const Vec<N>& tau1, const Vec<N>& dx1, const Vec<N>& tau2, const Vec<N>& dx2,
@@ -57,8 +56,8 @@ struct Reading {
   double dt = 0;    // measured time since the previous reading [s]; 0: the nominal time
   // Torque applied since the last reading, if it is known to differ from the command [N m].
   std::optional<Vec<N>> acted{};
-  bool magnet = false;  // the tip may pick up magnetic objects
-  BodyPull pull{};      // pull on a body by something other than the tip
+  bool magnet = false;  // the tip is to hold a magnetic body near it
+  BodyPull pull{};      // pull on a body from outside
 };
 
 // Start of a loop.
@@ -68,8 +67,7 @@ struct Start {
   Vec<N> x2, v2;      // proxy
   Vec<N> f1_hat;      // estimate of the human torque [N m]
   bool armed = true;  // full force from the first tick on; not where motors are guarded
-  // Energy that laws which account for it may still give to the human; they start with at most
-  // their own reserve [J].
+  // Energy that the laws with an account may still give the human; they start with no more [J].
   double reserve = std::numeric_limits<double>::infinity();
   std::span<const double>
       world{};  // state of all bodies, see BodyWorld::write(); empty: as in the scene
@@ -156,13 +154,12 @@ class Tick {
   // State of the last tick, for the books and for the delayed terms of (1).
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;
-  bool fresh_law_ = false;  // the law took over at this tick
-  bool barred_ = false;     // no force may leave, even if armed
-  bool unbarred_ = false;   // force may leave again from the coming tick on
-  bool restarted_ = false;  // a recording begins with this tick
-  std::uint64_t k_ = 0;     // ticks run
-  std::uint64_t period_ =
-      0;  // number of the present period; differs from k_ if ticks were given up
+  bool fresh_law_ = false;    // the law took over at this tick
+  bool barred_ = false;       // no force may leave, even if armed
+  bool unbarred_ = false;     // force may leave again from the coming tick on
+  bool restarted_ = false;    // a recording begins with this tick
+  std::uint64_t k_ = 0;       // ticks run
+  std::uint64_t period_ = 0;  // number of the present tick, with those given up
   bool diverged_ = false;
 };
 

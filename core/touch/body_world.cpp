@@ -10,10 +10,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kEnough =
-    1e-8;  // largest change of a force that counts as settled: of bodies that the arm touches [N]
-constexpr double kEnoughElse = 1e-5;  // of all others [N]
-constexpr int kMostSweeps = 30;       // most sweeps over bodies that the arm touches
+// Change of a force that counts as settled, for bodies that the arm touches, and for others [N].
+constexpr double kEnough = 1e-8;
+constexpr double kEnoughElse = 1e-5;
+constexpr int kMostSweeps = 30;  // most sweeps over bodies that the arm touches
 constexpr int kFewSweeps = 10, kManySweeps = 60;
 constexpr std::size_t kMostRowsSwept = 2000;  // rows in a tick's sweeps beyond kFewSweeps: 0.2 ms
 constexpr double kFade = 0.05;  // time in which a depth present at the start fades [s]

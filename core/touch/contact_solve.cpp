@@ -10,9 +10,8 @@ namespace limpid {
 
 namespace {
 
-constexpr int kMostSteps = 10;  // steps of Newton's method; two or three are usual
-constexpr int kFinest =
-    1 << 10;  // parts of a segment, for finding where planes begin or end to hold
+constexpr int kMostSteps = 10;    // steps of Newton's method; two or three are usual
+constexpr int kFinest = 1 << 10;  // parts of a segment: finest search for changes of planes
 
 // State of the room at a point of the segment.
 struct Held {
@@ -99,15 +98,13 @@ Mean mean_of(const MeshTouch& touch, const Vec3& center, const Vec3& D) {
   return {touch.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
 }
 
-constexpr double kNear =
-    2e-3;  // distance beyond which a contact that does not approach is left out [m]
+constexpr double kNear = 2e-3;  // left out beyond this, unless it approaches [m]
 // Least lever of a contact: below it no joint can serve the contact, and its force, which moves
 // nothing, is left out with its friction [m].
 constexpr double kLeastLever = 1e-9;
-constexpr double kSettled = 1e-8;  // largest change of a settled force, relative to it or to 1 N
-constexpr double kFelt = 1e-7;     // least change of a force that shows a body's response [N]
-constexpr int kSweepsOfBodies =
-    5;  // sweeps over the other bodies for each one over those that the arm touches
+constexpr double kSettled = 1e-8;   // largest change of a settled force, relative to it or to 1 N
+constexpr double kFelt = 1e-7;      // least change of a force that shows a body's response [N]
+constexpr int kSweepsOfBodies = 5;  // over the others, for each one over touched bodies
 
 // Frame of a unit vector and two unit vectors across it.
 Mat3 frame_of(const Vec3& normal) {
@@ -437,8 +434,7 @@ void ContactSolve<N>::prepare(const ContactAnswer<N>& answer, double T) {
   }
 }
 
-// Response of a point whose change along d made it yield by `given`: `given` along d, W as before
-// across it.
+// Response of a point to a force: `given`, as measured, along d, and W as before across it.
 Mat3 answer_along(const Mat3& W, const Vec3& d, double given) {
   const Mat3 across = Mat3::Identity() - d * d.transpose();
   return std::clamp(given, 0.0, d.dot(W * d)) * d * d.transpose() + across * W * across;

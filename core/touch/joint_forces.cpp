@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kZeta = 0.7;      // damping ratio without restitution
 constexpr int kMostSteps = 30;     // steps of Newton's method; three to six are usual
-constexpr double kEnough = 1e-13;  // tolerance, relative to the radius
+constexpr double kEnough = 1e-13;  // relative to the radius
 
 }  // namespace
 

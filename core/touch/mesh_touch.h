@@ -64,8 +64,8 @@ class FreeSpace {
 // and slipping only takes energy away.
 class MeshTouch {
  public:
-  MeshTouch(const Object& mesh,
-            double radius);  // mesh: has a Mesh as shape; radius: of the ball [m]
+  // mesh: an object with a Mesh as its shape; radius: of the ball [m].
+  MeshTouch(const Object& mesh, double radius);
 
   // Begins anew at c [m]. A centre inside a closed mesh is put outside, at the nearest place; one
   // behind a sheet stays there.

@@ -112,8 +112,7 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
 template <int N>
 void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
   constexpr double kMostDamping = 0.34;  // in m_n/T [-]
-  constexpr double kMostChange =
-      1e-3;  // of a force in the last sweep, see ContactSolve::last_change() [-]
+  constexpr double kMostChange = 1e-3;   // of a force, see ContactSolve::last_change() [-]
   const Eigen::Index n = x_.size();
   const Mat<N> none = Mat<N>::Zero(n, n), one = Mat<N>::Identity(n, n);
   Mat<N> share = drive.share.direct * one;

@@ -106,8 +106,7 @@ EdgeCount count_edges(std::span<const std::uint32_t> corners, std::size_t names)
     ++end[std::min(corners[i], corners[to_corner(i)]) + std::size_t{1}];
   }
   std::partial_sum(end.begin(), end.end(), end.begin());
-  std::vector<std::uint64_t> edges(
-      corners.size());  // the higher end; the last bit is the direction
+  std::vector<std::uint64_t> edges(corners.size());  // higher end; last bit: the direction
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::uint64_t from = corners[i], to = corners[to_corner(i)];
     edges[end[std::min(from, to)]++] = std::max(from, to) << 1 | (from < to ? 1 : 0);
