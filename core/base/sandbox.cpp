@@ -187,8 +187,7 @@ void restrict_calls() {
 #ifdef __x86_64__
   filter.allow_without(SYS_open, 1, kWrites);
 #endif
-  // The other uses of fcntl, such as F_SETOWN, F_SETSIG, F_NOTIFY and O_ASYNC by F_SETFL, send
-  // signals.
+  // Other uses of fcntl send signals: F_SETOWN, F_SETSIG, F_NOTIFY, O_ASYNC by F_SETFL.
   filter.allow_with(SYS_fcntl, 1, {F_GETFD, F_SETFD, F_GETFL, F_DUPFD_CLOEXEC});
   filter.allow_with(SYS_madvise, 2, {MADV_DONTNEED, MADV_FREE});               // free()
   filter.allow_with(SYS_tgkill, 0, {static_cast<std::uint32_t>(::getpid())});  // abort()

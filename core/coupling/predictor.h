@@ -182,7 +182,7 @@ class Predictor {
   };
   static constexpr double kJudged = 0.05;  // time constant of judging predictions [s]
 
-  static constexpr double kMidpoint = 2;  // ratio of end to mean of a tick by the midpoint rule
+  static constexpr double kMidpoint = 2;  // exact_decay() of the midpoint rule
 
   const Track& active() const { return tracks_[active_]; }
   Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {

@@ -32,10 +32,10 @@ class DeviceTank {
   void sent(const Vec<N>& torque);
   double energy() const { return in_ - out_; }  // [J]
 
-  // Largest share of a torque that the tank can pay for in the coming tick of length T [s]. The
-  // device may go on as fast, or gain as much speed again; only its inertia M holds it. Torques on
-  // their way to the motors are paid for first. None counts as taking energy in: a device that
-  // trembles is on its way back by then.
+  // Largest share of a torque that the tank can pay for in the coming tick of length T [s]. It
+  // covers a device that goes on as fast, that gains as much speed again, or that nothing holds but
+  // its inertia M. Torques on their way to the motors are paid for first. None counts as taking
+  // energy in: a device that trembles is on its way back by then.
   double share(const Vec<N>& torque, const Mat<N>& M, double T) const;
 
  private:

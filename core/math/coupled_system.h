@@ -19,7 +19,7 @@ struct Motion {
 };
 
 // Solves [ww wu; uw uu] (w, u) = (b_w, b_u) by the complement of the first block. Rest: that
-// complement's factor; SteadyFactor, or Factor if its symmetric part may not be positive definite.
+// complement's factor; Factor where its symmetric part need not be positive definite.
 template <int N, template <int> class Rest = SteadyFactor>
 class CoupledSystem {
  public:

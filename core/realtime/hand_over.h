@@ -32,12 +32,13 @@ class HandOver {
     delete wanted_.exchange(nullptr, std::memory_order_acquire);
   }
 
-  // For the loop. Null: nothing new.
+  // Takes the newest object, for the loop. Null: nothing new.
   T* take() noexcept {
     if (done_.load(std::memory_order_acquire) != nullptr) return nullptr;
     return wanted_.exchange(nullptr, std::memory_order_acq_rel);
   }
-  // For the loop, at most once after each take(): the object no longer needed, or null.
+  // Gives the object that is no longer needed, or null; for the loop, at most once after each
+  // take().
   void give_back(T* thing) noexcept { done_.store(thing, std::memory_order_release); }
 
  private:

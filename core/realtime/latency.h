@@ -19,7 +19,8 @@ class LatencyHistogram {
   static constexpr double kMinimum = 1e-6;  // [s]
   static constexpr double kMaximum = 0.1;   // [s]
 
-  // For one thread. seconds: any; values that are not positive count as shorter than 1 us.
+  // Adds a time, from one thread. seconds: any; values that are not positive count as shorter than
+  // 1 us.
   void add(double seconds) noexcept {
     bins_[bin(seconds)].fetch_add(1, std::memory_order_relaxed);
     double max = max_.load(std::memory_order_relaxed);

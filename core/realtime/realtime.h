@@ -9,10 +9,10 @@
 
 namespace limpid {
 
-// Locks the process's memory: from now on no page is taken away once it has been touched. Loads
-// what ticks run at once: the program, the C and C++ libraries, those of devices. Other libraries,
-// such as those that draw, are many times as large and are loaded page by page when used. May be
-// called again. False where the system forbids it; then nothing is locked.
+// Locks the process's memory: from now on no page is taken away once it has been touched. Loads at
+// once the code that ticks run: the program, the C and C++ libraries, those of devices. Other
+// libraries, such as those that draw, are many times as large and are loaded page by page when
+// used. May be called again. False where the system forbids it; then nothing is locked.
 bool lock_memory();
 
 // Makes malloc return large blocks to the system as soon as they are freed. By default it learns to

@@ -54,7 +54,7 @@ class TripleBuffer {
   static constexpr std::uint8_t kIndex = 0b011;
   static constexpr std::uint8_t kFresh = 0b100;
 
-  // On cache lines of their own: the two threads do not slow each other down.
+  // Each slot has cache lines of its own: the two threads do not slow each other down.
   struct alignas(64) Slot {
     T value;
   };

@@ -215,7 +215,7 @@ double BodyMotion::weight_energy() const {
 }
 
 void BodyMotion::write(std::span<double, kNumbers> into) const {
-  const Mat3 R = pose_.linear();  // contiguous, which they are not in a pose
+  const Mat3 R = pose_.linear();  // contiguous numbers, unlike those in a pose
   auto* to = into.data();
   to = std::copy_n(p_.data(), 3, to);
   to = std::copy_n(R.data(), 9, to);

@@ -98,13 +98,13 @@ Mean mean_of(const MeshTouch& touch, const Vec3& center, const Vec3& D) {
   return {touch.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
 }
 
-constexpr double kNear = 2e-3;  // left out beyond this, unless it approaches [m]
+constexpr double kNear = 2e-3;  // contacts further off are left out, unless they approach [m]
 // Least lever of a contact: below it no joint can serve the contact, and its force, which moves
 // nothing, is left out with its friction [m].
 constexpr double kLeastLever = 1e-9;
 constexpr double kSettled = 1e-8;   // largest change of a settled force, relative to it or to 1 N
 constexpr double kFelt = 1e-7;      // least change of a force that shows a body's response [N]
-constexpr int kSweepsOfBodies = 5;  // over the others, for each one over touched bodies
+constexpr int kSweepsOfBodies = 5;  // sweeps over other bodies for each one over touched ones
 
 // Frame of a unit vector and two unit vectors across it.
 Mat3 frame_of(const Vec3& normal) {

@@ -16,8 +16,8 @@ namespace limpid {
 namespace {
 
 // Distance within which vertices are one, as a part of the mesh's diagonal. Floats round by about
-// this at its far end. So do the two sides of a seam that was computed all the way round (sin 2 pi
-// is not zero). A larger distance is a gap.
+// this at its far end. The two sides of a seam that was computed all the way round are off by as
+// much (sin 2 pi is not zero). A larger distance is a gap.
 constexpr double kSamePlace = 1e-7;
 
 // Gives vertices within a distance of each other one name: the number of the first one queried.
