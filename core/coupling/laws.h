@@ -130,9 +130,9 @@ struct LinkSettings {
   }
 };
 
-// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2. If the torque
-// answers its reading a delay t_d late, and device and proxy know each other's state up to t_l
-// late, with jitter of j ticks in it,
+// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2. With a torque
+// that answers its reading t_d late, and knowledge of the other side up to t_l old, j ticks of it
+// jitter,
 //     b_d >= (2 + j/2) b_vc + k_vc (T + 3/2 t_d + t_l),
 //     b_v >= j/2 b_vc + k_vc ((T + t_d) / 2 + t_l).
 //

@@ -1,9 +1,8 @@
 // Kinematics and dynamics of a chain of n revolute and prismatic joints.
 //
 // Everything is expressed in the base frame about its origin O. A joint's motion is the spatial
-// axis S_j = (a_j, o_j): turning at rate 1 gives the body angular velocity a_j and gives the point
-// of the body that is at O the velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its
-// axis.
+// axis S_j = (a_j, o_j): a rate of 1 gives the body the angular velocity a_j and its point at O the
+// velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its axis.
 //
 // M and C are sums over the links of J_k^T I_k J_k and J_k^T (I_k Jdot_k + B_k J_k), with
 //     B = 1/2 [ (v x*) I + (I v) xbar* - I (v x) ],

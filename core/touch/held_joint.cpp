@@ -30,8 +30,8 @@ Mat3 symmetric(const Mat3& A) { return 0.5 * (A + A.transpose()); }
 
 }  // namespace
 
-// The response is W - G^T M^-1 G. Without the springs, M is the response of the springs to each
-// other, G that to the force, and W of the joint to the force.
+// The response is W - G^T M^-1 G. M, without the springs' forces, is the response of the springs to
+// each other, G theirs to the force, W the joint's to it.
 Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
                   std::span<const JointHold> holds) {
   const auto n = static_cast<int>(holds.size());
