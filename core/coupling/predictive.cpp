@@ -251,8 +251,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // response to a force at the tip
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
-  // The velocity predicted for a late torque is no newer knowledge: the network damps by the
-  // present one.
+  // The velocity predicted for a late torque is no newer knowledge: the present one damps.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = ledger_.torque();
