@@ -23,7 +23,7 @@ fs::path beside_this_program(const char* name) {
 }
 
 Child::Child(std::vector<std::string> words, std::span<const Given> given) {
-  constexpr int kAboveAll = 10;  // copies first: the numbers there may be others' here
+  constexpr int kAboveAll = 10;  // copies get numbers from here on
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   std::deque<Descriptor> copies;

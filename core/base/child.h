@@ -1,4 +1,4 @@
-// Programs that read what strangers made, apart from the one that is at a device.
+// Child processes, which read strangers' files apart from the process that drives a device.
 #pragma once
 
 #include <sys/types.h>
@@ -10,18 +10,18 @@
 
 namespace limpid {
 
-// Where a program of this name lies: beside the one that runs.
+// Path of the program `name` in the folder of the running one.
 std::filesystem::path beside_this_program(const char* name);
 
-// A descriptor of this process, and the number that it has in the other.
+// A descriptor of this process, and its number in the child.
 struct Given {
   int here, there;
 };
 
-// A program at work. It ends at the latest with this object.
+// A running program. It ends at the latest with this object.
 class Child {
  public:
-  // `words`: the program's path, then what it is told. Besides stdin, stdout and stderr it has
+  // `words`: the program's path, then its arguments. Besides stdin, stdout and stderr the child has
   // the descriptors of `given`.
   Child(std::vector<std::string> words, std::span<const Given> given);
   ~Child();
@@ -29,16 +29,16 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   bool started() const { return id_ > 0; }
-  // Until it has ended: its status, as waitpid() has it; 0 if all was well.
+  // Waits for the program's end and returns its status as waitpid() has it; 0: all was well.
   int wait();
-  // At once. The status of one that was ending by itself is its own.
+  // Kills the program and returns its status; one that was ending by itself keeps its own.
   int end();
 
  private:
   pid_t id_ = -1;
 };
 
-// Why a program failed, as its status says; empty if it did not.
+// Says why a program failed, by its status; empty if it did not.
 std::string why_failed(int status, const std::string& program);
 
 }  // namespace limpid

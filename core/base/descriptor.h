@@ -8,7 +8,7 @@
 
 namespace limpid {
 
-// Closed with its owner.
+// A file descriptor, closed with its owner.
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_(number) {}
@@ -25,7 +25,7 @@ class Descriptor {
   int number_;
 };
 
-// All of them, in as many writes as it takes; whether that went well.
+// Writes all bytes, in as many calls as it takes. Returns false if one fails.
 inline bool write_all(int file, std::span<const unsigned char> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file, bytes.data(), bytes.size());

@@ -16,7 +16,7 @@ namespace limpid {
 
 namespace {
 
-// Every large block of this process.
+// All large blocks of this process.
 struct Blocks {
   std::mutex mutex;
   std::map<void*, std::size_t> on_disk;  // bytes of each
@@ -39,7 +39,7 @@ std::size_t physical_memory() {
          static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// A file without a name; -1: the folder has none, or does not let this user write.
+// Opens a file without a name; -1: the folder has none, or does not let this user write.
 int nameless_file() {
   const std::string in = folder();
   const int file = ::open(in.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
@@ -50,7 +50,8 @@ int nameless_file() {
   return named;
 }
 
-// Its room on the disk is taken at once: a full disk would end the program at a later write.
+// Maps a nameless file. All its room on the disk is taken now: a full disk would end the program at
+// a later write.
 void* map_file(std::size_t bytes) {
   const Descriptor file(nameless_file());
   if (*file < 0 || ::fallocate(*file, 0, 0, static_cast<off_t>(bytes)) != 0) return nullptr;

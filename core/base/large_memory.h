@@ -1,4 +1,4 @@
-// Memory for whole recordings, which need not fit into the computer's.
+// Memory for whole recordings, which may be larger than the computer's.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace limpid {
 
-// Neither memory nor disk has room. what() says how much was wanted, and where.
+// Error: neither memory nor disk has room. what() says how much was wanted, and where.
 class NoRoom : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,18 +21,18 @@ inline constexpr std::size_t kLargeBlock = std::size_t{1} << 20;
 inline constexpr std::size_t kPlainBudget = std::size_t{512} << 20;
 
 // Takes a block of at least kLargeBlock bytes, aligned to a page. Beyond kPlainBudget the block is
-// a file without a name, mapped, in $TMPDIR or else in /var/tmp: the kernel writes its pages there
-// and forgets them when memory is short. Where the disk has no room, the block is plain memory if
-// it is at most a quarter of the computer's. Errors: NoRoom. Not for the haptic thread.
+// a mapped file without a name, in $TMPDIR or else in /var/tmp: the kernel writes its pages there
+// and drops them when memory is short. If the disk has no room, the block is plain memory, up to a
+// quarter of the computer's. Errors: NoRoom. Not for the haptic thread.
 void* take_large_block(std::size_t bytes);
 void give_back_large_block(void* block, std::size_t bytes) noexcept;
 // Bytes of the large blocks that are files now.
 std::size_t large_bytes_on_disk();
-// Lets the kernel forget what a file keeps as well: a later look reads it again. Plain blocks stay.
-// Who fills or reads blocks from end to end calls it every kForgetAfter bytes.
+// Lets the kernel drop pages whose content the file has; a later access reads them again. Plain
+// blocks stay. Code that fills or reads blocks from end to end calls it every kForgetAfter bytes.
 void forget_large_blocks();
 inline constexpr std::size_t kForgetAfter = std::size_t{64} << 20;
-// Takes back what mlockall() did to blocks that are files.
+// Undoes mlockall() for blocks that are files.
 void unlock_large_blocks();
 
 template <class T>

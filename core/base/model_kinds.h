@@ -1,5 +1,5 @@
-// The kinds of model files that are read, and what is usual in each. Another kind is a line here,
-// and what reads it in render/model, unless assimp reads it as it is.
+// The kinds of model files that can be read, and what is usual in each. A further kind is a line
+// here and a reader in render/model, unless assimp reads it as it is.
 #pragma once
 
 #include <algorithm>
@@ -12,21 +12,21 @@
 
 namespace limpid {
 
-// What else a model may consist of.
+// Further files that a model may consist of.
 enum class ModelFiles : std::uint8_t {
-  one,    // nothing
-  named,  // files that it names as OBJ does: they are few, and can be copied with it
-  many,   // files in folders of their own, as a rule: it stays where it is
+  one,    // none
+  named,  // those that it names as OBJ does: few, and copied with it
+  many,   // those in folders of their own, as a rule: the model stays where it is
 };
 
 struct ModelKind {
   std::string_view suffix;  // in small letters
-  bool gltf;                // else limpid-model reads it
+  bool gltf;                // else limpid-model reads the file
   ModelFiles files;
-  double unit;     // of its coordinates, where neither it nor a scene says so [m]
+  double unit;     // of coordinates, unless the file or a scene names another [m]
   bool y_up;       // likewise; else z is up
-  bool materials;  // it has some; else what assimp calls one is its own invention
-  bool normals;    // its normals say how a surface is meant to look, not how a facet lies
+  bool materials;  // the kind has materials; else assimp's are its own invention
+  bool normals;    // normals give the shape meant, not a facet's plane
 };
 
 // Programs that write STL think in millimetres.
@@ -46,14 +46,14 @@ inline std::string small_suffix(const std::filesystem::path& file) {
   return suffix;
 }
 
-// Null for a file of another kind.
+// Returns the kind of `file` by its suffix; null: unknown.
 inline const ModelKind* model_kind(const std::filesystem::path& file) {
   const std::string suffix = small_suffix(file);
   const auto* const found = std::ranges::find(kModelKinds, suffix, &ModelKind::suffix);
   return found == kModelKinds.end() ? nullptr : found;
 }
 
-// For people: ".glb, .gltf, ...".
+// All suffixes as a text for people: ".glb, .gltf, ...".
 inline std::string model_suffixes() {
   std::string all;
   for (const ModelKind& each : kModelKinds) {

@@ -1,5 +1,5 @@
-// Landlock: man landlock(7). The filter of system calls: man seccomp(2), bpf's classic
-// instructions.
+// The sandbox by Landlock, see landlock(7), and a filter of system calls in classic BPF, see
+// seccomp(2).
 #include "core/base/sandbox.h"
 
 #include <fcntl.h>
@@ -24,19 +24,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFirstToClose = 4;  // what comes in, what goes out, stderr and one more stay
+constexpr int kFirstToClose = 4;  // stdin, stdout, stderr and one more stay
 
 [[noreturn]] void refuse() {
   throw std::runtime_error("cannot be read: the kernel refuses the reader's sandbox");
 }
 
-// Without effect where the kernel has no Landlock: the filter still lets nothing be written.
+// Restricts files by Landlock. Has no effect where the kernel has none; the filter of calls still
+// forbids all writing.
 void restrict_files(const fs::path& place) {
   const long version =
       ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return;
   landlock_ruleset_attr rules{};
-  rules.handled_access_fs = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all of the first version
+  rules.handled_access_fs = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all of version 1
   if (version >= 2) rules.handled_access_fs |= LANDLOCK_ACCESS_FS_REFER;
   const int set = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0));
   if (set < 0) refuse();
@@ -63,9 +64,9 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #endif
 
-// Calls for reading a file, for memory, and for an orderly end. None of these has another use:
-// calls that have are allowed by their arguments, below. Writing goes to descriptors that are open
-// for it.
+// Calls for reading a file, for memory, and for an orderly end. None of these has another use;
+// calls that have one are allowed by their arguments, below. Writing needs a descriptor that is
+// open for it.
 constexpr int kAllowed[] = {
     SYS_read,
     SYS_pread64,
@@ -110,8 +111,8 @@ constexpr int kAllowed[] = {
 #endif
 };
 
-// Offset of an argument's lower half; no flag and no process has more. Both kinds of processor have
-// it first.
+// Offset of an argument's lower half, which both kinds of processor have first; no flag and no
+// process id needs more.
 constexpr std::uint32_t argument(unsigned i) {
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args) + i * sizeof(std::uint64_t));
 }
@@ -168,7 +169,7 @@ class Filter {
   }
   void load(std::size_t at) { add(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(at)); }
   void answer(std::uint32_t what) { add(BPF_RET | BPF_K, what); }
-  // The number of the call is loaded; what follows for it takes so many instructions.
+  // Skips the next `length` instructions unless the loaded number is that of `call`.
   void when(int call, std::uint8_t length) {
     add(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, length);
   }
@@ -186,11 +187,11 @@ void restrict_calls() {
 #ifdef __x86_64__
   filter.allow_without(SYS_open, 1, kWrites);
 #endif
-  // Others of its many uses send signals: F_SETOWN, F_SETSIG, F_NOTIFY, O_ASYNC by F_SETFL.
+  // Other uses of fcntl send signals: F_SETOWN, F_SETSIG, F_NOTIFY, O_ASYNC by F_SETFL.
   filter.allow_with(SYS_fcntl, 1, {F_GETFD, F_SETFD, F_GETFL, F_DUPFD_CLOEXEC});
   filter.allow_with(SYS_madvise, 2, {MADV_DONTNEED, MADV_FREE});               // free()
   filter.allow_with(SYS_tgkill, 0, {static_cast<std::uint32_t>(::getpid())});  // abort()
-  filter.allow_asking(SYS_prlimit64, 2);  // its own limits, which it cannot change
+  filter.allow_asking(SYS_prlimit64, 2);  // the process's own limits, which it cannot change
   if (!filter.install()) refuse();
 }
 

@@ -1,5 +1,5 @@
-// A process that reads what strangers made takes away from itself, for ever, what reading does not
-// need.
+// The sandbox of processes that read strangers' files: it takes away for ever all rights that
+// reading does not need.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +13,10 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-// From here on this process opens files for reading only, and where the kernel has Landlock only
-// `place`, a file or a folder with all below (none, if it is empty); it starts no program and no
-// thread, sends nothing anywhere, and changes nothing but what its descriptors 0 to 3 let it write.
-// All other descriptors are closed. A sanitized program stays as it is. Throws
-// std::runtime_error if the kernel does not let it.
+// Restricts this process from now on. It opens files for reading only; where the kernel has
+// Landlock, only `place` and all below it (nothing, if empty). It starts no program and no thread,
+// sends nothing anywhere, and writes only to its descriptors 0 to 3; all others are closed. A
+// sanitized program stays unrestricted. Errors: std::runtime_error if the kernel refuses.
 void enter_sandbox(const std::filesystem::path& place);
 
 }  // namespace limpid

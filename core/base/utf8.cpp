@@ -27,7 +27,7 @@ void append(std::string& text, char32_t c) {
   }
 }
 
-// How many bytes a character has that begins with these; 0: they are no UTF-8.
+// Bytes of the character that begins here; 0: this is not UTF-8.
 std::size_t length_at(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -41,7 +41,7 @@ std::size_t length_at(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xC0) != 0x80) return 0;
   }
-  // Too long for what they say, halves of pairs, beyond the last character.
+  // Overlong forms, halves of surrogate pairs, code points beyond the last one.
   const bool wrong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) > 0x9F) ||
                      (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) > 0x8F);
   return wrong ? 0 : length;
@@ -77,7 +77,7 @@ std::string from_utf16(std::string_view bytes, bool big) {
   return text;
 }
 
-// Its declaration is about how it was.
+// Makes an XML declaration, which still names the former encoding, say UTF-8.
 void declare_utf8(std::string& text) {
   if (!text.starts_with("<?xml")) return;
   const std::size_t end = std::min(text.find("?>"), text.size());

@@ -1,4 +1,4 @@
-// Texts of files that do not say, or say wrongly, how they are encoded.
+// Decoding of texts whose files do not say, or say wrongly, how they are encoded.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace limpid {
 
-// The same text as UTF-8, without a byte order mark. A byte order mark says that a text is UTF-16,
-// as do zeros around a leading '<'; what is no UTF-8 either is taken for Latin-1. What is no
-// character becomes U+FFFD, and the declaration of an XML text says UTF-8 where it was another one.
+// Returns the text as UTF-8, without a byte order mark. A byte order mark, or zeros around a
+// leading '<', mean UTF-16; other text that is not UTF-8 counts as Latin-1. Invalid characters
+// become U+FFFD. The declaration of an XML text then says UTF-8.
 std::string utf8_of(std::string_view bytes);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// Device and proxy tied together by one law at a time.
+// Coupling of device and proxy by one law at a time.
 #pragma once
 
 #include <cmath>
@@ -23,25 +23,25 @@ struct Instances<std::tuple<Law...>> {
 
 }  // namespace detail
 
-// All laws, of which one at a time ties device and proxy together.
+// All laws; one at a time ties device and proxy together.
 template <int N>
 class Coupling {
  public:
   void start(const LawStart<N>& at) {
     if (at.reserve) reserve_ = *at.reserve;
-    // A law that accounts for energy hands on to the next one what it has left.
+    // A law that accounts for energy leaves the rest of its reserve to the next one.
     LawStart<N> all = at;
     all.reserve = reserve_;
     std::apply([&](auto&... law) { (law.start(all), ...); }, laws_);
   }
-  // First in a tick: where the law takes the device to be.
+  // First in a tick: locates the device as the law models it.
   template <class P>
   DeviceEstimate<N> locate(CouplingKind kind, const P& p, const LawReading<N>& in) {
     DeviceEstimate<N> at;
     with(laws_, kind, [&](auto& law) { at = law.locate(p, in); });
     return at;
   }
-  // Then: steps the proxy over the tick; returns the torque that the motors are asked for [N m].
+  // Second: steps the proxy over the tick; returns the torque asked of the motors [N m].
   template <class P>
   Vec<N> step(CouplingKind kind, const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
     Vec<N> torque;
@@ -52,12 +52,12 @@ class Coupling {
     });
     return torque;
   }
-  // Last: what left of it [N m].
+  // Last: tells the law the torque that left [N m].
   void applied(CouplingKind kind, const Vec<N>& torque) {
     with(laws_, kind, [&](auto& law) { law.applied(torque); });
   }
-  // What the last law that accounts for it may still give the human, whichever law is in force;
-  // infinite before there was one [J].
+  // Energy that the last law which accounts for it may still give the human, whichever law is in
+  // force; infinite before there was one [J].
   double reserve() const { return reserve_; }
   LawReport report(CouplingKind kind) const {
     LawReport report;

@@ -14,11 +14,11 @@ struct Dynamics {
   Vec<N> v;  // [rad/s]
 };
 
-// In closed form, with Mdot = C + C^T:
+// The decomposition in closed form, with Mdot = C + C^T:
 //     phi    = M_L^-1 M2,  M_L = M1 + M2
 //     phidot = M_L^-1 (M2dot - M_Ldot phi)
 //     C_LE   = M_L phidot + C1 phi + C2 (phi - I) = C2^T - (C1 + C2)^T phi = -C_EL^T
-// The matrices, for laws that solve with them, transposed.
+// Laws that solve with these matrices get them transposed.
 template <int N>
 class Locked {
  public:
@@ -40,10 +40,10 @@ class Locked {
 
   Mat<N> M_L;  // locked inertia [kg m^2]
   SymmetricFactor<N> M_L_factor;
-  Mat<N> C_L, M2, C2;  // C1 + C2; of the proxy
+  Mat<N> C_L, M2, C2;  // C_L = C1 + C2; M2, C2 of the proxy
 };
 
-// And as products with vectors, which cost n^2.
+// The decomposition as products with vectors, which cost n^2.
 template <int N>
 class Decomposition : public Locked<N> {
  public:

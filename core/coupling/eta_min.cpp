@@ -22,8 +22,8 @@ double eta_min_band(const LockedMode& mode, double w_b) {
 }
 
 double eta_min_grip(const LockedMode& mode, double k_h, double b_h) {
-  // m s^3 + A s^2 + (B + b_h w_f/eta) s + k_h w_f/eta: stable if A (B + b_h w_f/eta) > m k_h
-  // w_f/eta
+  // m s^3 + A s^2 + (B + b_h w_f/eta) s + k_h w_f/eta is stable if
+  // A (B + b_h w_f/eta) > m k_h w_f/eta.
   const double w_f = mode.w_f();
   const double A = mode.m * w_f + mode.b + b_h;
   const double B = mode.b * w_f + k_h;
@@ -63,7 +63,7 @@ double eta_min_grip(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b, double
                     const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h) {
   const auto stable = [&](double eta) {
     const Eigen::VectorXcd poles = grip_poles(M_L, b, alpha, eta, K_h, B_h);
-    // Directions the grip does not hold have a pole at zero, to round-off.
+    // Directions that the grip does not hold have a pole at zero, to round-off.
     return poles.real().maxCoeff() < 1e-9 * poles.cwiseAbs().maxCoeff();
   };
   double low = 1e-6, high = 1;  // eta = 1 has no feedforward of the hand: stable

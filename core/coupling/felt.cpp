@@ -22,7 +22,7 @@ std::complex<double> FeltJoint::proposed(double f, double eta, double w_f) const
 std::complex<double> FeltJoint::standard(double f) const {
   const std::complex<double> s(0, omega(f));
   const std::complex<double> coupling = k_vc / s + b_vc, proxy = b_v + k_vc * T / 2 + K / s;
-  // A proxy that moves as the device did a trip ago is one more damper, k_vc trip.
+  // A proxy that moves as the device did a trip ago adds a damper, k_vc trip.
   const std::complex<double> late = coupling * (1.0 - std::exp(-s * trip));
   return m * s + b_d + coupling * (proxy + late) / (coupling + proxy);
 }

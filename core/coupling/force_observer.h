@@ -1,4 +1,4 @@
-// The human force observer, (16)-(18).
+// The human force observer, (16)-(18), and the velocity estimate for it.
 #pragma once
 
 #include <array>
@@ -11,17 +11,15 @@
 
 namespace limpid {
 
-// Velocity from sampled positions: raw, low-pass, or adaptive window.
-
-// The adaptive window is the end-fit one of Janabi-Sharifi, Hayward and Chen (2000): the longest
-// window whose chord passes within one encoder step of every sample in it. Without quantisation
-// it is the raw difference.
+// Velocity from sampled positions: raw, low-pass, or adaptive window. The adaptive window is the
+// end-fit one of Janabi-Sharifi, Hayward and Chen (2000): the longest window whose chord passes
+// within one encoder step of every sample in it. Without quantisation it is the raw difference.
 template <int N>
 class VelocityEstimator {
  public:
   explicit VelocityEstimator(Eigen::Index n) { reset(Vec<N>::Zero(n)); }
 
-  // Starts at rest at x.
+  // Begins at rest at x.
   void reset(const Vec<N>& x) {
     past_.fill(x);
     newest_ = 0;
@@ -37,7 +35,7 @@ class VelocityEstimator {
     switch (source) {
       case VelocitySource::raw: estimate_ = raw_; break;
       case VelocitySource::lowpass: {
-        // First order, implicit: stable at every tick.
+        // A first-order filter, implicit: stable at every tick.
         const double gain = T * kCutoff / (1 + T * kCutoff);
         estimate_ += gain * (raw_ - estimate_);
         break;
@@ -61,7 +59,7 @@ class VelocityEstimator {
 
   double end_fit(Eigen::Index joint, double T, double step) const {
     const double x = ago(0)[joint];
-    double slope = (x - ago(1)[joint]);  // per tick
+    double slope = (x - ago(1)[joint]);  // [rad] a tick
     for (std::size_t length = 2; length < known_; ++length) {
       const double chord = (x - ago(length)[joint]) / static_cast<double>(length);
       for (std::size_t i = 1; i < length; ++i) {
@@ -79,7 +77,8 @@ class VelocityEstimator {
   Vec<N> raw_, estimate_;
 };
 
-// With f1_hat = z + alpha v, (17) says f1_hat' = L (f1 - f1_hat), L = alpha M^-1: the disturbance
+// Observer of the human force. With f1_hat = z + alpha v, (17) says f1_hat' = L (f1 - f1_hat), L =
+// alpha M^-1: the disturbance
 //     d = M vdot + C v - tau
 // seen through a first-order filter. Over one tick this is
 //     f1_hat_k = E f1_hat_k-1 + (1 - E) d_k,   A = T alpha M^-1,
@@ -87,21 +86,21 @@ class VelocityEstimator {
 // second-order accurate, and with -0.21 < E < 1 stable for every alpha and T; one factorisation is
 // enough for both powers.
 //
-// The velocity difference of two sampled velocities averages the accelerations of the last two
-// ticks, so the torque beside it is the mean of the last two.
+// The difference of two sampled velocities averages the accelerations of the last two ticks. So the
+// torque beside it is the mean of the last two.
 template <int N>
 class ForceObserver {
  public:
   explicit ForceObserver(Eigen::Index n) { reset(Vec<N>::Zero(n), Vec<N>::Zero(n)); }
 
-  // Starts with this estimate [N m] at this velocity [rad/s], no torque before.
+  // Begins with an estimate [N m] at a velocity [rad/s], with no earlier torque.
   void reset(const Vec<N>& estimate, const Vec<N>& v) {
     f1_hat_ = estimate;
     v_ = v;
     tau_ = tau_before_ = Vec<N>::Zero(v.size());
   }
 
-  // The estimate at t_k [N m]. M, C the device model at t_k; v the measured velocity; b_d the
+  // Returns the estimate at t_k [N m]. M, C: device model at t_k; v: measured velocity; b_d: the
   // device's own damping, which the motors do not command and which is no human force.
   const Vec<N>& estimate(double alpha, double T, const Mat<N>& M, const Mat<N>& C, const Vec<N>& v,
                          const Vec<N>& b_d) {
@@ -123,7 +122,7 @@ class ForceObserver {
 
   const Vec<N>& present() const { return f1_hat_; }
 
-  // The motor torque held over the tick that begins now [N m].
+  // Takes the motor torque held over the tick that begins now [N m].
   void applied(const Vec<N>& tau) {
     tau_before_ = tau_;
     tau_ = tau;

@@ -7,8 +7,8 @@ namespace limpid {
 AddedMass added_mass(double eta, int late, double T) {
   using N = InertiaShape;
   if (!(eta > 1)) return {eta, N::kFastest};
-  constexpr double kOwn = 0.9, kLate = 0.35;  // of beta t [-]
-  double most = kOwn / T;                     // of beta [rad/s]
+  constexpr double kOwn = 0.9, kLate = 0.35;  // bounds of beta t [-]
+  double most = kOwn / T;                     // bound of beta [rad/s]
   if (late > 0) most = std::min(most, kLate / (late * T));
   const double edge = std::min(N::kFastest, most / (2 * N::kZeta * (eta - 1)));
   if (edge >= N::kSlowest) return {eta, edge};
@@ -19,12 +19,12 @@ std::complex<double> network_impedance(const AddedMass& added, double band, doub
   using N = InertiaShape;
   using Complex = std::complex<double>;
   if (added.eta >= 1) {
-    // The mass moves at g: j w g = X (nu - g), X of its spring and damper.
+    // The mass moves at velocity g: j w g = X (nu - g), X of its spring and damper.
     const Complex s(0, w), X = added.edge * (added.edge / s + 2 * N::kZeta);
     return (added.eta - 1) * s * X / (s + X);
   }
-  // From its end: resistor beside the last spring, in series with mass and damper, beside the
-  // first.
+  // The ladder from its end: a resistor beside the last spring; in series with mass and damper;
+  // beside the first spring.
   const double edge = 2 * std::numbers::pi * band;
   const Complex s(0, w / edge);
   const Complex last = 1.0 / (N::kA3 * s + 1 / N::kR);

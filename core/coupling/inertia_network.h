@@ -1,5 +1,5 @@
-// The passive networks that make the hand feel less or more inertia than there is: per joint a
-// ladder of two springs, a mass and dampers (eta < 1), or a mass on a spring and damper (eta > 1).
+// Passive networks that make the hand feel less or more inertia than there is. For eta < 1 each
+// joint has a ladder of two springs, a mass and dampers; for eta > 1 a mass on a spring and damper.
 #pragma once
 
 #include <complex>
@@ -9,36 +9,36 @@
 
 namespace limpid {
 
-// The ladder of order 3 whose mass-like share is 1 - eta to 1.5 % up to the band's edge, found by
-// optimisation; r1 is what the proof needs. And the added mass on its spring and damper.
+// Constants of the ladder of order 3 and of the added mass. The ladder's mass-like share is 1 - eta
+// to 1.5 % up to the band's edge, found by optimisation; the proof needs r1.
 struct InertiaShape {
   static constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.05;
-  static constexpr double kZeta = 0.7;                           // of the added mass
-  static constexpr double kFastest = 2 * std::numbers::pi * 25;  // it goes along [rad/s]
+  static constexpr double kZeta = 0.7;                           // damping ratio of the added mass
+  static constexpr double kFastest = 2 * std::numbers::pi * 25;  // its largest edge [rad/s]
   static constexpr double kSlowest = 2 * std::numbers::pi * 2;
 };
 
-// What is added to the inertia for eta above 1, and how fast it goes along.
+// Mass added to the inertia for eta above 1, and the edge up to which it moves along.
 struct AddedMass {
-  double eta;   // the one asked for, or what of it the delay leaves
-  double edge;  // w_g of its spring; eta is felt up to about there [rad/s]
+  double eta;   // the requested one, or as much as the delay allows
+  double edge;  // w_g of its spring; eta is felt up to about this [rad/s]
 };
 
-// Above w_g the added mass is a damper of beta = 2 zeta (eta - 1) w_g for every kg m^2. A torque
-// that is late by t turns a damper into a spring that pushes on at pi/2: with the tick's own
-// t = T/2 and more the device would swing at w_1 = pi/(2 t) from beta = w_1 on. So beta t is held
-// below what was found stable with grips of up to 3000 N/m: 0.9 of the tick itself, 0.35 of a
-// delay. What would leave less than kSlowest leaves less of eta. late: the most that the delay
-// beyond the tick may be [ticks].
+// Returns the mass that is stable in ticks of T. Above w_g the added mass is a damper of beta = 2
+// zeta (eta - 1) w_g for every kg m^2. A torque that is late by t turns a damper into a spring that
+// pushes on at pi/2. With the tick's own t = T/2 and more the device would swing at w_1 = pi/(2 t)
+// from beta = w_1 on. So beta t stays below the values found stable with grips of up to 3000 N/m:
+// 0.9 of the tick itself, 0.35 of a delay. If the edge would fall below kSlowest, eta is reduced
+// instead. late: largest delay beyond the tick [ticks].
 AddedMass added_mass(double eta, int late, double T);
 
-// What a network adds to what is felt of an inertia of 1 kg m^2, without ticks: torque over
-// velocity at w [rad/s]. `band`: its edge below eta 1 [Hz].
+// Impedance that a network adds to an inertia of 1 kg m^2, without ticks: torque over velocity at w
+// [rad/s]. `band`: the ladder's edge, below eta 1 [Hz].
 std::complex<double> network_impedance(const AddedMass& added, double band, double w);
 
-// Driven by the device's motion through R_N, M-like: N = R_N R_N^T. All time dependence of eta and
-// of the inertia sits in R_N, so that for every eta(t) the work given over a tick is at most the
-// storage lost and b_e |dx1|^2/T, b_e a few percent of the device's damping.
+// A network for each joint, driven by the device's motion through R_N, M-like: N = R_N R_N^T. All
+// time dependence of eta and of the inertia is in R_N. So for every eta(t) the work given over a
+// tick is at most the storage lost and b_e |dx1|^2/T. b_e is a few percent of the device's damping.
 template <int N>
 class InertiaNetwork : InertiaShape {
  public:
@@ -48,7 +48,7 @@ class InertiaNetwork : InertiaShape {
     side_ = 0;
   }
 
-  // Over the tick of T [s] just ended, in which the device moved by dx [rad].
+  // Advances over the tick of T [s] just ended, in which the device moved by dx [rad].
   void advance(const Vec<N>& dx, double T) {
     if (side_ == 0) return;
     const Vec<N> nu = R_.transpose() * dx / T;
@@ -62,12 +62,12 @@ class InertiaNetwork : InertiaShape {
     }
   }
 
-  // For the tick that begins: at this eta, locked inertia M_L, with the share `gain` of what adds
-  // inertia. `band`: edge of the band in which eta holds below 1 [Hz].
+  // Sets eta and the locked inertia M_L for the tick that begins. `gain`: share of the added
+  // inertia; `band`: edge of the band in which eta below 1 holds [Hz].
   void set(const AddedMass& added, const Mat<N>& M_L, double gain, double T, double band) {
     const double eta = added.eta;
     const int side = eta < 1 ? -1 : eta > 1 ? 1 : 0;
-    if (side != side_) start(M_L.rows());  // what was stored is lost, never gained
+    if (side != side_) start(M_L.rows());  // stored energy is lost, never gained
     side_ = side;
     w2_ = side > 0 ? added.edge : 2 * std::numbers::pi * band;
     const Eigen::Index n = M_L.rows();
@@ -89,14 +89,14 @@ class InertiaNetwork : InertiaShape {
     }
   }
 
-  // Damps by the velocity v that the device has [rad/s], not by the one of the coming tick.
+  // Damps by the device's present velocity v [rad/s] instead of the coming tick's.
   void damp_now(const Vec<N>& v) {
     force_ -= K_ * v;
     K_.setZero();
   }
 
-  // It was meant to take so much more energy [J] than it did, as a motor was at its limit: that is
-  // not stored. The added mass keeps its speed; a change of that would push.
+  // Removes `energy` [J] from the storage: a motor at its limit kept the network from taking it.
+  // The added mass keeps its speed; changing it would push.
   void lose(double energy) {
     const double stored = side_ > 0 ? 0.5 * s_.squaredNorm() : storage();
     if (!(energy > 0) || !(stored > 0)) return;
@@ -107,7 +107,7 @@ class InertiaNetwork : InertiaShape {
     g_ *= left;
   }
 
-  // Its torque on the device over the tick, force() - damping() w [N m, N m s/rad].
+  // The network's torque on the device over the tick, force() - damping() w [N m, N m s/rad].
   const Vec<N>& force() const { return force_; }
   const Mat<N>& damping() const { return K_; }
   bool damps() const { return side_ > 0; }
@@ -138,7 +138,7 @@ class InertiaNetwork : InertiaShape {
   Vec<N> s_, v_, g_;
   Mat<N> R_;
   int side_ = 0;   // -1 ladder, +1 added mass, 0 neither
-  double w2_ = 0;  // edge of the band or of the added mass, of the tick that R_ is of [rad/s]
+  double w2_ = 0;  // edge of the band or of the added mass, in the tick of R_ [rad/s]
   double step_ = 0;
   Mat3 middle_;
   Vec<N> force_;

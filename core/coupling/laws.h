@@ -1,5 +1,5 @@
-// The coupling laws there are: what people read about each of them, and what can be set of it and
-// of the observer. A new one is its entry here, and a file like proposed.h that says what it does.
+// The coupling laws: texts for people about each of them, and settings of laws, link and observer.
+// A new law is an entry here, and a file like proposed.h with what it does.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,7 @@
 
 namespace limpid {
 
-// Settings that people can change, described once for the command line, configuration files,
-// sliders, tooltips and help. Whatever has settings describes them beside itself.
-
-// One of a few words: an enumeration's 0, 1, ...
+// A setting with a few words as values: an enumeration's 0, 1, ...
 template <class Owner>
 struct Choice {
   std::span<const char* const> words;
@@ -33,7 +30,9 @@ constexpr Choice<Owner> choice(std::span<const char* const> words) {
           }};
 }
 
-// One key. Owner: the class with all settings, which inherits the parts that laws bring along.
+// Description of one setting, for the command line, configuration files, sliders, tooltips and
+// help. Settings are described beside their owners. Owner: the class with all settings, which
+// inherits the parts of the laws.
 template <class Owner>
 struct Setting {
   using Field = std::variant<double Owner::*, int Owner::*, bool Owner::*, Choice<Owner>>;
@@ -41,16 +40,16 @@ struct Setting {
   const char* label;  // short, for a slider
   Field field;
   const char* unit;  // "-" for none
-  double minimum;    // allowed
+  double minimum;    // least allowed
   double maximum;
-  double slider_minimum;  // the part of it worth a slider
+  double slider_minimum;  // range of the slider
   double slider_maximum;
-  bool logarithmic;     // the slider
+  bool logarithmic;     // whether the slider is
   bool live;            // may change while the loop runs
   const char* meaning;  // one or two sentences with the equation's number
 };
 
-// The descriptions of several owners, one after another.
+// Joins descriptions of several owners.
 template <class P, std::size_t... Size>
 constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
   std::array<Setting<P>, (Size + ...)> all{};
@@ -59,25 +58,25 @@ constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
   return all;
 }
 
-// What people read about a law, and what it uses.
+// Texts about a law for people, and properties of it.
 struct LawInfo {
   const char* key;      // in files and on the command line
   const char* label;    // on a button
   const char* meaning;  // in help and tooltips, a sentence after "KEY: "
-  const char* verdict;  // in a few words: how it feels, when it is safe
-  // What is felt in free motion is scaled by eta: the inertia under the predictive law; under the
-  // proposed one the damping, though (12) has it of the inertia.
+  const char* verdict;  // judgement in a few words: how it feels, when it is safe
+  // The law scales free motion by eta: under the predictive law the inertia; under the proposed one
+  // the damping, though (12) has it of the inertia.
   bool takes_eta;
-  // By feeding the observed human force forward: then the conditions of (25) are its own.
+  // The law feeds the observed human force forward: the conditions of (25) are about it.
   bool observes;
-  // It accounts for the energy that the human is given, and bounds it.
+  // The law accounts for the energy that the human is given, and bounds it.
   bool keeps_ledger;
-  // The law solves device, proxy and contacts together, so it knows no link. The others have a
-  // spring or fed-forward torques between device and proxy.
+  // The law solves device, proxy and contacts together, so it has no link. The others have a spring
+  // or fed-forward torques between device and proxy.
   bool solves_together;
-  bool for_links;            // without a link it only takes something off the standard law
-  const char* through_link;  // what is known of it with a delay between device and proxy
-  std::span<const char* const> sliders;  // keys, in the panel
+  bool for_links;                        // without a link it only weakens the standard law
+  const char* through_link;              // known properties with a delay between device and proxy
+  std::span<const char* const> sliders;  // keys of the panel's sliders
 };
 
 struct SpringDamper {
@@ -103,13 +102,13 @@ inline constexpr int kMostLinkDelay = 200, kMostLinkJitter = 50;  // [ticks]
 
 // A delay between device and proxy, see link.h.
 struct LinkSettings {
-  int link_delay = 0;    // each way [ticks]
-  int link_jitter = 0;   // of a packet beyond that, at most [ticks]
+  int link_delay = 0;    // delay each way [ticks]
+  int link_jitter = 0;   // largest extra delay of a packet [ticks]
   double link_loss = 0;  // share of the packets that never arrive [-]
-  int link_seed = 1;     // of the random numbers for jitter and loss
+  int link_seed = 1;     // seed of the random numbers for jitter and loss
 
   bool linked() const { return link_delay > 0 || link_jitter > 0 || link_loss > 0; }
-  // What a side knows of the other is no older than that, unless packets are lost [ticks].
+  // Largest age of a side's knowledge of the other, unless packets are lost [ticks].
   int oldest() const { return link_delay + link_jitter; }
 
   template <class P>
@@ -131,34 +130,34 @@ struct LinkSettings {
   }
 };
 
-// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2; and where the
-// torque answers its reading a delay t_d late, and what device and proxy know of each other is up
-// to t_l old, with jitter of j ticks in it,
+// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2. With a torque
+// that answers its reading t_d late, and knowledge of the other side up to t_l old, j ticks of it
+// jitter,
 //     b_d >= (2 + j/2) b_vc + k_vc (T + 3/2 t_d + t_l),
 //     b_v >= j/2 b_vc + k_vc ((T + t_d) / 2 + t_l).
 //
-// Of d ticks' delay the device's torque lacks k_vc (x_E,k - x_E,k-d), whose work on dx1_k is at
-// most
+// With a delay of d ticks the device's torque lacks k_vc (x_E,k - x_E,k-d), whose work on dx1_k is
+// at most
 //     k_vc sum_j |dx1_k (dx1_k-j - dx2_k-j)| <= k_vc d (3/2 dx1^2 + 1/2 dx2^2),
-// summed over the ticks; the dampers b_d, b_v take b/T dx^2. The bound of (3) itself is made so
-// too. Through a link the device lacks k_vc (x2_k - x2_k-d) and the proxy k_vc (x1_k - x1_k-d),
-// together at most k_vc d (dx1^2 + dx2^2): for d ticks each way what Lee and Spong (2006) and Nuno
-// et al. (2009) have of such couplings in continuous time. Velocities that are held for want of
-// newer ones act up to j + 1 times.
+// summed over the ticks; the dampers b_d, b_v take b/T dx^2. The bound of (3) itself is derived in
+// the same way. Through a link the device lacks k_vc (x2_k - x2_k-d) and the proxy k_vc (x1_k -
+// x1_k-d), together at most k_vc d (dx1^2 + dx2^2). For d ticks each way this agrees with Lee and
+// Spong (2006) and Nuno et al. (2009) for such couplings in continuous time. Velocities that are
+// held for want of newer ones act up to j + 1 times.
 //
-// It is about spring and damper alone: nothing is known of what the proposed law feeds forward
-// through a link.
+// The condition covers spring and damper alone: no bound is known for torques that the proposed law
+// feeds forward through a link.
 struct Condition3 {
-  double device_margin = 0;  // b_d less what is needed, at the joint with the least [N m s/rad]
-  double proxy_margin = 0;   // b_v less what is needed [N m s/rad]
-  bool known = true;         // false where packets are lost: then there is no bound for their age
-  bool holds = false;        // to round-off: the paper's own gains stand on the edge
+  double device_margin = 0;  // b_d less the bound, at the joint with the least [N m s/rad]
+  double proxy_margin = 0;   // b_v less the bound [N m s/rad]
+  bool known = true;         // false where packets are lost: then their age has no bound
+  bool holds = false;        // to round-off: the paper's own gains are on the edge
 };
-// b_d: of every joint [N m s/rad]; T, the delay [s].
+// Evaluates the condition. b_d: of every joint [N m s/rad]; T and delay [s].
 Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d,
                       double delay = 0, const LinkSettings& link = {});
 
-// The same for all laws of the paper: what does nothing in one is there for the other.
+// Sliders of the paper's laws, the same for all; some have no effect in one law.
 inline constexpr std::array kPaperSliders{"coupling.eta",  "observer.alpha", "coupling.k_vc",
                                           "coupling.b_vc", "coupling.b_v",   "link.delay",
                                           "link.jitter",   "link.loss"};
@@ -221,24 +220,24 @@ struct ProposedLaw {
 enum class PredictorPreset : std::uint8_t { by_encoder, fine, coarse };
 inline constexpr std::array<const char*, 3> kPredictorPresets{"auto", "fine", "coarse"};
 
-// What a preset stands for; see the table of constants.
+// Constants of a preset; see PredictorSettings::gains().
 struct PredictorGains {
   double p;        // least memory of a fading-memory filter, 0 none [-]
   double mu;       // factor on the device's inertia in the predictor [-]
-  double damping;  // that walls get, as a part of m_n/T [-]
+  double damping;  // of walls, as a part of m_n/T [-]
 };
 
-inline constexpr int kMostDelay = 20;  // of a device [ticks]
+inline constexpr int kMostDelay = 20;  // largest delay of a device [ticks]
 
 struct PredictorSettings {
   PredictorPreset preset = PredictorPreset::by_encoder;
   double memory = kAsPreset;   // p [-]
   double inertia = kAsPreset;  // mu [-]
-  double hand_mass = 0.2;      // of the second predictor [kg]
-  int delay = 0;               // between command and motor, as far as it is known [ticks]
-  double delay_most = kUnset;  // the most that it may be [ticks]
+  double hand_mass = 0.2;      // in the second predictor [kg]
+  int delay = 0;               // known delay between command and motor [ticks]
+  double delay_most = kUnset;  // largest delay possible [ticks]
 
-  // Not a number stands for "as the preset has it", or "as far as it is known".
+  // NaN, which stands for "as the preset has it", or "as far as it is known".
   static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();
   static constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
   // Encoders coarser than this ask for the coarse preset [rad].
@@ -285,7 +284,7 @@ struct PredictorSettings {
 };
 
 struct LedgerSettings {
-  double energy = 0.005;  // E0: the human may be given at most this [J]
+  double energy = 0.005;  // E0, the most that the human may be given [J]
 
   template <class P>
   static constexpr std::array<Setting<P>, 1> settings() {
@@ -318,12 +317,12 @@ struct PredictiveLaw {
       .sliders = kSliders,
   };
 
-  // eta is the proposed law's.
+  // Settings without eta, which is the proposed law's.
   struct Settings : PredictorSettings, LedgerSettings {
     double felt_damping = kFollowsEta;  // share of b_d + b_v that is felt [-]
     double band = 5.3;                  // edge of the band in which eta holds [Hz]
 
-    // Not a number stands for "as eta has it".
+    // NaN, which stands for "as eta has it".
     static constexpr double kFollowsEta = std::numeric_limits<double>::quiet_NaN();
     static constexpr double kLeastDamping = 1.0 / 3;
 
@@ -373,9 +372,9 @@ struct TankLaw {
 
   struct Settings {
     double tank_energy = 0.005;  // E0, in both tanks at the start [J]
-    double tank_most = 0.1;      // that each of them keeps [J]
-    double tank_share = 0.02;    // of what a tank has above E0/2, sent in a tick [-]
-    double tank_damping = 100;   // of an empty tank, over the device's inertia [1/s]
+    double tank_most = 0.1;      // most that each tank keeps [J]
+    double tank_share = 0.02;    // share of a tank's energy above E0/2 that is sent in a tick [-]
+    double tank_damping = 100;   // damper of an empty tank, over the device's inertia [1/s]
 
     template <class P>
     static constexpr std::array<Setting<P>, 4> settings() {
@@ -423,7 +422,7 @@ struct ObserverSettings {
   }
 };
 
-// Numbered in the order of Laws: the number is what recordings keep.
+// Kinds of law, numbered in the order of Laws; recordings keep the number.
 enum class CouplingKind : std::uint8_t { standard, proposed, predictive, tank };
 using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw>;
 
@@ -439,7 +438,7 @@ template <class... Law>
 Listed<Law...> listed(std::tuple<Law...>*);
 using AllLaws = decltype(listed(static_cast<Laws*>(nullptr)));
 
-// One text of what `put_law(put, law, number)` puts for each of them, between them `between`.
+// Joins the texts that `put_law(put, law, number)` puts for each law, separated by `between`.
 template <class PutLaw>
 consteval auto text_of_all(std::string_view between, PutLaw put_law) {
   constexpr std::size_t kLongest = 1024;
@@ -457,10 +456,10 @@ consteval auto text_of_all(std::string_view between, PutLaw put_law) {
 
 }  // namespace detail
 
-// Of all laws: a law finds its own among them.
+// Settings of all laws: a law finds its own among them.
 using LawSettings = detail::AllLaws::Settings;
 
-// What describes them, law by law, for an owner that inherits them.
+// Descriptions of LawSettings, law by law, for an owner that inherits them.
 template <class P>
 constexpr auto law_settings() {
   return std::apply(
@@ -471,21 +470,21 @@ constexpr auto law_settings() {
 inline const LawInfo& info(CouplingKind kind) {
   return *detail::AllLaws::kInfos[static_cast<std::size_t>(kind)];
 }
-// The law to switch to: all of them by turns.
+// Next law when switching through all of them.
 inline CouplingKind next(CouplingKind kind) {
   const auto i = static_cast<std::size_t>(kind) + 1;
   return static_cast<CouplingKind>(i % detail::AllLaws::kInfos.size());
 }
 inline constexpr auto& kLawKeys = detail::AllLaws::kKeys;
 inline constexpr std::uint8_t kLaws = kLawKeys.size();
-// "standard: what it does. proposed: ...".
+// Meanings of all laws: "standard: what it does. proposed: ...".
 inline constexpr auto kLawMeanings =
     detail::text_of_all(" ", [](auto put, const LawInfo& law, std::size_t) {
       put(law.key);
       put(": ");
       put(law.meaning);
     });
-// As recordings keep them: "0 standard, 1 proposed, ...".
+// Numbers of all laws as recordings keep them: "0 standard, 1 proposed, ...".
 inline constexpr auto kLawNumbers =
     detail::text_of_all(", ", [](auto put, const LawInfo& law, std::size_t number) {
       const char digit = static_cast<char>('0' + number);

@@ -13,16 +13,16 @@
 
 namespace limpid {
 
-// H = E - (what device and proxy have stored): while H >= 0 the energy given at the human's port is
-// at most E0 since the start, on top of what came in and was dissipated. Of that no more is kept
-// than makes H four times E0: so much may be given in any part of the time.
+// H = E - (energy stored in device and proxy). While H >= 0 the energy given at the human's port
+// since the start is at most E0, beyond what came in and was dissipated. H is kept to at most four
+// times E0: this much may be given in any part of the time.
 //
-// How late the motors give a torque may not be known. There is an account for every delay that is
-// possible, and the least of them is the one that counts: one of them is right, whichever it is.
+// The motors' delay may be unknown. There is an account for every possible delay, and the least of
+// them counts: one of them is the right one.
 template <int N>
 class Ledger {
  public:
-  // The reserve that is left of an earlier part of the run [J]; none given: as it was here.
+  // Begins anew. left: reserve left by an earlier part of the run [J]; none: this ledger's own.
   void start(const Vec<N>& y, std::optional<double> left) {
     if (left) {
       left_ = *left;
@@ -38,7 +38,7 @@ class Ledger {
     rested_ = 0;
   }
 
-  // Of the delays between command and motor, the least and the most [ticks].
+  // Sets the least and the largest delay between command and motor [ticks].
   void expect(int least, int most) {
     if (least == least_ && most == most_) return;
     E_.fill(E());
@@ -46,10 +46,10 @@ class Ledger {
     most_ = most;
   }
 
-  // The tick just ended: the reading y after it, where the device is thought to be (x), a safe
-  // lower bound b_lo of the device's damping. q: the encoders' step; a reading that does not change
-  // says nothing. sent(d): the torque that was sent d ticks before the last one [N m]. `given`: by
-  // the proxy to what moves in its world, which has an account of its own [J].
+  // Books the tick just ended. y: the reading after it; x: the device's position as located; b_lo:
+  // a safe lower bound of its damping; q: the encoders' step: an unchanged reading says nothing.
+  // sent(d): torque sent d ticks before the last one [N m]. `given`: by the proxy to bodies of its
+  // world, which have an account of their own [J].
   template <class Sent>
   void add(const Vec<N>& y, const Vec<N>& x, const Sent& sent, const Vec<N>& b_lo, double given,
            double q, double T) {
@@ -71,8 +71,8 @@ class Ledger {
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
-  // Takes the energy that is stored now [J]. At first that is nobody's debt, nor is its growth
-  // while no torque leaves for the motors (idle): the hand alone brought it there.
+  // Takes the energy that is stored now [J]. The first one is no debt. Neither is its growth while
+  // no torque reaches the motors (idle): the hand alone brought it there.
   void settle(double E0, double stored, bool idle = false) {
     E0_ = E0;
     const double added = stored - std::exchange(stored_, stored);
@@ -88,15 +88,15 @@ class Ledger {
     }
     H_ = E() - stored;
   }
-  // After settle(): somebody has decided that the hand may be given E0 from here on.
+  // After settle(): gives the hand E0 anew, when force has been requested.
   void refill() {
     H_ = E0_;
     E_.fill(E0_ + stored_);
   }
 
   // After settle(), for a device whose damping is not sure. The damping took energy from the hand
-  // that stands in no book, and a hand that holds still could never pay that debt. So it is
-  // forgiven, up to E0 for each half second that the hand holds still. q: the encoders' step [rad].
+  // that no book shows, a debt that a hand at rest could never pay. So up to E0 of it is forgiven
+  // for each half second that the hand holds still. q: the encoders' step [rad].
   void forgive_at_rest(double q, double T) {
     const double within = std::max(kStill, 1.5 * q);
     rested_ += T;
@@ -111,8 +111,8 @@ class Ledger {
     for (int d = least_; d <= most_; ++d) at(d) += owed;
   }
 
-  // `slip`: how far the last prediction was off [rad], f2 the last contact torque, `surprise` by
-  // how much a tick may change the device's velocity unforeseen [rad/s].
+  // Updates the shares. `slip`: error of the last prediction [rad]; f2: the last contact torque;
+  // `surprise`: largest unforeseen change of the device's velocity in a tick [rad/s].
   void govern(const Vec<N>& f2, const Vec<N>& slip, double surprise, double T) {
     const Vec<N> off = 2 * slip.cwiseAbs() + 0.1 * dy_.cwiseAbs();
     const double leak = f2.cwiseAbs().dot(off) + T * surprise * f2.norm();
@@ -121,28 +121,29 @@ class Ledger {
     follow(((E() - on_its_way_) / E0_ - kGone) / (kNone - kGone), T / 0.2, torque_);
   }
 
-  // [J]; before its first tick what it may start with, infinite if it never had one.
+  // Reserve H [J]; before the first tick as left by an earlier part, infinite if there was none.
   double reserve() const { return fresh_ ? left_ : H_; }
   double contact() const { return contact_; }  // g_f: share of f2 that reaches the hand, 0 to 1
   // g_b: share of the damping cancelled and of the inertia added, 0 to 1.
   double damping() const { return damping_; }
-  // Share of all torque: what nothing else stops, as a late damper in a stiff hand that does not
-  // damp, ends there. It follows what was given, not what is stored: a hand that holds still in a
-  // wall keeps its force.
+  // Share of all torque: ends what nothing else stops, such as a late damper in a stiff hand that
+  // does not damp. It follows the energy given, not stored: a hand that holds still in a wall keeps
+  // its force.
   double torque() const { return torque_; }
-  // How the device moved, along a path within the cells of the readings that does not jump as they
-  // do: a jump would be work that no torque has done [rad].
+  // Motion of the device along a path within the cells of the readings, without their jumps: a jump
+  // would be work that no torque has done [rad].
   const Vec<N>& dx() const { return dx_; }
 
  private:
-  // Of E0: the most that H may be, as a heavy arm on a wall asks for, or the force would be cut
-  // where the prediction is off by a little; where g_b is 1 and where 0, and all torque 0.
+  // Levels of H, in E0. kCap: the most it may be, as a heavy arm on a wall needs, else small
+  // prediction errors would cut the force. kWhole and kNone: g_b is 1 and 0; kGone: all torque is
+  // 0.
   static constexpr double kCap = 4, kWhole = 0.8, kNone = 0.35, kGone = 0.25;
-  // The least that a hand at rest has, of E0: enough for all force but not for g_b.
+  // Least reserve of a hand at rest, in E0: enough for all force but not for g_b.
   static constexpr double kForgiven = 0.4;
-  static constexpr double kRest = 0.5, kStill = 5e-4;  // how long, and how still that is [s, rad]
+  static constexpr double kRest = 0.5, kStill = 5e-4;  // duration and bound of rest [s, rad]
 
-  // At once down, slowly up.
+  // Moves g to `target`: down at once, up slowly.
   static void follow(double target, double rate, double& g) {
     target = std::clamp(target, 0.0, 1.0);
     g = target < g ? target : g + std::min(rate, 1.0) * (target - g);
@@ -152,12 +153,12 @@ class Ledger {
 
   bool fresh_ = true;
   int least_ = 0, most_ = 0;
-  std::array<double, kMostDelay + 1> E_{};  // by the delay [J]
+  std::array<double, kMostDelay + 1> E_{};  // by delay [J]
   double E0_ = 0, stored_ = 0, on_its_way_ = 0;
   double H_ = std::numeric_limits<double>::infinity(), left_ = H_;
   double contact_ = 1, damping_ = 1, torque_ = 1;
   std::array<int, kMaxDof> still_{};
-  double rested_ = 0;  // it has, at rests_at_ [s]
+  double rested_ = 0;  // time at rest at rests_at_ [s]
   Vec<N> y_, dy_, x_, dx_, rests_at_;
 };
 

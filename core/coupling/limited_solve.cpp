@@ -5,8 +5,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kEnough = 1e-9;        // last step, as a part of the motion and of 1 rad/s
-constexpr double kShortest = 1 / 64.0;  // part of a step that is tried last, and then taken
+constexpr double kEnough = 1e-9;        // last step, relative to the motion and to 1 rad/s
+constexpr double kShortest = 1 / 64.0;  // smallest part of a step, tried last and then taken
 
 template <int N>
 Vec<N> clip(const Vec<N>& x, const Vec<N>& limit) {
@@ -18,7 +18,7 @@ double size(const Motion<N>& m) {
   return std::sqrt(m.w.squaredNorm() + m.u.squaredNorm());
 }
 
-// A motor's torque does not answer while it is at its limit.
+// Clears the slope of motors at their limit, whose torque does not respond.
 template <int N>
 void hold(Mat<N>& slope, const Vec<N>& torque, const Vec<N>& limit) {
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
@@ -39,7 +39,7 @@ Motion<N> LimitedSolve<N>::residual(ContactSolve<N>& contacts, double T, const M
   return {D0 * m.w - drive - authority * tau1, impedance * m.u - momentum + p - rest.at(m) - f2};
 }
 
-// Of the residual at the motion just looked at.
+// Factors the slopes of the residual at the motion evaluated last.
 template <int N>
 typename LimitedSolve<N>::Slopes LimitedSolve<N>::slopes(const Mat<N>& f2_on_u) const {
   Mat<N> p_w = tE.on_w, p_u = tE.on_u + on_f2 * f2_on_u;

@@ -1,9 +1,9 @@
-// A delay between device and proxy, as in teleoperation: each side tells the other once a tick how
-// it stands, in packets that come late, not equally late, or not at all.
+// A delayed link between device and proxy, as in teleoperation: each side sends its state once a
+// tick, in packets that come late, with jitter, or not at all.
 //
-// Each side goes by the packet that was sent last of all that have arrived; one that was overtaken
-// is worth nothing any more. So what a side knows of the other is never older than delay + jitter,
-// unless packets are lost.
+// Each side uses, of all packets that have arrived, the one sent last; overtaken packets are
+// dropped. So its knowledge of the other is never older than delay + jitter, unless packets are
+// lost.
 #pragma once
 
 #include <algorithm>
@@ -18,26 +18,26 @@
 
 namespace limpid {
 
-// The numbers of a vector or matrix, as they lie in memory.
+// Numbers of a vector or matrix, in the order of memory.
 template <class M>
 auto numbers(M& m) {
   return std::span(m.data(), static_cast<std::size_t>(m.size()));
 }
 
-// What the device's side knows at t_k.
+// State of the device's side at t_k.
 template <int N>
 struct FromDevice {
-  Vec<N> x1, v1;       // as measured, (x1_k - x1_k-1) / T [rad, rad/s]
-  Dynamics<N> device;  // M1, C1, and the velocity's estimate
+  Vec<N> x1, v1;       // measured position, (x1_k - x1_k-1) / T [rad, rad/s]
+  Dynamics<N> device;  // M1, C1, and the estimated velocity
   Vec<N> f1_hat;       // human torque, as observed [N m]
-  double sent = 0;     // energy for the proxy's side, all of it since the start [J]
+  double sent = 0;     // energy sent to the proxy's side, in all since the start [J]
 
   static FromDevice zero(Eigen::Index joints) {
     const Vec<N> v = Vec<N>::Zero(joints);
     const Mat<N> M = Mat<N>::Zero(joints, joints);
     return {v, v, {M, M, v}, v};
   }
-  // All that it is made of, of a packet that is const or not.
+  // All parts of a packet, const or not.
   static auto parts(auto& p) {
     return std::array{numbers(p.x1),
                       numbers(p.v1),
@@ -54,20 +54,20 @@ struct FromDevice {
   }
 };
 
-// What the proxy's side knows once it has stepped.
+// State of the proxy's side after its step.
 template <int N>
 struct FromProxy {
-  Vec<N> x2, vbar2;   // at t_k, and its mean velocity over the tick before [rad, rad/s]
+  Vec<N> x2, vbar2;   // position at t_k, mean velocity over the previous tick [rad, rad/s]
   Dynamics<N> proxy;  // M2, C2, v2 at t_k
-  Vec<N> f2;          // contacts over the tick that begins [N m]
-  double sent = 0;    // energy for the device's side, all of it since the start [J]
+  Vec<N> f2;          // of the contacts over the tick that begins [N m]
+  double sent = 0;    // energy sent to the device's side, in all since the start [J]
 
   static FromProxy zero(Eigen::Index joints) {
     const Vec<N> v = Vec<N>::Zero(joints);
     const Mat<N> M = Mat<N>::Zero(joints, joints);
     return {v, v, {M, M, v}, v};
   }
-  // As FromDevice::parts().
+  // All parts of a packet, see FromDevice::parts().
   static auto parts(auto& p) {
     return std::array{numbers(p.x2),
                       numbers(p.vbar2),
@@ -84,14 +84,14 @@ struct FromProxy {
   }
 };
 
-// What happens to a packet of one direction, the same for a seed everywhere: a function of the
-// packet's number and of nothing else, so that a run that begins anew meets the same.
+// Fate of a packet of one direction, a function of seed, direction and number alone, so that a run
+// that begins anew meets the same.
 struct Fate {
   bool lost;
-  int late;  // beyond the delay [ticks]
+  int late;  // lateness beyond the delay [ticks]
 };
 inline Fate fate_of(const LinkSettings& s, std::uint64_t direction, std::uint64_t packet) {
-  // SplitMix64's output function (Steele, Lea, Flood 2014), over and over.
+  // SplitMix64's output function (Steele, Lea, Flood 2014), applied repeatedly.
   const auto mixed = [](std::uint64_t z) {
     z += 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -107,27 +107,27 @@ inline Fate fate_of(const LinkSettings& s, std::uint64_t direction, std::uint64_
           static_cast<int>(((second >> 32) * choices) >> 32)};
 }
 
-// One direction. Storage for all that can be on its way is set aside beforehand, as large as the
-// arm needs it, and written, so that no tick is the first to touch a page of it.
+// A direction of the link. Storage for all packets on their way is allocated and written
+// beforehand, so that no tick is the first to touch a page of it.
 template <class Packet>
 class OneWay {
  public:
-  // `first`: of the sizes that all packets have.
+  // `first`: has the sizes of all packets.
   OneWay(std::uint64_t direction, const Packet& first)
       : direction_(direction), size_(size_of(first)), packets_(kSlots * size_), known_(first) {}
 
-  // What is set aside for packets.
+  // Storage of the packets.
   std::span<const double> storage() const { return packets_; }
 
-  // Nothing is on its way, and packets are counted anew.
+  // Empties the link and counts packets anew.
   void start() {
     forget();
     tick_ = 0;
   }
-  // Nothing is on its way: what is sent next counts as known to the other side, at rest.
+  // Empties the link: the other side knows the next packet at once, with the sender at rest.
   void forget() { fresh_ = true; }
 
-  // Sends what is so now, and returns what the other side goes by in this tick.
+  // Sends `now`, and returns the packet that the other side uses in this tick.
   const Packet& pass(const Packet& now, const LinkSettings& s) {
     if (fresh_) {
       known_ = now;
@@ -173,11 +173,11 @@ class OneWay {
   }
 
   std::uint64_t direction_;
-  std::size_t size_;             // of a packet, in numbers
-  std::vector<double> packets_;  // by their number, the tick in which they were sent
+  std::size_t size_;             // numbers in a packet
+  std::vector<double> packets_;  // by packet number, which is the tick of sending
   std::array<std::uint64_t, kSlots> arrives_{};
-  Packet known_;            // to the other side
-  std::uint64_t next_ = 0;  // the first number that is newer than it
+  Packet known_;            // packet known to the other side
+  std::uint64_t next_ = 0;  // first number newer than known_
   std::uint64_t tick_ = 0;
   bool fresh_ = true;
 };
@@ -188,12 +188,13 @@ class ProxyLink {
   explicit ProxyLink(Eigen::Index joints)
       : to_proxy_(1, FromDevice<N>::zero(joints)), to_device_(2, FromProxy<N>::zero(joints)) {}
 
-  // Both sides know how the other one now stands, at rest; nothing is on its way.
+  // Begins: each side knows the other's present position, at rest; nothing is on its way.
   void start() {
     to_proxy_.start();
     to_device_.start();
   }
-  // As it is set, for the tick that begins; null where there is none, and both know all at once.
+  // Returns the link as set for the tick that begins; null without a link: both sides know all at
+  // once.
   ProxyLink* of(const LinkSettings& s) {
     s_ = s;
     if (s.linked()) return this;
@@ -201,7 +202,7 @@ class ProxyLink {
     to_device_.forget();
     return nullptr;
   }
-  // Once a tick each: what the other side goes by in it.
+  // Each once a tick: the packet that the other side uses in it.
   const FromDevice<N>& to_proxy(const FromDevice<N>& now) { return to_proxy_.pass(now, s_); }
   const FromProxy<N>& to_device(const FromProxy<N>& now) { return to_device_.pass(now, s_); }
 

@@ -6,14 +6,14 @@
 namespace limpid {
 namespace {
 
-// A wall damps by no more than this part of m_n/T: above it the prediction amplifies.
+// Largest damping of a wall, as a part of m_n/T: above it the prediction amplifies.
 constexpr double kMostDamping = 0.34;
-// A spring that pulls with more than this part of the limit keeps a tick with motors at their
-// limit from being the last.
+// Part of the limit: while a spring pulls with more than this, ticks with motors at their limit go
+// on.
 constexpr double kStillPulled = 0.02;
-// What a hand may push unforeseen in a tick, and the most that changes of the device's velocity.
-constexpr int kMostTurns = 16;                     // between bodies and the rest
-constexpr double kSameForce = 1e-5;                // after which nothing more is to be found [N]
+constexpr int kMostTurns = 16;       // turns between bodies and the rest
+constexpr double kSameForce = 1e-5;  // change of force at which the turns end [N]
+// Unforeseen push of a hand in a tick, and the most that it changes of the device's velocity.
 constexpr double kPushed = 4e-4, kSurprise = 0.5;  // [N s], [rad/s]
 
 template <int N>
@@ -33,14 +33,14 @@ double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
   return V;
 }
 
-// The same, whatever the motor's limit: what it would store if the limit were all it had.
+// Energy of a spring whose torque is the motor's limit everywhere.
 template <int N>
 double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
   return limit.dot(x.cwiseAbs());
 }
 
-// Memory p of the predictors at the next reading; a force at the tip moves the device by on_tip
-// [-].
+// Memory p of the predictors at the next reading. on_tip: response of the device to a force at the
+// tip.
 template <int N>
 double chosen_memory(const WallMemory& wall, double least, const Jacobian<N>& J,
                      const Levers<N>& on_tip) {
@@ -48,7 +48,7 @@ double chosen_memory(const WallMemory& wall, double least, const Jacobian<N>& J,
   return wall.chosen(least, tip_moved(J * on_tip, J * J.transpose()));
 }
 
-// Over the last tick, to bodies [J].
+// Energy given to bodies over the last tick [J].
 template <int N>
 double given_to(const Proxy<N>& proxy) {
   const BodyWorld* world = proxy.contacts().world();
@@ -57,7 +57,7 @@ double given_to(const Proxy<N>& proxy) {
 
 }  // namespace
 
-// The joint system of a tick: unknown the mean velocities (w, u) of device and proxy,
+// The joint system of a tick, with the mean velocities (w, u) of device and proxy unknown:
 //     D0 w               = drive + tau1,               tau1 = tE + tL
 //     (2/T M2 + S2) u    = momentum + tau2 + f2,
 //     tE = - c v_E - s0 + C_EL v_L + (g_f - phi^T) f2 - phi^T f1_hat
@@ -65,8 +65,9 @@ double given_to(const Proxy<N>& proxy) {
 //     tau2 = - tE + phi^T sigma,
 // with c = b_vc + k_vc T/2, s0 = k_vc (x1 - x2), v_E = w - u, v_L = w - phi v_E.
 //
-// In tau1 + tau2 = sigma - b_w w all that ties the two together has gone. With the device's rows
-// and the proxy's added up, and unknown w and -v_E, the big numbers stand in one block of four:
+// In tau1 + tau2 = sigma - b_w w all terms that tie the two together cancel. So the proxy's rows
+// are added to the device's, with w and -v_E unknown; the big numbers are then in one block of
+// four:
 //     [ D0 + Z2 + b_w + K_N         Z2 + C_LE                     ]
 //     [ Z2 - C_LE^T + phi^T K_N     Z2 + c + phi^T C_LE - C_LE^T phi ],    Z2 = 2/T M2 + S2.
 // The motors give the share `authority` a of tau1: a times the proxy's rows are added.
@@ -119,21 +120,22 @@ struct PredictiveLaw::Of<N>::Solve {
             momentum + s0 + times<N>(phi_T, (u_N + f1_hat).eval())};
   }
 
-  // Between device and proxy, for this motion.
+  // Torque tE wanted between device and proxy, with its part of f2.
   Vec<N> wanted(const Motion<N>& m, const Vec<N>& f2) const {
     const Vec<N> v_E = m.w - m.u, v_L = m.w - turned_times<N>(phi_T, v_E);
     return g_f * f2 - c * v_E - s0 - times<N>(C_LE_T, v_L) - times<N>(phi_T, (f2 + f1_hat).eval());
   }
 
-  // On the device alone.
+  // Torque tL on the device alone.
   Vec<N> alone(const Motion<N>& m) const {
     Vec<N> sigma = turned_times<N>(C_LE_T, (m.w - m.u).eval()) + network.force();
     if (network.damps()) sigma -= network.damping() * m.w;
     return sigma - times<N>(phi_T, sigma) - b_w.cwiseProduct(m.w);
   }
 
-  // The same with motors at their limit: the spring is stiff enough in damping for a joint that is
-  // let go to come to rest, c' for c, and the proxy's damper holds what no motor does.
+  // The joint system with motors at their limit. The spring's damping is raised from c by
+  // `stiffer`, so that a joint that is let go comes to rest; the proxy's damper b_v holds what no
+  // motor does.
   LimitedSolve<N> limited(double stiffer, double b_v) const {
     const Eigen::Index n = s0.size();
     const Mat<N> I = Mat<N>::Identity(n, n);
@@ -186,7 +188,7 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
   if (elapsed_ > 0) {
     slip_ = in.x1 - y_ - elapsed_ * predictor_.w();
     predictor_.correct(in.x1, elapsed_, in.encoder_step, memory_, both_);
-  } else {  // the first reading, maybe not quite where the device is
+  } else {  // the first reading, perhaps not quite at the position of start()
     predictor_.begin_at(in.x1);
     ledger_.start(in.x1, std::nullopt);
   }
@@ -194,7 +196,7 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
   return {predictor_.x_now(), predictor_.v_now()};
 }
 
-// The books of the tick just ended, and with them what may be given in the one that begins.
+// Closes the books of the tick just ended, and sets the shares for the one that begins.
 template <int N>
 void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                                    const Proxy<N>& proxy, double surprise) {
@@ -217,8 +219,8 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
   ledger_.govern(proxy.f(), slip_, surprise, elapsed_ > 0 ? elapsed_ : in.tick);
 }
 
-// What spring and motors hold. While motors are at their limit they give back what a constant
-// torque does, from where they came to it on.
+// Energy stored by spring and motors. While motors are at their limit, from the point where they
+// reached it, they return energy as a constant torque does.
 template <int N>
 double PredictiveLaw::Of<N>::held(double k_vc, const Vec<N>& apart) {
   const double spring = spring_energy<N>(k_vc, apart, limit_);
@@ -246,10 +248,10 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   proxy.look(T);
   const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   const Levers<N> on_tip =
-      d.M_L_factor.solve(Levers<N>(J.transpose()));  // what a force there moves
+      d.M_L_factor.solve(Levers<N>(J.transpose()));  // response to a force at the tip
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
-  // What the prediction foretells of where the torque meets the device is no later than the rest.
+  // The velocity predicted for a late torque is no newer knowledge: the present one damps.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = ledger_.torque();
@@ -312,8 +314,8 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   return share * tau1_;
 }
 
-// motion: in, a first guess; out, of contacts and motors together. `resumed`: the last tick's
-// motion is a better one, and the contacts have not been solved yet.
+// Solves contacts and motors together. motion: in, a first guess; out, the solution. `resumed`: the
+// last tick's motion is a better guess, and the contacts have not been solved yet.
 template <int N>
 void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
                                           const Motion<N>& right, double T, bool resumed,
@@ -336,8 +338,8 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
   motion = last_ = found;
 }
 
-// Bodies of the scene are solved in turn with the rest: each time they get the forces that were
-// found, and answer with where they then go.
+// Solves bodies of the scene in turn with the rest: each turn they get the forces found, and answer
+// with their motion.
 template <int N>
 bool PredictiveLaw::Of<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found) {
   for (int turn = 0; turn < kMostTurns; ++turn) {

@@ -1,7 +1,9 @@
-// The predictive coupling: device and proxy are solved together for their mean velocities over the
-// coming tick, so that walls are as stiff as they are set; small passive networks take the place of
-// the observed force in shaping the inertia felt; motor limits, several contacts and friction enter
-// the same solve; a ledger bounds the energy that the human is given.
+// The predictive coupling.
+//
+// Device and proxy are solved together for their mean velocities over the coming tick, so that
+// walls are as stiff as set. Small passive networks shape the felt inertia instead of the observed
+// force. Motor limits, several contacts and friction enter the same solve. A ledger bounds the
+// energy that the human is given.
 #pragma once
 
 #include "core/coupling/decomposition.h"
@@ -46,21 +48,21 @@ class PredictiveLaw::Of {
   Ledger<N> ledger_;
   ContactSolve<N> contacts_;
   Vec<N> y_;              // the last reading [rad]
-  Vec<N> slip_;           // how far its prediction was off [rad]
-  Vec<N> tau1_;           // as wanted, this tick [N m]
-  Vec<N> cut_;            // what the motors' limit takes off tE + tL of that tick [N m]
+  Vec<N> slip_;           // error of its prediction [rad]
+  Vec<N> tau1_;           // torque wanted for this tick [N m]
+  Vec<N> cut_;            // part of tE + tL of that tick that the motors' limit cuts off [N m]
   Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
-  Vec<N> limit_;          // of each joint in that tick, by what the tip's leaves of it [N m]
-  double elapsed_ = 0;    // since the reading before; 0 at the first [s]
-  bool both_ = true;      // predictors
+  Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
+  double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
+  bool both_ = true;      // both predictors run
   double memory_ = 0;     // p of the predictors at this reading [-]
-  Vec<N> b_d_;            // for which quick_ is
-  bool quick_ = false;    // the device, see dies_within_a_tick()
-  bool limited_ = false;  // the last tick had motors at their limit,
-  bool goes_on_ = false;  // and so has this one, whatever comes
+  Vec<N> b_d_;            // the damping for which quick_ is known
+  bool quick_ = false;    // the device is overdamped, see dies_within_a_tick()
+  bool limited_ = false;  // the last tick had motors at their limit
+  bool goes_on_ = false;  // the next tick counts as limited in any case
   TickSolve solved_ = TickSolve::usual;
-  Motion<N> last_;  // of a tick solved together
-  // Spring of the last tick without motors at their limit, see held():
+  Motion<N> last_;  // motion of the last tick solved together
+  // State of the spring in the last tick without motors at their limit, see held().
   Vec<N> apart_;       // [rad]
   double spring_ = 0;  // [J]
   int unsettled_ = 0;  // ticks without a solution, see LimitedSolve::stand_still()

@@ -6,11 +6,11 @@ namespace limpid {
 namespace {
 
 constexpr double kMostMemory = 0.85;
-constexpr double kQuiet = 1e-4;     // what a step may change the tip's velocity by [m/s]
-constexpr double kLightest = 0.02;  // of which that is asked in part; in full from twice on [kg]
+constexpr double kQuiet = 1e-4;     // change of the tip's velocity allowed for a step [m/s]
+constexpr double kLightest = 0.02;  // for tips from this on in part, from twice on in full [kg]
 
-// The largest eigenvalue of a symmetric positive matrix, or up to 15 % more: the eighth root of
-// the sum of their eighth powers.
+// Largest eigenvalue of a symmetric positive matrix, or up to 15 % more: the eighth root of the sum
+// of the eigenvalues' eighth powers.
 double largest_eigenvalue(const Mat3& A) {
   const double size = A.trace();
   if (!(size > 0)) return 0;
@@ -19,7 +19,7 @@ double largest_eigenvalue(const Mat3& A) {
   return size * std::sqrt(std::sqrt(std::sqrt(power.trace())));
 }
 
-// p of g = 1.5 (1 - p)^2 (1 + p), for g up to 1.5: Newton's method from the value near p = 1.
+// Inverts g = 1.5 (1 - p)^2 (1 + p) for g up to 1.5: Newton's method from the value near p = 1.
 double memory_of(double g) {
   double p = 1 - std::sqrt(std::min(g, 1.5) / 3);
   for (int i = 0; i < 6; ++i) {

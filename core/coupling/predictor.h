@@ -1,5 +1,5 @@
-// Where the device is and what pushes it, from encoders and the torque that was applied: a model of
-// the device stepped ahead a tick at a time, corrected by each reading.
+// Estimate of the device's state and of the hand's torque, from encoders and applied torque: a
+// model of the device stepped ahead a tick at a time, corrected by each reading.
 #pragma once
 
 #include <array>
@@ -11,36 +11,36 @@
 
 namespace limpid {
 
-// An arm's tip, as the easiest of its directions has it.
+// Bounds of an arm's tip over all directions n.
 struct TipMoved {
-  double mass;   // 1 / (n' J M^-1 J' n), no more than that [kg]
-  double lever;  // |J' n|, no less [m]
+  double mass;   // at most 1 / (n' J M^-1 J' n) [kg]
+  double lever;  // at least |J' n| [m]
 };
-// By J M^-1 J' and J J'.
+// Bounds by mobility J M^-1 J' and levers J J'.
 TipMoved tip_moved(const Mat3& mobility, const Mat3& levers);
 
-// By how much the velocity jumps when an encoder makes a step q: 1.5 (1 - p)^2 (1 + p) q/T [rad/s].
+// Jump of the velocity when an encoder makes a step q: 1.5 (1 - p)^2 (1 + p) q/T [rad/s].
 inline double velocity_jump(double p, double q, double T) {
   return 1.5 * (1 - p) * (1 - p) * (1 + p) * q / T;
 }
 
-// The memory that the filter needs where encoders have steps q: a reading that jumps makes the
-// force of a wall K jump by
+// Memory p that the filter needs with encoders of step q. A jump of the reading makes the force of
+// a wall K jump by
 //     F_q = (K T/2 + B) g_v q L/T,   g_v = 1.5 (1 - p)^2 (1 + p),
-// B the damper that the wall gets by itself. A light arm is held by the damping of the hand; from
-// 40 g on a jump may change the tip's velocity by no more than 0.1 mm/s, from 20 g on that counts
-// in part. What foretells so slowly has to be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
+// B the wall's own damper. A light arm is held by the damping of the hand. From 40 g on a jump may
+// change the tip's velocity by at most 0.1 mm/s; from 20 g on that counts in part. The filter must
+// be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
 struct WallMemory {
-  double K, T, q, damping;  // [N/m, s, rad], part of m_n/T that the wall's damper has [-]
-  double shaken(double p, const TipMoved& tip) const;      // by F_q T/m_n [m/s]
-  double needed(double least, const TipMoved& tip) const;  // p, from `least` on
-  double possible(const TipMoved& tip) const;              // the most of p
-  double chosen(double least, const TipMoved& tip) const;  // of both, and never below `least`
+  double K, T, q, damping;  // [N/m, s, rad]; the wall's damper, in m_n/T [-]
+  double shaken(double p, const TipMoved& tip) const;      // change of velocity, F_q T/m_n [m/s]
+  double needed(double least, const TipMoved& tip) const;  // needed p, at least `least`
+  double possible(const TipMoved& tip) const;              // largest p
+  double chosen(double least, const TipMoved& tip) const;  // p by both, at least `least`
 };
 
-// Whether some joint that moves alone, the others free, loses its motion to its damping b_d within
-// a tick: T b_d_j (M^-1)_jj > 1. The midpoint rule foretells from 2 on that it goes back and forth;
-// with little memory that builds up from 2.7 on (chains of 3 to 30 joints, of many masses).
+// True if some joint that moves alone, the others free, loses its motion to its damping b_d within
+// a tick: T b_d_j (M^-1)_jj > 1. From 2 on the midpoint rule predicts oscillation; with little
+// memory this grows from 2.7 on (chains of 3 to 30 joints, of many masses).
 template <int N>
 bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
   const SymmetricFactor<N> factor(M);
@@ -51,7 +51,7 @@ bool dies_within_a_tick(const Mat<N>& M, const Vec<N>& b_d, double T) {
   return false;
 }
 
-// M += mass J^T J, of many joints column by column: a general product would first sort it all anew.
+// M += mass J^T J, column by column for many joints: a general product would first copy all.
 template <int N>
 void add_mass(double mass, const Jacobian<N>& J, Mat<N>& M) {
   const Eigen::Matrix<double, N, 3, 0, kCapacity<N>, 3> J_T = J.transpose();
@@ -65,12 +65,12 @@ void add_mass(double mass, const Jacobian<N>& J, Mat<N>& M) {
   }
 }
 
-// Two of them run side by side, for a light hand and for one with mass; the one whose predictions
+// Two predictors side by side, for a light hand and for one with mass; the one whose predictions
 // were better lately is active.
 template <int N>
 class Predictor {
  public:
-  // Velocity and torque of the hand as they are [rad, rad/s, N m].
+  // Begins with the device's position and velocity, and the hand's torque [rad, rad/s, N m].
   void start(const Vec<N>& x, const Vec<N>& v, const Vec<N>& f) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
     ahead_ = Vec<N>::Constant(x.size(), kMidpoint);
@@ -78,17 +78,17 @@ class Predictor {
     sent_.fill(zero);
     active_ = 0;
   }
-  // The first reading: from here on the device is where the encoders say [rad].
+  // Takes the first reading: from now on the device is where the encoders say [rad].
   void begin_at(const Vec<N>& y) {
     for (Track& t : tracks_) t.x = t.x_ahead = t.x_met = y;
   }
 
-  // A reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad]; inside a cell
-  // an encoder says nothing.
+  // Corrects by a reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad];
+  // inside a cell an encoder says nothing. both: the second predictor runs too.
   void correct(const Vec<N>& y, double elapsed, double q, double p, bool both) {
     const double forget = exponential(-elapsed / kJudged);
     for (Track& t : tracks_) {
-      t.x_ahead = t.x + elapsed * t.w;  // as foretold
+      t.x_ahead = t.x + elapsed * t.w;  // as predicted
       t.v_ahead = end_velocity(t.v, t.w);
       t.error = y - t.x_ahead;
       if (q > 0) t.error -= t.error.cwiseMin(q / 2).cwiseMax(-q / 2);
@@ -105,13 +105,13 @@ class Predictor {
     }
   }
 
-  // Where the active one says that the device is now [rad, rad/s].
+  // State of the device now, by the active predictor [rad, rad/s].
   const Vec<N>& x_now() const { return active().x; }
   const Vec<N>& v_now() const { return active().v; }
 
-  // The device as modelled there: M, C, its damping b_d, the tip's J; T of the coming tick [s].
-  // quick: see dies_within_a_tick(). Goes on to where the coming torque will meet it, if that is
-  // known to be late.
+  // Sets the model of the device at x_now(): M, C, its damping b_d, the tip's J; T of the coming
+  // tick [s]. quick: see dies_within_a_tick(). If the coming torque is known to be late, goes on to
+  // where it will meet the device.
   void model(const Mat<N>& M, const Mat<N>& C, const Vec<N>& b_d, const Jacobian<N>& J, double T,
              double p, double mu, double hand_mass, int delay, bool quick) {
     T_ = T;
@@ -146,14 +146,14 @@ class Predictor {
     }
   }
 
-  // Of the active one, where the coming torque meets it: the motion is D0 w = drive() + tau, w the
-  // mean velocity over the tick.
+  // State by the active predictor where the coming torque meets the device. The motion is D0 w =
+  // drive() + tau, w the mean velocity over the tick.
   const Vec<N>& x() const { return active().x_met; }
   const Mat<N>& D0() const { return active().D0; }
   Vec<N> drive() const { return active().Mp * active().v_met + active().f; }
   bool heavy_hand() const { return active_ == 1; }
 
-  // The torque as it leaves for the motors at the coming tick [N m].
+  // Takes the torque that reaches the motors at the coming tick [N m].
   void applied(const Vec<N>& tau, bool both) {
     newest_ = (newest_ + 1) % sent_.size();
     sent_[newest_] = tau;
@@ -162,27 +162,27 @@ class Predictor {
       tracks_[m].w = mean_velocity(tracks_[m], tracks_[m].v, tau);
     }
   }
-  // The torque that was sent so many ticks before the last one [N m].
+  // Torque that was sent `before` ticks before the last one [N m].
   const Vec<N>& sent(int before) const {
     return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(before)) % sent_.size()];
   }
-  // Mean velocity foretold for the tick that begins [rad/s].
+  // Predicted mean velocity for the tick that begins [rad/s].
   const Vec<N>& w() const { return active().w; }
 
  private:
   struct Track {
     Vec<N> x, v;              // at the last reading, corrected [rad, rad/s]
-    Vec<N> w;                 // mean velocity foretold for the tick after it [rad/s]
-    Vec<N> f;                 // torque of the hand and of whatever the model lacks [N m]
-    Vec<N> x_ahead, v_ahead;  // foretold for the next reading
+    Vec<N> w;                 // predicted mean velocity for the tick after it [rad/s]
+    Vec<N> f;                 // torque of the hand and of all that the model lacks [N m]
+    Vec<N> x_ahead, v_ahead;  // predicted for the next reading
     double misses = 0;        // squared errors, fading [rad^2]
     Vec<N> error{};           // of the last reading [rad]
-    Vec<N> x_met{}, v_met{};  // where the coming torque meets it
-    Mat<N> Mp{}, D0{};        // inertia over the tick that it takes [N m s/rad], Mp + C + b_d
+    Vec<N> x_met{}, v_met{};  // state where the coming torque meets the device
+    Mat<N> Mp{}, D0{};        // Mp: inertia over the tick's length [N m s/rad]; D0: Mp + C + b_d
   };
-  static constexpr double kJudged = 0.05;  // predictions count for so long [s]
+  static constexpr double kJudged = 0.05;  // time constant of judging predictions [s]
 
-  static constexpr double kMidpoint = 2;  // mean and end of a tick by the midpoint rule
+  static constexpr double kMidpoint = 2;  // exact_decay() of the midpoint rule
 
   const Track& active() const { return tracks_[active_]; }
   Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {
@@ -190,13 +190,13 @@ class Predictor {
     if (&t == &tracks_[1]) w -= of_tip_ * (held_ * (J_ * w));
     return w;
   }
-  // After a tick with the mean velocity w.
+  // Velocity after a tick with the mean velocity w.
   Vec<N> end_velocity(const Vec<N>& v, const Vec<N>& w) const {
     return v + ahead_.cwiseProduct(w - v);
   }
-  // By how much of w - v the velocity changes over a tick, w the mean: of a joint that dies out by
-  // itself exactly, with a = T b_d (M^-1)_jj, 1/theta of theta = (a/(1 - e^-a) - 1)/a; 2 for a ->
-  // 0.
+  // Factor of w - v by which the velocity changes over a tick, w the mean, exact for a joint that
+  // dies out by itself. With a = T b_d (M^-1)_jj it is 1/theta, theta = (a/(1 - e^-a) - 1)/a; 2 for
+  // a -> 0.
   static Vec<N> exact_decay(const Mat<N>& M, const Vec<N>& b_d, double T) {
     constexpr double kSlow = 1e-3;  // below: theta = 1/2 + a/12
     Wide<N> M_inverse = widened<N>(Mat<N>::Identity(M.rows(), M.cols()));
@@ -209,8 +209,8 @@ class Predictor {
     return ahead;
   }
 
-  // The second one's D0 is the first one's and 1/T m J^T J A, m the hand's mass, A the ends by
-  // ahead_. What that carries of a motion: D0^-1 J^T (T/m + J A D0^-1 J^T)^-1 J A.
+  // Prepares the second predictor. Its D0 is the first one's and 1/T m J^T J A, m the hand's mass,
+  // A the diagonal of ahead_. The mass takes off a motion: D0^-1 J^T (T/m + J A D0^-1 J^T)^-1 J A.
   void carry(double hand_mass, const Jacobian<N>& J) {
     J_ = J * ahead_.asDiagonal();
     of_tip_ = D0_inverse_.solve(Levers<N>(J.transpose()));
@@ -219,17 +219,17 @@ class Predictor {
     held_ = yields.inverse();
   }
 
-  // The torque that will act in so many ticks, not yet sent for the present one [N m].
+  // Torque that will act in `ahead` ticks; the present tick's is not yet sent [N m].
   const Vec<N>& under_way(int ahead) const { return sent(delay_ - 1 - ahead); }
 
   std::array<Track, 2> tracks_;
-  SteadyFactor<N> D0_inverse_;  // of the first one
+  SteadyFactor<N> D0_inverse_;  // of the first predictor
   Jacobian<N> J_;               // of the tip, see carry()
-  Levers<N> of_tip_;            // how a force at the tip moves the first one
+  Levers<N> of_tip_;            // response of the first predictor to a force at the tip
   Mat3 held_;                   // see carry()
   std::size_t active_ = 0;
   Vec<N> ahead_;  // see exact_decay()
-  // All that were sent, in a ring: a delay may turn out to be another one [N m].
+  // Torques that were sent, in a ring: the delay may turn out to be another one [N m].
   std::array<Vec<N>, kMostDelay + 1> sent_;
   std::size_t newest_ = 0;
   int delay_ = 0;

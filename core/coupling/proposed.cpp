@@ -11,7 +11,7 @@ Vec<N> ProposedLaw::Of<N>::with_feedforward(double eta, const SpringDamper& p,
     const Decomposition<N> d(in.device, {proxy.M(), proxy.C(), proxy.v()});
     return couple<N>(p, in, feedforward(eta, d, in.f1_hat), proxy);
   }
-  // Each side decomposes itself and what it knows of the other.
+  // Each side decomposes its own state and what it knows of the other's.
   FromProxy<N> here = told(in, proxy);
   const FromDevice<N>& far = in.link->to_proxy(told(in));
   const Decomposition<N> there(far.device, here.proxy);

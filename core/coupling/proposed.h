@@ -1,14 +1,15 @@
 // The paper's coupling: spring and damper with feedforward of the observed human force and of the
-// contact force, (14)-(15), which keeps device and proxy together and scales what is felt of slow
-// motion.
+// contact force, (14)-(15).
+//
+// The feedforward keeps device and proxy together and scales the impedance felt in slow motion.
 #pragma once
 
 #include "core/coupling/standard.h"
 
 namespace limpid {
 
-// (14)-(15), with f1 as it was observed [N m]; holds on to d. What is common to both is worked out
-// once: tau1 + tau2 = C_LE v_E + (1 - eta)/eta f1.
+// Feedforward of (14)-(15), with the observed f1 [N m]; keeps a reference to d. The common part is
+// computed once: tau1 + tau2 = C_LE v_E + (1 - eta)/eta f1.
 template <int N>
 Feedforward<N> feedforward(double eta, const Decomposition<N>& d, const Vec<N>& f1_hat) {
   const Vec<N> shape = d.shape_torque();

@@ -9,14 +9,14 @@ namespace limpid {
 
 namespace {
 
-// (2), of a proxy at x2.
+// Drive of (2), for a proxy at x2.
 template <int N>
 ProxyDrive<N> drive(const SpringDamper& p, double T, const Vec<N>& x2, const Vec<N>& x1,
                     const Vec<N>& v1, const Feedforward<N>& ff) {
   return {p.b_vc * v1 - p.k_vc * (x2 - x1) + ff.tau2, p.b_v + p.b_vc + p.k_vc * T / 2, ff.on_proxy};
 }
 
-// (1), without f2.
+// Torque of (1), without f2.
 template <int N>
 Vec<N> pull(const SpringDamper& p, const LawInput<N>& in, const Vec<N>& x2, const Vec<N>& vbar2,
             const Feedforward<N>& ff) {

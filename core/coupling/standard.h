@@ -8,8 +8,8 @@
 
 namespace limpid {
 
-// What (14)-(15) add to (1)-(2): without the contact torque f2, and of it, which is known only once
-// the proxy has stepped. The proxy's share counts the f2 that acts on it anyway.
+// Feedforward that (14)-(15) add to (1)-(2): torques without f2, and shares of f2, which is known
+// only after the proxy's step. The proxy's share includes the f2 that acts on it anyway.
 template <int N>
 struct Feedforward {
   Vec<N> tau1, tau2;  // [N m]
@@ -18,21 +18,22 @@ struct Feedforward {
   static Feedforward none(Eigen::Index n) { return {Vec<N>::Zero(n), Vec<N>::Zero(n)}; }
 };
 
-// Steps the proxy, (4), with the springs and dampers of (2) at the midpoint; returns the torque on
-// the device without its own damping, (1), which is what the motors are asked for [N m].
+// Steps the proxy, (4), with the springs and dampers of (2) at the midpoint. Returns the torque
+// asked of the motors, (1) without the device's own damping [N m].
 template <int N>
 Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
               Proxy<N>& proxy);
 
-// The same by halves, each side with what it knows of the other: (2),
+// The proxy's half of couple(), (2), from its side's knowledge of the device.
 template <int N>
 void move_proxy(const SpringDamper& p, double T, const FromDevice<N>& device,
                 const Feedforward<N>& ff, Proxy<N>& proxy);
-// and (1).
+// The device's half, (1), from its side's knowledge of the proxy.
 template <int N>
 Vec<N> on_device(const SpringDamper& p, const LawInput<N>& in, const FromProxy<N>& proxy,
                  const Feedforward<N>& ff);
-// What each side knows of itself: the proxy before it steps, but for f2, which follows.
+// State of each side for the other. The proxy's is the one before its step, with f2 left to fill
+// in.
 template <int N>
 FromDevice<N> told(const LawInput<N>& in) {
   return {in.x1, in.v1, in.device, in.f1_hat};

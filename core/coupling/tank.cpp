@@ -8,12 +8,12 @@
 namespace limpid {
 namespace {
 
-// A damper that is held for a tick of T and goes by the velocity of the one before it would shake
-// the device from m/T on; it is far from that, as part of m/T [-].
+// Largest refill damper, in m/T [-]. Held for a tick of T and driven by the last tick's velocity,
+// it would shake the device from 1 on.
 constexpr double kMostRefill = 0.2;
 
-// What the largest of (c - b v) v T is, over all v, for the damping b and a drive c: c^2 T / (4 b).
-// The damping for which it is no more than `energy` [N m s/rad]; c2 = |c|^2.
+// Damping b for which (c - b v) v T is at most `energy` for every v [N m s/rad]; c2 = |c|^2. The
+// maximum is c^2 T / (4 b).
 double damping_for(double c2, double T, double energy) { return c2 * T / (4 * energy); }
 
 }  // namespace
@@ -44,7 +44,7 @@ void DeviceTank<N>::settle(const Vec<N>& x1, const Vec<N>& damping, double q, do
   change_ = dx - dx_;
   dx_ = dx;
   x1_ = x1;
-  // A reading that does not change says nothing.
+  // An unchanged reading says nothing.
   for (Eigen::Index i = 0; i < dx.size(); ++i) {
     int& n = still_[static_cast<std::size_t>(i)];
     ++n;
@@ -80,7 +80,7 @@ double DeviceTank<N>::share(const Vec<N>& torque, const Mat<N>& M, double T) con
   const double along = spends(torque), n = 1 + most_;
   const double alone = n * n * T * T / 2 * torque.dot(solve_symmetric<N>(M, torque));
   if (along + alone <= has) return 1;
-  // s along + s^2 alone = has
+  // Solves s along + s^2 alone = has.
   return 2 * has / (along + std::sqrt(along * along + 4 * alone * has));
 }
 
@@ -102,7 +102,7 @@ void TankLaw::Of<N>::start(const LawStart<N>& at) {
   elapsed_ = 0;
 }
 
-// The books of the tick that just ended.
+// Closes the books of the tick that just ended.
 template <int N>
 void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in) {
   device_.expect(delay, in.delay_most);
@@ -123,9 +123,9 @@ void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in)
   reserve_ = device_.energy() + proxy_ + on_its_way();
 }
 
-// The proxy's side. Its drive is held back by a damper, not made smaller: so a proxy that rests on
-// a wall is pressed as hard as ever, which takes no energy. While no torque leaves for the motors
-// the hand alone moves it, at nobody's cost.
+// Moves the proxy. A damper holds its drive back instead of weakening it: a proxy at rest on a wall
+// is pressed as hard as ever, which takes no energy. While no torque reaches the motors the hand
+// alone moves it, and the tank does not pay.
 template <int N>
 void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                           const FromDevice<N>& device, Proxy<N>& proxy) {
@@ -149,7 +149,7 @@ void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, const LawInp
   freely_ = idle || proxy_ > 0 ? own / damping : 0;
 }
 
-// The device's side.
+// Returns the torque on the device's side.
 template <int N>
 Vec<N> TankLaw::Of<N>::pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                             const FromProxy<N>& proxy) {

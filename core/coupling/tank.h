@@ -1,11 +1,13 @@
 // The standard coupling with an energy tank on each side, after the two-layer control of Franken et
-// al. (2011): what a side gives comes out of its tank, what it takes in goes there, and what is
-// sent to the other side leaves one tank before it enters the other. So both together never give
-// more than they held at the start and took in, whatever delays, loses or reorders what is sent.
+// al. (2011).
 //
-// Accounted is what the motors and the proxy's drive really did. Two things that nothing commands
-// count as taken in, as they do in E_c: the device's own damping, as far as it is sure, and the
-// proxy's dampers.
+// Energy that a side gives comes out of its tank, energy it takes goes in; energy sent to the other
+// side leaves one tank before it enters the other. So both together never give more than they held
+// at the start and took in, however the link delays, loses or reorders packets.
+//
+// The accounts hold what the motors and the proxy's drive really did. Two dampers that nothing
+// commands count as intake, as they do in E_c: the device's own, as far as it is sure, and the
+// proxy's.
 #pragma once
 
 #include <array>
@@ -14,35 +16,35 @@
 
 namespace limpid {
 
-// The tank of the device's side. How late the motors give a torque may not be known: each delay
-// that is possible has its account of what was spent, and the largest counts.
+// The tank of the device's side. The motors' delay may be unknown: each possible delay has its
+// account of energy spent, and the largest counts.
 template <int N>
 class DeviceTank {
  public:
   void start(const Vec<N>& x1, double energy);  // [J]
-  // The tick of length T that just ended, with the reading after it; `damping` as far as it is sure
-  // [N m s/rad], q the encoders' step [rad]. No more than `most` is kept [J].
+  // Books the tick of length T that just ended, with the reading x1 after it. `damping`: as far as
+  // it is sure [N m s/rad]; q: the encoders' step [rad]; `most`: the tank keeps no more [J].
   void settle(const Vec<N>& x1, const Vec<N>& damping, double q, double T, double most);
-  // Between command and motor, the least and the most [ticks].
+  // Sets the least and the largest delay between command and motor [ticks].
   void expect(int least, int most);
   void add(double energy) { in_ += energy; }
-  // For the tick that begins [N m].
+  // Takes the torque sent for the tick that begins [N m].
   void sent(const Vec<N>& torque);
   double energy() const { return in_ - out_; }  // [J]
 
-  // The largest share of a torque that the tank can pay for in the tick of length T [s] that comes,
-  // whether the device goes on as fast or gains as much speed again, and where nothing holds it but
-  // its inertia M. Torques on their way to the motors are paid for first. None is counted on to
-  // take energy in: a device that trembles is on its way back by then.
+  // Largest share of a torque that the tank can pay for in the coming tick of length T [s]. It
+  // covers a device that goes on as fast, that gains as much speed again, or that nothing holds but
+  // its inertia M. Torques on their way to the motors are paid for first. None counts as taking
+  // energy in: a device that trembles is on its way back by then.
   double share(const Vec<N>& torque, const Mat<N>& M, double T) const;
 
  private:
-  double in_ = 0, out_ = 0;                     // so far [J]
-  std::array<double, kMostDelay + 1> spent_{};  // by the delay [J]
+  double in_ = 0, out_ = 0;                     // energy in and out so far [J]
+  std::array<double, kMostDelay + 1> spent_{};  // by delay [J]
   int least_ = 0, most_ = 0;
-  Vec<N> x1_, dx_, change_;           // the last reading, motion, and by how much that grew [rad]
-  std::array<int, kMaxDof> still_{};  // ticks since a joint's reading changed
-  std::array<Vec<N>, kMostDelay + 1> torques_;  // that were sent [N m]
+  Vec<N> x1_, dx_, change_;                     // last reading, motion, change of motion [rad]
+  std::array<int, kMaxDof> still_{};            // ticks since a joint's reading changed
+  std::array<Vec<N>, kMostDelay + 1> torques_;  // torques that were sent [N m]
   std::size_t newest_ = 0;
 };
 
@@ -55,7 +57,7 @@ class TankLaw::Of {
     elapsed_ = in.elapsed;
     return {in.x1, in.v1};
   }
-  // p: Settings, a SpringDamper, and the known delay of the motors.
+  // p: Settings, a SpringDamper, and the motors' known delay.
   template <class P>
   Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
     return step(p, p, p.delay, in, proxy);
@@ -74,16 +76,16 @@ class TankLaw::Of {
   double on_its_way() const { return (sent1_ - got2_) + (sent2_ - got1_); }
 
   DeviceTank<N> device_;
-  double proxy_ = 0;             // in the tank of the proxy's side [J]
-  double work2_ = 0;             // of tau2 over the last tick [J]
-  double sent1_ = 0, got2_ = 0;  // from device to proxy, all of it so far [J]
-  double sent2_ = 0, got1_ = 0;  // from proxy to device
-  double reserve_ = 0;           // in both tanks and between them when the tick began [J]
+  double proxy_ = 0;             // energy in the tank of the proxy's side [J]
+  double work2_ = 0;             // work of tau2 over the last tick [J]
+  double sent1_ = 0, got2_ = 0;  // energy from device to proxy, in all so far [J]
+  double sent2_ = 0, got1_ = 0;  // energy from proxy to device
+  double reserve_ = 0;           // energy in both tanks and between them when the tick began [J]
   double left_ = std::numeric_limits<double>::infinity();  // of an earlier part of the run [J]
   bool fresh_ = true;
-  double elapsed_ = 0;  // since the reading before; 0 at the first [s]
-  double freely_ = 1;   // the proxy's damping by that with what its tank adds [-]
-  double share_ = 1;    // of the device's torque [-]
+  double elapsed_ = 0;  // since the previous reading; 0 at the first [s]
+  double freely_ = 1;   // the proxy's damping over that with its tank's damper [-]
+  double share_ = 1;    // share of the device's torque [-]
 };
 
 extern template class TankLaw::Of<3>;

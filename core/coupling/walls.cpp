@@ -37,7 +37,7 @@ double every_hands_wall(const TipAlong& tip, double T, double delay) {
 
 double mistaken_wall(const TipAlong& tip, const WallSetting& s) {
   if (s.hand_mass <= 0) return std::numeric_limits<double>::infinity();
-  const double walls = 0.2 * tip.mass / s.T;  // the damper that the law gives every wall
+  const double walls = 0.2 * tip.mass / s.T;  // damper that the law gives every wall
   const double b = tip.damping + s.b_v / tip.lever2 + s.hand_damping + walls;
   const double share = s.hand_mass / (tip.mass + s.hand_mass);
   return std::sqrt(2 * b * tip.mass / (std::pow(s.T, 3) * share));
@@ -45,22 +45,22 @@ double mistaken_wall(const TipAlong& tip, const WallSetting& s) {
 
 namespace {
 
-// The stiffest walls that were tried: with exact encoders, and with steps; coarse ones; where steps
-// are too coarse for a tick, which is so from this speed on.
+// Stiffest walls that were tried: with exact encoders, with steps, and with coarse ones.
 constexpr double kTried = 20000, kTriedStepped = 10000, kCoarseWall = 2000;  // [N/m]
-constexpr double kSoftest = 100, kFineSpeed = 0.3;                           // [N/m], [rad/s]
-constexpr double kTriedTick = 0.001;                                         // [s]
-// Of m_n over the square of a time [-]: of a tick, found with 24 arms, failing from 3 on; of a
-// delay that is not reckoned with and of one that is, without and with steps, found with the
-// built-in arm.
+// Wall for encoder steps too coarse for a tick, and the speed q/T from which they are.
+constexpr double kSoftest = 100, kFineSpeed = 0.3;  // [N/m], [rad/s]
+constexpr double kTriedTick = 0.001;                // of these trials [s]
+// Bounds of K in m_n over the square of a time [-]. kQuick: of a tick, found with 24 arms, failing
+// from 3 on. The others, found with the built-in arm: of a delay that is not known to the law, and
+// of a known one without and with encoder steps.
 constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2, kForeseenStepped = 0.08;
-constexpr double kSofter = 1.0 / 25;  // part of a wall that the proxy's inertia may take off it
-// By how much a step of the encoder may change the tip's velocity through the wall [m/s]: of arms
-// below 20 g, which are held by the damping of the hand, and of heavier ones.
+constexpr double kSofter = 1.0 / 25;  // part of a wall that the proxy's inertia may take off
+// Largest change of the tip's velocity by an encoder's step through the wall [m/s]: for arms below
+// kLight [kg], held by the damping of the hand, and for heavier ones.
 constexpr double kLight = 0.02, kLightShaken = 1e-2, kShaken = 3e-4;
 
-// The stiffest wall for which the predictors have a memory that is long enough for the encoder's
-// steps and short enough for the wall [N/m].
+// Stiffest wall for which the predictors have a memory long enough for the encoder's steps and
+// short enough for the wall [N/m].
 double quiet_wall(const TipMoved& tip, WallMemory wall, double least) {
   const bool light = tip.mass < kLight;
   double low = 1, high = kTried;

@@ -1,4 +1,4 @@
-// How stiff walls may be that the tip of an arm touches, in closed form.
+// Bounds of the stiffness of walls that an arm's tip touches, in closed form.
 #pragma once
 
 #include "core/coupling/predictor.h"
@@ -6,71 +6,71 @@
 
 namespace limpid {
 
-// An arm at its tip, along one direction.
+// An arm's tip along one direction n.
 struct TipAlong {
   double mass = 0;     // 1 / (n' J M^-1 J' n) [kg]
-  double damping = 0;  // of all joints' own dampers [N s/m]
-  double lever2 = 0;   // |J' n|^2: a joint's stiffness or damping over that at the tip [m^2]
+  double damping = 0;  // by all joints' own dampers [N s/m]
+  double lever2 = 0;   // |J' n|^2: a joint's stiffness or damping divided by the tip's [m^2]
 };
 
-// J: of the tip (3 x n) [m]; M: of the device (n x n) [kg m^2]; b_d: n, above 0 [N m s/rad]; n:
-// unit.
+// Computes a tip along n (unit). J: of the tip (3 x n) [m]; M: of the device (n x n) [kg m^2]; b_d:
+// n, above 0 [N m s/rad].
 TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eigen::VectorXd& b_d,
                    const Vec3& n);
-// The easiest direction's mass, the longest lever.
+// Mass of the easiest direction, and the longest lever.
 TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M);
-// Unit, the direction in which the joints' own dampers hold the tip least: where walls are hardest
-// to render.
+// Unit vector along which the joints' own dampers hold the tip least: there walls are hardest to
+// render.
 Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d);
 
-// Settings and surroundings of a wall: those of a joint, all alike, and of the hand at the tip.
+// Settings of a wall's joints, all alike, and of the hand at the tip.
 struct WallSetting {
   double T = 0.001;          // [s]
   double k_vc = 0, b_v = 0;  // [N m/rad, N m s/rad]
   double eta = 1;
   double hand_damping = 0;  // [N s/m]
   double hand_mass = 0;     // [kg]
-  double delay = 0;         // from a reading to the torque that answers it, beyond the tick [s]
+  double delay = 0;         // from a reading to its answering torque, beyond the tick [s]
 };
 
-// Stiffest wall [N/m] of the proposed coupling: the damping there is against the lag of its
-// contact, half a tick, b_v/k_vc and the device's delay.
+// Stiffest wall of the proposed coupling [N/m]: the present damping against the lag of its contact,
+// half a tick, b_v/k_vc and the device's delay.
 double proposed_wall(const TipAlong& tip, const WallSetting& s);
-// Stiffest wall that any linear law can render and be passive in every hand (Colgate), its torque a
-// delay late: b_d / (T/2 + delay).
+// Stiffest wall that any linear law can render passively in every hand (Colgate), with its torque a
+// delay late [N/m]: b_d / (T/2 + delay).
 double every_hands_wall(const TipAlong& tip, double T, double delay = 0);
-// Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand, by
-// the energy that its error gives away. Infinite without a mass.
+// Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand. It is
+// bounded by the energy that this error gives away; infinite without a mass.
 double mistaken_wall(const TipAlong& tip, const WallSetting& s);
 
-// What a wall of the predictive coupling depends on besides.
+// Further settings that bound a wall of the predictive coupling.
 struct PredictiveWallSetting {
   WallSetting at;
   double encoder_step = 0;    // [rad]
-  PredictorGains gains{};     // for that step
-  bool coarse = false;        // they are the coarse ones
-  double mass_foreseen = 0;   // of the hand, by the predictor [kg]
-  double delay_foreseen = 0;  // part of the delay that is reckoned with [s]
+  PredictorGains gains{};     // by this step
+  bool coarse = false;        // gains are the coarse ones
+  double mass_foreseen = 0;   // mass of the hand in the predictor [kg]
+  double delay_foreseen = 0;  // delay known to the predictor [s]
   double inertia_ratio = 0;   // M2 / M1 [-]
 };
 enum class WallBound {
-  tried,    // no stiffer one was tried
+  tried,    // no stiffer wall was tried
   quick,    // the tip's mass moves too far in a tick for a prediction that does not know the hand
   proxy,    // the proxy's inertia is felt through the spring k_vc
   encoder,  // a step of the encoder shakes the tip
   rough,    // the encoder's step is too coarse for so short a tick
-  hand,     // it is heavier than foreseen
+  hand,     // the hand is heavier than foreseen
   delay,
 };
 struct BoundedWall {
   double stiffness;  // [N/m]
   WallBound by;
 };
-// Stiffest wall that the predictive coupling renders without rattle and that is felt as it is set,
-// to 5 %, whatever its direction. tip: along the easiest direction.
+// Stiffest wall that the predictive coupling renders without rattle and to 5 % as set, whatever its
+// direction. tip: along the easiest direction.
 BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s);
 
-// What is felt of a wall through a spring k_vc at every joint is softer than it [N/m].
+// Stiffness at the tip of a spring k_vc at every joint: any wall felt through it is softer [N/m].
 double spring_at_tip(const TipAlong& tip, double k_vc);
 
 }  // namespace limpid

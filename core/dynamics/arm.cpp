@@ -161,7 +161,7 @@ template class Arm<3>;
 template class Arm<7>;
 template class Arm<kAnyDof>;
 
-// An axis is carried along by the links before it, S_j' = V x S_j.
+// An axis moves with the links before it, S_j' = V x S_j.
 template <int N>
 template <class S>
 Vec3Of<S> Arm<N>::point_drift(const FramesOf<S>& f, int link, const Vec3Of<S>& world,
@@ -192,7 +192,7 @@ template Vec3Of<double> Arm<kAnyDof>::point_drift(const FramesOf<double>&, int,
 template Vec3Of<Pair> Arm<kAnyDof>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                                 const VecOf<kAnyDof, Pair>&) const;
 
-// All beyond a joint weighs on it as one body.
+// All links beyond a joint load it as one body.
 template <int N>
 Vec<N> Arm<N>::weight(const Frames& f, const Vec3& gravity) const {
   Vec<N> torque = Vec<N>::Zero(dof());

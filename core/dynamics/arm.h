@@ -1,9 +1,8 @@
 // Kinematics and dynamics of a chain of n revolute and prismatic joints.
 //
 // Everything is expressed in the base frame about its origin O. A joint's motion is the spatial
-// axis S_j = (a_j, o_j): turning at rate 1 gives the body angular velocity a_j and gives the point
-// of the body that is at O the velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its
-// axis.
+// axis S_j = (a_j, o_j): a rate of 1 gives the body the angular velocity a_j and its point at O the
+// velocity o_j = p_j x a_j. A slide has a_j = 0 and o_j along its axis.
 //
 // M and C are sums over the links of J_k^T I_k J_k and J_k^T (I_k Jdot_k + B_k J_k), with
 //     B = 1/2 [ (v x*) I + (I v) xbar* - I (v x) ],
@@ -28,12 +27,12 @@ namespace limpid {
 template <int N>
 class Arm {
  public:
-  // Where the links are at a configuration x. S: double, or Pair for two configurations at a time.
+  // Poses of the links at a configuration x. S: double, or Pair for two configurations at a time.
   template <class S>
   struct FramesOf {
     std::array<Mat3Of<S>, kCapacity<N>> R;  // link axes in the base frame
     std::array<Vec3Of<S>, kCapacity<N>> p;  // link origins [m]
-    std::array<Vec3Of<S>, kCapacity<N>> a;  // joint axes, unit; 0 of slides
+    std::array<Vec3Of<S>, kCapacity<N>> a;  // joint axes, unit; 0 for slides
     std::array<Vec3Of<S>, kCapacity<N>> o;  // velocity of O for unit rate [m]
   };
   using Frames = FramesOf<double>;
@@ -45,12 +44,12 @@ class Arm {
     Vec3Of<S> mc = Vec3Of<S>::Zero();
     Symmetric3<S> I;
   };
-  // What is moved there. The first link only goes about or along its axis, which stays: a number
-  // says all of it, and it is left out.
+  // Rigid bodies of the links at a configuration. The first link is left out: its own joint moves
+  // it only about or along a fixed axis, so one number describes it.
   template <class S>
   struct Bodies {
     std::array<Body<S>, kCapacity<N>> link;
-    std::array<Body<S>, kCapacity<N>> outer;  // link j and all beyond it as one
+    std::array<Body<S>, kCapacity<N>> outer;  // link j and all links beyond it as one
     // Momentum of outer[j] while joint j turns at 1.
     std::array<Vec3Of<S>, kCapacity<N>> moment, force;
   };
@@ -63,9 +62,9 @@ class Arm {
     return dof_;
   }
 
-  // Sines and cosines of a configuration, and of one further on by dx: to round-off, and for small
-  // steps without asking for sines again, which one joint's renewal does. Of a slide: its
-  // coordinate in the place of the sine.
+  // Sines and cosines of a configuration; for a slide its coordinate instead of the sine. turned()
+  // gives those further on by dx, exact to round-off, for small steps without computing sines anew;
+  // renew() computes one joint's.
   template <class S>
   struct AnglesOf {
     VecOf<N, S> sin, cos;
@@ -88,7 +87,7 @@ class Arm {
   // M(x), and the torque C(x, v) v alone: cheaper where the matrix is not needed [N m].
   void inertia_bias(const Frames& f, const Vec<N>& v, Mat<N>& M, Vec<N>& Cv) const;
 
-  // The same in two steps, for who learns v only from M.
+  // The same in two steps, for callers that learn v only from M.
   template <class S>
   void inertia(const FramesOf<S>& f, Bodies<S>& bodies, MatOf<N, S>& M) const;
   template <class S>
@@ -98,11 +97,11 @@ class Arm {
   void bias(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, S>& v,
             VecOf<N, S>& Cv) const;
 
-  // One of two configurations.
+  // Copies configuration `which` of a pair.
   void take(const FramesOf<Pair>& both, int which, Frames& one) const;
 
-  // Torque of the motors that holds the links' weight: the slope of its potential [N m]. Gravity in
-  // the base's frame [m/s^2].
+  // Torque of the motors that holds the links' weight: the slope of its potential [N m]. gravity:
+  // in the base's frame [m/s^2].
   Vec<N> weight(const Frames& f, const Vec3& gravity) const;
 
   template <class S>
@@ -119,20 +118,21 @@ class Arm {
     const auto i = static_cast<std::size_t>(link);
     return f.p[i] + f.R[i] * in_link.cast<S>();
   }
-  // Velocity of a point fixed to `link`, now at `world`, per joint rate [m]; J is 3 x n.
+  // Velocity of a point fixed to `link`, now at `world`, for unit joint rates [m]; J is 3 x n.
   template <class S>
   void point_jacobian(const FramesOf<S>& f, int link, const Vec3Of<S>& world,
                       JacobianOf<N, S>& J) const;
-  // Acceleration of that point at constant joint rates, Jdot v [m/s^2].
+  // Acceleration of such a point at constant joint rates, Jdot v [m/s^2].
   template <class S>
   Vec3Of<S> point_drift(const FramesOf<S>& f, int link, const Vec3Of<S>& world,
                         const VecOf<N, S>& v) const;
 
  private:
-  // A joint turns two columns of R0 Q and leaves the third, its axis; Q^T then leads to the link's
-  // own axes. Where the axis is one of those, Q only reorders: Q and Q^T are left out.
+  // Model of a joint. It turns two columns of R0 Q and leaves the third, its axis; Q^T then leads
+  // to the link's own axes. If the axis is one of those, Q only reorders, and Q and Q^T are left
+  // out.
   //
-  // Numbers of models stand there twice, ready for two configurations at a time.
+  // Each number is stored as a pair, ready for two configurations at a time.
   struct JointModel {
     Mat3Of<Pair> R0;                       // or R0 Q
     bool shifted = false;                  // R0 is not the identity
@@ -161,7 +161,7 @@ class Arm {
   int dof_;
   std::array<JointModel, kCapacity<N>> joints_;
   std::array<LinkModel, kCapacity<N>> links_;
-  double first_inertia_ = 0;  // of the first link as its joint moves it [kg m^2]
+  double first_inertia_ = 0;  // inertia of the first link along its joint [kg m^2]
   Vec3 tip_;
 };
 
@@ -169,7 +169,7 @@ extern template class Arm<3>;
 extern template class Arm<7>;
 extern template class Arm<kAnyDof>;
 
-// A number of every joint.
+// Values of `field`, one for each joint.
 template <int N>
 Vec<N> of_joints(const ArmDescription& arm, double Joint::*field) {
   Vec<N> values = Vec<N>::Zero(arm.dof());

@@ -1,9 +1,9 @@
-// An arm as its file gives it: a chain of revolute and prismatic joints. Fixed joints are already
-// merged.
+// Description of an arm from its file: a chain of revolute and prismatic joints; fixed joints are
+// already merged.
 //
-// All that is said of joints in rad is said of slides in units of travel, so that coordinates,
-// velocities, torques and gains mean the same for both: where a joint has 1 rad, a slide has 10 cm,
-// and its "torque" of 1 N m is a force of 10 N.
+// Quantities in rad are, for slides, in units of travel, so that coordinates, velocities, torques
+// and gains mean the same for both. 1 rad of a joint corresponds to 10 cm of a slide, and a slide's
+// "torque" of 1 N m is a force of 10 N.
 #pragma once
 
 #include <limits>
@@ -16,7 +16,7 @@
 
 namespace limpid {
 
-struct Model;  // a picture, of no interest here
+struct Model;  // a model to draw, not used here
 
 inline constexpr double kSlideUnit = 0.1;  // travel of a slide per unit of its coordinate [m]
 
@@ -31,7 +31,7 @@ struct Joint {
   double effort = 0;                                        // torque limit [N m]
   double damping = 0;                                       // viscous, b_d [N m s/rad]
   double friction = 0;                                      // Coulomb [N m]
-  // What pulls at it in every pose: -(spring x + offset) [N m/rad, N m].
+  // Pull of a spring in every pose: -(spring x + offset) [N m/rad, N m].
   double spring = 0, offset = 0;
 };
 
@@ -42,18 +42,18 @@ struct Link {
   Mat3 inertia = Mat3::Zero();  // about the centre of mass, axes of the link [kg m^2]
 };
 
-// What to draw: one shape fixed to a link. `size` is the box's edges, (radius, length, -) of a
-// cylinder along z, (radius, -, -) of a sphere, or the scale of a mesh, negative where it mirrors.
-// A stand-in is what could not be read: a link of which nothing else is seen is drawn as a capsule.
+// A shape to draw, fixed to a link. `size`: edges of a box; (radius, length, -) of a cylinder along
+// z; (radius, -, -) of a sphere; the scale of a mesh, negative where it mirrors. A stand-in
+// replaces a shape that could not be read: a link with no other shape is drawn as a capsule.
 struct Visual {
   enum class Shape { mesh, box, cylinder, sphere, stand_in };
   int link = -1;                   // index into links, -1 the base
   Pose origin = Pose::Identity();  // in the link frame
   Shape shape = Shape::mesh;
-  std::string mesh = {};  // absolute path of a model; glTF ones have y up, which is turned to z
+  std::string mesh = {};  // absolute path of a model; in glTF y is up, which is turned to z
   Vec3 size = Vec3::Ones();
   std::optional<Eigen::Vector4f> color = {};  // sRGB and opacity; of a mesh without its own
-  std::shared_ptr<const Model> model = {};    // of the mesh, once somebody has read it
+  std::shared_ptr<const Model> model = {};    // of the mesh, after it has been read
 };
 
 // A named frame of the file: every URDF link, also those merged through fixed joints.
@@ -68,24 +68,24 @@ struct ArmDescription {
   std::vector<Joint> joints;    // n, base first
   std::vector<Link> links;      // n, link i is moved by joint i; its frame is that of joint i
   Pose tip = Pose::Identity();  // in the last link's frame
-  std::string tip_link;         // the file's link that it is the origin of
+  std::string tip_link;         // link of the file whose origin is the tip
   Vec3 gravity{0, 0, -9.81};    // in the base's frame, as the arm stands [m/s^2]
-  // Of the device that this arm was identified from, from a reading to the torque that answers it,
-  // beyond the tick [s]. An arm without it was not identified: its numbers are its file's.
+  // Delay of the device that this arm was identified from: from a reading to its answering torque,
+  // beyond the tick [s]. Empty: not identified, the numbers are the file's.
   std::optional<double> delay;
   std::vector<NamedFrame> frames;
   std::vector<Visual> visuals;
-  std::string urdf;                   // the text it came from
-  std::vector<std::string> warnings;  // what the text lacks, and what took its place, for people
+  std::string urdf;                   // the text that described it
+  std::vector<std::string> warnings;  // defects of the text and their substitutes, for people
 
   int dof() const { return static_cast<int>(joints.size()); }
   bool slides(std::size_t joint) const { return joints[joint].kind == Joint::Kind::prismatic; }
 };
 
-// The middle of each joint's limits, 0 where there are none; bent from there where that leaves the
-// tip a direction in which it cannot move, as an arm stretched out has [rad].
+// Middle of each joint's limits, 0 where there are none [rad]. If the tip could not move in some
+// direction there, as in an arm stretched out, joints are bent from it.
 Eigen::VectorXd rest_pose(const ArmDescription& arm);
-// Where the tip is then [m].
+// Position of the tip in rest_pose() [m].
 Vec3 rest_tip(const ArmDescription& arm);
 
 }  // namespace limpid

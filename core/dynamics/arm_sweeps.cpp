@@ -1,5 +1,5 @@
-// Where links are, what they weigh and what they do as they move: sweeps along the chain, for one
-// configuration or two at a time.
+// Sweeps along the chain, for poses, inertia and motion of the links, for one configuration or two
+// at a time.
 #include "core/dynamics/arm.h"
 
 namespace limpid {
@@ -131,7 +131,7 @@ void Arm<N>::coriolis(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf
     adot[j] = w_sum.cross(f.a[j]);
     odot[j] = u_sum.cross(f.a[j]) + w_sum.cross(f.o[j]);
   }
-  // Inward: one column and one row of C each.
+  // Inward sweep: one column and one row of C for each joint.
   Symmetric3<S> half_Idot;
   Vec3Of<S> half_L = Vec3Of<S>::Zero(), h = Vec3Of<S>::Zero();
   for (std::size_t j = size(); j-- > 1;) {
@@ -158,7 +158,7 @@ void Arm<N>::coriolis(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf
       }
     }
   }
-  // Its own axis stays.
+  // The first joint's own axis does not move.
   C(0, 0) = f.a[0].dot(half_Idot * f.a[0]) - f.o[0].dot(h.cross(f.a[0]));
 }
 
@@ -167,9 +167,9 @@ template <class S>
 void Arm<N>::bias(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, S>& v,
                   VecOf<N, S>& Cv) const {
   Cv.resize(dof());
-  // Outward: velocity (w, u) of each link and velocity-product acceleration (wdot, udot), that of
-  // its point at O; and what changes its momentum and angular momentum about O.
-  // The first link, which only turns about its axis or slides along it, needs no torque for that.
+  // Outward: velocity (w, u) of each link; velocity-product acceleration (wdot, udot) of its point
+  // at O; rates of its momentum and angular momentum about O. The first link, which only turns
+  // about its axis or slides along it, needs no torque for these.
   std::array<Vec3Of<S>, kCapacity<N>> moment, force;
   const Vec3Of<S> zero = Vec3Of<S>::Zero();
   moment[0] = force[0] = zero;
@@ -187,7 +187,7 @@ void Arm<N>::bias(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, 
     force[j] = b.m * udot - b.mc.cross(wdot) + w.cross(h);
     moment[j] = b.I * wdot + b.mc.cross(udot) + w.cross(L) + u.cross(h);
   }
-  // Inward.
+  // Inward: sums of moments and forces.
   Vec3Of<S> all_moment = zero, all_force = zero;
   for (std::size_t j = size(); j-- > 0;) {
     all_moment += moment[j];

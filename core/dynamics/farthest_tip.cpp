@@ -14,7 +14,7 @@ using Any = Arm<kAnyDof>;
 constexpr double kPi = std::numbers::pi;
 constexpr int kMostStarts = 64;
 constexpr int kMostSweeps = 100;      // over all joints, from one start
-constexpr int kMostFrames = 100'000;  // looked at in all, times joints: what bounds the time
+constexpr int kMostFrames = 100'000;  // frames times joints in all: bounds the time
 
 class Climb {
  public:
@@ -25,8 +25,8 @@ class Climb {
 
   double distance(const Vec<kAnyDof>& x) const { return (arm_.tip_at(x) - from_).norm(); }
 
-  // Moves one joint after the other to where the tip is farthest; the others stay meanwhile.
-  // Returns how many frames it looked at.
+  // Moves one joint after the other to the position that is farthest for the tip, with the others
+  // fixed. Returns how many frames it computed.
   int up(Vec<kAnyDof>& x) const {
     double before = distance(x);
     int looked = 1;
@@ -63,8 +63,8 @@ class Climb {
     if (distance(other) > distance(x)) x = other;
   }
 
-  // The tip goes round a circle, about a point c that is d from where it is measured from; u leads
-  // from c to the tip. Turned further by t, the squared distance is a constant and
+  // The tip moves on a circle with centre c; d leads from from_ to c, u from c to the tip. Turned
+  // further by t, the squared distance is a constant and
   // 2 d.u cos t + 2 d.(a x u) sin t.
   void turn(int i, const Any::Frames& f, Vec<kAnyDof>& x) const {
     const auto k = static_cast<std::size_t>(i);
@@ -77,7 +77,7 @@ class Climb {
     const double top = std::atan2(across, along);
     double t = top + 2 * kPi * std::ceil((j.lower - x[i] - top) / (2 * kPi));
     if (!std::isfinite(t)) t = top;
-    if (x[i] + t > j.upper) {  // out of the limits: one of them
+    if (x[i] + t > j.upper) {  // out of the limits: the better limit
       const double down = j.lower - x[i], up = j.upper - x[i];
       t = gain(down) > gain(up) ? down : up;
     }

@@ -1,4 +1,4 @@
-// How far an arm gets.
+// The farthest point that an arm's tip reaches.
 #pragma once
 
 #include "core/dynamics/arm_description.h"
@@ -6,14 +6,14 @@
 namespace limpid {
 
 struct FarthestTip {
-  double distance = 0;  // from the origin of the first joint [m]
-  Eigen::VectorXd at;   // a configuration within the limits in which the tip is there [rad]
+  double distance = 0;  // distance from the origin of the first joint [m]
+  Eigen::VectorXd at;   // configuration of the tip there, within the limits [rad]
 };
 
-// The point farthest from the origin of the first joint that the tip gets to within the joints'
-// limits; a slide without limits stays at 0. Found by climbing from many configurations, the same
-// ones every time: never farther than the arm gets, and where links fold in many ways it may be
-// somewhat nearer. Takes milliseconds.
+// Finds the point farthest from the origin of the first joint that the tip reaches within the
+// joints' limits; a slide without limits stays at 0. Climbs from many configurations, always the
+// same ones: never too far, and where links fold in many ways perhaps somewhat too near. Takes
+// milliseconds.
 FarthestTip farthest_tip(const ArmDescription& arm);
 
 }  // namespace limpid

@@ -73,7 +73,8 @@ std::optional<Eigen::VectorXd> inverse_kinematics(const ArmDescription& descript
 
 double reach(const ArmDescription& arm) {
   double length = 0;
-  // From one joint that turns to the next: slides between keep their directions, they span a box.
+  // Span from one revolute joint to the next: slides between them keep their directions and span a
+  // box.
   Vec3 least = Vec3::Zero(), most = Vec3::Zero();
   Mat3 turned = Mat3::Identity();
   const auto add = [&](const Vec3& one, const Vec3& other) {

@@ -1,4 +1,4 @@
-// Configurations that put the tip somewhere.
+// Inverse kinematics: configurations for a given position of the tip.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,12 @@
 
 namespace limpid {
 
-// A configuration within the joint limits with the tip at `target` [m], to a micrometre; of many,
-// one near `guess`. Nothing if none is found.
+// Returns a configuration within the joint limits with the tip at `target` [m], to a micrometre; of
+// many, one near `guess`. Empty if none is found.
 std::optional<Eigen::VectorXd> inverse_kinematics(const ArmDescription& arm, const Vec3& target,
                                                   const Eigen::VectorXd& guess);
 
-// No point further than this from the first joint can be reached [m].
+// Bound of the distance from the first joint that the tip can reach [m].
 double reach(const ArmDescription& arm);
 
 }  // namespace limpid

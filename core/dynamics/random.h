@@ -1,4 +1,4 @@
-// Numbers that nobody chose, the same for a seed everywhere.
+// Random numbers, the same for a seed everywhere.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-// Not a distribution of the standard library: those differ between libraries.
+// A generator without the standard library's distributions, which differ between libraries.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}

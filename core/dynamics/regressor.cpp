@@ -46,14 +46,15 @@ void set_parameters(Link& link, const LinkParameters& p) {
       link.mass * (link.com.squaredNorm() * Mat3::Identity() - link.com * link.com.transpose());
 }
 
-// Newton and Euler for each link, outward; its force and moment then act on all joints before it.
+// Newton's and Euler's equations for each link, outward; its force and moment act on all joints
+// before it.
 Eigen::MatrixXd regressor(const Arm<kAnyDof>& arm, const Vec<kAnyDof>& x, const Vec<kAnyDof>& v,
                           const Vec<kAnyDof>& a, const Vec3& gravity) {
   const auto n = static_cast<Eigen::Index>(arm.dof());
   Arm<kAnyDof>::Frames f;
   arm.frames(x, f);
   Eigen::MatrixXd Y = Eigen::MatrixXd::Zero(n, kLinkParameters * n);
-  // Of the link's point at O: velocity and acceleration. Gravity is the base's acceleration upward.
+  // Velocity and acceleration of the link's point at O. Gravity is the base's acceleration upward.
   Vec3 w = Vec3::Zero(), u = Vec3::Zero(), wdot = Vec3::Zero(), udot = -gravity;
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto J = static_cast<std::size_t>(j);

@@ -9,10 +9,10 @@ namespace {
 
 using Any = Arm<kAnyDof>;
 
-constexpr double kStretched = 0.1;  // the slowest direction of the tip against the fastest [-]
+constexpr double kStretched = 0.1;  // least ratio of the tip's slowest direction to its fastest [-]
 
-// How well the tip moves in its slowest direction, and in its fastest [m]; of one or two joints, in
-// one or two directions.
+// Mobility of the tip in its slowest and fastest direction [m]; with one or two joints, among one
+// or two directions.
 Eigen::Vector2d mobility(const Any& arm, const Eigen::VectorXd& x) {
   Any::Frames f;
   arm.frames(Vec<kAnyDof>(x), f);
@@ -37,8 +37,8 @@ Eigen::VectorXd rest_pose(const ArmDescription& description) {
   const Any arm(description);
   const Eigen::Vector2d straight = mobility(arm, x);
   if (straight[0] > kStretched * straight[1]) return x;
-  // One joint after the other to where the tip moves best, as few of them as help, and upwards
-  // rather than down.
+  // Bends one joint after the other to where the tip moves best, as few as help, and upwards rather
+  // than down.
   const Eigen::VectorXd middle = x;
   double best = straight[0];
   for (int pass = 0; pass < 2; ++pass) {

@@ -7,7 +7,7 @@ namespace limpid {
 template <int N>
 double tip_force(const Vec<N>& tau, const Jacobian<N>& J) {
   Mat3 A = J * J.transpose();
-  A.diagonal().array() += 1e-9 * (A.trace() + 1e-12);  // stretched out, or in a plane
+  A.diagonal().array() += 1e-9 * (A.trace() + 1e-12);  // for an arm stretched out, or in a plane
   const Vec3 b = J * tau;
   return A.ldlt().solve(b).norm();
 }

@@ -1,4 +1,4 @@
-// How much torque may leave for the motors: so much a joint, and so much force at the tip.
+// Limits of the motors' torque: at each joint, and of the force at the tip.
 #pragma once
 
 #include <limits>
@@ -7,35 +7,35 @@
 
 namespace limpid {
 
-// The smallest force at the tip that makes this torque, as far as a force there can [N].
+// Smallest force at the tip that makes this torque, as far as a force there can [N].
 template <int N>
 double tip_force(const Vec<N>& tau, const Jacobian<N>& J);
 
-// Both limits leave convex sets of torques about zero: a torque between two that are allowed is
-// allowed, and so is a part of one.
+// Both limits allow convex sets of torques about zero: torques between two allowed ones are
+// allowed, and so are parts of one.
 template <int N>
 struct TorqueLimits {
-  // Without a limit for the tip.
+  // Limits at the joints alone.
   TorqueLimits(const Vec<N>& most) : joints(most) {}  // NOLINT(google-explicit-constructor)
   TorqueLimits(const Vec<N>& most, const Jacobian<N>& tip, double force)
       : joints(most),
         J(force < std::numeric_limits<double>::infinity() ? &tip : nullptr),
         most_force(force) {}
 
-  // Each joint to its limit, then all of them by one factor to that of the tip: the factor takes no
-  // joint beyond its limit again.
+  // Clips each joint to its limit, then scales all by one factor to the tip's limit; the factor
+  // takes no joint beyond its limit again.
   Vec<N> within(const Vec<N>& tau) const {
     const Vec<N> held = tau.cwiseMin(joints).cwiseMax(-joints);
     return held * part(held);
   }
-  // Whether the tip's limit takes something off what the joints' leave.
+  // True if the tip's limit cuts more than the joints' limits do.
   bool tip_cuts(const Vec<N>& tau) const {
     return part(tau.cwiseMin(joints).cwiseMax(-joints)) < 1;
   }
-  // Joint limits that keep the tip's limit for torques in about this direction: clipping each joint
-  // to them takes a torque in this direction where within() does [N m].
+  // Joint limits that keep the tip's limit for torques in about this direction: clipping to them
+  // takes a torque in this direction to the same value as within() [N m].
   Vec<N> along(const Vec<N>& tau) const {
-    constexpr double kAside = 0.01;  // of a joint's limit is left where the torque has none of it
+    constexpr double kAside = 0.01;  // of a joint's limit: left where the torque has no component
     if (!tip_cuts(tau)) return joints;
     return within(tau).cwiseAbs().cwiseMax(kAside * joints);
   }

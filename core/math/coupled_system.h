@@ -1,12 +1,12 @@
-// Two sets of velocities that are solved for together.
+// Linear systems of two coupled sets of velocities.
 #pragma once
 
 #include "core/math/solve.h"
 
 namespace limpid {
 
-// Mean velocities over a tick of all that a contact can move [rad/s]. Bodies that move bring theirs
-// along; what stands still has none.
+// Mean velocities over a tick of all that a contact can move [rad/s]. Moving bodies add their own
+// velocities; fixed objects have none.
 template <int N>
 struct Motion {
   Vec<N> w;  // of the device
@@ -18,13 +18,13 @@ struct Motion {
   }
 };
 
-// [ww wu; uw uu] (w, u) = (b_w, b_u), by the complement of the first block. Rest: the factor of
-// that complement, SteadyFactor or, where it is not known to be steady, Factor.
+// Solves [ww wu; uw uu] (w, u) = (b_w, b_u) by the complement of the first block. Rest: that
+// complement's factor; Factor where its symmetric part need not be positive definite.
 template <int N, template <int> class Rest = SteadyFactor>
 class CoupledSystem {
  public:
   CoupledSystem() = default;
-  // Each a wide matrix, or an expression of them.
+  // Each argument: a wide matrix, or an expression of wide matrices.
   template <class WW, class WU, class UW, class UU>
   CoupledSystem(const WW& ww, const WU& wu, const UW& uw, const UU& uu) : across_(wu), back_(uw) {
     first_.compute(ww);

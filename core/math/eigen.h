@@ -6,17 +6,17 @@
 
 namespace limpid {
 
-// Of a square matrix, in no order.
+// Eigenvalues of a square matrix, in no order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
-// Of a symmetric matrix: values in rising order, and unit vectors, a column each.
+// Eigenvalues of a symmetric matrix in rising order, and unit eigenvectors, a column each.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 
-// The shortest z of those with the least |A z - b|.
+// Returns the shortest z of those with the least |A z - b|.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace limpid

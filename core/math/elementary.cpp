@@ -1,5 +1,5 @@
-// Nothing but sums, products and quotients in the order in which they are written: IEEE 754 says
-// what each of them is to the last bit. The series are Taylor's, as long as round-off asks for.
+// Elementary functions by sums, products and quotients alone, in the order written: IEEE 754
+// defines each to the last bit. The series are Taylor's, as long as round-off asks for.
 #include "core/math/elementary.h"
 
 #include <array>
@@ -14,13 +14,13 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-// What is left of an angle when whole quarter turns are taken away: high + low, from -pi/4 to pi/4.
+// Rest of an angle after whole quarter turns: high + low, from -pi/4 to pi/4.
 struct Rest {
   int quarters;  // modulo 4
   double high, low;
 };
 
-// a + b without loss: the sum, and what was rounded off.
+// a + b without loss: the sum, and its rounding error.
 struct Sum {
   Sum(double a, double b) : high(a + b) {
     const double b_taken = high - a;
@@ -31,8 +31,8 @@ struct Sum {
 
 constexpr double kNearTurns = 0x1p20;  // [rad]
 
-// By Cody and Waite: pi/2 in parts of 33 bits, of which products with the number of quarter turns
-// are exact, and a last one that says it to 2^-157.
+// Rest by Cody and Waite: pi/2 in parts of 33 bits, whose products with the number of quarter turns
+// are exact, and a last part that completes it to 2^-157.
 Rest near_rest(double x) {
   constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
   constexpr double kFirst = 0x1.921fb544p+0, kSecond = 0x1.0b4611a6p-34;
@@ -46,8 +46,8 @@ Rest near_rest(double x) {
   return {quarters & 3, high, (third.high - high) + rest};
 }
 
-// By Payne and Hanek: of the binary digits of 2/pi only those matter whose products with x are not
-// whole turns. x = m 2^e; the digits are taken from the one on that counts half turns, 192 of them.
+// Rest by Payne and Hanek: only those binary digits of 2/pi matter whose products with x are not
+// whole turns. x = m 2^e; 192 digits are taken, beginning with the one that counts half turns.
 Rest far_rest(double x) {
   constexpr std::array<std::uint64_t, 20> kTwoOverPi{0,
                                                      0xa2f9836e4e441529,
@@ -74,7 +74,7 @@ Rest far_rest(double x) {
   const int e = static_cast<int>(bits >> 52 & 0x7ff) - 1075;
   const std::uint64_t m = (bits & 0xfffffffffffff) | 0x10000000000000;
 
-  const auto first = static_cast<std::size_t>(64 + e - 2);  // digit; before it m counts whole turns
+  const auto first = static_cast<std::size_t>(64 + e - 2);  // digit; before it: whole turns
   const auto digits = [&](std::size_t word) {
     const std::size_t at = first / 64 + word, shift = first % 64;
     return shift == 0 ? kTwoOverPi[at]
@@ -84,7 +84,7 @@ Rest far_rest(double x) {
   const Wide p1 = Wide{m} * digits(1) + (p2 >> 64);
   const std::uint64_t p0 = m * digits(0) + static_cast<std::uint64_t>(p1 >> 64);
 
-  // Two digits of quarter turns, then the fraction of one, which is taken from the nearer side.
+  // Two digits of quarter turns, then the fraction of a quarter turn, taken from the nearer side.
   int quarters = static_cast<int>(p0 >> 62);
   const auto l1 = static_cast<std::uint64_t>(p1), l2 = static_cast<std::uint64_t>(p2);
   Wide upper = Wide{p0 << 2 | l1 >> 62} << 64 | (l1 << 2 | l2 >> 62);
@@ -101,7 +101,7 @@ Rest far_rest(double x) {
     lower <<= 1;
   }
 
-  // Times pi/2, the upper half of the product.
+  // Upper half of the product with pi/2.
   const auto upper_half = [](Wide a, Wide b) {
     const Wide kLow = ~std::uint64_t{0};
     const Wide a1 = a >> 64, a0 = a & kLow, b1 = b >> 64, b0 = b & kLow;
@@ -137,7 +137,7 @@ SineCosine of_rest(double high, double low) {
           most + (((1 - most) - half) + (z * z * c - high * low))};
 }
 
-// Longer numbers: of these, too, the processor rounds sums, products and quotients exactly.
+// Longer numbers, whose sums, products and quotients the processor rounds exactly, too.
 using Long = long double;
 constexpr Long kLn2 = 0x0.b17217f7d1cf79abc9e3b39803f2f6afp0L;
 
@@ -201,7 +201,7 @@ double exponential(double x) {
 double logarithm(double x) { return static_cast<double>(long_logarithm(x)); }
 
 double power(double x, double y) {
-  constexpr Long kMost = 12000;  // of the exponent: far beyond doubles
+  constexpr Long kMost = 12000;  // limit of the exponent: far beyond doubles
   const Long t = static_cast<Long>(y) * long_logarithm(x);
   if (t > kMost) return std::numeric_limits<double>::infinity();
   if (t < -kMost) return 0;

@@ -1,4 +1,4 @@
-// What of a signal is fast.
+// High-pass filter of sampled signals.
 #pragma once
 
 #include <array>
@@ -8,11 +8,11 @@
 
 namespace limpid {
 
-// Butterworth's high pass of fourth order, sample by sample: two sections of second order, each the
-// bilinear transform of s^2 / (s^2 + s w/Q + w^2).
+// Butterworth's high pass of fourth order: two sections of second order, each the bilinear
+// transform of s^2 / (s^2 + s w/Q + w^2).
 class HighPass {
  public:
-  // Passes what is above `corner`, of samples at `rate` [Hz].
+  // Passes frequencies above `corner` [Hz], of samples at `rate` [Hz].
   HighPass(double corner, double rate) {
     constexpr double kQ[] = {0.54119610014619698, 1.3065629648763766};
     const double w = 2 * std::numbers::pi * corner / rate;

@@ -14,7 +14,7 @@ namespace limpid {
 inline constexpr int kMaxDof = 32;
 inline constexpr int kAnyDof = Eigen::Dynamic;
 
-// f(N), N a constant: dof where code is compiled for just that, or kAnyDof.
+// Calls f(N) with a constant N: dof where code is compiled for that number, else kAnyDof.
 template <class F>
 decltype(auto) with_dof(int dof, F&& f) {
   switch (dof) {

@@ -1,4 +1,4 @@
-// Factors and linear solves of joint size, without allocation. For three joints closed forms are
+// Factors and linear solves of joint size, without allocation. Three joints use closed forms,
 // several times faster than factorisations.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace limpid {
 
-// The inverse of a symmetric positive-definite 3 x 3 matrix; only the lower triangle of A is read.
+// Inverse of a symmetric positive-definite 3 x 3 matrix; only the lower triangle of A is read.
 template <class S>
 Mat3Of<S> inverse_symmetric(const Mat3Of<S>& A) {
   const S a = A(0, 0), b = A(1, 0), c = A(2, 0), d = A(1, 1), e = A(2, 1), f = A(2, 2);
@@ -27,7 +27,7 @@ Mat3Of<S> inverse_symmetric(const Mat3Of<S>& A) {
   return inverse;
 }
 
-// Each column of B in the place where `solve` works, whose rows from n on are zero.
+// Applies `solve` to each column of B, in a work vector whose rows from n on are zero.
 template <int N, class B, class Solve>
 auto solve_columns(const B& b, const Solve& solve) -> typename B::PlainObject {
   typename B::PlainObject x(b.rows(), b.cols());
@@ -41,8 +41,8 @@ auto solve_columns(const B& b, const Solve& solve) -> typename B::PlainObject {
   return x;
 }
 
-// A symmetric positive-definite matrix, whose lower triangle alone is read, made ready for several
-// right sides.
+// Factor of a symmetric positive-definite matrix for several right sides; only its lower triangle
+// is read.
 template <int N>
 class SymmetricFactor {
  public:
@@ -67,10 +67,10 @@ class SymmetricFactor {
           b, [&](double* x) { wide::solve<N>(factor_.cols(), factor_.data(), over_.data(), x); });
     }
   }
-  // L and the inverses of its blocks of four, for loops that solve in the midst of others.
+  // L and the inverses of its blocks of four, for loops that merge this solve with others.
   const double* lower() const requires(N != 3) { return factor_.data(); }
   const double* corners() const requires(N != 3) { return over_.data() + over_.rows(); }
-  // X A^-1 in the place of X.
+  // X becomes X A^-1.
   void divide(Wide<N>& X) const {
     if constexpr (N == 3) {
       X *= factor_;
@@ -82,23 +82,23 @@ class SymmetricFactor {
  private:
   struct Nothing {};
   Wide<N> factor_;                                         // L, or the inverse
-  std::conditional_t<N == 3, Nothing, Diagonal<N>> over_;  // L's
+  std::conditional_t<N == 3, Nothing, Diagonal<N>> over_;  // of L
 };
 
-// A^-1 B for a symmetric positive-definite A, whose lower triangle alone is read.
+// A^-1 B for a symmetric positive-definite A; only its lower triangle is read.
 template <int N, class B>
 auto solve_symmetric(const Mat<N>& A, const B& b) -> typename B::PlainObject {
   return SymmetricFactor<N>(A).solve(b);
 }
 
-// A matrix whose symmetric part is positive definite, as those of inertia over time are, turning
-// and damped: it has its factors without its rows being exchanged.
+// Factors of a matrix whose symmetric part is positive definite, as inertia over time with rotation
+// and damping has it; no pivoting needed.
 template <int N>
 class SteadyFactor {
  public:
   SteadyFactor() = default;
   explicit SteadyFactor(const Wide<N>& A) { compute(A); }
-  // A: a wide matrix, or an expression of them.
+  // A: a wide matrix, or an expression of wide matrices.
   template <class A>
   void compute(const A& a) {
     if constexpr (N == 3) {
@@ -121,7 +121,7 @@ class SteadyFactor {
       });
     }
   }
-  // X A^-1 in the place of X.
+  // X becomes X A^-1.
   void divide(Wide<N>& X) const {
     if constexpr (N == 3) {
       X *= lower_;
@@ -137,7 +137,7 @@ class SteadyFactor {
   std::conditional_t<N == 3, Nothing, Diagonal<N, true>> over_;  // of U^T; blocks of both
 };
 
-// A regular matrix made ready for several right sides.
+// LU factors of a regular matrix for several right sides, with pivoting.
 template <int N>
 class Factor {
  public:
@@ -181,9 +181,8 @@ auto solve(const Mat<N>& A, const B& b) -> typename B::PlainObject {
   }
 }
 
-// The factor of an inertia that moves with the arm, and what of C its rate leaves.
-
-// M = L L^T; with Mdot = C + C^T, S = C - L Ldot^T is skew.
+// Factor M = L L^T of an inertia that moves with the arm. With Mdot = C + C^T,
+// S = C - L Ldot^T is skew.
 template <int N>
 class MovingFactor {
  public:
@@ -197,7 +196,7 @@ class MovingFactor {
       wide::clear_above<N>(L_.cols(), L_.data());
     }
   }
-  // After that.
+  // Computes S; after compute().
   void follow(const Mat<N>& C) {
     if constexpr (N == 3) {
       S_ = limpid::skew_rest<N>(C, L_, cholesky_rate<N>(L_, C + C.transpose()));
@@ -228,7 +227,7 @@ class MovingFactor {
  private:
   Wide<N> L_, S_;
   struct Nothing {};
-  std::conditional_t<N == 3, Nothing, Diagonal<N>> over_;  // L's
+  std::conditional_t<N == 3, Nothing, Diagonal<N>> over_;  // of L
 };
 
 }  // namespace limpid

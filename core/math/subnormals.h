@@ -1,4 +1,4 @@
-// Numbers too small for full precision, which processors handle many times more slowly.
+// Treatment of subnormal numbers, which processors handle many times more slowly.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace limpid {
 
-// While one lives, its thread takes numbers below 1e-307 for zero. Whatever comes to rest fades
+// While one lives, its thread takes numbers below 1e-307 for zero. All that comes to rest fades
 // through them: without this a tick at rest would take several times as long as one in motion.
 class NoSubnormals {
  public:

@@ -1,5 +1,5 @@
-// Two numbers that go through the same arithmetic side by side, in one register of the processor:
-// two arms of one make cost as much as one.
+// Pairs of numbers side by side in one register, so that two arms of one make cost as much as one;
+// symmetric matrices of either.
 #pragma once
 
 #include "core/math/sizes.h"
@@ -41,14 +41,14 @@ using MatOf = Eigen::Matrix<S, N, N, 0, kCapacity<N>, kCapacity<N>>;
 template <int N, class S>
 using JacobianOf = Eigen::Matrix<S, 3, N, 0, 3, kCapacity<N>>;
 
-// The two side by side.
+// Makes one vector of pairs from two vectors.
 template <int N>
 VecOf<N, Pair> paired(const Vec<N>& first, const Vec<N>& second) {
   VecOf<N, Pair> both(first.size());
   for (Eigen::Index i = 0; i < both.size(); ++i) both[i] = Pair(first[i], second[i]);
   return both;
 }
-// One of them; of what is but one, that.
+// Component `which` of a pair; a plain double is its own component.
 inline double of(const Pair& both, int which) { return both[which]; }
 inline double of(double one, int) { return one; }
 template <class F>
@@ -64,17 +64,6 @@ void take(const Both& both, int which, One& one) {
   one.resize(both.rows(), both.cols());
   for (Eigen::Index i = 0; i < both.size(); ++i) one.data()[i] = of(both.data()[i], which);
 }
-
-}  // namespace limpid
-
-template <>
-struct Eigen::NumTraits<limpid::Pair> : Eigen::GenericNumTraits<double> {
-  using Real = limpid::Pair;
-  using NonInteger = limpid::Pair;
-  using Nested = limpid::Pair;
-  using Literal = limpid::Pair;
-};
-namespace limpid {
 
 // Symmetric 3 x 3 matrices, six numbers each.
 template <class S>
@@ -94,3 +83,11 @@ struct Symmetric3 {
 };
 
 }  // namespace limpid
+
+template <>
+struct Eigen::NumTraits<limpid::Pair> : Eigen::GenericNumTraits<double> {
+  using Real = limpid::Pair;
+  using NonInteger = limpid::Pair;
+  using Nested = limpid::Pair;
+  using Literal = limpid::Pair;
+};

@@ -1,4 +1,8 @@
-// Functions that are compiled twice, for SSE2 and AVX2, and chosen when the program is loaded.
+// Triangular matrices of joint size: factors, their rates, and solves in place, without allocation.
+//
+// Columns are stored one after another. Loops unroll where the number of joints is known when
+// compiling. For many joints four columns and four rows are worked on at a time, by the widest
+// vectors of the processor; each number is computed in the same way by all of them.
 #pragma once
 
 #include <array>
@@ -7,8 +11,9 @@
 
 #include "core/math/sizes.h"
 
-// Sanitizers cannot do with functions that are chosen while the program is loaded. No clone may
-// multiply and add in one: recordings are to be the same on all machines.
+// LIMPID_WIDE functions are compiled for SSE2 and AVX2 and chosen when the program is loaded, which
+// sanitizers cannot do. No clone may fuse multiply and add: recordings must be the same on all
+// machines.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define LIMPID_WIDE [[gnu::target_clones("avx2", "default")]]
@@ -17,21 +22,17 @@
 #endif
 namespace limpid {
 
-// Triangular matrices of joint size: factors, their rates, and solves in place, without allocation.
-// Columns are stored one after another. Where the number of joints is known when compiling, the
-// loops unroll; of many, four columns and four rows are worked on at a time, by the widest vectors
-// that the processor has, each number reckoned in the same way with all of them.
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 [[gnu::always_inline]] inline Four& four(double* x) { return *reinterpret_cast<Four*>(x); }
 [[gnu::always_inline]] inline const Four& four(const double* x) {
   return *reinterpret_cast<const Four*>(x);
 }
 
-// The functions below are for N joints known when compiling, or for any number of them: of those
-// triangular.cpp holds the code, which calls the same once more with kByFours.
+// The functions below are for N joints known when compiling, or for any number (kAnyDof), which
+// triangular.cpp compiles by calling them once more with kByFours.
 inline constexpr int kByFours = -4;
 
-// x -= four columns times four factors, in rows from `first` on, a whole number of fours.
+// x -= four columns times four factors, in rows from `first` on, a multiple of four of them.
 [[gnu::always_inline]] inline void take_four(const std::array<const double*, 4>& columns,
                                              const std::array<double, 4>& factors,
                                              Eigen::Index first, Eigen::Index n,
@@ -43,8 +44,8 @@ inline constexpr int kByFours = -4;
   }
 }
 
-// x -= sum of columns[k] * factors[k] in rows from `first` to n; of many joints, from up to three
-// rows before `first` on, which come to hold anything.
+// x -= sum of columns[k] * factors[k] in rows `first` to n. With kByFours up to three rows before
+// `first` may be overwritten.
 template <int N, class Column, class Factor>
 [[gnu::always_inline]] inline void take_off(Eigen::Index columns, const Column& column,
                                             const Factor& factor, Eigen::Index first,
@@ -82,8 +83,8 @@ template <int N>
   }
 }
 
-// D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of the lines
-// above.
+// D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of
+// factor_in().
 template <int N>
 [[gnu::always_inline]] inline void rate_in(Eigen::Index n, const double* L, double* D) {
   const auto column = [&](Eigen::Index k) -> const double* { return (k % 2 ? L : D) + k / 2 * n; };
@@ -101,7 +102,7 @@ template <int N>
   }
 }
 
-// S, given as C, becomes C - L Ldot^T where that is skew: half of it says all.
+// S, given as C, becomes C - L Ldot^T where that is skew, computed from its upper half.
 template <int N>
 [[gnu::always_inline]] inline void skew_in(Eigen::Index n, const double* L, const double* Ldot,
                                            double* S) {
@@ -137,7 +138,7 @@ template <int N>
   }
 }
 
-// x becomes L^-1 x as far as L's first `columns` columns go, its diagonal's ones left out.
+// x becomes L^-1 x by L's first `columns` columns; L's diagonal is one and not stored.
 template <int N>
 [[gnu::always_inline]] inline void go_forward(Eigen::Index columns, Eigen::Index n, const double* L,
                                               double* x) {
@@ -161,8 +162,8 @@ template <int N>
   }
 }
 
-// A becomes L and U of P A = L U, L's ones left out and U's diagonal inverted; row j was exchanged
-// with rows[j].
+// A becomes L and U of P A = L U, without L's diagonal of ones and with U's diagonal inverted; row
+// j was exchanged with rows[j].
 template <int N>
 [[gnu::always_inline]] inline void eliminate_in(Eigen::Index n, double* A, int* rows) {
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -209,8 +210,8 @@ void eliminate_in<kAnyDof>(Eigen::Index n, double* A, int* rows);
 template <>
 void solve_eliminated_in<kAnyDof>(Eigen::Index n, const double* LU, const int* rows, double* x);
 
-// The lower Cholesky factor, A = L L^T, of a symmetric positive-definite A, whose lower triangle
-// alone is read.
+// Lower Cholesky factor, A = L L^T, of a symmetric positive-definite A; only its lower triangle is
+// read.
 template <int N>
 Mat<N> cholesky(const Mat<N>& A) {
   Mat<N> L = A;
@@ -218,7 +219,7 @@ Mat<N> cholesky(const Mat<N>& A) {
   return L;
 }
 
-// How that factor moves with A: Adot = Ldot L^T + L Ldot^T.
+// Rate of the Cholesky factor: Adot = Ldot L^T + L Ldot^T.
 template <int N>
 Mat<N> cholesky_rate(const Mat<N>& L, const Mat<N>& Adot) {
   Mat<N> Ldot = Adot;
@@ -226,7 +227,7 @@ Mat<N> cholesky_rate(const Mat<N>& L, const Mat<N>& Adot) {
   return Ldot;
 }
 
-// C - L Ldot^T where that is skew.
+// C - L Ldot^T, where that is skew.
 template <int N>
 Mat<N> skew_rest(const Mat<N>& C, const Mat<N>& L, const Mat<N>& Ldot) {
   Mat<N> S = C;
@@ -234,7 +235,7 @@ Mat<N> skew_rest(const Mat<N>& C, const Mat<N>& L, const Mat<N>& Ldot) {
   return S;
 }
 
-// L^-1 x and L^-T x in the place of x.
+// x becomes L^-1 x, or L^-T x.
 template <int N>
 void solve_lower(const Mat<N>& L, double* x) {
   solve_lower_in<N>(L.rows(), L.data(), x);

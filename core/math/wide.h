@@ -1,7 +1,9 @@
-// Matrices of more than three joints with their columns filled up to whole fours, for what is cubic
-// in the number of joints: products, factors and divisions, eight rows and four columns at a time,
-// which stay in registers while everything that is taken off them passes by. Vectors are as wide as
-// the processor has them; each number is reckoned in the same way with all of them.
+// Wide matrices: more than three joints, their columns filled up to whole fours, for operations
+// cubic in the number of joints.
+//
+// Products, factors and divisions work on tiles of eight rows and four columns, which stay in
+// registers. Vectors are as wide as the processor's; each number is computed in the same way by all
+// of them.
 #pragma once
 
 #include "core/math/triangular.h"
@@ -14,10 +16,10 @@ inline constexpr int kWideRows = N == 3 || N == kAnyDof ? N : whole_fours(N);
 template <int N>
 inline constexpr int kMostWideRows = N == 3 ? 3 : whole_fours(kCapacity<N>);
 
-// n columns; their rows from n on are zero. Of three joints an ordinary matrix.
+// Wide matrix of n columns, whose rows from n on are zero; an ordinary matrix for three joints.
 template <int N>
 using Wide = Eigen::Matrix<double, kWideRows<N>, N, 0, kMostWideRows<N>, kCapacity<N>>;
-// One over a factor's diagonal, and then the inverses of its blocks of four; of two factors, if
+// Reciprocals of a factor's diagonal, then the inverses of its blocks of four; of two factors, if
 // Two.
 template <int N, bool Two = false>
 using Diagonal = Eigen::Matrix<double, kWideRows<N>, Two ? 9 : 5, 0, kMostWideRows<N>, Two ? 9 : 5>;
@@ -38,14 +40,14 @@ constexpr Index columns(Index n) {
   return N == kByFours ? n : N;
 }
 
-// Factors by which columns are taken off others: that of column k off column c.
+// Factors by which columns are subtracted from others: f(c, k) for column k from column c.
 struct Factors {
   const double* at;
   Index by_column, by_k;
   double operator()(Index c, Index k) const { return at[c * by_column + k * by_k]; }
   Factors of_columns_from(Index c) const { return {at + c * by_column, by_column, by_k}; }
 };
-// F(c, k) as it lies there, or F(k, c).
+// Factors F(c, k) as stored, or F(k, c).
 template <int N>
 [[gnu::always_inline]] inline Factors straight(const double* F, Index n) {
   return {F, 1, rows<N>(n)};
@@ -55,7 +57,7 @@ template <int N>
   return {F, rows<N>(n), 1};
 }
 
-// R times four rows of W columns.
+// A tile of R times four rows and W columns.
 template <int R, int W>
 struct Tile {
   Four x[R][W];
@@ -75,7 +77,7 @@ struct Tile {
       for (int r = 0; r < R; ++r) four(to + c * p + 4 * r) = x[r][c];
     }
   }
-  // Takes columns k of X times f(c, k) off column c.
+  // Subtracts columns k of X times f(c, k) from column c.
   [[gnu::always_inline]] void take(const double* X, Index p, const Factors& f, Index from,
                                    Index to) {
     const double* column = X + from * p;
@@ -87,8 +89,8 @@ struct Tile {
       }
     }
   }
-  // Its own columns off each other, the first first or the last first, and each then times `scale`,
-  // unless that is null. f: of its columns.
+  // Subtracts the tile's own columns from each other, the first one first or the last one first.
+  // Then multiplies each by `scale`, unless that is null. f: of the tile's columns.
   [[gnu::always_inline]] void finish_rising(const Factors& f, Index k0, const double* scale) {
     for (int c = 0; c < W; ++c) {
       for (int k = 0; k < c; ++k) {
@@ -109,14 +111,15 @@ struct Tile {
   }
 };
 
-// work(R, r) for all rows from `first`, a multiple of four, to p: R times four of them, from r on.
+// Calls work(R, r) for R times four rows from r on, through all rows from `first`, a multiple of
+// four, to p.
 template <class Work>
 [[gnu::always_inline]] inline void by_eights(Index first, Index p, const Work& work) {
   Index r = first;
   for (; r + 8 <= p; r += 8) work.template operator()<2>(r);
   if (r < p) work.template operator()<1>(r);
 }
-// work(W, c) for n columns: W of them, from c on.
+// Calls work(W, c) for W columns from c on, through all n.
 template <class Work>
 [[gnu::always_inline]] inline void columns_by_fours(Index n, const Work& work) {
   Index c = 0;
@@ -134,7 +137,7 @@ template <class Work>
   while ((c -= 4) >= 0) work.template operator()<4>(c);
 }
 
-// C -= A F^T, C anything where Fresh, which counts as zero.
+// C -= A F^T; Fresh: C counts as zero before.
 template <int N, bool Fresh>
 struct TakeProduct {
   Index n;
@@ -162,8 +165,8 @@ struct TakeProduct {
   };
 };
 
-// X F^-T in the place of X, F's part up to its diagonal (Rising) or from it on. `scale`: one over
-// F's diagonal; null: that is one.
+// X becomes X F^-T, with F's part up to its diagonal (Rising) or from it on. `scale`: reciprocals
+// of F's diagonal; null: that is one.
 template <int N, bool Rising>
 struct Divide {
   Index n;
@@ -198,7 +201,7 @@ struct Divide {
   };
 };
 
-// Columns c to c + W of a factor X, from `first` on, where they are divided by the diagonal block.
+// Columns c to c + W of a factor X, in rows from r on, divided by the diagonal block.
 template <int N, int W>
 struct FactorRows {
   Index n, c, p;
@@ -216,7 +219,7 @@ struct FactorRows {
   }
 };
 
-// The inverse of a lower triangle, four columns of four. scale: one over its diagonal.
+// Inverse of a lower triangle, as four columns of four. scale: reciprocals of its diagonal.
 template <int W>
 [[gnu::always_inline]] inline void invert_corner(const double (&l)[W][W], const double (&scale)[W],
                                                  double* to) {
@@ -232,12 +235,12 @@ template <int W>
   for (int j = 0; j < 4; ++j) four(to + 4 * j) = Four{v[0][j], v[1][j], v[2][j], v[3][j]};
 }
 
-// L, given as A's lower triangle, becomes its lower Cholesky factor; above its blocks of four is
-// left over what was there.
+// L, given as A's lower triangle, becomes its lower Cholesky factor; entries above its blocks of
+// four stay as they were.
 template <int N>
 struct FactorSymmetric {
   Index n;
-  double *L, *over;  // over: one over the diagonal, and then the inverses of its blocks
+  double *L, *over;  // over: reciprocals of the diagonal, then the inverses of its blocks
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
@@ -246,7 +249,7 @@ struct FactorSymmetric {
     Tile<1, W> block;
     block.load(L + c * p + c, p);
     block.take(L + c, p, f.of_columns_from(c), 0, c);
-    // Here, not in L: the compiler cannot know what else L might be.
+    // Local copies, not L: the compiler cannot know what else L might be.
     double l[W][W] = {}, scale[W];
     for (int j = 0; j < W; ++j) {
       for (int i = j; i < W; ++i) {
@@ -265,8 +268,8 @@ struct FactorSymmetric {
   }
 };
 
-// D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of the lines
-// above.
+// D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of
+// FactorSymmetric.
 template <int N>
 struct FactorRate {
   Index n;
@@ -323,7 +326,7 @@ struct FactorRate {
   };
 };
 
-// S, given as C, becomes C - L Ldot^T where that is skew: half of it says all.
+// S, given as C, becomes C - L Ldot^T where that is skew, computed from its upper half.
 template <int N>
 struct SkewRest {
   Index n;
@@ -354,11 +357,11 @@ struct SkewRest {
 };
 
 // L, given as A, and Ut, given as its transpose, become A = L Ut^T with a diagonal of ones in L;
-// what is above their diagonals is left over.
+// entries above their diagonals are arbitrary.
 template <int N>
 struct FactorHalves {
   Index n;
-  // over: one over Ut's diagonal, and then the inverses of L's blocks and of Ut's.
+  // over: reciprocals of Ut's diagonal, then the inverses of L's blocks and of Ut's.
   double *L, *Ut, *over;
 
   template <int W>
@@ -392,7 +395,7 @@ struct FactorHalves {
   }
 };
 
-// The sums of four vectors' numbers.
+// Sums of the numbers of each of four vectors.
 [[gnu::always_inline]] inline void sums_of(const Four (&s)[4], Four& sums) {
   const Four ab = __builtin_shufflevector(s[0], s[1], 0, 4, 2, 6) +
                   __builtin_shufflevector(s[0], s[1], 1, 5, 3, 7);
@@ -401,12 +404,12 @@ struct FactorHalves {
   sums = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 
-// L^-1 x in the place of x, whose rows from n on are zero, four columns at a time: what is waited
-// for is one product with the inverse of a block, and not what goes on between its numbers.
+// x, whose rows from n on are zero, becomes L^-1 x, four columns at a time. Each step waits for one
+// product with a block's inverse, not for a chain of its numbers.
 template <int N>
 struct SolveLower {
   Index n;
-  const double *L, *corners;  // the inverses of its diagonal's blocks
+  const double *L, *corners;  // inverses of the diagonal's blocks
   double* x;
 
   template <int W>
@@ -423,7 +426,7 @@ struct SolveLower {
     }
   }
 };
-// L^-T x in the place of x.
+// x becomes L^-T x.
 template <int N>
 struct SolveTransposed {
   Index n;
@@ -481,7 +484,7 @@ struct TakeTransposedTimes {
   }
 };
 
-// Zero above the diagonal blocks of four.
+// Clears everything above the diagonal blocks of four.
 template <int N>
 [[gnu::always_inline]] inline void clear_above_in(Index n, double* L) {
   const Index p = rows<N>(n);
@@ -533,7 +536,7 @@ template <int N>
   }
 }
 
-// What of this is called: for 7 joints and for any number of them, in wide.cpp.
+// The functions from here on are compiled in wide.cpp, for 7 joints and for any number.
 // C -= A B; C = - A B^T.
 template <int N>
 void take_product(Index n, const double* A, const double* B, double* C);
@@ -545,29 +548,29 @@ void widen(Index n, const double* A, double* W);
 // B becomes A^T.
 template <int N>
 void turn(Index n, const double* A, double* B);
-// How L of A = L L^T moves, in the place of Adot; and C - L Ldot^T where that is skew, in that of
-// C.
+// D, given as Adot, becomes the rate of L in A = L L^T; S, given as C, becomes C - L Ldot^T where
+// that is skew.
 template <int N>
 void factor_rate(Index n, const double* L, const double* over, double* D);
 template <int N>
 void skew_rest(Index n, const double* L, const double* Ldot, double* S);
-// Zero above the diagonal blocks of four, where that is to be multiplied with.
+// Clears everything above the diagonal blocks of four, before products with L.
 template <int N>
 void clear_above(Index n, double* L);
-// L^-T x in the place of x.
+// x becomes L^-T x.
 template <int N>
 void solve_transposed(Index n, const double* L, const double* over, double* x);
-// L of A = L L^T in the place of A; A = L Ut^T, see above.
+// A, given in L, becomes L of A = L L^T; or L and Ut of A = L Ut^T as in FactorHalves.
 template <int N>
 void factor(Index n, double* L, double* over);
 template <int N>
 void factor_halves(Index n, double* L, double* Ut, double* over);
-// X (L L^T)^-1 and X (L Ut^T)^-1 in the place of X.
+// X becomes X (L L^T)^-1, or X (L Ut^T)^-1.
 template <int N>
 void divide(Index n, const double* L, const double* over, double* X);
 template <int N>
 void divide_halves(Index n, const double* L, const double* Ut, const double* over, double* X);
-// (L L^T)^-1 x and (L Ut^T)^-1 x in the place of x.
+// x becomes (L L^T)^-1 x, or (L Ut^T)^-1 x.
 template <int N>
 void solve(Index n, const double* L, const double* over, double* x);
 template <int N>

@@ -1,4 +1,4 @@
-// Things that are built beside the running loop, taken in by it, and given back to be destroyed.
+// Hand-over of objects to the running loop: built outside, taken in, given back to be destroyed.
 #pragma once
 
 #include <atomic>
@@ -6,12 +6,12 @@
 
 namespace limpid {
 
-// One owner (the window) offers, the loop takes; the newest offer wins. The loop never allocates,
-// waits or destroys: what it is done with stays in a slot until the owner comes by, and until then
-// it takes nothing new.
+// The owner (the window) offers, the loop takes; the newest offer wins. The loop never allocates,
+// waits or destroys: an object it no longer needs stays in a slot until the owner collects it, and
+// until then the loop takes no other.
 //
-// Each slot changes hands by an exchange that acquires what the other side released, so that
-// whoever has the pointer sees the whole object.
+// Each slot changes hands by an exchange that acquires what the other side released, so whoever has
+// the pointer sees the whole object.
 template <class T>
 class HandOver {
  public:
@@ -20,24 +20,25 @@ class HandOver {
   HandOver& operator=(const HandOver&) = delete;
   ~HandOver() { clear(); }
 
-  // The owner's.
+  // offer() and collect(): for the owner.
   void offer(std::unique_ptr<T> thing) {
     collect();
     delete wanted_.exchange(thing.release(), std::memory_order_acq_rel);
   }
   void collect() { delete done_.exchange(nullptr, std::memory_order_acquire); }
-  // While the loop does not run.
+  // Destroys both slots' objects; only while the loop does not run.
   void clear() {
     collect();
     delete wanted_.exchange(nullptr, std::memory_order_acquire);
   }
 
-  // The loop's. Null: nothing new.
+  // Takes the newest object, for the loop. Null: nothing new.
   T* take() noexcept {
     if (done_.load(std::memory_order_acquire) != nullptr) return nullptr;
     return wanted_.exchange(nullptr, std::memory_order_acq_rel);
   }
-  // After each take(), at most once: null, or what is no longer needed.
+  // Gives the object that is no longer needed, or null; for the loop, at most once after each
+  // take().
   void give_back(T* thing) noexcept { done_.store(thing, std::memory_order_release); }
 
  private:

@@ -14,7 +14,7 @@ namespace {
 constexpr auto relaxed = std::memory_order_relaxed;
 constexpr nanoseconds kSecond{1'000'000'000};
 
-// Ticks per second over the last second, brought up to date ten times in it.
+// Ticks per second over the last second, updated ten times a second.
 class RateMeter {
  public:
   explicit RateMeter(nanoseconds start) : newest_(start) { marks_.fill({start, 0}); }
@@ -116,7 +116,8 @@ void HapticThread::live(const AskForPriority& ask) {
   }
 }
 
-// An exception must not end the process: somebody else has yet to switch the motors off.
+// Returns an exception's text and keeps it from ending the process: the motors have yet to be
+// switched off elsewhere.
 std::string HapticThread::run_until_failure_or_stop() noexcept {
   try {
     run();
@@ -131,7 +132,7 @@ std::string HapticThread::run_until_failure_or_stop() noexcept {
 void HapticThread::run() {
   const MonotonicTime time;
   const nanoseconds start = time.now() + period_;
-  // A tick in ten is spent on watching the clock, for microseconds that only motors can feel.
+  // Watching the clock costs a tenth of a period, for microseconds that only motors can feel.
   const bool motors = overdue_ == Overdue::given_up;
   Clock<> clock(start, period_,
                 motors && realtime_.realtime() ? Clock<>::kSpin : nanoseconds::zero(), time,

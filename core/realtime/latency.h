@@ -9,17 +9,18 @@
 
 namespace limpid {
 
-// Bins grow by 6 % each, from 1 us to 100 ms; one bin more on either side holds what lies beyond.
+// Bins grow by 6 % each, from 1 us to 100 ms; one more bin on either side holds the values beyond.
 //
-// Every counter is atomic by itself and nothing hangs on their order, hence relaxed: a reader may
-// see a tick in one counter and not yet in another, which shifts a quantile by one tick.
+// Every counter is atomic by itself; their order does not matter, hence relaxed. A reader may see a
+// tick in one counter and not yet in another, which shifts a quantile by one tick.
 class LatencyHistogram {
  public:
   static constexpr int kBins = 200;
   static constexpr double kMinimum = 1e-6;  // [s]
   static constexpr double kMaximum = 0.1;   // [s]
 
-  // One thread. seconds: any; what is not positive counts as shorter than 1 us.
+  // Adds a time, from one thread. seconds: any; values that are not positive count as shorter than
+  // 1 us.
   void add(double seconds) noexcept {
     bins_[bin(seconds)].fetch_add(1, std::memory_order_relaxed);
     double max = max_.load(std::memory_order_relaxed);
@@ -27,7 +28,7 @@ class LatencyHistogram {
     }
   }
 
-  // Any thread, while times are being added.
+  // Number of times added; for any thread, at any time.
   std::uint64_t count() const noexcept {
     std::uint64_t sum = 0;
     for (const auto& b : bins_) sum += b.load(std::memory_order_relaxed);
@@ -56,7 +57,8 @@ class LatencyHistogram {
     max_.store(0, std::memory_order_relaxed);
   }
 
-  // Times in bin i, and its upper edge [s]; i = 0 to kBins + 1, the last one has no edge.
+  // Number of times in bin i, and the bin's upper edge [s]; i = 0 to kBins + 1, the last one has no
+  // edge.
   std::uint64_t count_in(int i) const noexcept {
     return bins_[static_cast<std::size_t>(i)].load(std::memory_order_relaxed);
   }
@@ -65,7 +67,7 @@ class LatencyHistogram {
   }
 
  private:
-  // The first bin whose upper edge is not below.
+  // First bin whose upper edge is not below `seconds`.
   static std::size_t bin(double seconds) noexcept {
     if (!(seconds > kMinimum)) return 0;
     if (seconds > kMaximum) return kBins + 1;

@@ -29,8 +29,8 @@ bool has_capability(unsigned capability) {
   return (data[capability / 32].effective >> (capability % 32)) & 1u;
 }
 
-// Under a finite limit, locking what will be mapped later makes the allocations of the OpenGL
-// driver fail, and a locked stack cannot grow. So all is locked or nothing.
+// True if the process may lock all its memory. Under a finite limit, locking future mappings makes
+// the OpenGL driver's allocations fail, and a locked stack cannot grow.
 bool may_lock_everything() {
   if (has_capability(CAP_IPC_LOCK)) return true;
   rlimit limit{};
@@ -39,7 +39,7 @@ bool may_lock_everything() {
   return setrlimit(RLIMIT_MEMLOCK, &limit) == 0;
 }
 
-// The program itself has no name here.
+// True for the program itself, whose name is empty here, and for the libraries that ticks call.
 bool is_run_by_ticks(std::string_view file) {
   constexpr std::array<std::string_view, 9> kLibraries = {
       "libc.so",  "libm.so",    "libstdc++.so", "libgcc_s.so", "libpthread.so",
@@ -50,7 +50,7 @@ bool is_run_by_ticks(std::string_view file) {
          });
 }
 
-// Unlike what was mapped with MCL_ONFAULT, a range that is locked by itself is brought in.
+// Loads an object's segments by locking them one by one: MCL_ONFAULT alone loads nothing.
 int bring_in(dl_phdr_info* object, std::size_t, void* done) {
   if (!is_run_by_ticks(object->dlpi_name)) return 0;
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
@@ -66,25 +66,6 @@ int bring_in(dl_phdr_info* object, std::size_t, void* done) {
   return 0;
 }
 
-}  // namespace
-
-bool lock_memory() {
-  if (!may_lock_everything() || mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) return false;
-  unlock_large_blocks();
-  bool done = true;
-  dl_iterate_phdr(bring_in, &done);
-  return done;
-}
-
-void give_back_what_is_freed() { mallopt(M_MMAP_THRESHOLD, 128 << 10); }
-
-void keep_what_is_freed() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the highest that glibc takes
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-}
-
-namespace {
-
 constexpr int kPriority = 80;
 constexpr int kRtkitPriority = 15;           // rtkit grants 20 at most
 constexpr rlim_t kRtkitTimeLimit = 190'000;  // [us], rtkit demands 200 ms at most
@@ -94,7 +75,7 @@ bool become_fifo(int priority) {
   return sched_setscheduler(0, SCHED_FIFO, &param) == 0;
 }
 
-// The highest priority the process may take without privilege, up to kPriority; 0 for none.
+// Highest priority the process may take without privilege, up to kPriority; 0 for none.
 int permitted_priority() {
   rlimit limit{};
   if (getrlimit(RLIMIT_RTPRIO, &limit) != 0) return 0;
@@ -134,14 +115,29 @@ void set_priority(RealtimeReport& report, const AskForPriority& ask) {
   report.explanation += ask ? " and rtkit did not grant it" : " and rtkit was not asked";
 }
 
-// A thread starts as the one that made it, which may have stepped back. The system lets only the
-// privileged forward again.
+// Undoes yield_to_haptics() of the thread that made this one. The system allows that only to the
+// privileged.
 void step_forward() {
   const sched_param param{};
   if (sched_getscheduler(0) == SCHED_IDLE) sched_setscheduler(0, SCHED_OTHER, &param);
 }
 
 }  // namespace
+
+bool lock_memory() {
+  if (!may_lock_everything() || mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) return false;
+  unlock_large_blocks();
+  bool done = true;
+  dl_iterate_phdr(bring_in, &done);
+  return done;
+}
+
+void give_back_what_is_freed() { mallopt(M_MMAP_THRESHOLD, 128 << 10); }
+
+void keep_what_is_freed() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the highest that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
 
 RealtimeReport become_realtime(const AskForPriority& ask) {
   step_forward();

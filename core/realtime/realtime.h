@@ -1,4 +1,4 @@
-// Memory that stays where it is.
+// Real-time scheduling of the calling thread: priority, locked memory, timer slack.
 #pragma once
 
 #include <sys/types.h>
@@ -9,22 +9,22 @@
 
 namespace limpid {
 
-// From now on no page of the process is taken away once it has been touched, and what ticks run is
-// brought in at once: the program, the C and C++ libraries, those of devices. Of the others, as
-// those that draw, which are many times as large, only what is used is ever in memory. May be
-// called again. False where the system forbids it; then nothing is locked.
+// Locks the process's memory: from now on no page is taken away once it has been touched. Loads at
+// once the code that ticks run: the program, the C and C++ libraries, those of devices. Other
+// libraries, such as those that draw, are many times as large and are loaded page by page when
+// used. May be called again. False where the system forbids it; then nothing is locked.
 bool lock_memory();
 
-// Large blocks go back to the system as soon as they are freed. Else malloc learns to keep them, a
-// heap for every few threads, and locked memory cannot be taken out of the middle of a heap: what
-// was once needed stays for good. For programs that go on for long; before they have threads.
+// Makes malloc return large blocks to the system as soon as they are freed. By default it learns to
+// keep them, in one heap for every few threads, and locked memory inside a heap cannot be returned.
+// For programs that run for long; to be called before they have threads.
 void give_back_what_is_freed();
 
-// The other way round: large blocks stay, so that the next run finds memory whose pages are there
-// already. For commands that do the same many times over and end.
+// Makes malloc keep large blocks, so that the next run finds memory whose pages are there already.
+// For commands that do the same many times over and end.
 void keep_what_is_freed();
 
-// What the operating system grants a thread that must wake up on time.
+// Scheduling that the operating system grants to a thread.
 enum class Scheduling : std::uint8_t {
   fifo,      // real-time, by the process's own right
   rtkit,     // real-time, granted on request
@@ -40,7 +40,7 @@ struct RealtimeReport {
   bool realtime() const { return scheduling != Scheduling::ordinary; }
 };
 
-// Asks somebody else to give a thread of this process a real-time priority; true if that was done.
+// Asks another process to give a thread of this one a real-time priority; true if that was done.
 using AskForPriority = std::function<bool(pid_t tid, int priority)>;
 
 // Makes the calling thread as punctual as the system permits: FIFO 80, else the highest priority
@@ -50,8 +50,8 @@ using AskForPriority = std::function<bool(pid_t tid, int priority)>;
 RealtimeReport become_realtime(const AskForPriority& ask);
 
 // Puts the calling thread, and threads it creates from now on (those of the OpenGL driver), behind
-// all others, so that an ordinary haptic thread is served first. There is no way back without
-// privilege: HapticThread must exist before. False if the system refused.
+// all others. So an ordinary haptic thread is served first. Only privilege can undo this:
+// HapticThread must exist before. False if the system refused.
 bool yield_to_haptics() noexcept;
 
 }  // namespace limpid

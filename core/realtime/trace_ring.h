@@ -1,5 +1,5 @@
-// Everything in order from one thread to another; neither ever waits. TraceRing carries the rows of
-// the trace, SpscQueue events. What finds no room is refused, never written over something older.
+// Queues from one thread to another that keep order and never wait. TraceRing carries the rows of
+// the trace, SpscQueue events. A full queue refuses new entries; it never overwrites older ones.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,12 @@
 
 namespace limpid {
 
-// Where one producer and one consumer are in a ring of `capacity` places.
+// Positions of one producer and one consumer in a ring of `capacity` places.
 //
 // Both positions only grow; a place is its position modulo the capacity. Memory ordering: the
-// producer fills places and then stores its position with release, the consumer loads it with
-// acquire before reading them, so it sees them filled. The other way round the consumer's release
-// and the producer's acquire keep a place from being filled again before it has been read.
+// producer fills places and then stores its position with release. The consumer loads it with
+// acquire before reading them, so it sees them filled. In turn the consumer's release and the
+// producer's acquire keep a place from being filled again before it has been read.
 class RingPositions {
  public:
   // capacity: a power of two, else std::invalid_argument.
@@ -31,7 +31,7 @@ class RingPositions {
 
   std::size_t capacity() const noexcept { return capacity_; }
 
-  // How many places are filled; for another thread than these two, a moment ago.
+  // Number of filled places; to a third thread, the number a moment ago.
   std::size_t size() const noexcept {
     const std::size_t popped = popped_.load(std::memory_order_acquire);
     const std::size_t pushed = pushed_.load(std::memory_order_acquire);
@@ -56,7 +56,7 @@ class RingPositions {
 
  private:
   std::size_t capacity_;
-  // On cache lines of their own: the two threads do not slow each other down.
+  // Each on a cache line of its own: the two threads do not slow each other down.
   alignas(64) std::atomic<std::size_t> pushed_{0};
   alignas(64) std::atomic<std::size_t> popped_{0};
 };
@@ -70,7 +70,7 @@ class SpscQueue {
   std::size_t size() const noexcept { return at_.size(); }
   std::size_t capacity() const noexcept { return at_.capacity(); }
 
-  // Producer: false when the queue is full, `value` then was not taken.
+  // Producer: false when the queue is full; `value` was then not taken.
   bool push(const T& value) noexcept {
     if (at_.size() == at_.capacity()) return false;
     places_[at_.back()] = value;
@@ -104,7 +104,7 @@ class TraceRing {
   std::size_t capacity() const noexcept { return at_.capacity(); }  // rows
   std::size_t stride() const noexcept { return stride_; }           // doubles a row
 
-  // Rows refused for want of room since the beginning; any thread.
+  // Rows refused for want of room since the beginning; for any thread.
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
   // Producer: false when the ring is full; the row is then dropped and counted.
@@ -120,8 +120,8 @@ class TraceRing {
     return true;
   }
 
-  // Consumer: moves the oldest rows, as many as there are and as fit whole, to the beginning of
-  // `into`; returns how many rows.
+  // Consumer: moves the oldest rows, as many whole ones as fit, to the beginning of `into`; returns
+  // how many.
   std::size_t pop(std::span<double> into) noexcept {
     const std::size_t count = std::min(at_.size(), into.size() / stride_);
     const std::size_t before_the_seam = std::min(count, at_.capacity() - at_.front());

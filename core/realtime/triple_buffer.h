@@ -3,11 +3,11 @@
 // Three slots: one belongs to the writer (back), one to the reader (front), and the third (middle)
 // is where they swap. Values that nobody collected are overwritten by newer ones.
 //
-// Memory ordering: which slot is the middle one, and whether it holds something new, is one atomic
-// byte, and both sides change it by exchange with acquire-release. Release: the writer's stores
-// into the slot come before its handing over, and the reader has finished reading a slot before it
-// gives it back. Acquire: whoever receives a slot sees all that the other side did to it before. A
-// slot has one owner at any time, so the values themselves need no atomics and cannot be torn.
+// Memory ordering: one atomic byte says which slot is the middle one and whether it is new; both
+// sides change it by an exchange with acquire-release. Release: the writer's stores into a slot
+// come before its hand-over, and the reader's last reads before its return. Acquire: whoever
+// receives a slot sees all that the other side did to it before. A slot has one owner at any time,
+// so the values themselves need no atomics and cannot be torn.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class TripleBuffer {
   TripleBuffer(const TripleBuffer&) = delete;
   TripleBuffer& operator=(const TripleBuffer&) = delete;
 
-  // Writer: the slot to fill; it holds some older value, so fill all of it.
+  // Writer: the slot to fill. Fill all of it: it holds some older value.
   T& back() noexcept { return slots_[back_].value; }
 
   // Writer: hands the back slot over.
@@ -34,7 +34,7 @@ class TripleBuffer {
     back_ = middle_.exchange(handed_over, std::memory_order_acq_rel) & kIndex;
   }
 
-  // Writer: both in one.
+  // Writer: fills and publishes in one call.
   void write(const T& value) noexcept {
     back() = value;
     publish();
@@ -54,7 +54,7 @@ class TripleBuffer {
   static constexpr std::uint8_t kIndex = 0b011;
   static constexpr std::uint8_t kFresh = 0b100;
 
-  // On cache lines of their own: the two threads do not slow each other down.
+  // Each slot has cache lines of its own: the two threads do not slow each other down.
   struct alignas(64) Slot {
     T value;
   };

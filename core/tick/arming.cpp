@@ -12,7 +12,7 @@ void ForceGate::step(ForceRequest wish, const Objections& against, double T) noe
   if (against.gap) take(ArmingEvent::gap);
   if (against.gap || !(state_ == Arming::fading || state_ == Arming::on)) gain_ = 0;
   if (against.fault != ForceState::on) {
-    // A device that is pulled out falls silent first.
+    // Lets `lost` replace an earlier fault: an unplugged device falls silent first.
     const bool better = against.fault == ForceState::lost;
     if (state_ != Arming::tripped || better) tripped_ = against.fault;
     take(ArmingEvent::trip);
@@ -27,7 +27,7 @@ void ForceGate::step(ForceRequest wish, const Objections& against, double T) noe
   why_ = reason(against);
 }
 
-// What is wrong is said of a device without force too: it is why arming would not help.
+// Names a fault even while force is off: it is why arming would not help.
 ForceState ForceGate::reason(const Objections& against) const noexcept {
   if (state_ == Arming::tripped) return tripped_;
   if (against.fault != ForceState::on) return against.fault;

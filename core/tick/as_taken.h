@@ -1,5 +1,5 @@
-// Settings as the loop takes them while a real device has the arm's place. Tick, recordings and
-// verdicts ask here, so that they agree.
+// Parameters as the loop takes them for a real device instead of the virtual arm. Tick, recordings
+// and verdicts use them, so that they agree.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 namespace limpid {
 
 struct RealDevice {
-  double damping = 0;       // of the least damped joint, as the arm's file has it [N m s/rad]
-  double torque = 0;        // the limit of the strongest joint [N m]
-  double encoder_step = 0;  // as it says itself; 0: it does not [rad]
+  double damping = 0;       // of the least damped joint, by the arm's file [N m s/rad]
+  double torque = 0;        // limit of the strongest joint [N m]
+  double encoder_step = 0;  // as the device reports; 0: unknown [rad]
 
   static RealDevice of(const ArmDescription& arm, double encoder_step) {
     const auto less = [](const Joint& a, const Joint& b) { return a.damping < b.damping; };
@@ -22,10 +22,10 @@ struct RealDevice {
   }
 };
 
-// A real device has the friction, the delay and the encoders that it has. What is set to try the
-// virtual arm with gives it no more torque than its own limit, nor more damping than its file has:
-// an observer would take that for a hand's force, and a law would feed it forward. A joint's torque
-// is held to its own limit besides.
+// Replaces settings meant for the virtual arm: a real device has its own friction, delay and
+// encoders. Its torque limit and damping are at most those of its file: an observer would take more
+// damping for a hand's force, and a law would feed it forward. Each joint's torque also stays
+// within its own limit.
 inline Parameters as_taken(Parameters p, const RealDevice& device) noexcept {
   if (!(p.damping < device.damping)) p.damping = kFromArm;
   if (!(p.torque_limit < device.torque)) p.torque_limit = kFromArm;

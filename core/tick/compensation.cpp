@@ -6,11 +6,11 @@ namespace limpid {
 namespace {
 
 constexpr double kEarth = 9.81;  // [m/s^2]
-constexpr double kFade = 0.5;    // from nothing to all of it [s]
+constexpr double kFade = 0.5;    // from nothing to full compensation [s]
 
-// The velocity of which sigma is 0.7: with exact encoders kSlow, with steps more. It is filtered
-// for as long as kSteps of them take at kPace, within bounds: a flicker of one is a sixth of it
-// then.
+// Constants of sigma(v), which is 0.7 at kSlow for exact encoders, at more with steps. v is
+// filtered for as long as kSteps of them take at kPace, within bounds; a flicker of one step is
+// then a sixth of that velocity.
 constexpr double kSlow = 0.05, kPace = 0.1;                 // [rad/s]
 constexpr double kSteps = 3;                                // [-]
 constexpr double kLeastSmooth = 0.003, kMostSmooth = 0.02;  // [s]

@@ -5,9 +5,8 @@
 
 namespace limpid {
 
-// At rest it only clamps; where motors are guarded it bounds the rate as well. While a coupling is
-// being switched the torque moves at a bounded rate until it meets the new command, for 0.2 s at
-// most.
+// Clamps the torque; where motors are guarded it bounds its rate as well. While a coupling is being
+// switched the torque moves at a bounded rate until it meets the new command, for 0.2 s at most.
 template <int N>
 class MotorStage {
  public:
@@ -23,9 +22,10 @@ class MotorStage {
   }
   bool steady() const { return !slewing_; }
 
-  // The torque the motors get for this command [N m]. `gain`: the part of what is within the limits
-  // that may leave, 0 to 1; at 0 it is zero at once. `slew`: from no torque to a joint's limit,
-  // always [s]; 0: only while a coupling is being switched. `dt`: since the last torque left [s].
+  // Returns the motors' torque for this command [N m]. `gain`: the part of the limited torque that
+  // may leave, 0 to 1; at 0 the torque is zero at once. `slew`: time from no torque to a joint's
+  // limit, always in force [s]; 0: only while a coupling is being switched. `dt`: time since the
+  // last torque left [s].
   const Vec<N>& pass(const Vec<N>& command, const TorqueLimits<N>& limits, double gain, double dt,
                      double slew = 0) {
     Vec<N> target = gain * limits.within(command);
@@ -34,8 +34,8 @@ class MotorStage {
       return tau_;
     }
     if (slewing_ || slew > 0) {
-      // Straight towards it, all joints together: both ends of the way are within the limits, and
-      // so is what lies between. The last torque may no longer be, where limits or pose changed.
+      // Straight towards `target`, all joints together: both ends are within the limits, and so is
+      // all between. The last torque may be outside them if limits or pose changed.
       const Vec<N> from = limits.within(tau_);
       const Vec<N> way = target - from;
       const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
@@ -50,12 +50,12 @@ class MotorStage {
 
  private:
   static constexpr double kSlew = 0.1;  // from no torque to the limit [s]
-  // As long as from one limit to the other: a command that swings faster is never met.
+  // Time from one limit to the other: a command that swings faster is never met.
   static constexpr double kLongestSlew = 2 * kSlew;
 
   Vec<N> tau_;
   bool slewing_ = false;
-  double slewed_ = 0;  // for how long [s]
+  double slewed_ = 0;  // time since begin_slew() [s]
 };
 
 }  // namespace limpid

@@ -102,7 +102,7 @@ struct Text {
 }  // namespace
 
 int most_delay(const Parameters& p, std::optional<double> identified, bool real) {
-  constexpr double kUsual = 3;  // of devices of which nothing is known [ticks]
+  constexpr double kUsual = 3;  // for a device of unknown delay [ticks]
   double most = p.delay_most;
   if (std::isnan(most) && !real) most = p.device_delay;
   if (std::isnan(most)) most = identified ? *identified / p.tick + 1 : kUsual;
@@ -161,7 +161,7 @@ std::string parameter_text(const Parameters& p, const ParameterInfo& info) {
 }
 
 bool operator==(const Parameters& a, const Parameters& b) {
-  // Values left to the arm are not numbers, and equal.
+  // Values left to the arm are NaN, and count as equal.
   const auto same = [&](auto field) {
     if constexpr (std::is_same_v<decltype(field), Choice<P>>) {
       return field.get(a) == field.get(b);

@@ -1,6 +1,6 @@
-// Everything a person can set, with the paper's values as defaults.
+// The parameters that people can set, with the paper's values as defaults.
 //
-// One table describes the parameters once, for the command line, configuration files, sliders,
+// One table describes each of them once, for the command line, configuration files, sliders,
 // tooltips and help: key, unit, range and meaning.
 #pragma once
 
@@ -17,17 +17,17 @@
 
 namespace limpid {
 
-// Not a number stands for "as the arm's file says".
+// NaN, which stands for "as the arm's file says".
 inline constexpr double kFromArm = std::numeric_limits<double>::quiet_NaN();
 
-// Where down is, in the base's frame.
+// Direction of "down" in the base's frame.
 enum class Down : std::uint8_t { as_file, minus_z, plus_z, minus_x, plus_x, minus_y, plus_y };
 inline constexpr std::array<const char*, 7> kDowns{"file", "-z", "+z", "-x", "+x", "-y", "+y"};
 
-// What the motors take of the device's own forces off the hand, see compensation.h.
+// The device's own forces that the motors take off the hand, see compensation.h.
 struct CompensationSettings {
   bool holds_weight = false;
-  double friction_share = 0;  // s, of the Coulomb friction [-]
+  double friction_share = 0;  // s, share of the Coulomb friction [-]
   bool holds_springs = false;
 
   static constexpr double kUsualShare = 0.7, kMostShare = 0.95;
@@ -48,10 +48,10 @@ struct CompensationSettings {
   }
 };
 
-// The coupling, and what it believes of the device. A second run on the same hand has its own.
+// The coupling and its model of the device. A second run on the same hand has its own.
 struct ControllerSettings : LawSettings, ObserverSettings, CompensationSettings {
   CouplingKind kind = CouplingKind::proposed;
-  double inertia_error = 1;  // factor on the M1, C1 the controller believes [-]
+  double inertia_error = 1;  // factor on the M1, C1 that the controller believes [-]
 
   template <class P>
   static constexpr auto settings() {
@@ -66,7 +66,7 @@ struct ControllerSettings : LawSettings, ObserverSettings, CompensationSettings 
   }
 };
 
-// The loop, and the proxy that it moves.
+// The loop, the link to the proxy, and the proxy.
 struct LoopSettings : LinkSettings {
   double inertia_ratio = 1e-4;  // M2 = ratio * M(x2) [-]
   double tick = 0.001;          // T [s]
@@ -86,7 +86,7 @@ struct LoopSettings : LinkSettings {
 struct HandSettings {
   double hand_stiffness = 300;  // [N/m]
   double hand_damping = 2;      // [N s/m]
-  double hand_mass_at_tip = 0;  // of hand and handle, at the tip [kg]
+  double hand_mass_at_tip = 0;  // mass of hand and handle, at the tip [kg]
 
   template <class P>
   static constexpr std::array<Setting<P>, 3> settings() {
@@ -108,8 +108,8 @@ struct DeviceSettings {
   double friction = kFromArm;      // Coulomb, every joint [N m]
   double damping = kFromArm;       // b_d, every joint [N m s/rad]
   double torque_limit = kFromArm;  // every joint [N m]
-  bool weighs = false;             // the virtual arm, as its file says; else it counts as held
-  bool springy = false;            // it has the springs of its file
+  bool weighs = false;   // the virtual arm has the weight of its file; else it counts as held
+  bool springy = false;  // the virtual arm has the springs of its file
   Down down = Down::as_file;
 
   template <class P>
@@ -147,8 +147,8 @@ struct Parameters : ControllerSettings, LoopSettings, HandSettings, DeviceSettin
   friend bool operator==(const Parameters& a, const Parameters& b);
 };
 
-// The most that the delay between command and motor may be [ticks]: as it is set, else of the
-// virtual arm as it is, of a real device a tick more than was identified [s], or 3.
+// Largest delay between command and motor [ticks]: as set; else the virtual arm's own; else of a
+// real device one tick more than `identified` [s], or 3.
 int most_delay(const Parameters& p, std::optional<double> identified, bool real);
 
 using ParameterInfo = Setting<Parameters>;
@@ -166,21 +166,21 @@ inline const char* name(VelocitySource source) {
   return kVelocitySources[static_cast<std::size_t>(source)];
 }
 
-// A value as configuration files and `--set` give it.
+// A parameter's value as configuration files and `--set` give it.
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 
-// Thrown for a key that does not exist or a value that is not allowed; what() names the key, what
-// was found and what is allowed.
+// Error: a key does not exist or a value is not allowed; what() names the key, the value found and
+// what is allowed.
 struct ParameterError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 void set_parameter(Parameters& p, std::string_view key, const ParameterValue& value);
-// As a number: choices by their place, bool as 0 or 1, kFromArm for the arm's own.
+// A parameter as a number: choices by their place, bool as 0 or 1, kFromArm for the arm's own.
 double parameter_number(const Parameters& p, const ParameterInfo& info);
-// Inverse of it; held within the allowed range.
+// Inverse of parameter_number(); clamps to the allowed range.
 void set_parameter_number(Parameters& p, const ParameterInfo& info, double number);
-// As TOML would spell it; empty where the value is left to the arm.
+// A parameter in TOML's spelling; empty where the value is left to the arm.
 std::string parameter_text(const Parameters& p, const ParameterInfo& info);
 
 }  // namespace limpid

@@ -1,4 +1,5 @@
-// What one tick leaves behind: one row of the session file, as consecutive doubles.
+// Columns and layout of a row: what one tick leaves behind, as consecutive doubles of the session
+// file.
 //
 // Row k holds the state at t_k and the torques held over [t_k, t_k+1). The columns below are the
 // single list that the tick fills, the recorder writes, the plots read and `info --csv` prints.
@@ -73,10 +74,11 @@ enum class Column : std::uint8_t {
 
 inline constexpr int kColumns = static_cast<int>(Column::count_);
 
-// Contacts that a row has room for: the hardest, if there are more.
+// Number of contacts that a row has room for: the hardest, if there are more.
 inline constexpr int kRowContacts = 4;
 
-// Contacts: x, y, z of each. Those of bodies are only there where something moves.
+// Number of doubles in a column; `contacts` has x, y, z of each. Columns of bodies exist only in
+// scenes where something moves.
 enum class ColumnWidth : std::uint8_t {
   one,
   three,
@@ -88,7 +90,7 @@ enum class ColumnWidth : std::uint8_t {
   three_if_bodies
 };
 
-// x, y, z.
+// True for columns of x, y, z.
 constexpr bool of_axes(ColumnWidth width) {
   return width == ColumnWidth::three || width == ColumnWidth::three_if_bodies;
 }
@@ -209,7 +211,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},
 }};
 
-// Where each column lies in a row of an arm with n joints, in a scene with so many bodies.
+// Places of columns in a row, for an arm of n joints and a number of bodies.
 class RowLayout {
  public:
   explicit constexpr RowLayout(int dof, int bodies = 0) : dof_(dof), bodies_(bodies) {
@@ -245,7 +247,7 @@ class RowLayout {
     return row.subspan(static_cast<std::size_t>(offset(c)), static_cast<std::size_t>(width(c)));
   }
 
-  // The human's torque as far as it is known: of a real device, the observer's estimate.
+  // The human's torque where it is known, else the observer's estimate (real devices).
   std::span<const double> human_torque(std::span<const double> row) const {
     const auto measured = in(row, Column::hand_torque);
     return std::isnan(measured[0]) ? in(row, Column::hand_torque_estimate) : measured;
@@ -258,12 +260,12 @@ class RowLayout {
   std::array<int, kColumns> offset_{};
 };
 
-// Of an arm with so many joints in this scene.
+// Layout for an arm of `dof` joints in this scene.
 inline RowLayout row_layout(int dof, const Scene& scene) {
   return RowLayout(dof, count_bodies(scene));
 }
 
-// Largest row there is, for storage of fixed size.
+// Largest possible row, for storage of fixed size.
 inline constexpr int kMaxStride = RowLayout(kMaxDof, kMostBodies).stride();
 
 }  // namespace limpid

@@ -8,10 +8,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kSmooth = 0.005;  // of the velocity that is judged: encoders have steps [s]
-constexpr double kForget = 1;      // of the energy put out [s]
+constexpr double kSmooth = 0.005;  // filter of the judged velocity: encoders have steps [s]
+constexpr double kForget = 1;      // time constant of forgetting the energy put out [s]
 
-// Full force up to the limit, none beyond `gone`.
+// Full force up to `limit`, none beyond `gone`.
 void fade(Objections& against, ForceState reason, double value, double limit, double gone) {
   if (!(value > limit)) return;
   const double part = std::max(0.0, (gone - value) / (gone - limit));
@@ -76,7 +76,7 @@ void Safety<N>::start() {
   energy_ = 0;
 }
 
-// A joint without a stop on one side keeps its range as it is.
+// Sets the limits; a joint without a stop on one side keeps its range.
 template <int N>
 void Safety<N>::limit(const SafetyLimits& wanted) {
   limits_ = allowed(wanted);
@@ -97,7 +97,8 @@ bool Safety<N>::pushed(const DrivenTick<N>& last) const {
          limpid::tip_force<N>(last.tau, last.J) > kLeastForce;
 }
 
-// What fades counts on however little torque is left, and is forgotten when something moves.
+// Counts the time of pushing without movement, however little torque is left; any movement sets it
+// to zero.
 template <int N>
 void Safety<N>::watch_readings(const DrivenTick<N>& last) {
   if (last.x != x_) {
@@ -121,7 +122,7 @@ Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Dri
   against.gap = health.gap;
   if (against.fault == ForceState::on) against.fault = fault_of(health);
   if (health.gap && against.fault == ForceState::stale) {
-    // Whoever stood still has no new reading yet: that is not the device's silence.
+    // A loop that stood still has no new reading yet: that is not the device's silence.
     against.fault = ForceState::on;
     against.hand = false;
   }

@@ -1,4 +1,5 @@
-// What there is to say against force on a device that must be guarded.
+// Safety checks of a real device: limits on position, speed, torque and energy, stale or frozen
+// readings.
 #pragma once
 
 #include "core/dynamics/arm.h"
@@ -7,37 +8,36 @@
 
 namespace limpid {
 
-// What a device, and whoever watches it, says at a tick.
+// State of a device at a tick, and of the window that watches it.
 struct DeviceHealth {
-  bool guarded = false;  // the limits hold; else nothing below is judged
+  bool guarded = false;  // the limits hold; else none of the following is judged
   bool hand = true;
   bool fault = false;
-  bool wrong = false;  // its newest reading says what cannot be, and was not taken
+  bool wrong = false;  // the newest reading had an impossible value and was not taken
   bool lost = false;
-  double age = 0;      // of the reading [s]
-  bool gap = false;    // the device was without torque, or the loop stood still, before this tick
-  double silence = 0;  // since the window last answered [s]
+  double age = 0;      // age of the reading [s]
+  bool gap = false;    // before this tick the device had no torque, or the loop stood still
+  double silence = 0;  // time since the window last answered [s]
 };
 
-// What a device did over a tick, and under which torque.
+// Motion of a device over a tick, and the torque it was under.
 template <int N>
 struct DrivenTick {
-  const Vec<N>& x;       // where it is after it, as measured [rad]
+  const Vec<N>& x;       // position at the end, as measured [rad]
   const Vec<N>& v;       // [rad/s]
-  const Jacobian<N>& J;  // of the tip
-  const Vec<N>& tau;     // that the motors held [N m]
-  double put_out;        // their work [J]
+  const Jacobian<N>& J;  // Jacobian of the tip
+  const Vec<N>& tau;     // held by the motors [N m]
+  double put_out;        // work of the motors [J]
   double T;              // [s]
 };
 
-// Judges once a tick. What is dangerous to come back from by itself trips.
+// Judges a device once a tick. Faults from which it would be dangerous to return unasked trip.
 //
-// Readings that come but stand still, as those of an encoder with a broken wire or of a service
-// that repeats itself, look like a device that is held still. A device that is well shows it: its
-// force is faded out as if its readings were frozen, and as soon as any of them moves, the force
-// comes back. Where a hand holds it against a wall that takes a few milliseconds, as the hand moves
-// on when the wall yields. Where nothing has moved when the force is gone, it trips, and arming
-// helps no sooner than something has moved.
+// Frozen readings, as from a broken encoder wire or a service that repeats itself, look like a
+// device held still. To tell them apart the force fades out, and returns as soon as any reading
+// moves. With a hand against a wall this takes a few milliseconds: the hand moves on when the wall
+// yields. If nothing has moved when the force is gone, it trips; arming helps only after something
+// has moved.
 template <int N>
 class Safety {
  public:
@@ -48,7 +48,7 @@ class Safety {
 
   Objections judge(const DeviceHealth& health, bool diverged, const DrivenTick<N>& last);
 
-  double tip_force() const { return limits_.tip_force; }  // that the tip may have [N]
+  double tip_force() const { return limits_.tip_force; }  // largest force at the tip [N]
 
  private:
   void watch_readings(const DrivenTick<N>& last);
@@ -60,7 +60,7 @@ class Safety {
   Vec<N> v_;                                      // smoothed [rad/s]
   Vec<N> x_;                                      // the last reading [rad]
   double energy_ = 0;
-  double still_ = 0;  // how long the motors have pushed since a reading last moved [s]
+  double still_ = 0;  // time for which the motors have pushed since a reading last moved [s]
 };
 
 extern template class Safety<3>;

@@ -11,7 +11,7 @@ namespace limpid {
 
 namespace {
 
-// The least of a motor's limit that is left to the law, whatever the arm weighs.
+// Least share of a motor's limit that is left to the law, however much the arm weighs.
 constexpr double kLeastForLaw = 0.1;
 
 }  // namespace
@@ -143,7 +143,8 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
 
   diverged_ = diverged_ || !(command_ + loads_).allFinite();
   pass_on(p, in, wish, put_out, T);
-  // The device's own forces are no hand's, and what the motors give for them not the law's.
+  // The observer must not take the device's own forces for the hand's, nor the law the motors'
+  // torque for them for its own.
   observer_.applied(p.anti_windup ? Vec<N>(tau1_ - loads_) : command_);
   coupling_.applied(p.kind, tau1_ - loads_);
   write_row(p, in, row);
@@ -152,7 +153,7 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   return tau1_;
 }
 
-// What the motors are to give for the device's own forces; returns what of them is left to the law.
+// Sets the motors' torque for the device's own forces; returns the torque that is left to the law.
 template <int N>
 Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, double T) {
   const Vec<N> friction = resolve<N>(p.friction, arm_friction_);
@@ -160,7 +161,7 @@ Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, dou
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }
 
-// The part of the tip's limit that the device's own forces leave to the law [N].
+// Part of the tip's limit that the device's own forces leave to the law [N].
 template <int N>
 double Tick<N>::tip_force_left(bool guarded) const {
   if (!guarded) return std::numeric_limits<double>::infinity();
@@ -168,8 +169,8 @@ double Tick<N>::tip_force_left(bool guarded) const {
   return std::max(kLeastForLaw * most, most - tip_force<N>(loads_, J_));
 }
 
-// Nobody knows what the device did meanwhile, but that it was without torque: it starts as one
-// found at rest does.
+// Begins anew after a time without torque: its motion is unknown, so the device counts as found at
+// rest.
 template <int N>
 void Tick<N>::begin_anew(const Reading<N>& in) {
   velocity_.reset(in.measured);
@@ -183,8 +184,8 @@ void Tick<N>::begin_anew(const Reading<N>& in) {
   x1_before_ = in.x;
 }
 
-// Brings the proxy to the device. A device that must not be pushed can have gone anywhere; the
-// proxy must pull on nothing when force may leave again.
+// Brings the proxy to the device, which may have gone anywhere while it had no force: the proxy
+// must pull on nothing when force returns.
 template <int N>
 void Tick<N>::bring_proxy(const Vec<N>& x, const Parameters& p) {
   proxy_.catch_up();
@@ -201,7 +202,7 @@ void Tick<N>::start_law(const LawStart<N>& at) {
   coupling_.start(at);
 }
 
-// The law that takes over begins with things as they are; the torque gets there at a bounded rate.
+// Starts another law from the present state; the torque changes at a bounded rate.
 template <int N>
 void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
   motors_.begin_slew();
@@ -211,20 +212,20 @@ void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
   fresh_law_ = true;
 }
 
-// The command on its way to the motors.
+// Takes the command to the motors.
 template <int N>
 void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,
                       double T) {
   const Objections against = safety_.judge(
       in.health, diverged_, {in.measured, velocity_.estimate(), J_, tau1_, put_out, T});
-  // As much time as really passed, and no more than a tick's.
+  // The time that really passed, at most a tick's.
   const double dt = in.dt > 0 ? std::min(in.dt, p.tick) : p.tick;
   gate_.step(wish, against, dt);
   const bool barred = against.fault != ForceState::on || !(against.ceiling > 0);
   unbarred_ = std::exchange(barred_, barred) && !barred && in.health.guarded;
   const bool limited = in.health.guarded && !diverged_;
-  // A law, an observer and contacts that begin anew ask for another torque than a tick ago; rows of
-  // a virtual arm follow from where they begin, and what the motors gave before is not there.
+  // A restart asks for another torque than a tick ago. Rows of a virtual arm follow from where they
+  // begin, so there the earlier torque does not count.
   if (std::exchange(restarted_, false) && limited) motors_.begin_slew();
   const Vec<N> all = command_ + loads_;
   const TorqueLimits<N> most =
@@ -299,7 +300,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   }
 }
 
-// Where bodies are now: the law will have moved them when the rest of the row is written.
+// Writes the bodies now: the law will have moved them when the rest of the row is written.
 template <int N>
 void Tick<N>::write_bodies(std::span<double> row) {
   const BodyWorld* world = proxy_.contacts().world();

@@ -14,10 +14,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kNear = 1e-3;    // points further apart than this are none [m]
-constexpr double kMargin = 1e-4;  // Bullet rounds edges by so much, where it does [m]
-constexpr double kWide = 10;      // half the edge of what stands for a plane [m]
-constexpr int kPointsOfPair = 4;  // that Bullet keeps
+constexpr double kNear = 1e-3;    // points further apart than this are ignored [m]
+constexpr double kMargin = 1e-4;  // radius by which Bullet rounds some edges [m]
+constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
+constexpr int kPointsOfPair = 4;  // points of a pair that Bullet keeps
 
 btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -34,7 +34,8 @@ Vec3 middle(const btManifoldPoint& point) {
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
 }
 
-// Bullet's own works out friction and more for each point, which nobody asks for here.
+// Result of a pair without the friction and other values that Bullet's own class computes for each
+// point.
 class Points : public btManifoldResult {
  public:
   using btManifoldResult::btManifoldResult;
@@ -63,7 +64,7 @@ class Points : public btManifoldResult {
   }
 
  private:
-  // The one that a point there is, or null.
+  // Returns the existing point that a point there replaces, or null.
   static btManifoldPoint* near(btPersistentManifold& all, const btVector3& own) {
     btScalar least = all.getContactBreakingThreshold() * all.getContactBreakingThreshold();
     btManifoldPoint* nearest = nullptr;
@@ -78,7 +79,7 @@ class Points : public btManifoldResult {
   }
 };
 
-// A plane is a large block below it: of faces and edges Bullet finds all points at once.
+// Pose of the large box below a plane: for faces and edges Bullet finds all its points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
   block.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), plane.normal).matrix();
@@ -86,10 +87,20 @@ Pose block_below(const Plane& plane, const Pose& pose) {
   return block;
 }
 
+// Numbers of a point in write().
+constexpr std::size_t kNumbers = 30;
+
+void put(std::vector<double>& into, const btVector3& v) {
+  for (int i = 0; i < 3; ++i) into.push_back(v[i]);
+}
+void put(std::vector<double>& into, const Vec3& v) {
+  for (const double x : v) into.push_back(x);
+}
+
 }  // namespace
 
 struct BodyGeometry::Inside {
-  // One convex part of an object, or one that stands still.
+  // A convex part of a body, or a fixed object.
   struct Solid {
     int body = BodyContact::kStill;
     int object = 0;
@@ -97,20 +108,20 @@ struct BodyGeometry::Inside {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btTriangleMesh> triangles;
     btCollisionObject at;
-    std::optional<btVector3> level;  // of a plane: its normal,
-    btScalar height = 0;             // and how far along it it is [m]
-    btVector3 low, high;             // box around it, a little larger
-    double least = 0;                // its smallest extent [m]
+    std::optional<btVector3> level;  // normal of a plane
+    btScalar height = 0;             // the plane's coordinate along it [m]
+    btVector3 low, high;             // box around it, slightly enlarged
+    double least = 0;                // smallest extent [m]
     bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
   };
   struct Pair {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
-    bool single = false;   // they meet in one point at most
-    bool refresh = true;   // what finds its points leaves those that are gone
-    bool corners = false;  // a box on a plane: no more than its corners is asked for
-    int points = 0;        // of its manifold
+    bool single = false;   // the two meet in one point at most
+    bool refresh = true;   // its search does not remove points that are gone
+    bool corners = false;  // a box on a plane: only the box's corners are tested
+    int points = 0;        // points of its manifold
   };
 
   explicit Inside(const Scene& scene);
@@ -134,7 +145,7 @@ struct BodyGeometry::Inside {
   btDispatcherInfo info;
   std::vector<std::unique_ptr<Solid>> solids;
   std::vector<std::vector<Solid*>> of_body;
-  std::vector<std::array<int, 2>> apart;  // bodies that hang together do not touch
+  std::vector<std::array<int, 2>> apart;  // jointed bodies, which do not touch
   std::vector<Pair> pairs;
   std::vector<BodyContact> pool;
   std::vector<BodyContact*> free_ones, points, last;  // last: the points of the search before
@@ -273,13 +284,13 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
     const btVector3 size = high - low;
     solid->least = std::min({size.x(), size.y(), size.z()});
   } else {
-    return;  // a joint's stop is nowhere in space
+    return;  // a joint's stop has no place in space
   }
   solid->at.setCollisionShape(solid->shape.get());
   solids.push_back(std::move(solid));
 }
 
-// Made for every pair at once, so that no tick has to.
+// Prepares a pair with all its memory, so that no tick has to.
 void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   Pair p{&a, &b};
   if (!allowed(p)) return;
@@ -290,7 +301,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   p.single = (ball(a) || ball(b)) && convex;
   p.corners = a.shape->getShapeType() == BOX_SHAPE_PROXYTYPE && b.level;
   p.refresh = !convex || (ball(a) && ball(b)) || p.corners;
-  // Else Bullet turns the shapes a little, to find more points than the deepest.
+  // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
   configuration.setConvexConvexMultipointIterations(wanted, wanted);
   const btCollisionObjectWrapper on_a(nullptr, a.shape.get(), &a.at, a.at.getWorldTransform(), -1,
@@ -298,7 +309,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   const btCollisionObjectWrapper on_b(nullptr, b.shape.get(), &b.at, b.at.getWorldTransform(), -1,
                                       -1);
   p.algorithm = dispatcher.findAlgorithm(&on_a, &on_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-  // It takes the memory for its points when it is first used.
+  // The first use allocates the memory for its points.
   btManifoldResult result(&on_a, &on_b);
   p.algorithm->processCollision(&on_a, &on_b, info, &result);
   btManifoldArray all;
@@ -331,8 +342,8 @@ bool BodyGeometry::Inside::overlap(const Solid& a, const Solid& b) {
          b.low.y() <= a.high.y() && a.low.z() <= b.high.z() && b.low.z() <= a.high.z();
 }
 
-// A plane is the same everywhere: its end of a point goes along below the body's, which may slide
-// as far as it likes and stays in the same contact.
+// Moves a point's end on a plane along below the body's: a plane is the same everywhere, so a body
+// may slide any distance in one contact.
 void BodyGeometry::Inside::slide_along(const Pair& p) {
   if (!p.b->level) return;
   const bool turned = p.manifold->getBody0() != &p.a->at;
@@ -347,7 +358,8 @@ void BodyGeometry::Inside::slide_along(const Pair& p) {
   }
 }
 
-// A ball has one point: what Bullet still has from before, beside it, would turn the ball.
+// Keeps only the deepest point of a ball: older ones that Bullet keeps beside it would turn the
+// ball.
 void BodyGeometry::Inside::keep_deepest(const Pair& p) {
   btPersistentManifold& m = *p.manifold;
   while (m.getNumContacts() > 1) {
@@ -356,9 +368,8 @@ void BodyGeometry::Inside::keep_deepest(const Pair& p) {
   }
 }
 
-// A point that is new where another one of the pair has just gone is that one, elsewhere: it goes
-// on with what that one was pressed in by. Else what rests on points that come and go would sink,
-// and of two balls Bullet makes a new point every time.
+// Treats a new point of a pair as one that has just gone, moved, and keeps its state. Otherwise
+// bodies on points that come and go would sink; of two balls Bullet makes a new point every time.
 void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
   btPersistentManifold& m = *p.manifold;
   const auto is_there = [&](const BodyContact* c) {
@@ -380,13 +391,13 @@ void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> be
   }
 }
 
-// Those of a box that are near to the plane, the four lowest if there are more.
+// Finds the corners of a box that are near to the plane, at most the four lowest.
 void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
   const auto& box = static_cast<const btBoxShape&>(*p.a->shape);
   const btTransform& at = p.a->at.getWorldTransform();
   const btVector3& normal = *p.b->level;
   const btVector3 half = box.getHalfExtentsWithMargin();
-  const btVector3 rise = normal * at.getBasis();  // of each of its axes
+  const btVector3 rise = normal * at.getBasis();  // rise of each axis
   const btScalar middle = normal.dot(at.getOrigin()) - p.b->height;
   const btScalar near = p.manifold->getContactBreakingThreshold();
   struct Corner {
@@ -459,13 +470,13 @@ void BodyGeometry::Inside::take(Pair& p) {
       }
       point.m_userPersistentData = c;
     }
-    // Bullet may have taken the pair the other way round.
+    // Bullet may have swapped the pair.
     const bool turned = p.manifold->getBody0() != &p.a->at;
     c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
     c->point = middle(point);
     c->depth = -point.getDistance();
     c->seen = true;
-    points.push_back(c);  // there are no more of them than there is room for
+    points.push_back(c);  // its capacity covers the whole pool
   }
 }
 
@@ -532,20 +543,6 @@ void BodyGeometry::forget() {
     in_->free_ones.push_back(&*c);
   }
 }
-
-namespace {
-
-// Of a point, in the file.
-constexpr std::size_t kNumbers = 30;
-
-void put(std::vector<double>& into, const btVector3& v) {
-  for (int i = 0; i < 3; ++i) into.push_back(v[i]);
-}
-void put(std::vector<double>& into, const Vec3& v) {
-  for (const double x : v) into.push_back(x);
-}
-
-}  // namespace
 
 void BodyGeometry::write(std::vector<double>& into) const {
   const auto& pairs = in_->pairs;

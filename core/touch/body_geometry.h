@@ -1,4 +1,4 @@
-// Where bodies touch each other and what stands still.
+// Collision detection: points where bodies touch each other and fixed objects.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@
 
 namespace limpid {
 
-// A point where a body meets another one, or what stands still. It lasts as long as the same places
-// of both are near each other, and carries along what its force is made of.
+// A point where a body meets another one or a fixed object. It lasts as long as the same places of
+// both are near each other, and keeps the state of its force.
 struct BodyContact {
   static constexpr int kStill = -1;
 
   int a = 0, b = kStill;           // bodies
-  int object_a = 0, object_b = 0;  // of the scene
+  int object_a = 0, object_b = 0;  // objects of the scene
   Vec3 point = Vec3::Zero();       // in the middle of the overlap [m]
   Vec3 normal = Vec3::UnitZ();     // out of b, unit
   double depth = 0;                // negative: apart [m]
-  // Of a ball the point stays below the centre while it rolls: it does not turn along.
+  // Set for a ball, whose point stays below the centre while it rolls and does not turn along.
   bool ball_a = false, ball_b = false;
 
-  // From tick to tick:
-  double lost = 0;  // by its damper over the last tick [J]
-  // Depth that nobody pressed in: it was there when they met, or the nearest features of two shapes
-  // changed. It pushes nothing [m].
+  // The rest is kept from tick to tick.
+  double lost = 0;  // energy lost in its damper over the last tick [J]
+  // Depth that was not pressed in: it was there when they met, or the nearest features of two
+  // shapes changed. It causes no force [m].
   double rest = 0;
-  double pressed = 0;            // depth to which it was pressed in by the end of the last tick [m]
+  double pressed = 0;            // depth pressed in by the end of the last tick [m]
   double force = 0;              // along the normal, on a [N]
   Vec3 friction = Vec3::Zero();  // on a [N]
   Vec3 anchor = Vec3::Zero();    // stretch of friction's spring [m]
@@ -36,12 +36,12 @@ struct BodyContact {
   bool seen = false;
 };
 
-// Finds these points, by Bullet's collision library in double precision. All memory is taken when
-// it is made; the same poses in the same order give the same points, bit for bit.
+// Finds these points with Bullet's collision library in double precision. Takes all memory when it
+// is made. The same poses in the same order give the same points, bit for bit.
 class BodyGeometry {
  public:
-  // Bodies are those objects of the scene that have one, in its order. At most kMost points at a
-  // time: further ones are left out, and counted.
+  // Bodies are the objects of the scene that have one, in its order. At most kMost points exist at
+  // a time: further ones are left out, and counted.
   explicit BodyGeometry(const Scene& scene);
   ~BodyGeometry();
   BodyGeometry(BodyGeometry&&) noexcept;
@@ -50,17 +50,17 @@ class BodyGeometry {
   static constexpr int kMost = 512;
 
   void place(int body, const Pose& pose);
-  // Brings the points of all pairs up to date of which one is awake. In the order of the pairs.
+  // Updates the points of all pairs with an awake body, in the order of the pairs.
   void search(std::span<const std::uint8_t> awake);
   std::span<BodyContact* const> points() const;
   int left_out() const;  // of the last search()
-  // Whether the boxes around two bodies, a little larger, overlap.
+  // True if the boxes around two bodies, slightly enlarged, overlap.
   bool near(int a, int b) const;
-  void forget();  // all points
+  void forget();  // forgets all points
 
-  // All that is kept from tick to tick, as numbers, behind those there are.
+  // Appends all state that is kept from tick to tick, as numbers.
   void write(std::vector<double>& into) const;
-  // Returns what is left over of them.
+  // Restores that state; returns the numbers that follow it.
   std::span<const double> read(std::span<const double> from);
 
  private:

@@ -1,4 +1,4 @@
-// What holds bodies together: joints and springs.
+// Joints and springs between bodies.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 namespace limpid {
 namespace {
 
-// From one to the next of the points that make a hinge or a slider between bodies [m].
+// Distance between the points that make a hinge or a slider between bodies [m].
 constexpr double kJointArm = 0.01;
-// How fast a body that is pulled would swing if the pull did not damp it critically [rad/s].
+// Frequency of the pull's spring, which is critically damped [rad/s].
 constexpr double kPullSwing = 25;
-constexpr double kLongestPull = 0.04;  // it pulls no harder than this far off [m]
+constexpr double kLongestPull = 0.04;  // distance beyond which the pull grows no more [m]
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void BodyWorld::add_links(const Scene& scene) {
       std::swap(link.a, link.b);
       std::swap(link.on_a, link.on_b);
     }
-    if (link.a == BodyContact::kStill) continue;  // between what stands still
+    if (link.a == BodyContact::kStill) continue;  // between fixed ends
     link.length = spring.length;
     link.K = spring.stiffness;
     link.B = spring.damping;
@@ -42,8 +42,8 @@ void BodyWorld::add_links(const Scene& scene) {
   }
 }
 
-// A ball joint holds one point; a hinge two on its axis; a slider leaves three, of which one is
-// across it, free along it.
+// Adds a joint's links: a ball joint holds one point; a hinge two on its axis; a slider three, one
+// of them off the axis, each free along it.
 void BodyWorld::add_joint(int body, const BodyJoint& joint) {
   const Pose& pose = bodies_[at(body)].pose();
   const int to = number(joint.to);
@@ -133,7 +133,8 @@ void BodyWorld::begin_pull() {
   pulling_.give = k * (Mat3::Identity() + k * pulling_.W).inverse();
 }
 
-// What has slid is held where it is now: by its own point of the other body.
+// Begins a slider's link: it holds the present place, by the point of the other body that is there
+// now.
 void BodyWorld::begin_rail(Link& link) {
   const Vec3 on_a = place(link.a, link.on_a);
   link.end_a = end_at(link.a, on_a);
@@ -143,8 +144,8 @@ void BodyWorld::begin_rail(Link& link) {
   const Vec3 spin = moves(link.b) ? bodies_[at(link.b)].spin() : Vec3(Vec3::Zero());
   const auto later = [&](const Vec3& v) { return Vec3(v + 0.5 * T_ * spin.cross(v)); };
   const Vec3 axis = later(now).normalized();
-  // That point is where a is in the middle of the tick: else the force and its answer would turn
-  // both.
+  // The point on b is the one at a's place in the middle of the tick: otherwise the force and its
+  // reaction would turn both.
   const auto speed = [&](int body) {
     if (!moves(body)) return Vec3(Vec3::Zero());
     const BodyMotion& motion = bodies_[at(body)];
@@ -163,8 +164,7 @@ void BodyWorld::begin_rail(Link& link) {
   apply(link.end_a, link.end_b, link.force);
 }
 
-// Where halves are against each other now is where the joint is, but for what a tick's own turning
-// leaves.
+// Sets the joint's place to that of its sides, from which a tick's own rotation leads it away.
 void BodyWorld::follow(Held& held) const {
   if (held.joint.ball()) return;
   const Vec3 axis = directed(held.b, held.axis);
@@ -204,7 +204,7 @@ void BodyWorld::begin_held(Held& held) {
   push(held, held.joint.force());
 }
 
-// Of a against b: of its point on the joint, or how it turns.
+// Velocity of a relative to b: of the joint's point, or angular.
 Vec3 BodyWorld::speed(const Held& held) const {
   if (!held.joint.turns()) return velocity(held.end_a) - velocity(held.end_b);
   const auto turning = [&](int body) {

@@ -15,13 +15,14 @@ Mat3 turn(const Vec3& axis, double angle) {
   return Mat3::Identity() + at.sine * K + (1 - at.cosine) * K * K;
 }
 
-// Turned by the constant angular velocity of the midpoint rule (Cayley): by 2 atan(|d|/2) about d.
+// Rotation over a tick by the constant angular velocity of the midpoint rule (Cayley): by 2
+// atan(|d|/2) about d.
 Mat3 cayley(const Vec3& d) {
   const Mat3 K = skew(d);
   return Mat3::Identity() + (K + 0.5 * K * K) / (1 + 0.25 * d.squaredNorm());
 }
 
-// The nearest rotation, of what is one up to rounding: one step of Newton's method.
+// Nearest rotation to a matrix that is one up to rounding: one step of Newton's method.
 Mat3 rotation_again(const Mat3& R) { return 1.5 * R - 0.5 * R * (R.transpose() * R); }
 
 }  // namespace
@@ -51,7 +52,7 @@ BodyMotion::BodyMotion(const Object& object, const Vec3& gravity)
   reset();
 }
 
-// Of a body on a joint weight is one more energy that depends on the joint's place alone.
+// Adds the weight to the potential: on a joint it depends on the joint's place alone.
 void BodyMotion::add_weight() {
   if (kind_ == Kind::slider) potential_.add_weight(m_ * gravity_.dot(joint_.axis));
   if (kind_ != Kind::hinge) return;
@@ -71,7 +72,7 @@ void BodyMotion::reset() {
   U_ = 0;
 }
 
-// What follows from the joint, or from the object's pose.
+// Computes the pose from the joint, or the centre of mass from the pose.
 void BodyMotion::place() {
   if (kind_ == Kind::slider) {
     pose_.linear() = start_.linear();
@@ -120,8 +121,8 @@ Mat3 BodyMotion::answer(const Lever& at) const {
     const Vec3 j = S_v_ + S_w_.cross(at);
     return a_ * j * j.transpose();
   }
-  // im - [at]x Ai [at]x, without the zeros of [at]x. Number by number, here and where it is used: a
-  // processor waits where it reads two at once that it has just written one by one.
+  // Computes im - [at]x Ai [at]x without the zeros of [at]x. Number by number, here and where it is
+  // used: a processor waits when it reads two at once just after writing them one by one.
   const double x = at.x(), y = at.y(), z = at.z();
   double K[3][3];
   for (int j = 0; j < 3; ++j) {
@@ -214,7 +215,7 @@ double BodyMotion::weight_energy() const {
 }
 
 void BodyMotion::write(std::span<double, kNumbers> into) const {
-  const Mat3 R = pose_.linear();  // one after another, as they are not in a pose
+  const Mat3 R = pose_.linear();  // contiguous numbers, unlike those in a pose
   auto* to = into.data();
   to = std::copy_n(p_.data(), 3, to);
   to = std::copy_n(R.data(), 9, to);

@@ -10,17 +10,18 @@
 namespace limpid {
 namespace {
 
-constexpr double kEnough = 1e-8;      // change of a force of what the arm touches [N],
-constexpr double kEnoughElse = 1e-5;  // and of all others
-constexpr int kMostSweeps = 30;       // over what it touches; over all others
+// Change of a force that counts as settled, for bodies that the arm touches, and for others [N].
+constexpr double kEnough = 1e-8;
+constexpr double kEnoughElse = 1e-5;
+constexpr int kMostSweeps = 30;  // most sweeps over bodies that the arm touches
 constexpr int kFewSweeps = 10, kManySweeps = 60;
-constexpr std::size_t kMostRowsSwept = 2000;  // in a tick, beyond the few sweeps: 0.2 ms
-constexpr double kFade = 0.05;                // s in which a depth that was there at the start goes
-constexpr double kSlow = 1e-3;                // what is slower is at rest [m/s]
-constexpr double kQuiet = 0.5;                // s of rest, after which it sleeps
-constexpr double kGone = 20;                  // further off than this nobody looks for it [m]
+constexpr std::size_t kMostRowsSwept = 2000;  // rows in a tick's sweeps beyond kFewSweeps: 0.2 ms
+constexpr double kFade = 0.05;  // time in which a depth present at the start fades [s]
+constexpr double kSlow = 1e-3;  // largest speed of a body at rest [m/s]
+constexpr double kQuiet = 0.5;  // time of rest before a body sleeps [s]
+constexpr double kGone = 20;    // distance at which a body is given up [m]
 
-// F^T W F, as Eigen adds it up, number by number.
+// F^T W F, number by number in the order of Eigen's sums.
 void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
   for (int i = 0; i < 3; ++i) {
     double T[3];
@@ -95,7 +96,7 @@ void BodyWorld::take_over(const BodyWorld& other) {
     if (theirs == BodyContact::kStill || !bodies_[at(i)].alike(other.bodies_[at(theirs)])) continue;
     const BodyMotion& before = other.bodies_[at(theirs)];
     before.write(numbers);
-    // Its object stays where it is, wherever its mass now is.
+    // Keeps the object's place, although its centre of mass may have moved.
     const Vec3 own = pose(i).inverse() * center(i);
     const Vec3 moved = before.pose() * own - before.center();
     if (moved.norm() > 1e-12) {
@@ -109,7 +110,7 @@ void BodyWorld::take_over(const BodyWorld& other) {
     geometry_.place(i, pose(i));
   }
   for (Held& held : held_) {
-    for (const Held& theirs : other.held_) {  // as often turned round
+    for (const Held& theirs : other.held_) {  // may have its sides swapped
       if (names_[at(held.a)] == other.names_[at(theirs.a)]) held.joint.place = theirs.joint.place;
     }
     follow(held);
@@ -173,7 +174,7 @@ void BodyWorld::begin(double T) {
   take_stock();
 }
 
-// What moves wakes what it comes near to, and what hangs on it.
+// Wakes bodies that a moving body comes near to or is linked to.
 void BodyWorld::wake_neighbours() {
   const auto quick = [&](int i) { return moves(i) && quiet_[at(i)] == 0; };
   const auto wake = [&](int i) {
@@ -217,7 +218,7 @@ void BodyWorld::find_islands() {
   for (const Link& link : links_) {
     if (!link.broken) join(link.a, link.b);
   }
-  // That of the whole island.
+  // An island counts as touched if one of its bodies is.
   for (int i = 0; i < count(); ++i) {
     if (touched_[at(i)] != 0) touched_[at(root(i))] = 1;
   }
@@ -242,7 +243,7 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   row.a = end_at(contact.a, contact.point, contact.ball_a);
   row.b = end_at(contact.b, contact.point, contact.ball_b);
   row.K = stiffness(contact);
-  // A depth that nobody pressed in goes, as fast as the contact's damper pays for it.
+  // Depth that was not pressed in fades, as fast as the contact's damper pays for it.
   contact.rest = std::max(contact.rest, contact.depth - contact.pressed);
   contact.rest = std::min(contact.rest, std::max(0.0, contact.depth));
   if (contact.rest > 0) {
@@ -267,8 +268,8 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   };
   const double m_eff = BodyMotion::kTheta * T_ / row.W(0, 0);
   row.B = 2 * damping_ratio(std::max(of(contact.a), of(contact.b))) * std::sqrt(row.K * m_eff);
-  // First the memory is turned to where the contact now is: a force that no row has would be work
-  // from nowhere.
+  // Turns the stored force to the contact's present frame first: a force that no row has would do
+  // unaccounted work.
   row.force = contact.force;
   row.friction.noalias() = row.frame.rightCols<2>().transpose() * contact.friction;
   row.anchor.noalias() = row.frame.rightCols<2>().transpose() * contact.anchor;
@@ -277,7 +278,7 @@ bool BodyWorld::begin_row(BodyContact& contact) {
   return true;
 }
 
-// Of a direction in a body's frame, or in the world.
+// Turns a direction from a body's frame to the world's.
 Vec3 BodyWorld::directed(int body, const Vec3& own) const {
   return body == BodyContact::kStill ? own : Vec3(pose(body).linear() * own);
 }
@@ -329,7 +330,7 @@ double BodyWorld::sweep(Row& row) {
   return std::abs(change) + more.norm();
 }
 
-// Of all rows, three numbers each.
+// Writes the forces of all rows, three numbers each.
 void BodyWorld::forces(std::vector<double>& into) const {
   auto to = into.begin();
   for (const Row& row : std::span(rows_.data(), count_)) {
@@ -393,7 +394,7 @@ double BodyWorld::sweep(bool touched, double enough, int most) {
       now_[k] -= before_[k];
       step2 += now_[k] * now_[k];
     }
-    // What grows begins anew.
+    // Restarts when the steps grow.
     const double on = last2 > 0 && step2 <= last2 ? step2 / last2 : 0;
     last2 = step2;
     for (std::size_t k = 0; k < numbers; ++k) {
@@ -421,7 +422,7 @@ void BodyWorld::hold_touched() {
   for (Held& held : held_) {
     if (in_turn(held.a, held.b, true)) held.joint.hold();
   }
-  // As if asleep; who is near the tip, or to what moves, is awake again at the next tick.
+  // Puts touched islands to sleep; those near the tip or a moving body wake at the next tick.
   for (int i = 0; i < count(); ++i) parent_[at(i)] = root(i);
   for (int i = 0; i < count(); ++i) {
     if (!moves(i) || touched_[at(parent_[at(i)])] == 0) continue;
@@ -480,7 +481,7 @@ void BodyWorld::finish() {
   std::ranges::fill(touched_, 0);
 }
 
-// An island sleeps once all of it has been at rest for a while.
+// Puts an island to sleep after all of it has been at rest for a while.
 void BodyWorld::fall_asleep() {
   const auto long_enough = static_cast<int>(kQuiet / T_);
   for (int i = 0; i < count(); ++i) {
@@ -493,7 +494,7 @@ void BodyWorld::fall_asleep() {
   }
   std::ranges::fill(quiet_island_, 1);
   for (int i = 0; i < count(); ++i) {
-    parent_[at(i)] = root(i);  // from here on everybody's own
+    parent_[at(i)] = root(i);  // each body's own root from now on
     if (moves(i) && (quiet_[at(i)] < long_enough || touched_[at(root(i))] != 0)) {
       quiet_island_[at(root(i))] = 0;
     }

@@ -10,21 +10,21 @@ namespace limpid {
 
 namespace {
 
-constexpr int kMostSteps = 10;    // of Newton's method; two or three are usual
-constexpr int kFinest = 1 << 10;  // parts of a segment on which planes come or go
+constexpr int kMostSteps = 10;    // steps of Newton's method; two or three are usual
+constexpr int kFinest = 1 << 10;  // parts of a segment: finest search for changes of planes
 
-// Where the room holds a point of the segment.
+// State of the room at a point of the segment.
 struct Held {
-  Vec3 pull;               // from there to the nearest free place [m]
+  Vec3 pull;               // from the point to the nearest free place [m]
   FreeSpace::Active by{};  // the planes
-  Vec3 weights;            // how each of them pulls
+  Vec3 weights;            // weight of each plane
 };
 
-// Means over the segment, s from 0 to 1 along it.
+// Means over the segment from s = 0 to 1.
 struct Mean {
   Vec3 pull = Vec3::Zero();    // [m]
-  Mat3 damped = Mat3::Zero();  // what the damper makes of a velocity [-]
-  Mat3 later = Mat3::Zero();   // how the pull's mean answers the segment's end [-]
+  Mat3 damped = Mat3::Zero();  // factor of the damper on a velocity [-]
+  Mat3 later = Mat3::Zero();   // slope of the pull's mean over the segment's end [-]
 };
 
 class Segment {
@@ -55,9 +55,9 @@ class Segment {
     return e.leftCols(rank) * e.leftCols(rank).transpose();
   }
 
-  // Every plane damps along its normal as a wall by itself does; those that face nearly the same
-  // way share that, by what each has of the depth beneath it. So the crease between two faces of a
-  // valley drags no more than the faces do.
+  // Damper of the planes that hold. Each damps along its normal as a wall by itself does. Planes
+  // that face nearly the same way share it, in proportion to their part of the depth below them. So
+  // the crease between two faces of a valley drags no more than the faces do.
   Mat3 damper(const Held& h) const {
     Mat3 D = Mat3::Zero();
     for (int i = 0; i < h.by.count; ++i) {
@@ -69,7 +69,7 @@ class Segment {
     return D;
   }
 
-  // The pull is linear between two places that the same planes hold.
+  // Adds a part of the segment: the pull is linear between two places that the same planes hold.
   void add(int first, int last, const Held& a, const Held& b, Mean& m) const {
     const double s0 = static_cast<double>(first) / kFinest;
     const double s1 = static_cast<double>(last) / kFinest;
@@ -98,6 +98,27 @@ Mean mean_of(const MeshTouch& touch, const Vec3& center, const Vec3& D) {
   return {touch.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
 }
 
+constexpr double kNear = 2e-3;  // contacts further off are left out, unless they approach [m]
+// Least lever of a contact: below it no joint can serve the contact, and its force, which moves
+// nothing, is left out with its friction [m].
+constexpr double kLeastLever = 1e-9;
+constexpr double kSettled = 1e-8;   // largest change of a settled force, relative to it or to 1 N
+constexpr double kFelt = 1e-7;      // least change of a force that shows a body's response [N]
+constexpr int kSweepsOfBodies = 5;  // sweeps over other bodies for each one over touched ones
+
+// Frame of a unit vector and two unit vectors across it.
+Mat3 frame_of(const Vec3& normal) {
+  Mat3 frame;
+  frame.col(0) = normal;
+  frame.col(1) = normal.unitOrthogonal();
+  frame.col(2) = normal.cross(frame.col(1));
+  return frame;
+}
+
+double friction_radius(const Material& m, bool slipping) {
+  return slipping ? m.friction_kinetic : std::max(m.friction_static, m.friction_kinetic);
+}
+
 }  // namespace
 
 void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
@@ -124,31 +145,6 @@ Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D) {
   on_D = pushes ? Mat3(-tick.K * m.later - b * m.damped) : Mat3(Mat3::Zero());
   return pushes ? F : Vec3(Vec3::Zero());
 }
-
-namespace {
-
-constexpr double kNear = 2e-3;  // what is further off and does not come is left out [m]
-// A joint coordinate moves a contact by less than this: no joint can serve it, and its force, which
-// moves nothing, is left out with its friction [m].
-constexpr double kLeastLever = 1e-9;
-constexpr double kSettled = 1e-8;   // largest change of a force, as a part of it or of 1 N
-constexpr double kFelt = 1e-7;      // change of a force that says how a body gives way [N]
-constexpr int kSweepsOfBodies = 5;  // among bodies for each one over what the arm touches
-
-// Two unit vectors across a unit vector.
-Mat3 frame_of(const Vec3& normal) {
-  Mat3 frame;
-  frame.col(0) = normal;
-  frame.col(1) = normal.unitOrthogonal();
-  frame.col(2) = normal.cross(frame.col(1));
-  return frame;
-}
-
-double friction_radius(const Material& m, bool slipping) {
-  return slipping ? m.friction_kinetic : std::max(m.friction_static, m.friction_kinetic);
-}
-
-}  // namespace
 
 template <int N>
 typename ContactSolve<N>::Row& ContactSolve<N>::next_row(double depth) {
@@ -230,7 +226,7 @@ void ContactSolve<N>::add(MeshContact<N>& c, Contacts<N>& contacts) {
   if (c.body != BodyContact::kStill) on_body(row, contacts.world(), c.body, c.center);
 }
 
-// It may not be thrown out by deeper contacts.
+// Adds the magnet, which deeper contacts may not displace.
 template <int N>
 void ContactSolve<N>::add(typename Contacts<N>::Magnet& magnet, BodyWorld& world) {
   Row& row = next_row(std::numeric_limits<double>::infinity());
@@ -242,7 +238,7 @@ void ContactSolve<N>::add(typename Contacts<N>::Magnet& magnet, BodyWorld& world
   on_body(row, &world, magnet.body, magnet.at);
 }
 
-// The other side of the row moves as well.
+// Makes a body the other side of a row.
 template <int N>
 void ContactSolve<N>::on_body(Row& row, BodyWorld* world, int body, const Vec3& point) {
   row.world = world;
@@ -332,7 +328,7 @@ double ContactSolve<N>::push_wall(Row& row, double T, Motion<N>& motion) {
   return std::abs(change) + rub(row, T, Vec3::UnitX(), F, motion);
 }
 
-// f = -(K x + (K T/2 + B) v): spring and damper at the middle of the tick.
+// The magnet's force f = -(K x + (K T/2 + B) v): spring and damper at the middle of the tick.
 template <int N>
 double ContactSolve<N>::push_magnet(Row& row, double T, Motion<N>& motion) {
   const Vec3 before = row.push;
@@ -358,8 +354,8 @@ double ContactSolve<N>::push_mesh(Row& row, double T, Motion<N>& motion) {
   return change.norm() + rub(row, T, normal, force, motion);
 }
 
-// Of a wall or a room without friction, for a motion v along the row's axes, without what the force
-// does to a body that it belongs to. Returns how the push answers v.
+// Force of a wall or a room without friction. The motion v, along the row's axes, excludes the
+// force's effect on its own body. Returns the slope over v.
 template <int N>
 Mat3 ContactSolve<N>::push(Row& row, double T, const Vec3& v) {
   Mat3 slope = Mat3::Zero();
@@ -395,7 +391,7 @@ Mat3 ContactSolve<N>::push(Row& row, double T, const Vec3& v) {
   return slope;
 }
 
-// Adds friction across the normal, and to the slope how it answers, while the normal stands.
+// Adds friction across the normal, and its slope while the normal is fixed.
 template <int N>
 void ContactSolve<N>::rub(Row& row, double T, const Vec3& v, Mat3& slope) {
   row.friction.setZero();
@@ -438,8 +434,7 @@ void ContactSolve<N>::prepare(const ContactAnswer<N>& answer, double T) {
   }
 }
 
-// How a point answers a force, of which a change along d made it give way by `given` less: so along
-// d, and across it as before.
+// Response of a point to a force: `given`, as measured, along d, and W as before across it.
 Mat3 answer_along(const Mat3& W, const Vec3& d, double given) {
   const Mat3 across = Mat3::Identity() - d * d.transpose();
   return std::clamp(given, 0.0, d.dot(W * d)) * d * d.transpose() + across * W * across;
@@ -500,7 +495,7 @@ Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
   if (slope != nullptr) slope->setZero();
   for (Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {
     const Vec3 v = speed(row, u) - row.body_free;
-    // What rubs also moves a body along the normal: as it did last.
+    // Friction also moves a body along the normal; the last friction is used.
     Mat3 on_v = push(row, T, row.world != nullptr ? Vec3(v + row.W_body * row.rubbed) : v);
     rub(row, T, v, on_v);
     if (slope == nullptr || on_v.isZero(0)) continue;
@@ -515,7 +510,7 @@ Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
   return f2(u.size());
 }
 
-// Friction across the normal, in the row's axes.
+// Updates friction across the normal, in the row's axes.
 template <int N>
 double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force,
                             Motion<N>& motion) {
@@ -535,7 +530,7 @@ double ContactSolve<N>::rub(Row& row, double T, const Vec3& normal, double force
   return change.norm();
 }
 
-// Nothing happens there, whatever the other contacts do by themselves.
+// True if a row stays apart, for any forces of the other contacts alone.
 template <int N>
 bool ContactSolve<N>::apart(const Row& row, double T, const Vec<N>& u) {
   if (row.known || row.magnet != nullptr || !row.push.isZero(0) || !row.friction.isZero(0)) {
@@ -607,14 +602,14 @@ void ContactSolve<N>::finish(Contacts<N>& contacts) const {
     }
     world_->finish();
   }
-  contacts.forget();  // those that are gone as well
+  contacts.forget();  // those that are gone, too
   const auto keep = [&](std::size_t id, const Row& row) {
     const double force = row.push.norm(), rubs = row.friction.norm();
     ContactMemory& now = contacts.memory(id);
     now.push = row.push;
     now.anchor = -(row.frame * row.friction) / friction_stiffness(row.material);
     const double limit = row.radius * force * (1 - 1e-9);
-    // Without kinetic friction it slips until it is lifted.
+    // Without kinetic friction a contact that slips goes on until it is lifted.
     now.slipping = force > 0 && (row.radius > 0 ? rubs >= limit : row.before.slipping);
   };
   for (const Row& row : std::span(rows_.data(), static_cast<std::size_t>(count_))) {

@@ -1,5 +1,5 @@
-// The forces of all contacts over a tick together: walls and meshes, with damping and friction, by
-// Gauss-Seidel sweeps over forces that do exactly the work that the contacts' potentials lose.
+// Solve of all contacts' forces over a tick together: walls and meshes, with damping and friction,
+// by Gauss-Seidel sweeps. The forces do exactly the work that the contacts' potentials lose.
 #pragma once
 
 #include <span>
@@ -12,11 +12,9 @@
 
 namespace limpid {
 
-// The force of a mesh's room of planes over a whole tick, conservative like a single wall's.
-
-// A spring K and damper B that pull the centre of a ball to the nearest place that a mesh leaves
-// free, over a tick in which the centre moves by D = a + W F: a without this force [m], W what a
-// force adds [m/N].
+// Force of a mesh's room of planes over a whole tick, conservative like a single wall's. A spring K
+// and damper B pull a ball's centre to the nearest place that the mesh leaves free. Over the tick
+// the centre moves by D = a + W F: a without this force [m], W the response to it [m/N].
 struct RoomTick {
   double K, B, T;
   Vec3 center;
@@ -24,33 +22,33 @@ struct RoomTick {
   Mat3 W;
 };
 
-// The constant force F [N] = mean of -grad U over the segment from center to center + D, minus the
-// damper's in the directions that were held. The mean of a gradient along a segment does exactly
-// the work that the potential loses. `F`: in, a first guess; out, the force.
+// Computes the constant force F [N] = mean of -grad U over the segment from center to center + D.
+// The damper's force in the held directions is subtracted. The mean of a gradient along a segment
+// does exactly the work that the potential loses. `F`: in, a first guess; out, the force.
 void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F);
 
-// The same force where D = a is known, and how it answers D [N/m], while the damper's directions
-// stand.
+// The force of room_force() for a known D = a, and its slope over D [N/m], with the damper's
+// directions fixed.
 Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D);
 
-// How all that moves answers to torques, and to a torque f2 of the contacts on the proxy. Unknown
-// are the device's motion w and how the proxy moves beside it, u - w.
+// Response of everything that moves to torques, and to a torque f2 of the contacts on the proxy.
+// Unknown are the device's motion w and the proxy's relative motion u - w.
 template <int N>
 struct ContactAnswer {
   ContactAnswer() = default;
-  // Of these blocks.
+  // Builds the system from its blocks.
   template <class... Blocks>
   ContactAnswer(double device, const Wide<N>& proxy, const Blocks&... blocks)
       : system(blocks...), on_device(device), on_proxy(proxy) {}
 
   CoupledSystem<N> system;
-  double on_device = 0;  // of f2, what reaches the first rows
-  Wide<N> on_proxy;      // and the second ones [-]
-  // Inertia that a wall finds heavy; null: walls have the damping of their material and no more.
+  double on_device = 0;  // share of f2 in the first rows
+  Wide<N> on_proxy;      // share of f2 in the second rows [-]
+  // Inertia behind a wall's damping; null: walls have only their material's damping.
   const SymmetricFactor<N>* inertia = nullptr;
   double damping = 0;       // see wall_damping() [-]
-  double jump = 0;          // of a joint's velocity when its encoder makes a step [rad/s]
-  double most_damping = 0;  // that a wall may have, as a part of its mass a tick, m_n/T [-]
+  double jump = 0;          // jump of a joint's velocity when its encoder makes a step [rad/s]
+  double most_damping = 0;  // largest damping of a wall, in m_n/T [-]
 
   Motion<N> solve(const Motion<N>& b) const {
     Motion<N> m = system.solve(b);
@@ -65,45 +63,46 @@ struct ContactAnswer {
 template <int N>
 class ContactSolve {
  public:
-  static constexpr int kMost = 32;  // that push at a time; of more, the deepest
+  static constexpr int kMost = 32;  // most contacts that push at a time; of more, the deepest
   static constexpr int kMostSweeps = 30;
 
-  // The contacts that may touch within a tick of T [s] in which the proxy without them would move
-  // like this.
+  // Collects the contacts that may touch within a tick of T [s] in which the proxy without contacts
+  // would move by u.
   void collect(Contacts<N>& contacts, const Arm<N>& arm, const typename Arm<N>::Frames& f,
                const Vec<N>& u, double T);
-  // motion: in, without contacts; out, with them. Starts from the last forces.
+  // Solves. motion: in, without contacts; out, with them. Starts from the last forces.
   void solve(const ContactAnswer<N>& answer, double T, Motion<N>& motion);
-  // The same as functions of the proxy's motion, for solves of one's own. First, after collect():
+  // Prepares push(), the forces as functions of the proxy's motion, for solves of other kinds.
+  // First, after collect().
   void prepare(const ContactAnswer<N>& answer, double T);
-  // Bodies of the scene get the forces of the last push() and settle among themselves; returns by
-  // how much a force of the arm on one of them changed [N]. push() then goes by where they are,
-  // and, from the second `turn` on (they are counted from 0), by what the last change did to them:
-  // a body that rests on others gives way less than it would alone.
+  // Gives bodies of the scene the forces of the last push() and lets them settle; returns the
+  // largest change of an arm's force on a body [N]. push() then uses their new places. From the
+  // second `turn` on (counted from 0) it uses their response to the last change too: a body that
+  // rests on others yields less than it would alone.
   double push_bodies(int turn);
-  // Bodies that the arm touches, and all that hangs together with them, stand still for the tick:
-  // what no forces were found for moves nothing, and so makes nothing.
+  // Holds the bodies that the arm touches, and all connected to them, for the tick: without a
+  // solution for their forces they do not move, and so gain no energy.
   void hold_bodies();
-  // then the torque [N m] of the forces over a tick in which the proxy moves with the mean velocity
-  // u [rad/s]; f2() and finish() are of the last one. `slope`: how it answers u [N m s/rad], on the
-  // piece of the forces' laws that holds; null: nobody asks.
+  // Returns the torque [N m] of the forces over a tick in which the proxy moves with the mean
+  // velocity u [rad/s]; f2() and finish() refer to the last call. `slope`: derivative over u [N m
+  // s/rad], on the present piece of the forces' laws; may be null.
   Vec<N> push(const Vec<N>& u, double T, Mat<N>* slope);
-  // Their torque [N m].
+  // Torque of the forces found [N m].
   Vec<N> f2(Eigen::Index n) const;
   bool any() const { return count_ > 0; }
-  int sweeps() const { return sweeps_; }     // of the last solve,
-  bool settled() const { return settled_; }  // which ended before they were all used up
-  // The largest change of a force in its last sweep, as a part of the largest force or of 1 N.
+  int sweeps() const { return sweeps_; }     // of the last solve
+  bool settled() const { return settled_; }  // the last solve ended before kMostSweeps
+  // Largest change of a force in the last sweep, relative to the largest force or to 1 N.
   double last_change() const { return last_change_; }
 
-  // The tick went like this: contacts and their memories learn of it.
+  // Stores the tick's forces in the contacts and their memories.
   void finish(Contacts<N>& contacts) const;
 
  private:
-  // One contact: forces along the axes of a frame. A wall's is its normal and two tangents; without
-  // friction only the first is used. A mesh's is the world's.
+  // A contact: forces along the axes of a frame. A wall's axes are its normal and two tangents;
+  // without friction only the first is used. A mesh's frame is the world's.
   struct Row {
-    // What pushes: one of these.
+    // Source of the force: one of the three.
     Contact<N>* wall = nullptr;
     MeshContact<N>* mesh = nullptr;
     typename Contacts<N>::Magnet* magnet = nullptr;
@@ -113,19 +112,19 @@ class ContactSolve {
     double radius = 0;  // of friction's disc, by the normal force [-]
     Mat3 frame = Mat3::Identity();
     std::array<Vec<N>, 3> g;       // torque of a unit force along each axis
-    std::array<Motion<N>, 3> Z;    // what it moves
+    std::array<Motion<N>, 3> Z;    // motion by this torque
     Mat3 W = Mat3::Zero();         // g_i . Z_j.u [m/(N s)]
     double B = 0;                  // damping [N s/m]
-    bool known = false;            // Z and W are
+    bool known = false;            // Z and W are known
     Vec3 push = Vec3::Zero();      // along the axes, without friction [N]
     Vec3 friction = Vec3::Zero();  // [N]
-    // Of a body's surface:
+    // State of a body's surface.
     BodyWorld* world = nullptr;
     BodyWorld::End end;
     Mat3 W_body = Mat3::Zero();     // along the axes [m/(N s)]
-    Vec3 on_body = Vec3::Zero();    // force that it has had so far, less its sign [N]
-    Vec3 rubbed = Vec3::Zero();     // of that, friction [N]
-    Vec3 body_free = Vec3::Zero();  // its velocity without that, along the axes [m/s]
+    Vec3 on_body = Vec3::Zero();    // force applied to it so far, with opposite sign [N]
+    Vec3 rubbed = Vec3::Zero();     // friction's part of on_body [N]
+    Vec3 body_free = Vec3::Zero();  // its velocity without on_body, along the axes [m/s]
 
     void clear() {
       wall = nullptr;
@@ -148,7 +147,7 @@ class ContactSolve {
   };
   Row& next_row(double depth);
   static void on_body(Row& row, BodyWorld* world, int body, const Vec3& point);
-  static Vec3 of_body(const Row& row);  // its velocity along the row's axes [m/s]
+  static Vec3 of_body(const Row& row);  // velocity of the row's body along the row's axes [m/s]
   void add(Contact<N>& c, Contacts<N>& contacts, const Arm<N>& arm,
            const typename Arm<N>::Frames& f);
   void add(MeshContact<N>& c, Contacts<N>& contacts);

@@ -9,17 +9,17 @@
 namespace limpid {
 namespace {
 
-// Further apart than this nothing touches within one tick [m].
+// Distance beyond which nothing touches within a tick [m].
 constexpr double kReach = 0.02;
-// Balls in a capsule's place: this many radii apart, but no more than so many.
+// Spacing of the balls that replace a capsule, in radii, and their largest number.
 constexpr double kSpacing = 0.75;
 constexpr int kMostBalls = 24;
-// A body that is nearer than this does not sleep [m].
+// Distance below which a body does not sleep [m].
 constexpr double kWakes = 5e-3;
-// The tip's magnet reaches so far [m].
+// Reach of the tip's magnet [m].
 constexpr double kPicksUp = 5e-3;
 
-// Under the plane that it is furthest under, or nearest above [m].
+// Depth below the plane that it is deepest under, or else the nearest one [m].
 double deepest(const FreeSpace& space, const Vec3& x) {
   double depth = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < space.count(); ++i) {
@@ -28,7 +28,8 @@ double deepest(const FreeSpace& space, const Vec3& x) {
   return depth;
 }
 
-// The scene may have been read for another arm.
+// Checks a joint's index: the scene may have been read for another arm. Errors:
+// std::invalid_argument.
 void check_index(int index, const ArmDescription& arm, const char* what) {
   if (index >= 0 && index < arm.dof()) return;
   throw std::invalid_argument(std::string(what) + " of the scene is at joint " +
@@ -187,7 +188,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
   for (MeshContact<N>& contact : meshes_) {
     const Vec3 before = contact.center;
     contact.center = Arm<N>::point(f, contact.link, contact.on_link);
-    // Planes that are right in the middle of the tick take and give alike over it.
+    // Planes that are right in the middle of the tick give and take equally over it.
     contact.touch.follow(contact.center + 0.5 * (contact.center - before), T);
     look(contact, arm, f);
     if (contact.body != BodyContact::kStill && contact.touch.near()) world_->touch(contact.body);
@@ -197,7 +198,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
   if (world_ && T > 0) world_->begin(T);
 }
 
-// The magnet takes the nearest body that may be picked up, where the tip then is.
+// Lets the magnet take the nearest magnetic body at the tip's place.
 template <int N>
 void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Frames& f) {
   BodyWorld& world = *world_;
@@ -212,7 +213,8 @@ void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Fram
       depth = its_depth;
     };
     for (const Contact<N>& c : list()) {
-      if (c.id < solids_.size()) take(c.body, c.depth);  // the first are the tip's
+      if (c.id < solids_.size())
+        take(c.body, c.depth);  // the first solids.size() contacts are the tip's
     }
     for (const MeshContact<N>& c : meshes_) {
       const bool tips = c.link == probes_[0].link && c.on_link == probes_[0].from;
@@ -262,7 +264,7 @@ void Contacts<N>::step_bodies() {
   world_->finish();
 }
 
-// Who pushes on the centre where it now is.
+// Finds the planes that push on the centre at its present place.
 template <int N>
 void Contacts<N>::look(MeshContact<N>& contact, const Arm<N>& arm,
                        const typename Arm<N>::Frames& f) {
@@ -281,7 +283,7 @@ void Contacts<N>::look(MeshContact<N>& contact, const Arm<N>& arm,
   aim(contact);
 }
 
-// The directions of the planes that push, and how deep the centre is along them.
+// Computes the directions of the planes that push, and the centre's depth along them.
 template <int N>
 void Contacts<N>::aim(MeshContact<N>& contact) {
   const FreeSpace& space = contact.touch.space();
@@ -294,7 +296,7 @@ template <int N>
 void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const ContactShare<N>& share,
                          const Mat<N>& M2) const {
   const auto spring = [&](const Material& material, double depth, const Vec<N>& gradient) {
-    // Of tau2 + f2 to a deeper contact, negative.
+    // Response of tau2 + f2 to a deeper contact, with opposite sign.
     const Vec<N> answer = material.stiffness * share.of(gradient, M2);
     A.noalias() += (0.5 * T) * answer * gradient.transpose();
     b -= depth * answer;

@@ -1,4 +1,4 @@
-// Embree 3 or 4, whichever is there: what is asked of it is the same in both.
+// Header of Embree 3 or 4, whichever is installed: the calls used are the same in both.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)

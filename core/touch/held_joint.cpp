@@ -13,7 +13,7 @@ using Mat9 = Eigen::Matrix<double, 3 * kMostHolds, 3 * kMostHolds>;
 using Mat93 = Eigen::Matrix<double, 3 * kMostHolds, 3>;
 using Mat63 = Eigen::Matrix<double, 6, 3>;
 
-// Force at the centre of mass and torque, of a unit force at a lever along each axis.
+// Force at the centre of mass and torque, for a unit force at a lever along each axis.
 Mat63 force_at(const Vec3& lever) {
   Mat63 J;
   J << Mat3::Identity(), skew(lever);
@@ -30,8 +30,8 @@ Mat3 symmetric(const Mat3& A) { return 0.5 * (A + A.transpose()); }
 
 }  // namespace
 
-// With the springs' answers among themselves M, G what the force does to them and W what it does to
-// itself, all without the springs: W - G^T M^-1 G is left.
+// The response is W - G^T M^-1 G. M, without the springs' forces, is the response of the springs to
+// each other, G theirs to the force, W the joint's to it.
 Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
                   std::span<const JointHold> holds) {
   const auto n = static_cast<int>(holds.size());
@@ -56,7 +56,7 @@ Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
       }
     }
   }
-  // The turning of what spins leaves it a little unsymmetric: sweeps see to that.
+  // Rotating bodies make M slightly unsymmetric; the sweeps correct the error.
   const Eigen::LLT<Mat9> factor(0.5 * (M + M.transpose()));
   Mat3 left = symmetric(W);
   for (int i = 0; i < 3; ++i) left.col(i) -= G.transpose() * factor.solve(G.col(i));

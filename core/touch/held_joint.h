@@ -1,4 +1,4 @@
-// A joint that springs hold, and how it answers what acts along it or about it.
+// A joint held by springs, and its response to forces along it or torques about it.
 #pragma once
 
 #include <array>
@@ -9,65 +9,65 @@
 
 namespace limpid {
 
-// One side of it, in the middle of a tick.
+// A side of the joint, in the middle of a tick.
 struct JointSide {
-  BodyMotion::Answer answer = BodyMotion::Answer::Zero();  // of what stands still: none
-  Vec3 lever = Vec3::Zero();                               // of a force along it [m]
-  std::array<Vec3, 3> links{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // levers of its springs
+  BodyMotion::Answer answer = BodyMotion::Answer::Zero();  // zero for a fixed side
+  Vec3 lever = Vec3::Zero();                               // lever of a force along the joint [m]
+  std::array<Vec3, 3> links{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // levers of the springs
 };
 
-// One of the springs that hold it: its force is `stiffness` times the velocity that it is given
-// [N s/m], in the directions that it holds.
+// A spring that holds the joint: its force is `stiffness` times the velocity of stretching [N s/m],
+// in the directions that it holds.
 struct JointHold {
   double stiffness = 0;
   Mat3 directions = Mat3::Identity();  // a projection
 };
 
-// What a torque about it, or a force along it, adds to the angular velocity or velocity of one side
-// against the other, where the springs that hold it give way to that at once.
+// Response of the sides' relative velocity to a force along the joint, or of their angular velocity
+// to a torque about it. The springs that hold it yield at once.
 Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
                   std::span<const JointHold> holds);
 
-// What damps and rubs in a ball joint, and all that acts in a hinge or a slider whose other half
-// moves as well.
+// Forces of a joint between two sides: damping and friction in a ball joint; all forces in a hinge
+// or a slider whose other side moves as well.
 struct HeldJoint {
   BodyJoint joint;
   JointPotential potential;
 
-  // From tick to tick. Of a hinge and a slider:
+  // State from tick to tick. Hinge and slider:
   double place = 0;    // [m] or [rad]
   JointForces forces;  // [N] or [N m]
-  // Of a ball:
+  // Ball:
   Vec3 friction = Vec3::Zero(), anchor = Vec3::Zero();  // [N m], [rad]
-  // Of either, in the world.
+  // Either, in the world:
   Vec3 damping = Vec3::Zero();  // [N] or [N m]
 
-  // Of the tick:
-  Vec3 along = Vec3::Zero();       // its axis, in the world
+  // State of the tick.
+  Vec3 along = Vec3::Zero();       // axis, in the world
   Mat3 answer = Mat3::Zero();      // see joint_answer()
-  Mat3 damped = Mat3::Identity();  // what damping leaves of a force on it [-]
+  Mat3 damped = Mat3::Identity();  // part of a force on it that damping leaves [-]
 
   bool ball() const { return joint.kind == BodyJoint::Kind::ball; }
   bool turns() const { return joint.kind != BodyJoint::Kind::slider; }
   Vec3 force() const { return damping + (ball() ? friction : Vec3(forces.sum() * along)); }
   double stored() const;  // [J]
-  // Whether anything acts in a joint besides what holds it.
+  // True if the joint has forces besides those that hold it.
   static bool needed(const BodyJoint& joint);
 
   void start(const Mat3& now);
-  // Its force anew, where one side moves against the other with this angular velocity or velocity.
-  // Returns by how much it changed.
+  // Updates the force for the sides' relative angular velocity or velocity `speed`. Returns its
+  // change.
   double sweep(double T, const Vec3& speed);
-  // As if its forces had changed by so much: three numbers, along it or in the world. Returns how
-  // its whole force did.
+  // Changes the forces by three numbers, along the joint or in the world. Returns the change of the
+  // whole force.
   Vec3 add(const Vec3& change);
   std::array<double, 3> numbers() const;
-  // The tick moved it like that.
+  // Ends a tick of T in which the sides moved with `speed`.
   void finish(double T, const Vec3& speed);
-  // It is held where it is, with the friction of the last tick.
+  // Holds the joint for a tick, with the friction of the last one.
   void hold();
-  // Its place is that of its halves again, which a tick's own turning leaves by third order; but
-  // not where it would store more there. `sine`: of the angle from its place to theirs, or how far.
+  // Sets the place to the sides' own, which a tick's rotation misses by third order; unless it
+  // would store more energy there. `sine`: of the angle from its place to theirs, or the distance.
   void follow(double sine);
 
   static constexpr std::size_t kNumbers = 14;

@@ -12,9 +12,9 @@
 namespace limpid {
 namespace {
 
-constexpr double kZeta = 0.7;      // of what does not bounce
-constexpr int kMostSteps = 30;     // of Newton's method; three to six are usual
-constexpr double kEnough = 1e-13;  // of the radius
+constexpr double kZeta = 0.7;      // damping ratio without restitution
+constexpr int kMostSteps = 30;     // steps of Newton's method; three to six are usual
+constexpr double kEnough = 1e-13;  // relative to the radius
 
 }  // namespace
 
@@ -63,8 +63,8 @@ double stored(const BodyJoint& joint, const JointPotential& potential, double pl
   return potential.energy(place) + 0.5 * joint.stop_stiffness * (d * d + anchor * anchor);
 }
 
-// Beyond the ball l solves (1 + K T W + m) l = -K (z + T b) with the m > 0 that makes it as long as
-// the radius: by Newton's method on 1/|l|, which comes from below (More and Sorensen 1983).
+// Outside the ball l solves (1 + K T W + m) l = -K (z + T b), m > 0 such that |l| is the radius.
+// Newton's method on 1/|l| converges from below (More and Sorensen 1983).
 Vec3 friction_torque(double K, double radius, const Vec3& z, double T, const Vec3& b,
                      const Mat3& W) {
   if (!(radius > 0)) return Vec3::Zero();

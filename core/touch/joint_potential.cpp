@@ -8,8 +8,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kNoMove = 1e-10;  // [m] or [rad]: the force is then its value
-constexpr int kMostSteps = 8;      // of Newton's method; two to four are usual
+constexpr double kNoMove = 1e-10;  // motion below which the force is its value [m] or [rad]
+constexpr int kMostSteps = 8;      // steps of Newton's method; two to four are usual
 
 }  // namespace
 
@@ -18,7 +18,7 @@ bool JointPotential::any() const {
          weight_cos_ != 0 || weight_sin_ != 0 || constant_ != 0;
 }
 
-// Positive numbers of the table push back, towards smaller s.
+// Force of the table: positive numbers push back, towards smaller s.
 double JointPotential::table(double s, double& slope) const {
   const auto& t = force_.travel;
   slope = 0;

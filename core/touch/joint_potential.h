@@ -1,4 +1,4 @@
-// A force along a joint that is the slope of an energy: springs, detents, tables, weight.
+// Potential along a joint, whose slope is a force: springs, detents, tables, weight.
 #pragma once
 
 #include <utility>
@@ -11,20 +11,20 @@ class JointPotential {
  public:
   JointPotential() = default;
   explicit JointPotential(JointForce force) : force_(std::move(force)) {}
-  // Of a hinge: the weight of what turns, V(s) = cosine cos s + sine sin s [J].
+  // Adds the weight on a hinge, V(s) = cosine cos s + sine sin s [J].
   void add_weight(double cosine, double sine) {
     weight_cos_ = cosine;
     weight_sin_ = sine;
   }
-  // Of a slider [N].
+  // Adds the weight on a slider [N].
   void add_weight(double force) { constant_ = force; }
 
   bool any() const;
   double energy(double s) const;    // [J]
   double force(double s) const;     // -dE/ds
   double softness(double s) const;  // d force / ds
-  // The constant force F along the joint over a tick in which it moves by D = a + c F: its work F D
-  // is exactly what the energy loses. Newton's method. `F`: in, a first guess; out, the force.
+  // Computes the constant force F along the joint over a tick in which it moves by D = a + c F: its
+  // work F D is exactly the energy lost. Newton's method. `F`: in, a first guess; out, the force.
   void over_a_tick(double s, double a, double c, double& F) const;
 
  private:

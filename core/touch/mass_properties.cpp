@@ -21,7 +21,7 @@ struct Moments {
   }
 };
 
-// Of what is symmetric about its origin.
+// Moments of a solid that is symmetric about its origin.
 Moments centered(double volume, const Vec3& squares) {
   return {volume, Vec3::Zero(), squares.asDiagonal()};
 }
@@ -60,14 +60,16 @@ Moments moments(const Cylinder& cylinder) {
 
 Moments moments(const Capsule& capsule) {
   Moments all = moments(Cylinder{capsule.radius, capsule.length});
-  // Half balls whose centres are half of the length away, their mass 3/8 of a radius beyond.
+  // Half balls: their centres are half the length away, their centres of mass 3/8 of a radius
+  // beyond.
   const double r = capsule.radius, l = capsule.length;
   Moments ends = moments(Sphere{r});
   ends.second(2, 2) += ends.volume * (l * l / 4 + 3 * l * r / 8);
   return all += ends;
 }
 
-// Tetrahedra between the triangles and the origin of the mesh's own coordinates.
+// Moments of the inside, by tetrahedra between the triangles and the origin of the mesh's own
+// coordinates.
 Moments inside_of(const TriangleMesh& triangles) {
   Moments all;
   for (std::size_t i = 0; i < triangles.triangles(); ++i) {

@@ -12,16 +12,16 @@ struct MassProperties {
   Mat3 inertia = Mat3::Zero();
 };
 
-// Of its shape and all of its parts; what lies in two of them counts twice. Planes and stops of
-// joints have none [m^3]. A mesh that is not closed counts as the box around it; it needs its
-// triangles.
+// Volume of an object's shape and all of its parts; overlaps count twice [m^3]. Planes and stops of
+// joints have none. A mesh that is not closed counts as the box around it; it needs its triangles.
 double volume(const Object& object);
 
-// Of a solid of the object's shape and parts, of the same density everywhere [kg/m^3].
+// Properties of a solid of the object's shape and parts, of uniform density [kg/m^3].
 MassProperties solid_mass_properties(const Object& object, double density);
 
-// Of an object that moves: its mass, and centre and inertia as it has them, else those of a solid.
-// Those of a solid belong to its own centre; where only another centre is given they move along.
+// Properties of an object that moves: its mass; its centre and inertia as given, else those of a
+// solid. The solid's inertia is about its own centre, and moves along if only another centre is
+// given.
 MassProperties mass_properties(const Object& object);
 
 }  // namespace limpid

@@ -8,8 +8,19 @@ namespace limpid {
 
 namespace {
 
-// Planes closer to parallel than this make no edge [rad]: the one further out holds alone.
+// Angle between planes below which they make no edge [rad]: the one further out holds alone.
 constexpr double kParallel = 1e-9;
+
+// Radius of a ball for a point, as a part of the mesh's size: a hundred times the rounding of
+// floats.
+constexpr double kSkin = 1e-5;
+constexpr double kLook = 0.01;      // distance in which the surface is searched [m]
+constexpr double kAhead = 0.003;    // distance within which it may be touched in a tick [m]
+constexpr double kSlipSpeed = 0.1;  // speed of the anchor beyond the centre's motion [m/s]
+constexpr double kSlipFactor = 2;   // speed of the anchor, over the centre's [-]
+constexpr double kSafe = 0.9;  // part of a free ball's radius within which no crossing is searched
+constexpr int kRounds = 12;
+constexpr int kMostLooks = 3;  // searches around a convex surface
 
 }  // namespace
 
@@ -29,11 +40,11 @@ bool FreeSpace::add(const Vec3& normal, double offset) {
   return true;
 }
 
-// The active normals' part of an orthonormal basis that is new with the i-th one, R of N = E R.
+// Extends an orthonormal basis E by the i-th active normal, with N = E R.
 bool FreeSpace::extend(const Active& active, int i, Mat3& e, Mat3& r) const {
   Vec3 rest = normal(active.plane[static_cast<std::size_t>(i)]);
   r.col(i).setZero();
-  for (int pass = 0; pass < (i > 0 ? 2 : 1); ++pass) {  // once more for those nearly parallel
+  for (int pass = 0; pass < (i > 0 ? 2 : 1); ++pass) {  // once more for nearly parallel ones
     for (int j = 0; j < i; ++j) {
       const double part = e.col(j).dot(rest);
       r(j, i) += part;
@@ -45,7 +56,7 @@ bool FreeSpace::extend(const Active& active, int i, Mat3& e, Mat3& r) const {
   return r(i, i) > kParallel;
 }
 
-// x = c + sum of w_i n_i on all of the active planes.
+// Solves x = c + sum of w_i n_i on all of the active planes.
 bool FreeSpace::solve(const Vec3& c, const Active& active, Vec3& x, Vec3& weights) const {
   Mat3 e, r;
   Vec3 along;
@@ -69,7 +80,7 @@ Vec3 FreeSpace::onto(const Vec3& c, const Active& active) const {
   return solve(c, active, x, weights) ? x : c;
 }
 
-// Is x in the room, but for rounding and for planes that are taken as parallel?
+// True if x is in the room, up to rounding and planes that count as parallel.
 bool FreeSpace::holds(const Vec3& c, const Vec3& x, const Active& except) const {
   const double slack = kParallel * (x - c).norm() + 1e-15 * x.lpNorm<1>();
   for (int i = 0; i < count_; ++i) {
@@ -82,8 +93,8 @@ bool FreeSpace::holds(const Vec3& c, const Vec3& x, const Active& except) const 
   return true;
 }
 
-// The one set of planes with which x is in the room and no plane pulls: at most 41 to try, and the
-// first few nearly always do.
+// Finds the one set of planes with which x is in the room and no plane pulls: at most 41 to try,
+// and the first few nearly always suffice.
 bool FreeSpace::project(const Vec3& c, Vec3& x, Active& active, Vec3& weights) const {
   active = {};
   x = c;
@@ -124,20 +135,6 @@ int FreeSpace::basis(const Active& active, Mat3& e) const {
   while (rank < active.count && extend(active, rank, e, r)) ++rank;
   return rank;
 }
-
-namespace {
-
-// A point is a ball of this part of the mesh's size: a hundred times what floats round away.
-constexpr double kSkin = 1e-5;
-constexpr double kLook = 0.01;      // how far around is looked for the surface [m]
-constexpr double kAhead = 0.003;    // how near it must be to be touched within a tick [m]
-constexpr double kSlipSpeed = 0.1;  // of the anchor beyond what the centre does [m/s]
-constexpr double kSlipFactor = 2;   // of the anchor, times the centre's motion
-constexpr double kSafe = 0.9;       // of a free ball's radius: nothing lies on the way
-constexpr int kRounds = 12;
-constexpr int kMostLooks = 3;  // around a convex surface
-
-}  // namespace
 
 MeshTouch::MeshTouch(const Object& object, double radius)
     : MeshTouch(std::get<Mesh>(object.shape), object.pose, radius) {}
@@ -224,7 +221,7 @@ void MeshTouch::follow(const Vec3& c, double T) {
   publish();
 }
 
-// Far away: g is the centre itself.
+// Sets g to the centre itself, far from the mesh.
 void MeshTouch::let_go(const Vec3& p, double clearance) {
   g_ = p;
   clearance_ = clearance;
@@ -238,16 +235,16 @@ void MeshTouch::settle_at(const Vec3& g, const MeshPoint& near) {
   hint_ = near.triangle;
 }
 
-// From the surface to the side that `from` is on.
+// Direction from the surface to the side of `from`.
 Vec3 MeshTouch::out_of(const MeshPoint& at, const Vec3& from) const {
   const Vec3 out = from - at.point;
   const double length = out.norm();
-  // Over an edge the direction to the ball's centre, if it says one and says it on this side.
+  // Over an edge it is the direction to the ball's centre, if that is defined and on this side.
   if (length > 0.5 * skin_ && out.dot(g_ - at.point) > 0) return out / length;
   return at.normal.dot(g_ - at.point) < 0 ? Vec3(-at.normal) : at.normal;
 }
 
-// The room beneath a place on the surface, seen from `from`, and p's place in it.
+// Makes the room from a place on the surface alone, seen from `from`, and finds p's place in it.
 bool MeshTouch::keep_only(const MeshPoint& at, const Vec3& from, const Vec3& p, Vec3& t) {
   const Vec3 out = out_of(at, from);
   FreeSpace::Active active;
@@ -260,7 +257,7 @@ bool MeshTouch::keep_also(const MeshPoint& at, const Vec3& out, const Vec3& p, V
   return space_.add(out, out.dot(at.point) + r_) && space_.project(p, t, active);
 }
 
-// Where the last tick's planes would have it: on a flat face that is the answer, elsewhere nearly.
+// First guess from the last tick's planes: on a flat face it is the answer, elsewhere nearly.
 MeshTouch::Guess MeshTouch::guess(const Vec3& p, Vec3& t) {
   FreeSpace::Active active;
   if (!space_.project(p, t, active) || active.count == 0) return Guess::none;
@@ -275,13 +272,13 @@ MeshTouch::Guess MeshTouch::guess(const Vec3& p, Vec3& t) {
   return keep_only(at, t, p, t) ? Guess::near : Guess::none;
 }
 
-// Moves g as near to p as the surface lets it. False if that does not settle; g then stays where it
-// last was free.
+// Moves g as near to p as the surface lets it. False if that does not settle; g then stays at its
+// last free place.
 bool MeshTouch::advance(const Vec3& p) {
   Vec3 t = p;
   const Guess first = guess(p, t);
   if (first == Guess::right) return true;
-  bool looked = first == Guess::near;  // the planes are those beneath t
+  bool looked = first == Guess::near;  // the planes are those below t
   int looks = 0;
   if (!looked) {
     space_.clear();
@@ -308,7 +305,7 @@ bool MeshTouch::advance(const Vec3& p) {
         let_go(t, look_);
         return true;
       }
-      g_ = t;  // the surface ends or bends away beneath: go on from here
+      g_ = t;  // the surface ends or bends away below: go on from here
       distance_ = r_ + look_;
       space_.clear();
       t = p;
@@ -330,7 +327,7 @@ bool MeshTouch::advance(const Vec3& p) {
   return false;
 }
 
-// Takes g to a ball's width before a place that the way to it ends at.
+// Takes g to a ball's radius before the place at which its way ends.
 bool MeshTouch::step_to(const MeshPoint& at, const Vec3& out) {
   const Vec3 before = at.point + r_ * out;
   MeshPoint other;

@@ -1,4 +1,4 @@
-// One ball against one mesh: where the surface lets its centre be.
+// Contact of one ball with one mesh: the places that the surface leaves to its centre.
 #pragma once
 
 #include <array>
@@ -9,12 +9,11 @@
 
 namespace limpid {
 
-// The room that a few planes leave, and the force of a spring back into it.
-
-// All points on the outer side of some planes, {x : n_i . x >= o_i}, with unit normals n_i and
-// offsets o_i in the unit of x. A contact of stiffness K pulls a point c back to the nearest x of
-// this convex set: the potential K |x - c|^2 / 2 is convex with a continuous gradient, and x moves
-// no further than c does.
+// The room that a few planes leave, and the force of a spring back into it. It is all points on the
+// outer side of the planes, {x : n_i . x >= o_i}, with unit normals n_i and offsets o_i in the unit
+// of x. A contact of stiffness K pulls a point c back to the nearest x of this convex set. The
+// potential K |x - c|^2 / 2 is convex with a continuous gradient, and x moves no further than c
+// does.
 class FreeSpace {
  public:
   static constexpr int kMostPlanes = 6;
@@ -33,17 +32,17 @@ class FreeSpace {
   const Vec3& normal(int i) const { return normals_[static_cast<std::size_t>(i)]; }
   double offset(int i) const { return offsets_[static_cast<std::size_t>(i)]; }
 
-  // The nearest x to c, what holds it there, and how each of these pulls: x = c + sum of w_i n_i,
-  // w_i >= 0. False if the planes leave no room near enough to tell.
+  // Finds the nearest x to c, the planes that hold it there, and their weights: x = c + sum of w_i
+  // n_i, w_i >= 0. False if the planes leave no room near enough to tell.
   bool project(const Vec3& c, Vec3& x, Active& active, Vec3& weights) const;
   bool project(const Vec3& c, Vec3& x, Active& active) const {
     Vec3 weights;
     return project(c, x, active, weights);
   }
-  // The nearest x to c that lies on all of these planes, n_i . x = o_i, whatever the others say.
+  // Nearest x to c that lies on all active planes, n_i . x = o_i, without regard to the others.
   Vec3 onto(const Vec3& c, const Active& active) const;
-  // Columns e_j of `e`: an orthonormal basis of what the active normals span; returns how many. The
-  // spring's force on c is K sum_j e_j (e_j . (x - c)).
+  // Sets columns e_j of `e` to an orthonormal basis of the active normals' span; returns how many.
+  // The spring's force on c is K sum_j e_j (e_j . (x - c)).
   int basis(const Active& active, Mat3& e) const;
 
  private:
@@ -56,36 +55,37 @@ class FreeSpace {
   int count_ = 0;
 };
 
-// A free point g follows the ball's centre c as near as the surface lets it (after Zilles and
-// Salisbury's god object): it never crosses the mesh, so that it knows the side, of a sheet without
-// thickness as well. The planes that stop g (on a face one, in a groove two, in a corner three)
-// bound the free space to which the contact's spring pulls c back. Over a convex edge the ball
-// rolls, as long as it is pressed in by less than its radius. Pressed deeper it slips off some
-// edges; the anchor of the force then follows at a bounded speed, so that the force never jumps,
+// Tracks one ball on one mesh. A free point g follows the ball's centre c as near as the surface
+// lets it (after Zilles and Salisbury's god object). It never crosses the mesh, so it knows the
+// side, even of a sheet without thickness. Planes stop g: on a face one, in a groove two, in a
+// corner three. They bound the free space to which the contact's spring pulls c back. Over a convex
+// edge the ball rolls while it is pressed in by less than its radius. Pressed deeper it slips off
+// some edges; the force's anchor then follows at a bounded speed, so that the force never jumps,
 // and slipping only takes energy away.
 class MeshTouch {
  public:
-  MeshTouch(const Object& mesh, double radius);  // whose shape is one; of the ball [m]
+  // mesh: an object with a Mesh as its shape; radius: of the ball [m].
+  MeshTouch(const Object& mesh, double radius);
 
-  // Starts anew at c [m]. A centre inside of a closed mesh belongs outside, at the nearest place;
-  // one behind a sheet stays there.
+  // Begins anew at c [m]. A centre inside a closed mesh is put outside, at the nearest place; one
+  // behind a sheet stays there.
   void place(const Vec3& c);
-  // To c [m] within a tick of length T [s].
+  // Follows the centre to c [m] within a tick of length T [s].
   void follow(const Vec3& c, double T);
-  // The mesh's object is there now; where the ball may be, and where it is held, go with it.
+  // Moves the mesh's object to a pose, and with it the free space and the anchor.
   void move(const Pose& object);
-  // Of the same mesh, place, scale and radius.
+  // True if mesh, place, scale and radius are the same.
   bool same_surface(const MeshTouch& other) const;
-  // Takes over where another one of the same surface is.
+  // Takes over the state of another one of the same surface.
   void take_over(const MeshTouch& other);
 
-  // Near enough to touch within a tick.
+  // True if the mesh may be touched within a tick.
   bool near() const { return near_; }
-  // A spring to one point, anchor(), instead of to the room.
+  // True if the spring leads to one point, anchor(), instead of the room.
   bool held() const { return held_; }
   const FreeSpace& space() const { return world_; }
   const Vec3& anchor() const { return anchor_; }  // [m]
-  // Starting anew here would find the same side again.
+  // True if a start from here would find the same side.
   bool recoverable() const;
   double radius() const { return radius_; }
 
@@ -109,15 +109,15 @@ class MeshTouch {
   Pose pose_, in_object_;
   double scale_, radius_;
 
-  // In mesh units, around its middle:
+  // State in mesh units, around the mesh's middle.
   double r_ = 0, skin_ = 0, tolerance_ = 0, look_ = 0;
   Vec3 g_ = Vec3::Zero(), p_ = Vec3::Zero();
-  double distance_ = 0;   // from g to the mesh, at least
-  double clearance_ = 0;  // from the ball to the mesh, at least
+  double distance_ = 0;   // lower bound from g to the mesh
+  double clearance_ = 0;  // lower bound from the ball to the mesh
   std::uint32_t hint_ = MeshPoint::kNone;
   FreeSpace space_;
 
-  // In the world:
+  // State in the world.
   FreeSpace world_;
   Vec3 anchor_ = Vec3::Zero();
   bool near_ = false, held_ = false, lost_ = false;

@@ -6,7 +6,7 @@
 namespace limpid {
 namespace {
 
-// distance_to() without its normal.
+// Distance of distance_to() alone, without the normal.
 double only_distance_to(const Box& box, const Pose& pose, const Vec3& point) {
   const Vec3 p = pose.linear().transpose() * (point - pose.translation());
   const Vec3 out = p.cwiseAbs() - box.size / 2;
@@ -17,7 +17,7 @@ Vec3 in_frame(const Pose& pose, const Vec3& point) {
   return pose.linear().transpose() * (point - pose.translation());
 }
 
-// How far beyond the side and beyond the nearer face; negative: within.
+// Distances beyond the side and beyond the nearer face; negative: within.
 Eigen::Vector2d beyond(const Cylinder& cylinder, const Vec3& p) {
   return {p.head<2>().norm() - cylinder.radius, std::abs(p.z()) - cylinder.length / 2};
 }
@@ -27,7 +27,7 @@ double only_distance_to(const Cylinder& cylinder, const Pose& pose, const Vec3& 
   return (out.array() <= 0).all() ? out.maxCoeff() : out.cwiseMax(0).norm();
 }
 
-// From the nearest point of its axis, in its frame.
+// Vector from the nearest point of the capsule's axis, in its frame.
 Vec3 from_axis(const Capsule& capsule, const Vec3& p) {
   return p - std::clamp(p.z(), -capsule.length / 2, capsule.length / 2) * Vec3::UnitZ();
 }
@@ -36,7 +36,7 @@ double only_distance_to(const Capsule& capsule, const Pose& pose, const Vec3& po
   return from_axis(capsule, in_frame(pose, point)).norm() - capsule.radius;
 }
 
-// The distance to a convex body is convex along the segment: golden-section search.
+// Golden-section search along the segment, on which the distance to a convex body is convex.
 template <class S>
 Vec3 search_segment(const S& shape, const Pose& pose, const Vec3& from, const Vec3& to) {
   constexpr double kGolden = 0.6180339887498949;

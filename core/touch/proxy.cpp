@@ -93,9 +93,9 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
   if (behind_) catch_up();
   look(T);
   if (contacts_->rub()) return solve_with_friction(T, drive);
-  // Which contacts push is part of the answer: a contact pushes if it is deep at the midpoint.
-  // Two or three rounds settle it. Should they not, contacts are only let go, so that it ends and
-  // none ever pulls.
+  // The set of pushing contacts is part of the solution: a contact pushes if it is inside at the
+  // midpoint. Two or three rounds settle it. After that contacts are only let go, so that it ends
+  // and none ever pulls.
   constexpr int kRounds = 4;
   for (int round = 0; !solve_step(T, drive); ++round) {
     if (!contacts_->reconsider(vbar_, T, round >= kRounds)) break;
@@ -104,15 +104,15 @@ void Proxy<N>::advance(double T, const ProxyDrive<N>& drive) {
   contacts_->step_bodies();
 }
 
-// The same system, with the forces of contacts that rub and damp:
+// Solves the same system with the forces of contacts that rub and damp:
 //     (2/T M + S + damping) vbar = 2/T L nu + constant + share f2.
-// The torque that a law feeds forward to the device answers the motion of the tick before, so a
-// damper may ask for no more there than what stays stable so late. Forces that do not settle are
-// not used: the proxy and the bodies that it touches stand still for the tick, which gives nothing.
+// Torque that a law feeds forward to the device responds to the previous tick's motion. So a damper
+// may ask for no more than is stable with that delay. Forces that do not settle are not used: the
+// proxy and the bodies that it touches stand still for the tick, which gives no energy.
 template <int N>
 void Proxy<N>::solve_with_friction(double T, const ProxyDrive<N>& drive) {
-  constexpr double kMostDamping = 0.34;  // of the mass that moves a tick, m_n/T [-]
-  constexpr double kMostChange = 1e-3;   // of a force in the last sweep, see last_change() [-]
+  constexpr double kMostDamping = 0.34;  // in m_n/T [-]
+  constexpr double kMostChange = 1e-3;   // of a force, see ContactSolve::last_change() [-]
   const Eigen::Index n = x_.size();
   const Mat<N> none = Mat<N>::Zero(n, n), one = Mat<N>::Identity(n, n);
   Mat<N> share = drive.share.direct * one;
@@ -156,8 +156,8 @@ void Proxy<N>::step(double T, const Vec<N>& vbar, const Vec<N>& f) {
   behind_ = true;
 }
 
-// Solves for vbar with the contacts now thought to touch. True if they are the ones that are deep
-// at the midpoint.
+// Solves for vbar with the contacts assumed to touch. True if they are those inside at the
+// midpoint.
 template <int N>
 bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
   // (2/T M + S + damping + share K T/2) vbar = 2/T L nu + constant + share f2,

@@ -10,7 +10,7 @@
 
 namespace limpid {
 
-// What acts on the proxy over one tick, with vbar = (x_k+1 - x_k) / T unknown:
+// Torques on the proxy over one tick, with vbar = (x_k+1 - x_k) / T unknown:
 //     tau + f2 = constant - damping vbar + share f2,
 // f2 the contacts' torque.
 template <int N>
@@ -25,9 +25,9 @@ struct ProxyDrive {
 // and the midpoint rule, with L and S held at x_k and vbar = L^-T (nu_k + nu_k+1) / 2,
 //     (2/T M + S) vbar = 2/T L nu_k + tau + f,   x_k+1 = x_k + T vbar,
 // gives (|nu_k+1|^2 - |nu_k|^2) / 2 = (tau + f) . (x_k+1 - x_k): kinetic energy balances work in
-// every step, whatever T, M(x) and forces are. Springs, dampers and contacts enter at the midpoint,
-// linearly in vbar, so that one solve is all, and no inertia is too small. Friction and damping of
-// surfaces are not linear: where a scene has them, ContactSolve finds all contacts' forces.
+// every step, for any T, M(x) and forces. Springs, dampers and contacts enter at the midpoint,
+// linearly in vbar, so that one solve suffices, and no inertia is too small. Friction and damping
+// of surfaces are not linear: in scenes with them ContactSolve finds all contacts' forces.
 template <int N>
 class Proxy {
  public:
@@ -38,19 +38,21 @@ class Proxy {
   // A changed ratio keeps the velocity.
   void set_ratio(double ratio);
 
-  // M, C and v where it now is; after a step, before anything else is asked or done but for x(),
-  // v() and what is said of the last tick.
+  // Computes M, C and v at the present position. After a step it comes before all other calls but
+  // x(), v() and the results of the last tick.
   void catch_up();
-  // The same, and in the same sweeps the frames, M and C of another arm of this make at x and v.
+  // Like catch_up(); the same sweeps compute frames, M and C of another arm of the same make at x
+  // and v.
   void catch_up_beside(const Vec<N>& x, const Vec<N>& v, typename Arm<N>::Frames& frames, Mat<N>& M,
                        Mat<N>& C);
 
-  // One tick of length T [s].
+  // Advances by one tick of length T [s].
   void advance(double T, const ProxyDrive<N>& drive);
 
-  // The same in two halves, for laws that solve device and proxy together. What is near is found;
+  // The following are advance() in parts, for laws that solve device and proxy together. First,
+  // look() finds the near contacts.
   void look(double T) { contacts_->find(arm_, frames_, x_, T); }
-  // then (2/T M + S) vbar - 2/T L nu = tau + f, for whatever tau is.
+  // Second, (2/T M + S) vbar - 2/T L nu = tau + f, for any tau.
   Wide<N> impedance(double T) const {
     Wide<N> Z = widened<N>(M_);
     Z *= 2 / T;
@@ -58,7 +60,7 @@ class Proxy {
     return Z;
   }
   Vec<N> momentum(double T) const { return 2 / T * factor_.times(nu_); }
-  // Over the tick it moved like this, under these contact forces [rad/s, N m].
+  // Last, steps with the mean velocity and contact forces of the tick [rad/s, N m].
   void step(double T, const Vec<N>& vbar, const Vec<N>& f);
   Contacts<N>& contacts() { return *contacts_; }
 
@@ -69,19 +71,20 @@ class Proxy {
   double kinetic_energy() const { return 0.5 * nu_.squaredNorm(); }    // [J]
   double contact_potential() const { return contacts_->potential(); }  // [J]
 
-  // Of the last tick:
+  // Results of the last tick.
   const Vec<N>& tau() const { return tau_; }    // tau2 as it acted [N m]
   const Vec<N>& f() const { return f_; }        // f2 as it acted [N m]
   const Vec<N>& vbar() const { return vbar_; }  // [rad/s]
   const Contacts<N>& contacts() const { return *contacts_; }
-  // advance() found no forces that agree, so that the proxy stood still; and how often so far.
+  // stood_still(): advance() found no consistent forces, so the proxy stood still; unsettled():
+  // number of such ticks so far.
   bool stood_still() const { return stood_still_; }
   int unsettled() const { return unsettled_; }
 
-  // At the present position:
+  // Arm and frames at the present position.
   const Arm<N>& arm() const { return arm_; }
   const typename Arm<N>::Frames& frames() const { return frames_; }
-  // Another scene: takes `contacts` in and gives the old ones out. Nothing is allocated.
+  // Changes the scene: takes `contacts` and gives back the old ones. Nothing is allocated.
   void exchange(std::unique_ptr<Contacts<N>>& contacts);
 
  private:
@@ -90,12 +93,12 @@ class Proxy {
 
   Arm<N> arm_;
   std::unique_ptr<Contacts<N>> contacts_;
-  ContactSolve<N> friction_;  // of a tick in which surfaces rub or damp
+  ContactSolve<N> friction_;  // for ticks in which surfaces rub or damp
   bool stood_still_ = false;
   int unsettled_ = 0;
   double ratio_ = 1e-4;
   typename Arm<N>::Frames frames_;
-  bool behind_ = false;  // of what catch_up() brings
+  bool behind_ = false;  // catch_up() has still to be called
   Vec<N> x_, v_, nu_;
   Mat<N> M_, C_;
   MovingFactor<N> factor_;  // L, S

@@ -1,4 +1,5 @@
-// A scene: what can be touched, as shapes at poses, of materials, some of them bodies that move.
+// A scene: objects with shapes at poses, of materials, some of them bodies that move. Plain data,
+// in the device base frame (x forward, y left, z up), SI.
 #pragma once
 
 #include <memory>
@@ -12,23 +13,18 @@
 
 namespace limpid {
 
-// Shapes, each around the origin of its object's pose.
-
-// How what can be touched pushes back. The paper's contacts are pure stiffness (section 4.1);
-// friction and damping are further parts of its f2, under every law.
-
+// Forces of a surface. The paper's contacts are pure stiffness (section 4.1); friction and damping
+// are further parts of its f2, under every law.
 struct Material {
   double stiffness = 600;       // [N/m]
-  double damping = 0;           // while pressed in or let out [N s/m]
-  double friction_static = 0;   // largest tangential force that sticks, by the normal one [-]
-  double friction_kinetic = 0;  // the tangential force while slipping, by the normal one [-]
+  double damping = 0;           // while being pressed in or let out [N s/m]
+  double friction_static = 0;   // largest tangential force that sticks, over the normal one [-]
+  double friction_kinetic = 0;  // tangential force while slipping, over the normal one [-]
 };
 
-// What can be touched, and with what: plain data, in the device base frame (x forward, y left,
-// z up), SI.
 class TriangleMesh;
 
-// Everything below a level; a pose shifts it and does not turn it.
+// A half-space below a plane; a pose shifts it and does not turn it.
 struct Plane {
   Vec3 normal = Vec3::UnitZ();  // unit, out of the material
   friend bool operator==(const Plane&, const Plane&) = default;
@@ -44,14 +40,14 @@ struct Box {
   friend bool operator==(const Box&, const Box&) = default;
 };
 
-// Around the z axis, the middle at the origin.
+// A cylinder around the z axis, its middle at the origin.
 struct Cylinder {
   double radius = 0.02;  // [m]
   double length = 0.05;  // from face to face [m]
   friend bool operator==(const Cylinder&, const Cylinder&) = default;
 };
 
-// A cylinder between two half balls.
+// A capsule along the z axis: a cylinder between two half balls.
 struct Capsule {
   double radius = 0.02;  // [m]
   double length = 0.05;  // between the balls' centres [m]
@@ -60,7 +56,7 @@ struct Capsule {
 
 // A model of triangles. Its points are stood(pose) * (size() * p).
 struct Mesh {
-  std::string model{};  // which one: the name that the scene's text has for its file
+  std::string model{};  // name of its file in the scene's text
   double scale = 1;
   double unit = 1;                                  // of the model's coordinates [m]
   bool y_up = false;                                // the model's y axis points up, else its z axis
@@ -79,7 +75,8 @@ struct Mesh {
 };
 
 // A stiff stop of one joint, in joint space (the paper's proximal contact): the joint touches it
-// when direction * (x2[joint] - angle) > 0. It is nowhere in space: its object's pose says nothing.
+// when direction * (x2[joint] - angle) > 0. It has no place in space; its object's pose is not
+// used.
 struct JointStop {
   static constexpr double kUsualStiffness = 20;  // [N m/rad]
 
@@ -91,7 +88,7 @@ struct JointStop {
 
 using Shape = std::variant<Plane, Sphere, Box, Cylinder, Capsule, Mesh, JointStop>;
 
-// A body made of several shapes: one of them, in the body's frame.
+// A part of a body made of several shapes, in the body's frame.
 struct BodyPart {
   Pose pose = Pose::Identity();  // [m]
   Shape shape{};                 // Sphere, Box, Cylinder or Capsule
@@ -100,14 +97,14 @@ struct BodyPart {
 
 struct Object {
   std::string name{};
-  Pose pose = Pose::Identity();  // [m]; of a body where it starts
+  Pose pose = Pose::Identity();  // [m]; of a body the start
   Shape shape{};
-  Material material{};  // of a joint's stop the stiffness alone, in [N m/rad]
-  // It moves. Then its shape is a Sphere, Box, Cylinder, Capsule or Mesh; of a mesh other bodies
-  // and what stands still meet the convex hull, the tip the mesh itself.
+  Material material{};  // of a joint's stop only the stiffness, in [N m/rad]
+  // Set for an object that moves. Its shape is then a Sphere, Box, Cylinder, Capsule or Mesh. Other
+  // bodies and fixed objects meet the convex hull of a mesh, the tip the mesh itself.
   std::optional<Body> body{};
   std::vector<BodyPart> parts{};  // of a body, besides its shape
-  // Red, green and blue as a screen has them, 0 to 1, of what has no model. Only looked at.
+  // Red, green and blue as on a screen, 0 to 1, for objects without a model; used only for drawing.
   std::optional<Vec3> color{};
 };
 
@@ -115,7 +112,7 @@ template <class S>
 bool has_shape(const Object& object) {
   return std::holds_alternative<S>(object.shape);
 }
-// Whether it is somewhere in space, with a stiffness in [N/m].
+// True if the object has a place in space, with a stiffness in [N/m].
 inline bool has_surface(const Object& object) { return !has_shape<JointStop>(object); }
 
 // A part of the arm that touches: a capsule (a point if both ends agree) fixed to a link.
@@ -129,31 +126,31 @@ struct Probe {
 
 struct Scene {
   double tip_radius = 0;  // [m]; the tip is always a probe
-  // What stands still first, of one shape together, in the order of Shape; then what moves, as it
-  // came: a file keeps no other order, and contacts follow it.
+  // Fixed objects first, by shape in the order of Shape; then bodies, in the order of adding. A
+  // file keeps no other order, and contacts follow it.
   std::vector<Object> objects;
   std::vector<Probe> probes;  // besides the tip
   Vec3 gravity{0, 0, -9.81};  // of bodies [m/s^2]
   std::vector<BodySpring> springs;
 
-  // Puts it behind the others of its shape, or behind all if it moves; returns its place.
+  // Inserts an object behind others of its shape, or behind all if it moves; returns its index.
   std::size_t add(Object object);
 };
 
 // A pose that only shifts [m].
 Pose pose_at(const Vec3& position);
 
-// How many of its objects move.
+// Number of objects that move.
 int count_bodies(const Scene& scene);
-// What these are called, in their order; one without a name by its number: "object 2".
+// Names of the objects that move, in their order; without a name the number: "object 2".
 std::vector<std::string> body_names(const Scene& scene);
-// Of all surfaces; 0 without any [N/m].
+// Stiffness of the stiffest surface; 0 without any [N/m].
 double stiffest_surface(const Scene& scene);
-// Some object has friction or damping.
+// True if some object has friction or damping.
 bool has_rubbing_surfaces(const Scene& scene);
 void set_surface_stiffness(Scene& scene, double stiffness);
 
-// Where something touches and how hard it pushes on the proxy.
+// A contact's place and force on the proxy.
 struct ContactForce {
   Vec3 point = Vec3::Zero();  // [m]
   Vec3 force = Vec3::Zero();  // [N]

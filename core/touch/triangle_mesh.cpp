@@ -15,13 +15,13 @@ namespace limpid {
 
 namespace {
 
-// Vertices no further apart than this part of the mesh's diagonal are one: by about that much
-// floats round at its far end, and so the two sides of a seam that was computed all the way round
-// are off (sin 2 pi is no zero). What is further apart is a gap.
+// Distance within which vertices are one, as a part of the mesh's diagonal. Floats round by about
+// this at its far end. The two sides of a seam that was computed all the way round are off by as
+// much (sin 2 pi is not zero). A larger distance is a gap.
 constexpr double kSamePlace = 1e-7;
 
-// Gives vertices that are within a length of each other one name: the number of the one that was
-// asked for first. Cells are many times that long, so that most vertices are in reach of one only.
+// Gives vertices within a distance of each other one name: the number of the first one queried.
+// Cells are many times as large, so that most vertices reach into only one.
 class NearNames {
  public:
   NearNames(const std::vector<Eigen::Vector3f>& places, double within)
@@ -66,7 +66,7 @@ class NearNames {
     }
     return h & (buckets_.size() - 1);
   }
-  // The lowest number, whatever the order in the bucket.
+  // Returns the lowest number, for any order in the bucket.
   std::uint32_t nearest_name(std::size_t bucket, const Vec3& at) const {
     std::uint32_t first = kFree;
     for (std::uint32_t other = buckets_[bucket]; other != kFree; other = next_[other]) {
@@ -77,21 +77,36 @@ class NearNames {
 
   const std::vector<Eigen::Vector3f>& places_;
   double within_, cell_;
-  std::vector<std::uint32_t> buckets_;  // the last that came in
-  std::vector<std::uint32_t> next_;     // that came in before it
+  std::vector<std::uint32_t> buckets_;  // last entry of each bucket
+  std::vector<std::uint32_t> next_;     // entry before each
 };
+
+// Extra reach of searches for the rounding of Embree's tree, as a part of the mesh's radius.
+constexpr double kRounding = 1e-6;
+// Difference of distances, as a part of the mesh's radius, up to which triangles are all
+// considered. The order in which they come depends on the processor's kind of vectors.
+constexpr double kNearlyTied = 1e-13;
+// Length of the pieces in which a way is searched, as a part of the mesh's radius, and their
+// largest number.
+constexpr double kPiece = 1. / 32, kMostPieces = 128;
+// Height below which a triangle has no direction, as a part of its longest edge.
+constexpr double kSliver = 1e-9;
+
+std::string counted(std::size_t n, const char* what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
 
 }  // namespace
 
-// Sorted into one list for each lower end, which are short: several times faster than sorting all.
+// Edges are sorted into one short list for each lower end: several times faster than sorting all.
 EdgeCount count_edges(std::span<const std::uint32_t> corners, std::size_t names) {
   const auto to_corner = [](std::size_t i) { return i % 3 == 2 ? i - 2 : i + 1; };
-  std::vector<std::size_t> end(names + 1);  // of each list; while they fill: where it goes on
+  std::vector<std::size_t> end(names + 1);  // end of each list; while filling: its next place
   for (std::size_t i = 0; i < corners.size(); ++i) {
     ++end[std::min(corners[i], corners[to_corner(i)]) + std::size_t{1}];
   }
   std::partial_sum(end.begin(), end.end(), end.begin());
-  std::vector<std::uint64_t> edges(corners.size());  // the higher end; the last bit: which way
+  std::vector<std::uint64_t> edges(corners.size());  // higher end; last bit: the direction
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::uint64_t from = corners[i], to = corners[to_corner(i)];
     edges[end[std::min(from, to)]++] = std::max(from, to) << 1 | (from < to ? 1 : 0);
@@ -111,33 +126,15 @@ EdgeCount count_edges(std::span<const std::uint32_t> corners, std::size_t names)
   return count;
 }
 
-namespace {
-
-// Embree's tree rounds to floats: searches reach further by this part of the mesh's radius.
-constexpr double kRounding = 1e-6;
-// Triangles whose distances differ by less than this part of the mesh's radius are all looked at,
-// in whichever order they come: the processor's kind of vectors decides on that.
-constexpr double kNearlyTied = 1e-13;
-// A way is looked along in pieces of this part of the mesh's radius, but in no more than so many.
-constexpr double kPiece = 1. / 32, kMostPieces = 128;
-// A triangle lower than this part of its longest edge has no direction.
-constexpr double kSliver = 1e-9;
-
-std::string counted(std::size_t n, const char* what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
-
-}  // namespace
-
-// Embree's own, and what it asks for while it builds.
+// Embree's objects, and the values that it asks for while it builds.
 struct TriangleMesh::Tree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   const std::atomic<bool>* cancel = nullptr;
   std::atomic<std::ptrdiff_t> bytes{0};
 
-  // One thread: building goes on beside the haptic loop. No room for surfaces that are divided on
-  // the way, 128 MB else.
+  // Embree gets a thread alone: building goes on beside the haptic loop. It gets no cache for
+  // tessellated surfaces, else 128 MB.
   Tree() : device(rtcNewDevice("threads=1,set_affinity=0,tessellation_cache_size=1")) {
     if (device == nullptr) throw std::runtime_error("Embree cannot be started");
     rtcSetDeviceMemoryMonitorFunction(
@@ -159,7 +156,7 @@ struct TriangleMesh::Tree {
   void build(const std::vector<Eigen::Vector3f>& places,
              const std::vector<std::uint32_t>& indices) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // The places carry one more at the end, for Embree reads four numbers at a time.
+    // The places have one more element at the end: Embree reads four numbers at a time.
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                places.data(), 0, sizeof(Eigen::Vector3f), places.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(),
@@ -194,7 +191,7 @@ std::string MeshHealth::text() const {
   return out;
 }
 
-// Its areas by cross products, not by products of lengths: the thinnest triangles keep their
+// Computes areas by cross products, not by products of lengths: the thinnest triangles keep their
 // digits.
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
@@ -227,7 +224,7 @@ TriangleMesh::TriangleMesh(std::span<const Eigen::Vector3f> vertices,
   tree_->cancel = cancel;
   tree_->build(places_, indices_);
   tree_->cancel = nullptr;
-  // No tick is to be the first that needs Embree's code in memory.
+  // A first query now loads Embree's code, so that no tick has to.
   MeshPoint near;
   nearest(corner(0, 0), radius_, MeshPoint::kNone, near);
   build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -260,8 +257,8 @@ void TriangleMesh::keep_triangles(std::span<const Eigen::Vector3f> vertices,
     places.emplace_back((v.cast<double>() - middle_).cast<float>());
   }
   constexpr std::uint32_t kNone = MeshPoint::kNone;
-  std::vector<std::uint32_t> names(places.size(), kNone);    // of those that are corners
-  std::vector<std::uint32_t> renamed(places.size(), kNone);  // their numbers among places_
+  std::vector<std::uint32_t> names(places.size(), kNone);  // names of the vertices that are corners
+  std::vector<std::uint32_t> renamed(places.size(), kNone);  // their indices in places_
   NearNames near(places, box.isEmpty() ? 0 : kSamePlace * box.diagonal().norm());
   std::size_t apart = 0;
   for (const std::uint32_t i : indices) {
@@ -315,15 +312,15 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
     const TriangleMesh& mesh;
     Vec3 at, point;
     double best2, margin, tied;
-    std::uint32_t triangle = MeshPoint::kNone;  // of those equally near the first
-    // No nearer than the nearest so far is what lies beyond the plane there: out . x <= level.
+    std::uint32_t triangle = MeshPoint::kNone;  // the first of those equally near
+    // Plane beyond which, at out . x <= level, no point is nearer than the nearest so far.
     Vec3 out = Vec3::Zero();
     double level = -1;
 
     bool consider(std::uint32_t t) {
       const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
       if (out.dot(a) <= level && out.dot(b) <= level && out.dot(c) <= level) return false;
-      // Others are in a plane that is too far away, rounding granted.
+      // Skips triangles whose plane is too far away, with room for rounding.
       const Vec3 n = (b - a).cross(c - a);
       const double height = n.dot(at - a);
       if (height * height > (1 + 1e-7) * best2 * n.squaredNorm()) return false;
@@ -367,14 +364,14 @@ bool TriangleMesh::nearest(const Vec3& at, double within, std::uint32_t hint,
   return true;
 }
 
-// Embree only says which triangles are near the way. Its own rays are of floats, and which of two
-// neighbours they hit, and where, depends on the processor.
+// Embree only finds triangles near the way. Its own rays use floats, and which of two neighbours
+// they hit, and where, depends on the processor.
 bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) const noexcept {
   struct Search {
     const TriangleMesh& mesh;
     Vec3 from, way;
-    double part = std::numeric_limits<double>::infinity();  // of the way
-    std::uint32_t triangle = MeshPoint::kNone;              // of those equally far the first
+    double part = std::numeric_limits<double>::infinity();  // part of the way
+    std::uint32_t triangle = MeshPoint::kNone;              // the first of those equally far
 
     void consider(std::uint32_t t) {
       const Vec3 a = mesh.corner(t, 0) - from, b = mesh.corner(t, 1) - from,
@@ -385,7 +382,7 @@ bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) co
           !(whole > 0 ? 0 <= height && height <= whole : whole <= height && height <= 0)) {
         return;
       }
-      // On which side of each edge the way passes; neighbours find the same of the edge they share,
+      // Sides of the edges on which the way passes; neighbours compute the same for a shared edge,
       // so that no way slips through between them.
       const double ab = way.dot(a.cross(b)), bc = way.dot(b.cross(c)), ca = way.dot(c.cross(a));
       const bool inside = (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
@@ -399,7 +396,8 @@ bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) co
   Search search{*this, from, to - from};
   const double length = search.way.norm();
   if (!(length > 0)) return false;
-  // Piece by piece, each in a ball: a single one around a long way would hold most of the mesh.
+  // Searches piece by piece, each in a ball: a single one around a long way would hold most of the
+  // mesh.
   const double pieces = std::floor(std::min(1 + length / (kPiece * radius_), kMostPieces));
   for (double i = 0; i < pieces && search.part > i / pieces; ++i) {
     const Vec3 middle = from + (i + 0.5) / pieces * search.way;
@@ -429,7 +427,8 @@ bool TriangleMesh::crossing(const Vec3& from, const Vec3& to, MeshPoint& out) co
   return true;
 }
 
-// What is seen first on the way to the middle of the nearest triangle turns its face or its back.
+// Decides by the first triangle on the way to the middle of the nearest one: its face or its back
+// is seen.
 bool TriangleMesh::behind(const Vec3& at) const noexcept {
   MeshPoint near;
   if (!nearest(at, std::numeric_limits<float>::max(), MeshPoint::kNone, near)) return false;

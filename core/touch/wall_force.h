@@ -1,5 +1,5 @@
-// The normal force of a wall over a whole tick, such that making, keeping and breaking contact
-// neither gain nor lose energy (a discrete gradient).
+// Forces of a wall over a whole tick: the normal force, by a discrete gradient, so that making,
+// keeping and breaking contact neither gain nor lose energy; and friction.
 #pragma once
 
 #include <algorithm>
@@ -9,15 +9,14 @@
 
 namespace limpid {
 
-// Coulomb friction as a spring with an anchor that slips (implicit, dissipative).
-
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
-// The tangential force l = disc[-K_t (z + T (b + W l))] [N], disc the projection on the disc of
-// this radius [N]: z the stretch of the spring [m], b the tangential velocity without l [m/s], W
-// what a force adds to it [m/(N s)]. With z' = -l/K_t the work of l over the tick and the change of
-// K_t |z|^2/2 are together not positive.
+// Coulomb friction as a spring with an anchor that slips, implicit and dissipative. Returns the
+// tangential force l = disc[-K_t (z + T (b + W l))] [N], disc the projection on the disc of this
+// radius [N]. z: stretch of the spring [m]; b: tangential velocity without l [m/s]; W: response to
+// a force [m/(N s)]. With z' = -l/K_t the work of l over the tick and the change of K_t |z|^2/2 are
+// together not positive.
 inline Vec2 friction_force(double K_t, double radius, const Vec2& z, double T, const Vec2& b,
                            const Mat2& W) {
   if (!(radius > 0)) return Vec2::Zero();
@@ -37,19 +36,19 @@ inline Vec2 friction_force(double K_t, double radius, const Vec2& z, double T, c
   return l;
 }
 
-// The damper that a wall of stiffness K gets by itself for what touches it with the mass m_n
-// [N s/m]: `part` of m_n/T, or half of critical damping where that is less: a heavy arm needs no
-// more, and a wall that no joint can move along would brake. And where a step of the encoder is a
-// jump of the velocity there [m/s], no more than that jump may push with.
+// Damper that a wall of stiffness K gets by itself against the mass m_n [N s/m]. It is `part` of
+// m_n/T, or half of critical damping if that is less. A heavy arm needs no more, and a wall that no
+// joint can move along would brake. `jump`: of the velocity there by a step of the encoder [m/s];
+// the damper's force from it is bounded.
 inline double wall_damping(double K, double m_n, double T, double part, double jump) {
   constexpr double kPush = 0.05;  // [N]
   const double quiet = std::min(part * m_n / T, std::sqrt(K * m_n));
   return jump > 0 ? std::min(quiet, kPush / jump) : quiet;
 }
 
-// A wall of stiffness K [N/m] and damper B [N s/m], the depth d at the tick's start [m], and over
-// the tick of T [s] the change of depth D = a - c F: a without this wall's force, c > 0 what a
-// force takes off it [m, m/N]. In joint space with [rad] and [N m].
+// A wall of stiffness K [N/m] and damper B [N s/m] in a tick of T [s]. d: depth at the tick's start
+// [m]; D = a - c F: change of depth over the tick, a without this wall's force, c > 0 the response
+// to it [m, m/N]. In joint space with [rad] and [N m].
 struct WallTick {
   double K, B, T;
   double d, a, c;
@@ -61,10 +60,10 @@ inline double wall_force(const WallTick& w) {
   if (d >= 0) {
     const double F = std::max(0.0, (K * (d + a / 2) + b * a) / (1 + c * (K / 2 + b)));
     if (d + a - c * F >= 0) return F;  // inside throughout
-    const double h = a - c * b * d;    // it breaks: of K d^2 / 2 nothing stays
+    const double h = a - c * b * d;    // contact breaks: of K d^2 / 2 nothing stays
     const double rest = d * (K * d / 2 + b * a);
     const double root = std::sqrt(std::max(0.0, h * h + 4 * c * rest));
-    // The larger root, in the form that does not subtract what is nearly equal.
+    // The larger root, in the form that does not subtract nearly equal numbers.
     return std::max(0.0, h < 0 ? 2 * rest / (root - h) : (h + root) / (2 * c));
   }
   const double s = d + a;
@@ -72,10 +71,10 @@ inline double wall_force(const WallTick& w) {
   const double p = c * (c * (K / 2 + b) + 1);
   const double q = c * (K * s + b * (s + a)) + a;
   const double r = s * (K * s / 2 + b * a);
-  return 2 * r / (q + std::sqrt(std::max(0.0, q * q - 4 * p * r)));  // it is made
+  return 2 * r / (q + std::sqrt(std::max(0.0, q * q - 4 * p * r)));  // contact is made
 }
 
-// The same force, and how it answers the change of depth [N/m], where that is known: D = a.
+// The wall's force, and its slope over the change of depth [N/m], for a known D = a.
 struct WallPush {
   double force = 0, slope = 0;
 };
