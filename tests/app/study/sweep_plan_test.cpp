@@ -83,6 +83,20 @@ TEST_F(SweepPlans, TapWallsWithArmsOfAnySizeAndMassAsStiffAsAreNamedForThem) {
   EXPECT_EQ(run_of(plan, 0).hand.position, run_of(plan, 0).hand.position);
 }
 
+// A link of an arm whose mass no axis has weighs 50 g, as those of desktop devices do.
+TEST_F(SweepPlans, TapWithArmsOfDesktopSizeWhereNoAxisHasTheirMass) {
+  const SweepPlan plan = read(R"(hand = { tap = 2 }
+measure = ["wall_felt"]
+set = ["coupling.kind = predictive"]
+axis = [ { key = "arm.joints", values = [2, 3, 7] } ])");
+  for (std::uint64_t i = 0; i < plan.points(); ++i) {
+    const RunPlan run = run_of(plan, i);
+    double mass = 0;
+    for (const Link& link : run.arm.links) mass += link.mass;
+    EXPECT_NEAR(mass, 0.05 * run.arm.dof(), 1e-9) << run.arm.dof() << " joints";
+  }
+}
+
 TEST_F(SweepPlans, TapWallsOfTheStiffnessThatAnAxisHas) {
   const SweepPlan plan = read(R"(hand = { tap = 2 }
 measure = ["wall"]

@@ -42,6 +42,15 @@ TEST(MassProperties, AreThoseOfTheSolidsInBooks) {
   expect_inertia(body(Cylinder{r, l}), {across, across, 0.3 * r * r / 2});
 }
 
+// Density times volume is the mass to round-off only.
+TEST(MassProperties, HaveTheBodysMassToTheLastBit) {
+  for (int k = 1; k <= 200; ++k) {
+    const double mass = 0.0137 * k, radius = 0.001 + 0.00037 * k;
+    EXPECT_EQ(mass_properties(body(Sphere{radius}, mass)).mass, mass);
+    EXPECT_EQ(mass_properties(body(Cylinder{radius, 3 * radius}, mass)).mass, mass);
+  }
+}
+
 TEST(MassProperties, VolumesAreThoseOfTheSolidsInBooks) {
   const double r = 0.02, l = 0.05;
   EXPECT_NEAR(volume(body(Sphere{r})), 4 * kPi / 3 * r * r * r, 1e-18);

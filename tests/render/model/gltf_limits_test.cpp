@@ -136,6 +136,14 @@ TEST(GltfLimits, CountsTrianglesOverAllNodes) {
   expect_refusal(file.binary(), "more than 6 million triangles over all nodes");
 }
 
+// An accessor without a view is zeros, which take memory that the file does not have.
+TEST(GltfLimits, RefusesZerosThatTakeHalfAGibibyte) {
+  GltfBuilder file = triangle();
+  const std::size_t many = 70'000'000;  // of 8 bytes
+  file.attribute("TEXCOORD_0", file.accessor(-1, 5126, "VEC2", many));
+  expect_refusal(file.binary(), "more than 512 MiB in compressed, sparse or empty accessors");
+}
+
 TEST(GltfLimits, RefusesSeveralBuffersForOneBinaryChunk) {
   GltfBuilder file = triangle();
   std::string json = file.json();

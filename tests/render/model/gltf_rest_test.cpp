@@ -88,6 +88,36 @@ TEST(GltfRest, RefusesAJointThatDoesNotExist) {
   EXPECT_THROW(parse_gltf(file.binary(), "part.glb"), std::runtime_error);
 }
 
+// Each vertex has four joints and four weights; a list that is of another width or length belongs
+// to something else.
+TEST(GltfRest, RefusesJointsAndWeightsOfAnotherWidthOrLength) {
+  using Bytes = std::vector<std::uint8_t>;
+  using Floats = std::vector<float>;
+  const auto refused = [](const char* type, const Bytes& joints, const char* weight_type,
+                          const Floats& weights, std::size_t joint_count,
+                          std::size_t weight_count) {
+    GltfBuilder file = corner();
+    file.attribute("JOINTS_0", file.accessor(file.view(joints), 5121, type, joint_count));
+    file.attribute("WEIGHTS_0", file.accessor(file.view(weights), 5126, weight_type, weight_count));
+    file.nodes = R"({"mesh":0,"skin":0},{"translation":[0,0,3]})";
+    file.roots = "0,1";
+    file.more = R"(,"skins":[{"joints":[1]}])";
+    try {
+      parse_gltf(file.binary(), "part.glb");
+      return false;
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what()).find("do not match POSITION") != std::string::npos;
+    }
+  };
+  const Bytes four(12, 0), two(8, 0);
+  const Floats each(12, 0.25f), halves(8, 0.5f);
+  EXPECT_FALSE(refused("VEC4", four, "VEC4", each, 3, 3));
+  EXPECT_TRUE(refused("VEC2", two, "VEC4", each, 3, 3));
+  EXPECT_TRUE(refused("VEC4", four, "VEC2", halves, 3, 3));
+  EXPECT_TRUE(refused("VEC4", two, "VEC4", each, 2, 3));
+  EXPECT_TRUE(refused("VEC4", four, "VEC4", halves, 3, 2));
+}
+
 // Weights of a half on one joint and a quarter on the other become two thirds and one third.
 TEST(GltfRest, BringsWeightsToOne) {
   GltfBuilder file = corner();
