@@ -15,7 +15,6 @@
 #include "app/study/record_point.h"
 #include "app/study/slurm.h"
 #include "app/study/sweep_figure.h"
-#include "app/study/sweep_map.h"
 #include "app/study/sweep_plan.h"
 #include "app/study/sweep_work.h"
 
@@ -113,11 +112,7 @@ class Sweeping {
         share_(share),
         plan_(plan),
         folder_(folder),
-        map_(plan, measured_columns(plan), terminal_width()),
-        book_(plan, folder, options.csv, [this](std::uint64_t block, const auto& rows) {
-          const SweepRows& all = book_.table().rows;
-          map_.take(all, all.block(block).first, rows);
-        }) {}
+        book_(plan, folder, options.csv) {}
 
   int carry_out() {
     if (options_.slurm) return on_slurm();
@@ -139,8 +134,7 @@ class Sweeping {
     return {.title = rounds > 1 ? fmt::format("{}, round {}", plan_.title, rounds) : plan_.title,
             .whole = points,
             .unit = "",
-            .rate = "points a second",
-            .picture = [this] { return map_.lines(); }};
+            .rate = "points a second"};
   }
 
   // False if it was stopped. A refined plan goes on, round by round, while all of a round is there.
@@ -242,7 +236,6 @@ class Sweeping {
   const SweepShare& share_;
   const SweepPlan& plan_;
   const SweepFolder& folder_;
-  MapText map_;
   SweepBook book_;
 };
 

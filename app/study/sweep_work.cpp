@@ -198,7 +198,6 @@ std::uint64_t SweepBook::missing() const {
 void SweepBook::take(std::uint64_t block, const std::vector<double>& rows) {
   table_.take(table_.rows.block(block).first, rows);
   taken_[block] = true;
-  if (told_) told_(block, rows);
 }
 
 std::uint64_t SweepBook::gather() {

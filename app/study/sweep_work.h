@@ -58,12 +58,10 @@ bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& f
 // The table while it fills.
 class SweepBook {
  public:
-  // `told` hears of each block that comes in.
-  SweepBook(const SweepPlan& plan, const SweepFolder& folder, bool csv, TakeBlock told = {})
+  SweepBook(const SweepPlan& plan, const SweepFolder& folder, bool csv)
       : plan_(plan),
         folder_(folder),
         csv_(csv),
-        told_(std::move(told)),
         table_(plan),
         taken_(table_.rows.blocks(), false) {}
 
@@ -83,7 +81,6 @@ class SweepBook {
   const SweepPlan& plan_;
   const SweepFolder& folder_;
   bool csv_;
-  TakeBlock told_;
   SweepTable table_;
   std::vector<bool> taken_;  // of each block
 };

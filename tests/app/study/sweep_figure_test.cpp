@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "app/study/slurm.h"
-#include "app/study/sweep_map.h"
 #include "tests/app/study/plans.h"
 
 namespace limpid {
@@ -79,41 +78,6 @@ axis = [ { key = "hand.stiffness", from = 100, to = 1000, sample = "latin" },
 TEST_F(SweepFigures, AreNothingWithoutAxesAndPartOfWhatIsDone) {
   const SweepPlan plan = test::sweep_plan(dir_, kTwoByThree);
   EXPECT_EQ(sweep_figure(plan, filled(plan, 2)).panels[0].series[0].cells.size(), 2u);
-}
-
-TEST_F(SweepFigures, InLettersFillInAsPointsCome) {
-  const SweepPlan plan = test::sweep_plan(dir_, kTwoByThree);
-  MapText map(plan, measured_columns(plan));
-  EXPECT_THAT(map.lines()[1], HasSubstr("1 ····"));
-  map.take(SweepRows(plan), 0, {0.0, 1.0, 2.0});
-  map.take(SweepRows(plan), 5, {4.0});
-  const auto lines = map.lines();
-  ASSERT_EQ(lines.size(), 5u);
-  EXPECT_THAT(lines[0], HasSubstr("energy"));
-  EXPECT_THAT(lines[1], HasSubstr("1 ▓▓██"));
-  EXPECT_THAT(lines[2], HasSubstr("0.6 ▒▒··"));
-  EXPECT_THAT(lines[3], HasSubstr("0.4 ░░··"));
-  EXPECT_THAT(lines[4], HasSubstr("stiffness 100 to 1000"));
-}
-
-TEST_F(SweepFigures, InLettersAreNoWiderThanTheTerminal) {
-  const SweepPlan plan = test::sweep_plan(dir_, R"(scene = "free.toml"
-measure = ["energy"]
-axis = [ { key = "hand.stiffness", from = 100, to = 1000, count = 150 },
-         { key = "coupling.eta", values = [0.4, 0.6, 1] } ]
-)");
-  const auto letters = [](const std::string& line) {
-    return std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; });
-  };
-  for (const std::size_t width : {79u, 40u, 131u}) {
-    MapText map(plan, measured_columns(plan), width);
-    const auto lines = map.lines();
-    ASSERT_EQ(lines.size(), 5u);
-    for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
-      EXPECT_LE(letters(lines[i]), static_cast<long>(width));
-      EXPECT_GE(letters(lines[i]), static_cast<long>(width) - 2);
-    }
-  }
 }
 
 TEST(SlurmArrays, AreNamedAsSbatchHasThem) {
