@@ -90,7 +90,7 @@ class Drawing {
     for (std::uint64_t i = 0; i < table_.points(); ++i) {
       const double value = table_.at(i, column_);
       if (!table_.done[i] || std::isnan(value)) continue;
-      const SweepPoint point = point_of(plan_, table_.rows.point(i));
+      const SweepPoint point = point_of(plan_, i);
       std::vector<std::size_t> rest = point.place;
       std::array<std::size_t, 2> at{std::exchange(rest[x_], 0), 0};
       if (y_) at[1] = std::exchange(rest[*y_], 0);
@@ -100,36 +100,9 @@ class Drawing {
       Mean& mean = panels_[rest][at];
       mean.sum += value;
       ++mean.count;
-      mean.point = table_.rows.point(i);
+      mean.point = i;
       low_ = std::min(low_, mean.value());
       high_ = std::max(high_, mean.value());
-    }
-    if (plan_.refine) y_ ? fill_panels() : keep_coarse_panels();
-  }
-
-  // Where nothing else is on a finer step: panels are for the coarse ones.
-  void keep_coarse_panels() {
-    std::erase_if(panels_, [&](const auto& panel) {
-      return std::ranges::any_of(plan_.refine->axes, [&](std::size_t a) {
-        return panel.first[a] % (std::size_t{1} << plan_.refine->depth) != 0;
-      });
-    });
-  }
-
-  // What has no point of its own is what the corners of its cell make it.
-  void fill_panels() {
-    keep_coarse_panels();
-    for (auto& [places, values] : panels_) {
-      std::vector<std::size_t> at = places;
-      for (at[x_] = 0; at[x_] < plan_.axes[x_].values.size(); ++at[x_]) {
-        for (at[*y_] = 0; at[*y_] < plan_.axes[*y_].values.size(); ++at[*y_]) {
-          const std::array<std::size_t, 2> key{at[x_], at[*y_]};
-          if (values.contains(key)) continue;
-          if (const auto value = table_.inferred(at, 0, column_)) {
-            values[key] = {*value, 1, values.begin()->second.point};
-          }
-        }
-      }
     }
   }
 

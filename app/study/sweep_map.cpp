@@ -141,22 +141,16 @@ class Making {
     double sum = 0, finite = 0;
     for (std::uint64_t s = from; s < to; ++s) {
       for (std::uint64_t r = 0; r < plan_.repeats; ++r) {
-        const auto row = sweep_.table.rows.row_of(number_of(plan_, place, s, r));
-        if (!row || !sweep_.table.done[*row]) continue;
+        const std::uint64_t point = number_of(plan_, place, s, r);
+        if (!sweep_.table.done[point]) continue;
         ++spot.count;
-        const double value = sweep_.table.at(*row, map_.choice.column);
+        const double value = sweep_.table.at(point, map_.choice.column);
         if (!std::isfinite(value)) continue;
         sum += value;
         ++finite;
       }
     }
-    double value = finite > 0 ? sum / finite : kNoValue;
-    if (spot.count == 0 && y_ != nullptr) {
-      if (const auto from_around = sweep_.table.inferred(place, 0, map_.choice.column)) {
-        spot.inferred = true;
-        value = *from_around;
-      }
-    }
+    const double value = finite > 0 ? sum / finite : kNoValue;
     spot.x = axis_at(x_, sampled(x_) ? from : place[map_.choice.x]);
     spot.y = y_ == nullptr ? value : axis_at(*y_, sampled(*y_) ? from : place[*map_.choice.y]);
     spot.cell = {spot.x, spot.x, spot.y, spot.y, value};
@@ -164,8 +158,7 @@ class Making {
       std::tie(spot.cell.x_low, spot.cell.x_high) = wide_.around(spot.x);
       std::tie(spot.cell.y_low, spot.cell.y_high) = high().around(spot.y);
     }
-    // Between the points of a curve there is nothing to be drawn.
-    if (spot.count > 0 || y_ != nullptr || !plan_.refine) map_.spots.push_back(spot);
+    map_.spots.push_back(spot);
   }
 
   const AxisCells& high() {
@@ -223,11 +216,10 @@ class Making {
     Series line{"highest change", kProxyInk, Series::Style::dashed, {}};
     bool other = false;
     for (const MapSpot& each : map_.spots) {
-      const auto row = sweep_.table.rows.row_of(each.point);
-      if (!row || !sweep_.table.done[*row]) continue;
-      const double last = sweep_.table.at(*row, 1);
+      if (!sweep_.table.done[each.point]) continue;
+      const double last = sweep_.table.at(each.point, 1);
       line.points.push_back({each.x, last});
-      other = other || (std::isfinite(last) && last != sweep_.table.at(*row, 0));
+      other = other || (std::isfinite(last) && last != sweep_.table.at(each.point, 0));
     }
     if (other) map_.lines.push_back(std::move(line));
   }

@@ -60,9 +60,8 @@ struct MapSpot {
   double x = 0, y = 0;
   std::uint64_t point = 0;  // its number; of several, the first one's
   std::uint64_t count = 0;  // done
-  bool inferred = false;    // from the points around it, where the map was not refined
 
-  bool there() const { return count > 0 || inferred; }
+  bool there() const { return count > 0; }
 };
 
 struct SweepMap {
