@@ -75,41 +75,23 @@ bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhi
   return true;
 }
 
-// A line as wide as the terminal would wrap, and leave something behind.
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// Columns of the terminal on standard error that a line may fill; 79 where it is none. A line as
+// wide as the terminal would wrap, and leave something behind.
 std::size_t terminal_width() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
   return known ? size.ws_col - 1u : 79u;
 }
 
-std::string cut_to(const std::string& line, std::size_t columns) {
-  std::size_t at = 0;
-  for (std::size_t letters = 0; at < line.size(); ++at) {
-    const bool begins = (static_cast<unsigned char>(line[at]) & 0xc0u) != 0x80u;
-    if (begins && letters++ == columns) break;
-  }
-  return line.substr(0, at);
-}
-
-namespace {
-
-using Seconds = std::chrono::duration<double>;
-
 std::string duration(double seconds) {
   const auto s = static_cast<long>(std::min(std::ceil(seconds), 1e9));
   if (s < 120) return fmt::format("{} s", s);
   if (s < 7200) return fmt::format("{} min {} s", s / 60, s % 60);
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
-}
-
-// Over the lines above the progress line, whose number it is given; returns how many there are.
-std::size_t draw_over(std::size_t before, const std::vector<std::string>& lines) {
-  if (before > 0) fmt::print(stderr, "\r\x1b[{}A", before);
-  for (const std::string& line : lines) {
-    fmt::print(stderr, "\x1b[K{}\n", cut_to(line, terminal_width()));
-  }
-  fmt::print(stderr, "\x1b[J");
-  return lines.size();
 }
 
 // In place of what stood there, whose length it is given; returns its own.
@@ -150,9 +132,8 @@ void Progress::show(const std::stop_token& stop) const {
   };
   if (over_within(1s)) return;
   double before = 0;
-  std::size_t length = 0, above = 0;
+  std::size_t length = 0;
   do {
-    if (words_.picture) above = draw_over(above, words_.picture());
     const double done = done_.load(std::memory_order_relaxed);
     if (done < before) began = std::chrono::steady_clock::now();
     before = done;
@@ -160,7 +141,6 @@ void Progress::show(const std::stop_token& stop) const {
     length = write_over(length, progress_line(words_, done, elapsed.count()));
   } while (!over_within(200ms));
   write_over(length, "");
-  if (above > 0) draw_over(above, {});
 }
 
 }  // namespace limpid

@@ -6,7 +6,6 @@
 #include <functional>
 #include <string>
 #include <thread>
-#include <vector>
 
 namespace limpid {
 
@@ -23,11 +22,6 @@ void prepare_out(const std::filesystem::path& dir);
 // UsageError at the end of what can be typed.
 bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhile);
 
-// Columns of the terminal on standard error that a line may fill; 79 where it is none.
-std::size_t terminal_width();
-// The beginning of a line of UTF-8 that is `columns` wide at most, a letter a column.
-std::string cut_to(const std::string& line, std::size_t columns);
-
 // One line on standard error, rewritten in place: "run: 41 %, 12.3 of 30.0 s, 85 times real time,
 // 4 s left". Only where that is a terminal, only once the work takes over a second; gone when the
 // work is over. Printed by a thread of its own, so that no work waits for a terminal.
@@ -38,7 +32,6 @@ class Progress {
     double whole = 100;  // what at() comes to in the end
     std::string unit;    // of it, where done and whole are worth saying: "s"; else empty
     std::string rate;    // what it is called a second: "times real time"
-    std::function<std::vector<std::string>()> picture = {};  // lines above it, any time
   };
   explicit Progress(Words words);
   Progress(const Progress&) = delete;

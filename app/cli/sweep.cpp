@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <thread>
-#include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
@@ -15,7 +14,6 @@
 #include "app/study/record_point.h"
 #include "app/study/slurm.h"
 #include "app/study/sweep_figure.h"
-#include "app/study/sweep_map.h"
 #include "app/study/sweep_plan.h"
 #include "app/study/sweep_work.h"
 
@@ -113,11 +111,7 @@ class Sweeping {
         share_(share),
         plan_(plan),
         folder_(folder),
-        map_(plan, measured_columns(plan), terminal_width()),
-        book_(plan, folder, options.csv, [this](std::uint64_t block, const auto& rows) {
-          const SweepRows& all = book_.table().rows;
-          map_.take(all, all.block(block).first, rows);
-        }) {}
+        book_(plan, folder, options.csv) {}
 
   int carry_out() {
     if (options_.slurm) return on_slurm();
@@ -128,62 +122,43 @@ class Sweeping {
       if (!finished && alone) book_.write();
       if (!finished) return stopped("the same command goes on from here");
     }
-    if (!alone && !first && !options_.gather) return say_what_is_left();
+    if (!alone && !first && !options_.gather) return 0;
     book_.gather();
     return finish();
   }
 
  private:
   Progress::Words words(double points) const {
-    const std::uint64_t rounds = book_.table().rows.rounds();
-    return {.title = rounds > 1 ? fmt::format("{}, round {}", plan_.title, rounds) : plan_.title,
-            .whole = points,
-            .unit = "",
-            .rate = "points a second",
-            .picture = [this] { return map_.lines(); }};
+    return {.title = plan_.title, .whole = points, .unit = "", .rate = "points a second"};
   }
 
-  // False if it was stopped. A refined plan goes on, round by round, while all of a round is there.
+  // False if it was stopped.
   bool work(bool alone) {
     Bookkeeper keeper(book_);
-    std::uint64_t rounds = 0;
-    while (std::exchange(rounds, book_.table().rows.rounds()) < book_.table().rows.rounds()) {
-      if (!work_round(alone, keeper)) return false;
-      if (plan_.refine) book_.gather();
-    }
-    return true;
-  }
-
-  bool work_round(bool alone, Bookkeeper& keeper) {
-    const SweepRows& rows = book_.table().rows;
     std::atomic<std::uint64_t> done{0};
     const TakeBlock take = [&](std::uint64_t block, const auto& values) {
       book_.take(block, values);
       if (alone) keeper.write_if_time();
     };
-    Progress progress(words(static_cast<double>(rows.size() - rows.begin_of_last()) /
-                            static_cast<double>(share_.shards)));
+    Progress progress(
+        words(static_cast<double>(plan_.points()) / static_cast<double>(share_.shards)));
     const std::jthread watch([&](const std::stop_token& over) {
       while (!over.stop_requested()) {
         progress.at(static_cast<double>(done.load()));
         std::this_thread::sleep_for(kBetweenLooks);
       }
     });
-    return work_off(plan_, rows, folder_, share_, interrupted, done, take);
+    return work_off(plan_, folder_, share_, interrupted, done, take);
   }
 
   int on_slurm() {
     SlurmArray array(plan_, folder_, options_.array);
     Bookkeeper keeper(book_);
     {
-      std::optional<Progress> progress;
-      std::uint64_t points = 0;
+      Progress progress(words(static_cast<double>(plan_.points())));
       while (!interrupted) {
         array.turn(book_);
-        if (std::exchange(points, book_.table().points()) != book_.table().points()) {
-          progress.emplace(words(static_cast<double>(book_.table().points())));
-        }
-        progress->at(static_cast<double>(book_.table().count()));
+        progress.at(static_cast<double>(book_.table().count()));
         keeper.write_if_time();
         if (book_.complete()) break;
         for (int i = 0; i < kLooksATurn && !interrupted; ++i) {
@@ -199,16 +174,6 @@ class Sweeping {
                     array.name()));
   }
 
-  // Of one of many parts. What is refined follows from all parts of a round.
-  int say_what_is_left() {
-    if (!plan_.refine || options_.mpi || book_.complete()) return 0;
-    fmt::print(
-        "this part is through with round {}; once all parts are, call them again for the "
-        "next\n",
-        book_.table().rows.rounds());
-    return 0;
-  }
-
   int stopped(const std::string& advice) {
     fmt::print(stderr, "limpid: stopped; {}\n", advice);
     return 1;
@@ -217,10 +182,7 @@ class Sweeping {
   int finish() {
     book_.write();
     const SweepTable& table = book_.table();
-    fmt::print(
-        "{} of {} points{} in {}\n", table.count(), table.points(),
-        table.rows.complete() ? "" : fmt::format(" of {} rounds so far", table.rows.rounds()),
-        folder_.table().string());
+    fmt::print("{} of {} points in {}\n", table.count(), table.points(), folder_.table().string());
     std::fflush(stdout);
     if (table.count() > 0) draw(table);
     return book_.complete() ? 0 : 1;
@@ -242,7 +204,6 @@ class Sweeping {
   const SweepShare& share_;
   const SweepPlan& plan_;
   const SweepFolder& folder_;
-  MapText map_;
   SweepBook book_;
 };
 

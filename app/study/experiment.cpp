@@ -204,13 +204,13 @@ void TrialRunner::run(const std::vector<Trial>& trials,
 SweepTable TrialRunner::sweep(const SweepPlan& plan) {
   SweepTable table(plan);
   for (std::uint64_t i = 0; i < table.points(); ++i) {
-    const RunPlan run = run_of(plan, table.rows.point(i));
+    const RunPlan run = run_of(plan, i);
     conditions_.add(run.arm, run.parameters);
   }
   static const std::atomic<bool> kNever{false};
   const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
   each(table.points(), [&](std::size_t i) {
-    const auto values = measure_point(plan, table.rows.point(i), stop);
+    const auto values = measure_point(plan, i, stop);
     if (!values) throw Cancelled();
     table.take(i, *values);
   });

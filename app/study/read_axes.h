@@ -41,9 +41,4 @@ std::vector<double> spread(const AxisRange& range, std::uint64_t count, bool log
 // measure, above, below. Errors: FileError.
 SweepLimit read_limit(const TomlTable& table);
 
-// [refine] of a sweep's plan.
-
-// Last of all that is read: gives the axes the values that lie between. Errors: FileError.
-void read_refine(const TomlTable& refine, SweepPlan& plan);
-
 }  // namespace limpid

@@ -35,8 +35,9 @@ class Reader {
       : file_(file), where_(where), plan_(plan) {}
 
   void read() {
+    refuse_refine();
     file_.allow_only({"title", "device", "scene", "hand", "seconds", "seed", "samples", "repeats",
-                      "block", "set", "measure", "axis", "stop", "boundary", "refine", "figure"});
+                      "block", "set", "measure", "axis", "stop", "boundary", "figure"});
     plan_.title = file_.text("title").value_or(plan_.file.stem().string());
     plan_.seed = file_.count("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(0);
     plan_.samples = file_.count("samples", 1, kMostPoints).value_or(1);
@@ -50,10 +51,19 @@ class Reader {
     read_figure();
     plan_.block = file_.count("block", 1, 1'000'000)
                       .value_or(std::clamp<std::uint64_t>(plan_.points() / kMostBlocks, 1, 1000));
-    if (const auto refine = table(file_, "refine", "refine")) read_refine(*refine, plan_);
   }
 
  private:
+  void refuse_refine() const {
+    const toml::node* refine = file_.find("refine");
+    if (refine == nullptr) return;
+    throw FileError(fmt::format(
+        "{}:{}: refine: limpid no longer refines maps; take [refine] out and give the axes a "
+        "larger count, sweep the place of interest with a plan of its own, or look for an edge "
+        "with [boundary]",
+        where_, refine->source().begin.line));
+  }
+
   // An inner table; nothing if it is not there.
   std::optional<TomlTable> table(const TomlTable& in, const char* key, const char* path) const {
     const toml::node* node = in.find(key);

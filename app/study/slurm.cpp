@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
-#include <utility>
 
 #include "app/run/run_key.h"
 #include "devices/files/atomic_file.h"
@@ -87,7 +86,7 @@ SlurmArray::SlurmArray(const SweepPlan& plan, const SweepFolder& folder,
     : plan_(plan),
       folder_(folder),
       options_(options),
-      tasks_(std::min(options.tasks, SweepRows(plan).blocks())) {
+      tasks_(std::min(options.tasks, blocks_of(plan))) {
   // Another folder, plan or number of tasks is another job.
   Digest digest;
   digest.add(fs::weakly_canonical(folder.path()).string());
@@ -100,10 +99,8 @@ std::uint64_t SlurmArray::turn(SweepBook& book) {
   // In this order: a task that is gone has written what it had.
   const std::set<std::uint64_t> there = queued();
   const std::uint64_t came = book.gather();
-  const SweepRows& rows = book.table().rows;
-  if (std::exchange(rounds_, rows.rounds()) != rows.rounds()) tries_.clear();
   std::map<std::uint64_t, std::uint64_t> missing;  // blocks of each task
-  for (std::uint64_t b = rows.first_block(); b < rows.blocks(); ++b) {
+  for (std::uint64_t b = 0; b < blocks_of(plan_); ++b) {
     if (!book.has(b)) ++missing[b % tasks_ + 1];
   }
   std::set<std::uint64_t> lost;

@@ -57,8 +57,7 @@ class SlurmArray {
   SlurmOptions options_;
   std::uint64_t tasks_;
   std::string name_;
-  std::map<std::uint64_t, Try> tries_;  // of the last round
-  std::uint64_t rounds_ = 0;            // that were known
+  std::map<std::uint64_t, Try> tries_;
 };
 
 }  // namespace limpid

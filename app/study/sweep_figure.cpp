@@ -4,103 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include "app/study/sweep_map.h"
 
 namespace limpid {
-
-namespace {
-
-constexpr const char* kQuarterInk[] = {"#440154", "#31688E", "#35B779", "#D9A400"};
-
-// Values along one upright.
-struct Upright {
-  std::string name;
-  std::vector<double> values;
-  bool logarithmic = false;
-  double low = 0, high = 1;
-
-  void fit() {
-    low = std::ranges::min(values);
-    high = std::ranges::max(values);
-  }
-  double height(std::size_t i) const {
-    if (!(high > low)) return 0.5;
-    return logarithmic ? std::log(values[i] / low) / std::log(high / low)
-                       : (values[i] - low) / (high - low);
-  }
-  std::string label() const { return fmt::format("{}\\n{:.2g} to {:.2g}", name, low, high); }
-};
-
-std::size_t measure_shown(const SweepPlan& plan, const SweepTable& table) {
-  const auto found = std::ranges::find(table.columns, plan.figure.measure, &SweepColumn::name);
-  return found == table.columns.end() ? 0 : static_cast<std::size_t>(found - table.columns.begin());
-}
-
-// Which of four equal parts of all values each is in.
-std::vector<std::size_t> quarters(const std::vector<double>& values) {
-  std::vector<double> sorted = values;
-  std::ranges::sort(sorted);
-  std::vector<std::size_t> part;
-  for (const double x : values) {
-    const auto below = std::ranges::lower_bound(sorted, x) - sorted.begin();
-    part.push_back(std::min<std::size_t>(3, 4 * static_cast<std::size_t>(below) / values.size()));
-  }
-  return part;
-}
-
-}  // namespace
-
-FigurePanel parallel_coordinates(const SweepPlan& plan, const SweepTable& table) {
-  const std::size_t column = measure_shown(plan, table);
-  std::vector<std::uint64_t> points;
-  for (std::uint64_t i = 0; i < table.points(); ++i) {
-    if (table.done[i] && std::isfinite(table.at(i, column))) points.push_back(i);
-  }
-  FigurePanel panel{.title = table.columns[column].name};
-  if (points.empty()) return panel;
-  const std::size_t step = (points.size() + kMostLines - 1) / kMostLines;
-  std::vector<Upright> uprights(plan.axes.size() + 1);
-  for (std::size_t k = 0; k < points.size(); k += step) {
-    const SweepPoint point = point_of(plan, table.rows.point(points[k]));
-    for (std::size_t a = 0; a < plan.axes.size(); ++a)
-      uprights[a].values.push_back(point.values[a]);
-    uprights.back().values.push_back(table.at(points[k], column));
-  }
-  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
-    uprights[a].name = plan.axes[a].name;
-    uprights[a].logarithmic = plan.axes[a].logarithmic;
-  }
-  uprights.back().name = table.columns[column].name;
-  for (std::size_t a = 0; a < uprights.size(); ++a) {
-    uprights[a].fit();
-    panel.x_ticks.emplace_back(static_cast<double>(a), uprights[a].label());
-  }
-  const bool yes_no = table.columns[column].unit == "yes/no";
-  const std::vector<double>& measured = uprights.back().values;
-  const std::vector<std::size_t> part = quarters(measured);
-  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-  constexpr const char* kQuarter[] = {"lowest quarter", "second", "third", "highest quarter"};
-  for (std::size_t q = 0; q < (yes_no ? 2 : 4); ++q) {
-    Series& series = panel.series.emplace_back();
-    series.label = yes_no ? (q == 0 ? "not " : "") + table.columns[column].name : kQuarter[q];
-    series.color = yes_no ? (q == 0 ? kContactInk : kProxyInk) : kQuarterInk[q];
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (q != (yes_no ? (measured[i] == 1 ? 1 : 0) : part[i])) continue;
-      for (std::size_t a = 0; a < uprights.size(); ++a) {
-        series.points.push_back({static_cast<double>(a), uprights[a].height(i)});
-      }
-      series.points.push_back({kGap, kGap});
-    }
-  }
-  panel.x_range = {-0.2, static_cast<double>(uprights.size()) - 0.8};
-  panel.y_range = {-0.02, 1.02};
-  panel.y_label = "from the lowest to the highest value";
-  return panel;
-}
 
 namespace {
 
@@ -118,12 +27,30 @@ struct Mean {
 // Over repeats and samples: [panel][x][y], the places of axes.
 using Panels = std::map<std::vector<std::size_t>, std::map<std::array<std::size_t, 2>, Mean>>;
 
+// A grid's axis of numbers, if there is one; else the first that has several values.
+std::size_t axis_across(const SweepPlan& plan) {
+  if (const auto x = axis_called(plan, plan.figure.x, {})) return *x;
+  const auto several = [](const SweepAxis& axis) { return axis.values.size() > 1; };
+  const auto found = std::ranges::find_if(plan.axes, several);
+  return found == plan.axes.end() ? 0 : static_cast<std::size_t>(found - plan.axes.begin());
+}
+
+// The words of an axis where they stand on it; nothing for numbers.
+std::vector<std::pair<double, std::string>> word_ticks(const SweepAxis& axis) {
+  std::vector<std::pair<double, std::string>> ticks;
+  if (axis.words.empty()) return ticks;
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    ticks.emplace_back(axis_at(axis, i), value_text(axis, i));
+  }
+  return ticks;
+}
+
 class Drawing {
  public:
   Drawing(const SweepPlan& plan, const SweepTable& table)
       : plan_(plan),
         table_(table),
-        x_(*axis_called(plan, plan.figure.x, {})),
+        x_(axis_across(plan)),
         y_(plan.boundary ? std::nullopt : axis_called(plan, plan.figure.y, x_)) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       if (table.columns[c].name == plan.figure.measure) column_ = c;
@@ -140,7 +67,8 @@ class Drawing {
       FigurePanel& panel = all.emplace_back();
       const SweepAxis& x = plan_.axes[x_];
       panel.title = title(places);
-      panel.x_label = label_of(x.name, x.unit);
+      panel.x_label = x.words.empty() ? label_of(x.name, x.unit) : x.name;
+      panel.x_ticks = word_ticks(x);
       panel.log_x = x.logarithmic;
       panel.x_range = AxisCells(x).all();
       if (plan_.boundary) {
@@ -162,7 +90,7 @@ class Drawing {
     for (std::uint64_t i = 0; i < table_.points(); ++i) {
       const double value = table_.at(i, column_);
       if (!table_.done[i] || std::isnan(value)) continue;
-      const SweepPoint point = point_of(plan_, table_.rows.point(i));
+      const SweepPoint point = point_of(plan_, i);
       std::vector<std::size_t> rest = point.place;
       std::array<std::size_t, 2> at{std::exchange(rest[x_], 0), 0};
       if (y_) at[1] = std::exchange(rest[*y_], 0);
@@ -172,36 +100,9 @@ class Drawing {
       Mean& mean = panels_[rest][at];
       mean.sum += value;
       ++mean.count;
-      mean.point = table_.rows.point(i);
+      mean.point = i;
       low_ = std::min(low_, mean.value());
       high_ = std::max(high_, mean.value());
-    }
-    if (plan_.refine) y_ ? fill_panels() : keep_coarse_panels();
-  }
-
-  // Where nothing else is on a finer step: panels are for the coarse ones.
-  void keep_coarse_panels() {
-    std::erase_if(panels_, [&](const auto& panel) {
-      return std::ranges::any_of(plan_.refine->axes, [&](std::size_t a) {
-        return panel.first[a] % (std::size_t{1} << plan_.refine->depth) != 0;
-      });
-    });
-  }
-
-  // What has no point of its own is what the corners of its cell make it.
-  void fill_panels() {
-    keep_coarse_panels();
-    for (auto& [places, values] : panels_) {
-      std::vector<std::size_t> at = places;
-      for (at[x_] = 0; at[x_] < plan_.axes[x_].values.size(); ++at[x_]) {
-        for (at[*y_] = 0; at[*y_] < plan_.axes[*y_].values.size(); ++at[*y_]) {
-          const std::array<std::size_t, 2> key{at[x_], at[*y_]};
-          if (values.contains(key)) continue;
-          if (const auto value = table_.inferred(at, 0, column_)) {
-            values[key] = {*value, 1, values.begin()->second.point};
-          }
-        }
-      }
     }
   }
 
@@ -244,13 +145,15 @@ class Drawing {
 
   void draw_slice(FigurePanel& panel, const Panels::mapped_type& values) const {
     panel.y_label = label_of(measured().name, measured().unit);
+    const SweepAxis& x = plan_.axes[x_];
     Series line{"", kProxyInk, Series::Style::line, {}},
         dots{"", kProxyInk, Series::Style::points, {}};
     for (const auto& [at, mean] : values) {
-      line.points.push_back({plan_.axes[x_].values[at[0]], mean.value()});
+      line.points.push_back({axis_at(x, at[0]), mean.value()});
     }
     dots.points = line.points;
-    panel.series = {line, dots};
+    if (x.spread == Spread::grid && x.words.empty()) panel.series.push_back(std::move(line));
+    panel.series.push_back(std::move(dots));
   }
 
   void draw_boundary(FigurePanel& panel, const Panels::mapped_type& values) const {
@@ -266,6 +169,7 @@ class Drawing {
   // Along x, everything else as it is at a point of the panel.
   void add_theory(FigurePanel& panel, std::uint64_t point) const {
     const SweepAxis& x = plan_.axes[x_];
+    if (!x.words.empty()) return;
     for (const std::string& line : plan_.figure.theory) {
       panel.series.push_back(theory_line(plan_, point, x, line));
     }
@@ -286,11 +190,7 @@ Figure sweep_figure(const SweepPlan& plan, const SweepTable& table) {
   Figure figure;
   figure.title = plan.title;
   figure.caption = plan.figure.caption;
-  if (axis_called(plan, plan.figure.x, {})) {
-    figure.panels = Drawing(plan, table).panels();
-  } else if (!plan.axes.empty()) {
-    figure.panels = {parallel_coordinates(plan, table)};
-  }
+  if (!plan.axes.empty()) figure.panels = Drawing(plan, table).panels();
   figure.columns = static_cast<int>(std::clamp<std::size_t>(figure.panels.size(), 1, 3));
   return figure;
 }

@@ -141,22 +141,16 @@ class Making {
     double sum = 0, finite = 0;
     for (std::uint64_t s = from; s < to; ++s) {
       for (std::uint64_t r = 0; r < plan_.repeats; ++r) {
-        const auto row = sweep_.table.rows.row_of(number_of(plan_, place, s, r));
-        if (!row || !sweep_.table.done[*row]) continue;
+        const std::uint64_t point = number_of(plan_, place, s, r);
+        if (!sweep_.table.done[point]) continue;
         ++spot.count;
-        const double value = sweep_.table.at(*row, map_.choice.column);
+        const double value = sweep_.table.at(point, map_.choice.column);
         if (!std::isfinite(value)) continue;
         sum += value;
         ++finite;
       }
     }
-    double value = finite > 0 ? sum / finite : kNoValue;
-    if (spot.count == 0 && y_ != nullptr) {
-      if (const auto from_around = sweep_.table.inferred(place, 0, map_.choice.column)) {
-        spot.inferred = true;
-        value = *from_around;
-      }
-    }
+    const double value = finite > 0 ? sum / finite : kNoValue;
     spot.x = axis_at(x_, sampled(x_) ? from : place[map_.choice.x]);
     spot.y = y_ == nullptr ? value : axis_at(*y_, sampled(*y_) ? from : place[*map_.choice.y]);
     spot.cell = {spot.x, spot.x, spot.y, spot.y, value};
@@ -164,8 +158,7 @@ class Making {
       std::tie(spot.cell.x_low, spot.cell.x_high) = wide_.around(spot.x);
       std::tie(spot.cell.y_low, spot.cell.y_high) = high().around(spot.y);
     }
-    // Between the points of a curve there is nothing to be drawn.
-    if (spot.count > 0 || y_ != nullptr || !plan_.refine) map_.spots.push_back(spot);
+    map_.spots.push_back(spot);
   }
 
   const AxisCells& high() {
@@ -223,11 +216,10 @@ class Making {
     Series line{"highest change", kProxyInk, Series::Style::dashed, {}};
     bool other = false;
     for (const MapSpot& each : map_.spots) {
-      const auto row = sweep_.table.rows.row_of(each.point);
-      if (!row || !sweep_.table.done[*row]) continue;
-      const double last = sweep_.table.at(*row, 1);
+      if (!sweep_.table.done[each.point]) continue;
+      const double last = sweep_.table.at(each.point, 1);
       line.points.push_back({each.x, last});
-      other = other || (std::isfinite(last) && last != sweep_.table.at(*row, 0));
+      other = other || (std::isfinite(last) && last != sweep_.table.at(each.point, 0));
     }
     if (other) map_.lines.push_back(std::move(line));
   }
@@ -273,84 +265,6 @@ MapChoice mended(const SweepPlan& plan, MapChoice choice) {
 
 SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice) {
   return Making(sweep, mended(*sweep.plan, choice)).make();
-}
-
-namespace {
-
-constexpr std::size_t kMostUp = 20;
-constexpr std::size_t kRowLabel = 11, kCellWidth = 2;  // in columns of a terminal
-constexpr const char* kShades[] = {"░░", "▒▒", "▓▓", "██"};
-
-}  // namespace
-
-MapText::MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns, std::size_t width)
-    : plan_(plan), columns_(columns.size()) {
-  const auto shown = std::ranges::find(columns, plan.figure.measure, &SweepColumn::name);
-  if (shown != columns.end()) column_ = static_cast<std::size_t>(shown - columns.begin());
-  name_ = columns[column_].name;
-  const std::size_t across =
-      (std::clamp(width, kRowLabel + kCellWidth, kWidest) - kRowLabel) / kCellWidth;
-  for (std::size_t a = plan.axes.size(); a-- > 0 && sides_.size() < 2;) {
-    const SweepAxis& axis = plan.axes[a];
-    if (axis.spread != Spread::grid || axis.values.size() < 2) continue;
-    sides_.insert(sides_.begin(), side(a, sides_.empty() ? kMostUp : across));
-  }
-  if (sides_.size() == 2) {
-    sum_.assign(sides_[0].cells * sides_[1].cells, 0);
-    count_ = sum_;
-  }
-}
-
-MapText::Side MapText::side(std::size_t axis, std::size_t most) const {
-  const std::size_t count = plan_.axes[axis].values.size();
-  return {axis, count, std::min(count, most)};
-}
-
-void MapText::take(const SweepRows& rows, std::uint64_t first, const std::vector<double>& values) {
-  if (sum_.empty()) return;
-  const std::lock_guard lock(mutex_);
-  for (std::size_t i = 0; i * columns_ < values.size(); ++i) {
-    const double value = values[i * columns_ + column_];
-    if (!std::isfinite(value)) continue;
-    const SweepPoint point = point_of(plan_, rows.point(first + i));
-    const std::size_t x = sides_[0].cell(point.place[sides_[0].axis]);
-    const std::size_t y = sides_[1].cell(point.place[sides_[1].axis]);
-    sum_[y * sides_[0].cells + x] += value;
-    ++count_[y * sides_[0].cells + x];
-  }
-}
-
-std::string MapText::row_label(std::size_t row) const {
-  const Side& up = sides_[1];
-  return value_text(plan_.axes[up.axis], row * up.count / up.cells);
-}
-
-std::vector<std::string> MapText::lines() const {
-  if (sum_.empty()) return {};
-  const std::lock_guard lock(mutex_);
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (std::size_t i = 0; i < sum_.size(); ++i) {
-    if (count_[i] == 0) continue;
-    low = std::min(low, sum_[i] / count_[i]);
-    high = std::max(high, sum_[i] / count_[i]);
-  }
-  const SweepAxis &across = plan_.axes[sides_[0].axis], &up = plan_.axes[sides_[1].axis];
-  std::vector<std::string> lines{
-      fmt::format("{} {} {:.3g} to {} {:.3g}", name_, kShades[0], low, kShades[3], high)};
-  if (!(low <= high)) lines[0] = name_;
-  for (std::size_t row = sides_[1].cells; row-- > 0;) {
-    std::string line = fmt::format("{:>10.10} ", row_label(row));
-    for (std::size_t x = 0; x < sides_[0].cells; ++x) {
-      const std::size_t i = row * sides_[0].cells + x;
-      const double part = high > low ? (sum_[i] / count_[i] - low) / (high - low) : 1;
-      line += count_[i] > 0 ? kShades[std::min<std::size_t>(3, static_cast<std::size_t>(4 * part))]
-                            : "··";
-    }
-    lines.push_back(line);
-  }
-  lines.push_back(fmt::format("{:>10.10} {} {} to {}", up.name, across.name, value_text(across, 0),
-                              value_text(across, sides_[0].count - 1)));
-  return lines;
 }
 
 namespace {

@@ -1,7 +1,6 @@
 // Where the values of an axis stand in a map, and what they are called.
 #pragma once
 
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,9 +60,8 @@ struct MapSpot {
   double x = 0, y = 0;
   std::uint64_t point = 0;  // its number; of several, the first one's
   std::uint64_t count = 0;  // done
-  bool inferred = false;    // from the points around it, where the map was not refined
 
-  bool there() const { return count > 0 || inferred; }
+  bool there() const { return count > 0; }
 };
 
 struct SweepMap {
@@ -80,39 +78,6 @@ struct SweepMap {
 
 // Not for the window's thread: theory takes its time.
 SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice);
-
-// A sweep's map in letters, filling in.
-
-// The last two axes of a grid, the last one upwards, the mean over all others; of the first measure
-// (or the figure's) in shades from its lowest to its highest value so far, of a boundary too. Dots
-// where nothing is yet. Safe from several threads.
-class MapText {
- public:
-  static constexpr std::size_t kWidest = 131;
-
-  // `width`: of its lines at most, in columns of a terminal.
-  MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns,
-          std::size_t width = kWidest);
-
-  // Of consecutive rows from `first` on.
-  void take(const SweepRows& rows, std::uint64_t first, const std::vector<double>& values);
-  std::vector<std::string> lines() const;  // none without such axes
-
- private:
-  struct Side {
-    std::size_t axis = 0, count = 0, cells = 0;
-    std::size_t cell(std::size_t place) const { return place * cells / count; }
-  };
-  Side side(std::size_t axis, std::size_t most) const;
-  std::string row_label(std::size_t row) const;
-
-  const SweepPlan& plan_;
-  std::size_t columns_, column_ = 0;
-  std::string name_;
-  std::vector<Side> sides_;  // across, up
-  std::vector<double> sum_, count_;
-  mutable std::mutex mutex_;
-};
 
 // What theory says of a map over eta, without simulating.
 

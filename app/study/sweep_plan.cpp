@@ -102,21 +102,6 @@ bool SweepLimit::met(double value) const {
   return (!above || value > *above) && (!below || value < *below);
 }
 
-bool SweepRefine::met(double value) const {
-  if (!above && !below) return value == 1;
-  return (!above || value > *above) && (!below || value < *below);
-}
-
-std::uint64_t coarse_points(const SweepPlan& plan) {
-  std::uint64_t count = plan.points() / plan.samples / plan.repeats;
-  if (!plan.refine) return count;
-  for (const std::size_t a : plan.refine->axes) {
-    const std::uint64_t fine = plan.axes[a].values.size();
-    count = count / fine * (((fine - 1) >> plan.refine->depth) + 1);
-  }
-  return count;
-}
-
 std::uint64_t SweepPlan::points() const {
   std::uint64_t count = samples * repeats;
   for (const SweepAxis& axis : axes) {

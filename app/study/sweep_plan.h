@@ -71,19 +71,6 @@ struct SweepBoundary {
   double tolerance = 0;  // of the axis [its unit]; of the ratio, if it is logarithmic
 };
 
-// Where the map changes it is made finer: the axes have all values then that they may ever need,
-// and only the points of every 2^depth-th are there from the beginning.
-struct SweepRefine {
-  std::vector<std::size_t> axes;  // of the plan
-  std::uint64_t depth = 1;        // how often a cell is halved
-  std::size_t column = 0;         // that is measured
-  std::optional<double> above, below;
-  std::optional<double> tolerance;  // of numbers: what may differ in a cell
-
-  // Which side a value is on, where that is what counts.
-  bool met(double value) const;
-};
-
 // Where a hand is and jumps to within the first tick, in place of a path.
 struct SweepJump {
   Vec3 at = Vec3::Zero(), by = Vec3::Zero();  // [m]
@@ -112,7 +99,6 @@ struct SweepPlan {
   std::vector<const MeasureInfo*> measures;
   std::vector<StopRule> stops;
   std::optional<SweepBoundary> boundary;
-  std::optional<SweepRefine> refine;
   FigureWish figure;
   std::map<SweepWorld, std::shared_ptr<const RunPlan>> worlds;  // all that its points need
   std::uint64_t key = 0;  // stands for the plan and all the files that it names
@@ -120,8 +106,6 @@ struct SweepPlan {
   // Points are numbered from 0: repeats fastest, then samples, then the last axis of the grid.
   std::uint64_t points() const;
 };
-// Those that are there before anything is refined: how many.
-std::uint64_t coarse_points(const SweepPlan& plan);
 
 // Errors: FileError FILE:LINE with key, what was found and what is allowed, also for files that the
 // plan names and for hands out of reach.

@@ -73,17 +73,17 @@ void FileImage::write() {
 namespace {
 
 // As the column of a table: of each point.
-std::vector<double> column_of(const SweepPlan& plan, const SweepRows& rows, std::size_t axis) {
-  std::vector<double> values(rows.size());
+std::vector<double> column_of(const SweepPlan& plan, std::size_t axis) {
+  std::vector<double> values(plan.points());
   for (std::uint64_t i = 0; i < values.size(); ++i) {
-    values[i] = point_of(plan, rows.point(i)).values[axis];
+    values[i] = point_of(plan, i).values[axis];
   }
   return values;
 }
 
-void add_axis(const SweepPlan& plan, const SweepRows& rows, std::size_t a, FileImage& image) {
+void add_axis(const SweepPlan& plan, std::size_t a, FileImage& image) {
   const SweepAxis& axis = plan.axes[a];
-  const std::vector<double> values = column_of(plan, rows, a);
+  const std::vector<double> values = column_of(plan, a);
   const hdf5::Dataset dataset = image.add("/axis/" + axis.name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
                                           values.size(), 1, values.data());
   image.text(dataset.get(), "unit", axis.unit);
@@ -93,17 +93,6 @@ void add_axis(const SweepPlan& plan, const SweepRows& rows, std::size_t a, FileI
   if (!axis.words.empty()) {
     image.text(dataset.get(), "words", fmt::format("{}", fmt::join(axis.words, "\n")));
   }
-}
-
-void add_rounds(const SweepRows& rows, FileImage& image) {
-  std::vector<std::uint64_t> point;
-  std::vector<std::uint32_t> round;
-  for (std::uint64_t i = 0; i < rows.size(); ++i) {
-    point.push_back(rows.point(i));
-    round.push_back(static_cast<std::uint32_t>(rows.round(i)));
-  }
-  image.add("/point", H5T_STD_U64LE, H5T_NATIVE_UINT64, point.size(), 1, point.data());
-  image.add("/round", H5T_STD_U32LE, H5T_NATIVE_UINT32, round.size(), 1, round.data());
 }
 
 // Enough digits to give the same number again.
@@ -126,24 +115,6 @@ std::uint64_t SweepTable::count() const {
   return static_cast<std::uint64_t>(std::ranges::count(done, 1));
 }
 
-std::optional<double> SweepTable::inferred(const std::vector<std::size_t>& place,
-                                           std::uint64_t repeat, std::size_t column) const {
-  const auto corners = rows.around(place, repeat);
-  double sum = 0;
-  for (const auto& [row, weight] : corners) {
-    if (!done[row] || !std::isfinite(at(row, column))) return std::nullopt;
-    sum += weight * at(row, column);
-  }
-  return corners.empty() ? std::nullopt : std::optional(sum);
-}
-
-bool SweepTable::grow() {
-  if (!rows.grow([this](std::uint64_t row) { return at(row, refined_by); })) return false;
-  done.resize(rows.size(), 0);
-  values.resize(rows.size() * columns.size());
-  return true;
-}
-
 void SweepTable::take(std::uint64_t first, const std::vector<double>& found) {
   std::ranges::copy(found, values.begin() + static_cast<std::ptrdiff_t>(first * columns.size()));
   const auto from = done.begin() + static_cast<std::ptrdiff_t>(first);
@@ -163,7 +134,7 @@ void write_table(const SweepPlan& plan, const SweepTable& table,
   image.text(image.root(), "build", hex(build_digest()));
   image.number(image.root(), "points", points);
   image.number(image.root(), "done", table.count());
-  for (std::size_t a = 0; a < plan.axes.size(); ++a) add_axis(plan, table.rows, a, image);
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) add_axis(plan, a, image);
   std::vector<double> column(points);
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     for (std::uint64_t i = 0; i < points; ++i) {
@@ -176,10 +147,9 @@ void write_table(const SweepPlan& plan, const SweepTable& table,
   }
   std::vector<std::uint32_t> repeat(points);
   for (std::uint64_t i = 0; i < points; ++i) {
-    repeat[i] = static_cast<std::uint32_t>(table.rows.point(i) % plan.repeats);
+    repeat[i] = static_cast<std::uint32_t>(i % plan.repeats);
   }
   image.add("/repeat", H5T_STD_U32LE, H5T_NATIVE_UINT32, points, 1, repeat.data());
-  if (plan.refine) add_rounds(table.rows, image);
   image.add("/done", H5T_STD_U8LE, H5T_NATIVE_UINT8, points, 1, table.done.data());
   image.write();
 }
@@ -193,8 +163,8 @@ void write_table_csv(const SweepPlan& plan, const SweepTable& table,
   text += '\n';
   for (std::uint64_t i = 0; i < table.points(); ++i) {
     if (!table.done[i]) continue;
-    const SweepPoint point = point_of(plan, table.rows.point(i));
-    text += fmt::format("{}", table.rows.point(i));
+    const SweepPoint point = point_of(plan, i);
+    text += fmt::format("{}", i);
     for (std::size_t a = 0; a < plan.axes.size(); ++a) {
       const SweepAxis& axis = plan.axes[a];
       text += ',' + (axis.words.empty()
@@ -315,26 +285,17 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
   return plan;
 }
 
-// Round by round, as it came about.
 void fill(const TableFile& file, SweepTable& table) {
   const std::uint64_t rows = file.count("points");
-  const std::vector<double>& done = file.column("/done", rows);
-  std::vector<const std::vector<double>*> columns;
-  for (const SweepColumn& c : table.columns) {
-    columns.push_back(&file.column("/measure/" + c.name, rows));
-  }
-  std::uint64_t from = 0;
-  do {
-    for (std::uint64_t i = from; i < std::min(rows, table.points()); ++i) {
-      table.done[i] = done[i] != 0;
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        table.values[i * columns.size() + c] = (*columns[c])[i];
-      }
-    }
-    from = table.points();
-  } while (from < rows && table.grow());
   if (table.points() != rows) file.refuse_rows(rows, table.points());
-  if (table.count() == rows) table.grow();  // where this is all, it knows now
+  const std::vector<double>& done = file.column("/done", rows);
+  for (std::uint64_t i = 0; i < rows; ++i) table.done[i] = done[i] != 0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const std::vector<double>& column = file.column("/measure/" + table.columns[c].name, rows);
+    for (std::uint64_t i = 0; i < rows; ++i) {
+      table.values[i * table.columns.size() + c] = column[i];
+    }
+  }
 }
 
 std::pair<double, double> range_of(const SweepTable& table, std::size_t column) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "app/study/measure_point.h"
-#include "app/study/sweep_rows.h"
 #include "devices/files/session/hdf5_reading.h"
 
 namespace limpid {
@@ -37,33 +36,23 @@ class FileImage {
   hdf5::File file_;
 };
 
-// A value for every measured column of every point, row by row.
+// A value for every measured column of every point.
 struct SweepTable {
-  explicit SweepTable(const SweepPlan& plan)  // which has to outlive it
-      : rows(plan),
-        columns(measured_columns(plan)),
-        done(rows.size(), 0),
-        values(rows.size() * columns.size()),
-        refined_by(plan.refine ? plan.refine->column : 0) {}
+  explicit SweepTable(const SweepPlan& plan)
+      : columns(measured_columns(plan)),
+        done(plan.points(), 0),
+        values(done.size() * columns.size()) {}
 
-  SweepRows rows;
   std::vector<SweepColumn> columns;
   std::vector<std::uint8_t> done;  // of each point: 1 if its values are there
   std::vector<double> values;      // points x columns; not a number where they are not
-  std::size_t refined_by;          // a column
 
-  std::uint64_t points() const { return done.size(); }  // that are known of by now
-  std::uint64_t count() const;                          // done
-  bool complete() const { return rows.complete() && count() == points(); }
-  double at(std::uint64_t row, std::size_t column) const {
-    return values[row * columns.size() + column];
+  std::uint64_t points() const { return done.size(); }
+  std::uint64_t count() const;  // done
+  bool complete() const { return count() == points(); }
+  double at(std::uint64_t point, std::size_t column) const {
+    return values[point * columns.size() + column];
   }
-  // At a place that has no point of its own: from the corners of its cell. Nothing where these are
-  // not there, or where there is nothing that is refined.
-  std::optional<double> inferred(const std::vector<std::size_t>& place, std::uint64_t repeat,
-                                 std::size_t column) const;
-  // The points of the next round, if there is one. Precondition: all points so far are done.
-  bool grow();
   // Puts the values of consecutive points in their place.
   void take(std::uint64_t first, const std::vector<double>& found);
 };
@@ -72,8 +61,6 @@ struct SweepTable {
 //   /axis/NAME     points, float64: attributes unit, key, spread, scale, words (of 0, 1, ...)
 //   /measure/NAME  points, float64: attributes unit, what
 //   /repeat, /done points, uint32 and uint8
-//   /point, /round points, uint64 and uint32, where the plan refines: its number, and the round it
-//                  came in; else they are numbered from 0
 // Root attributes: format kSweepFormat, version 1, title, plan (TOML), key (of the plan and the
 // files that it names), points, done, app_version, build. Errors: FileError.
 inline constexpr const char* kSweepFormat = "limpid-sweep";

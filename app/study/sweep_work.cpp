@@ -54,6 +54,15 @@ hdf5::File opened_if_whole(const fs::path& path) {
 
 }  // namespace
 
+std::uint64_t blocks_of(const SweepPlan& plan) {
+  return (plan.points() + plan.block - 1) / plan.block;
+}
+
+SweepBlock block_of(const SweepPlan& plan, std::uint64_t number) {
+  const std::uint64_t first = number * plan.block;
+  return {number, first, std::min(plan.block, plan.points() - first)};
+}
+
 SweepFolder::SweepFolder(const SweepPlan& plan, fs::path dir)
     : plan_(plan), dir_(std::move(dir)), columns_(measured_columns(plan).size()) {
   const Belongs own{plan.key, build_digest()};
@@ -142,9 +151,9 @@ struct Ends {
 };
 
 // As the folder has it, or measured, and written there; none if it was ended.
-std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepRows& rows,
-                                             const SweepFolder& folder, const SweepBlock& block,
-                                             const Ends& ends, std::atomic<std::uint64_t>& done) {
+std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepFolder& folder,
+                                             const SweepBlock& block, const Ends& ends,
+                                             std::atomic<std::uint64_t>& done) {
   if (auto found = folder.read(block)) {
     done += block.size;
     return found;
@@ -152,7 +161,7 @@ std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepR
   std::vector<double> values;
   for (std::uint64_t i = 0; i < block.size; ++i) {
     if (ends.over) return std::nullopt;
-    const auto one = measure_point(plan, rows.point(block.first + i), ends.stop);
+    const auto one = measure_point(plan, block.first + i, ends.stop);
     if (!one) return std::nullopt;
     values.insert(values.end(), one->begin(), one->end());
     ++done;
@@ -163,16 +172,16 @@ std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepR
 
 }  // namespace
 
-bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
-              const SweepShare& share, const std::atomic<bool>& stop,
-              std::atomic<std::uint64_t>& done, const TakeBlock& take) {
+bool work_off(const SweepPlan& plan, const SweepFolder& folder, const SweepShare& share,
+              const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
+              const TakeBlock& take) {
   std::vector<std::uint64_t> own, others;
-  const std::uint64_t begin = rows.first_block(), count = rows.blocks() - begin;
+  const std::uint64_t count = blocks_of(plan);
   // Each begins elsewhere with what others may be doing, too.
   const std::uint64_t from = count * share.shard / share.shards;
   for (std::uint64_t b = 0; b < count; ++b) {
-    if ((begin + b) % share.shards == share.shard) own.push_back(begin + b);
-    const std::uint64_t turned = begin + (b + from) % count;
+    if (b % share.shards == share.shard) own.push_back(b);
+    const std::uint64_t turned = (b + from) % count;
     if (turned % share.shards != share.shard) others.push_back(turned);
   }
   std::mutex taking;
@@ -180,7 +189,7 @@ bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& f
     in_parallel(blocks.size(), threads_for(share.threads),
                 [&](std::size_t i, const std::atomic<bool>& over) {
                   const auto values =
-                      values_of(plan, rows, folder, rows.block(blocks[i]), {stop, over}, done);
+                      values_of(plan, folder, block_of(plan, blocks[i]), {stop, over}, done);
                   if (!values) return false;
                   const std::lock_guard lock(taking);
                   if (take) take(blocks[i], *values);
@@ -191,28 +200,21 @@ bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& f
   return work(own) && (!share.helps || work(others));
 }
 
-std::uint64_t SweepBook::missing() const {
-  return static_cast<std::uint64_t>(std::ranges::count(taken_, false));
-}
-
 void SweepBook::take(std::uint64_t block, const std::vector<double>& rows) {
-  table_.take(table_.rows.block(block).first, rows);
+  table_.take(block_of(plan_, block).first, rows);
   taken_[block] = true;
-  if (told_) told_(block, rows);
 }
 
 std::uint64_t SweepBook::gather() {
   std::uint64_t found = 0;
-  do {
-    taken_.resize(table_.rows.blocks(), false);
-    for (std::uint64_t b = 0; b < table_.rows.blocks(); ++b) {
-      if (taken_[b]) continue;
-      const auto rows = folder_.read(table_.rows.block(b));
-      if (!rows) continue;
-      take(b, *rows);
-      found += table_.rows.block(b).size;
-    }
-  } while (missing() == 0 && table_.grow());
+  for (std::uint64_t b = 0; b < taken_.size(); ++b) {
+    if (taken_[b]) continue;
+    const SweepBlock block = block_of(plan_, b);
+    const auto rows = folder_.read(block);
+    if (!rows) continue;
+    take(b, *rows);
+    found += block.size;
+  }
   return found;
 }
 

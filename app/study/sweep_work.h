@@ -7,10 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "app/study/sweep_rows.h"
 #include "app/study/sweep_table.h"
 
 namespace limpid {
+
+// Consecutive points that are written, and lost, together.
+struct SweepBlock {
+  std::uint64_t number = 0, first = 0, size = 0;
+};
+std::uint64_t blocks_of(const SweepPlan& plan);  // how many
+SweepBlock block_of(const SweepPlan& plan, std::uint64_t number);
 
 class SweepFolder {
  public:
@@ -48,33 +54,25 @@ struct SweepShare {
 // Called for a block that is there now, from any thread, one at a time.
 using TakeBlock = std::function<void(std::uint64_t block, const std::vector<double>& rows)>;
 
-// Does what of a share is not there yet, of the last round that is known. False if `stop` was set
-// meanwhile; blocks that were not finished are lost. `done` counts points. Errors: FileError,
-// std::runtime_error; what was finished stays.
-bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
-              const SweepShare& share, const std::atomic<bool>& stop,
-              std::atomic<std::uint64_t>& done, const TakeBlock& take);
+// Does what of a share is not there yet. False if `stop` was set meanwhile; blocks that were not
+// finished are lost. `done` counts points. Errors: FileError, std::runtime_error; what was finished
+// stays.
+bool work_off(const SweepPlan& plan, const SweepFolder& folder, const SweepShare& share,
+              const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
+              const TakeBlock& take);
 
 // The table while it fills.
 class SweepBook {
  public:
-  // `told` hears of each block that comes in.
-  SweepBook(const SweepPlan& plan, const SweepFolder& folder, bool csv, TakeBlock told = {})
-      : plan_(plan),
-        folder_(folder),
-        csv_(csv),
-        told_(std::move(told)),
-        table_(plan),
-        taken_(table_.rows.blocks(), false) {}
+  SweepBook(const SweepPlan& plan, const SweepFolder& folder, bool csv)
+      : plan_(plan), folder_(folder), csv_(csv), table_(plan), taken_(blocks_of(plan), false) {}
 
   const SweepTable& table() const { return table_; }
   bool complete() const { return table_.complete(); }
-  std::uint64_t missing() const;  // blocks of the rounds that are known
   bool has(std::uint64_t block) const { return taken_[block]; }
 
   void take(std::uint64_t block, const std::vector<double>& rows);
-  // Takes what blocks there are now, and goes on to the next round where one is complete; returns
-  // how many points were new. Errors: FileError.
+  // Takes what blocks there are now; returns how many points were new. Errors: FileError.
   std::uint64_t gather();
   // Writes DIR/table.h5 (and .csv), atomically.
   void write() const;
@@ -83,7 +81,6 @@ class SweepBook {
   const SweepPlan& plan_;
   const SweepFolder& folder_;
   bool csv_;
-  TakeBlock told_;
   SweepTable table_;
   std::vector<bool> taken_;  // of each block
 };

@@ -143,26 +143,7 @@ class Tiny(SystemTest):
         self.assertFalse((out / "blocks").exists())
 
 
-# A map of 65 x 65 for each of two laws; only a part of it is needed.
-REFINED = """title = "Refined"
-hand = { at = [0.19, 0, -0.035], jump = [0, 0, -0.015] }
-seconds = 0.3
-measure = ["energy_highest", "chatter"]
-block = 10
-axis = [
-  { key = "coupling.kind", values = ["standard", "proposed"] },
-  { key = "hand.stiffness", from = 100, to = 3000, count = 9, scale = "log" },
-  { key = "scene.stiffness", from = 200, to = 5000, count = 9, scale = "log" },
-]
-[refine]
-depth = 3
-measure = "chatter"
-above = 0.02
-"""
-
-
 class Survival(SystemTest):
-    TEXT = LARGE
     plan: Path
     table: bytes  # the result of every way
     points: int  # number of points in the table
@@ -170,7 +151,7 @@ class Survival(SystemTest):
     @classmethod
     def setUpClass(cls) -> None:
         super().setUpClass()
-        cls.plan = plan_of(cls.directory, cls.TEXT)
+        cls.plan = plan_of(cls.directory, LARGE)
         out = cls.directory / "reference"
         result = limpid("sweep", cls.plan, "--out", out, timeout=300)
         if result.status != 0:
@@ -333,64 +314,6 @@ class Survival(SystemTest):
         self.assertGreaterEqual(killed, 2)
         self.assertEqual((out / "table.h5").read_bytes(), self.table)
         self.assertGreater(len(list((out / "slurm").glob("*.log"))), 8, "none was submitted again")
-
-
-class RefinedSurvival(Survival):
-    """The same with rounds, each of which follows from the one before."""
-
-    TEXT = REFINED
-    # The table is smaller than the test file written before the work begins.
-    test_past_a_limit_of_the_shell_it_says_so_and_loses_nothing = None
-
-    def test_shards_and_their_gatherers_come_to_the_same_table(self) -> None:
-        out = self.directory / "rounds"
-        for call in range(20):
-            for i in (3, 1, 2):
-                result = limpid("sweep", self.plan, "--out", out, "--shard", f"{i}/3", timeout=300)
-                self.assertEqual((result.status, result.err), (0, ""))
-                if "round" not in result.out:
-                    break
-                self.assertIn("once all parts are, call them again for the next", result.out)
-            part = limpid("sweep", self.plan, "--out", out, "--gather")
-            if part.status == 0:
-                break
-            self.assertRegex(part.out, r"\d+ of \d+ points of \d+ rounds so far")
-            with h5py.File(out / "table.h5") as table:
-                self.assertEqual(int(table["/done"][:].sum()), table.attrs["done"])
-        self.assertGreater(call, 1)
-        self.assertEqual((out / "table.h5").read_bytes(), self.table)
-
-    def test_it_is_the_map_of_the_full_grid_with_a_part_of_its_points(self) -> None:
-        full = REFINED[:REFINED.index("[refine]")].replace("count = 9", "count = 65")
-        out = self.directory / "full"
-        plan_of(self.directory, full).rename(self.directory / "full.toml")
-        plan_of(self.directory, REFINED)
-        limpid("sweep", self.directory / "full.toml", "--out", out, timeout=300)
-        with h5py.File(out / "table.h5") as grid, \
-                h5py.File(self.directory / "reference" / "table.h5") as table:
-            everything = grid["/measure/chatter"][:]
-            number = table["/point"][:]
-            # A point is the same run, except where the axes' values differ in their last bits.
-            np.testing.assert_allclose(table["/measure/chatter"][:], everything[number], rtol=1e-3,
-                                       atol=1e-6)
-            self.assertLess(len(number), 0.25 * len(everything))
-            self.assertTrue(np.all(np.diff(table["/round"][:].astype(int)) >= 0))
-            # Where the map was not refined, all points of the full grid are on the side of their
-            # neighbours.
-            side = (everything > 0.02).reshape(2, 65, 65)
-            there = np.zeros(len(everything), bool)
-            there[number] = True
-            there = there.reshape(side.shape)
-            wrong = 0
-            for kind in range(2):
-                for x, y in np.argwhere(~there[kind]):
-                    for step in (2, 4, 8):  # the smallest complete cell
-                        a, b = x - x % step, y - y % step
-                        c, d = min(a + step, 64), min(b + step, 64)
-                        if there[kind][[a, a, c, c], [b, d, b, d]].all():
-                            wrong += side[kind, x, y] != side[kind, a, b]
-                            break
-            self.assertLessEqual(wrong, 0.002 * side.size)
 
 
 if __name__ == "__main__":

@@ -421,19 +421,14 @@ std::string number_text(const SweepColumn& column, double value) {
 void draw_measured(const OpenedSweep& sweep, const SweepMap& map, const MapSpot& spot) {
   const SweepTable& table = sweep.table;
   if (!spot.there()) return value_row("", "not there yet");
-  if (spot.inferred) {
-    const SweepColumn& column = table.columns[map.choice.column];
-    return value_row(column.name, number_text(column, spot.cell.value) + ", from those around it");
-  }
-  const auto row = table.rows.row_of(spot.point);
-  if (spot.count > 1 || !row || !table.done[*row]) {
+  if (spot.count > 1 || !table.done[spot.point]) {
     const SweepColumn& column = table.columns[map.choice.column];
     const std::string unit = column.unit == "-" || column.unit == "yes/no" ? "" : " " + column.unit;
     return value_row(column.name,
                      fmt::format("{:.6g}{}, the mean of {}", spot.cell.value, unit, spot.count));
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    value_row(table.columns[c].name, number_text(table.columns[c], table.at(*row, c)));
+    value_row(table.columns[c].name, number_text(table.columns[c], table.at(spot.point, c)));
   }
 }
 
@@ -553,8 +548,7 @@ MapRequest draw_contents(SweepController& controller, Playback& playback, bool& 
   if (!mouse.clicked || playback.loading()) return {};
   if (!sweep.plan->boundary) return {mouse.spot->point, {}};
   if (map->choice.column < 2) return {mouse.spot->point, mouse.y};
-  const auto row = sweep.table.rows.row_of(mouse.spot->point);
-  const double found = row ? sweep.table.at(*row, 0) : std::nan("");
+  const double found = sweep.table.at(mouse.spot->point, 0);
   return {mouse.spot->point,
           std::isfinite(found) ? found : sweep.plan->boundary->axis.values.front()};
 }

@@ -39,11 +39,11 @@ class Tables : public testing::Test {
     const SweepFolder folder(plan, dir_ / "out");
     SweepBook book(plan, folder, false);
     const std::atomic<bool> stop{false};
-    const SweepRows& rows = book.table().rows;
-    for (std::uint64_t b = 0; b < std::min(blocks, rows.blocks()); ++b) {
+    for (std::uint64_t b = 0; b < std::min(blocks, blocks_of(plan)); ++b) {
+      const SweepBlock block = block_of(plan, b);
       std::vector<double> values;
-      for (std::uint64_t i = 0; i < rows.block(b).size; ++i) {
-        const auto one = measure_point(plan, rows.point(rows.block(b).first + i), stop);
+      for (std::uint64_t i = 0; i < block.size; ++i) {
+        const auto one = measure_point(plan, block.first + i, stop);
         values.insert(values.end(), one->begin(), one->end());
       }
       book.take(b, values);

@@ -1,16 +1,12 @@
 #include "app/study/sweep_figure.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "app/study/slurm.h"
-#include "app/study/sweep_map.h"
 #include "tests/app/study/plans.h"
 
 namespace limpid {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 const std::string kTwoByThree = R"(scene = "free.toml"
 measure = ["energy"]
@@ -60,7 +56,7 @@ TEST_F(SweepFigures, HaveAPanelForEachCaseAndTwoColoursForYesAndNo) {
   EXPECT_EQ(figure.panels[0].series[1].label, "not stable");
 }
 
-TEST_F(SweepFigures, OfSampledAxesAreParallelCoordinates) {
+TEST_F(SweepFigures, OfSampledAxesAreDotsOverTheFirst) {
   const SweepPlan plan = test::sweep_plan(dir_, R"(scene = "free.toml"
 samples = 8
 measure = ["energy"]
@@ -69,51 +65,30 @@ axis = [ { key = "hand.stiffness", from = 100, to = 1000, sample = "latin" },
 )");
   const Figure figure = sweep_figure(plan, filled(plan, 8));
   ASSERT_EQ(figure.panels.size(), 1u);
-  const FigurePanel& panel = figure.panels[0];
-  EXPECT_EQ(panel.x_ticks.size(), 3u);
-  EXPECT_THAT(panel.x_ticks[2].second, HasSubstr("energy\\n0 to 7"));
-  ASSERT_EQ(panel.series.size(), 4u);
-  for (const Series& quarter : panel.series) EXPECT_EQ(quarter.points.size(), 2u * 4);
+  ASSERT_EQ(figure.panels[0].series.size(), 1u);
+  const Series& dots = figure.panels[0].series[0];
+  EXPECT_EQ(dots.style, Series::Style::points);
+  ASSERT_EQ(dots.points.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(dots.points[i].x, plan.axes[0].values[i]);
+    EXPECT_EQ(dots.points[i].y, static_cast<double>(i));
+  }
+}
+
+TEST_F(SweepFigures, OfWordsAreDotsOverThem) {
+  const SweepPlan plan = test::sweep_plan(dir_, R"(scene = "free.toml"
+measure = ["energy"]
+axis = [ { key = "coupling.kind", values = ["standard", "predictive"] } ]
+)");
+  const FigurePanel panel = sweep_figure(plan, filled(plan, 2)).panels.at(0);
+  EXPECT_EQ(panel.x_ticks.at(1), std::pair(1.0, std::string("predictive")));
+  ASSERT_EQ(panel.series.size(), 1u);
+  EXPECT_EQ(panel.series[0].points.at(1).x, 1);
 }
 
 TEST_F(SweepFigures, AreNothingWithoutAxesAndPartOfWhatIsDone) {
   const SweepPlan plan = test::sweep_plan(dir_, kTwoByThree);
   EXPECT_EQ(sweep_figure(plan, filled(plan, 2)).panels[0].series[0].cells.size(), 2u);
-}
-
-TEST_F(SweepFigures, InLettersFillInAsPointsCome) {
-  const SweepPlan plan = test::sweep_plan(dir_, kTwoByThree);
-  MapText map(plan, measured_columns(plan));
-  EXPECT_THAT(map.lines()[1], HasSubstr("1 ····"));
-  map.take(SweepRows(plan), 0, {0.0, 1.0, 2.0});
-  map.take(SweepRows(plan), 5, {4.0});
-  const auto lines = map.lines();
-  ASSERT_EQ(lines.size(), 5u);
-  EXPECT_THAT(lines[0], HasSubstr("energy"));
-  EXPECT_THAT(lines[1], HasSubstr("1 ▓▓██"));
-  EXPECT_THAT(lines[2], HasSubstr("0.6 ▒▒··"));
-  EXPECT_THAT(lines[3], HasSubstr("0.4 ░░··"));
-  EXPECT_THAT(lines[4], HasSubstr("stiffness 100 to 1000"));
-}
-
-TEST_F(SweepFigures, InLettersAreNoWiderThanTheTerminal) {
-  const SweepPlan plan = test::sweep_plan(dir_, R"(scene = "free.toml"
-measure = ["energy"]
-axis = [ { key = "hand.stiffness", from = 100, to = 1000, count = 150 },
-         { key = "coupling.eta", values = [0.4, 0.6, 1] } ]
-)");
-  const auto letters = [](const std::string& line) {
-    return std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; });
-  };
-  for (const std::size_t width : {79u, 40u, 131u}) {
-    MapText map(plan, measured_columns(plan), width);
-    const auto lines = map.lines();
-    ASSERT_EQ(lines.size(), 5u);
-    for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
-      EXPECT_LE(letters(lines[i]), static_cast<long>(width));
-      EXPECT_GE(letters(lines[i]), static_cast<long>(width) - 2);
-    }
-  }
 }
 
 TEST(SlurmArrays, AreNamedAsSbatchHasThem) {

@@ -223,6 +223,14 @@ TEST_F(SweepPlans, SayWhatIsNotAllowedAndWhere) {
   EXPECT_THAT(refusal(with("sets = 1")), HasSubstr("sets: no such key"));
 }
 
+TEST_F(SweepPlans, OfOlderProgramsHearThatRefinementLeftAndWhatToDo) {
+  const std::string said = refusal(with(R"(axis = [ { key = "coupling.eta", values = [0.5, 1] } ]
+[refine]
+depth = 3)"));
+  EXPECT_THAT(said, AllOf(HasSubstr("plan.toml:4: refine: "), HasSubstr("take [refine] out"),
+                          HasSubstr("larger count")));
+}
+
 TEST_F(SweepPlans, AreKnownByTheirTextAndTheFilesTheyName) {
   std::ofstream(dir_ / "hand.csv") << "time_s,x_m,y_m,z_m\n0,0.19,0,0\n1,0.2,0,0\n";
   const std::string text = with("hand = \"hand.csv\"");

@@ -21,7 +21,7 @@ class SweepWork : public testing::Test {
  protected:
   bool work(const fs::path& out, SweepShare share, const TakeBlock& take = {}) {
     const SweepFolder folder(plan_, out);
-    return work_off(plan_, rows_, folder, share, stop_, done_, take);
+    return work_off(plan_, folder, share, stop_, done_, take);
   }
   // Bytes of the table.
   std::string gathered(const fs::path& out) { return test::gathered(plan_, out, complete_); }
@@ -32,7 +32,6 @@ class SweepWork : public testing::Test {
 
   test::TempDir dir_;
   SweepPlan plan_ = test::sweep_plan(dir_, test::kShort);
-  SweepRows rows_{plan_};
   std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> done_{0};
   bool complete_ = false;
@@ -66,10 +65,10 @@ TEST_F(SweepWork, GoesOnWhereItWasStopped) {
   stop_ = false;
   std::vector<std::uint64_t> left;
   const SweepFolder folder(plan_, dir_ / "stopped");
-  for (std::uint64_t b = 0; b < rows_.blocks(); ++b) {
-    if (!folder.there(rows_.block(b))) left.push_back(b);
+  for (std::uint64_t b = 0; b < blocks_of(plan_); ++b) {
+    if (!folder.there(block_of(plan_, b))) left.push_back(b);
   }
-  EXPECT_EQ(left.size(), rows_.blocks() - 3);
+  EXPECT_EQ(left.size(), blocks_of(plan_) - 3);
   ASSERT_TRUE(work(dir_ / "stopped", {.threads = 2}));
   EXPECT_EQ(gathered(dir_ / "stopped"), table);
 }
@@ -78,15 +77,15 @@ TEST_F(SweepWork, DoesDamagedAndCutBlocksAgain) {
   const std::string table = reference();
   const SweepFolder folder(plan_, dir_ / "reference");
   for (const std::uint64_t block : {1u, 2u}) {
-    std::string bytes = test::bytes_of(folder.file(rows_.block(block)));
+    std::string bytes = test::bytes_of(folder.file(block_of(plan_, block)));
     // A value of the block, found by its bits.
-    double value = folder.read(rows_.block(block))->front();
+    double value = folder.read(block_of(plan_, block))->front();
     const auto at = bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value));
     ASSERT_NE(at, std::string::npos);
     if (block == 1) bytes[at + 2] = static_cast<char>(bytes[at + 2] ^ 1);
     if (block == 2) bytes.resize(bytes.size() / 2);
-    std::ofstream(folder.file(rows_.block(block)), std::ios::binary) << bytes;
-    EXPECT_FALSE(folder.read(rows_.block(block))) << block;
+    std::ofstream(folder.file(block_of(plan_, block)), std::ios::binary) << bytes;
+    EXPECT_FALSE(folder.read(block_of(plan_, block))) << block;
   }
   gathered(dir_ / "reference");
   EXPECT_FALSE(complete_);
@@ -98,7 +97,7 @@ TEST_F(SweepWork, RefusesBlocksOfAnotherBuild) {
   reference();
   const SweepFolder folder(plan_, dir_ / "reference");
   const std::uint64_t other = 0x1234;
-  const hid_t file = H5Fopen(folder.file(rows_.block(3)).c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t file = H5Fopen(folder.file(block_of(plan_, 3)).c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t attribute = H5Aopen(file, "build", H5P_DEFAULT);
   H5Awrite(attribute, H5T_NATIVE_UINT64, &other);
   H5Aclose(attribute);
