@@ -1,4 +1,4 @@
-// The controller and the virtual arm beside MuJoCo's step of the same arm, as `limpid bench` times
+// The controller and the virtual arm beside MuJoCo's step of the same arm, as limpid_bench times
 // them; or only their ticks, for counting instructions.
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "app/bench/bench.h"
-#include "app/bench/mesh_stroke.h"
-#include "app/bench/pressed.h"
+#include "tests/bench/bench.h"
+#include "tests/bench/mesh_stroke.h"
 #include "tests/bench/mujoco_step.h"
+#include "tests/bench/pressed.h"
 
 namespace limpid::bench {
 namespace {
@@ -31,7 +31,7 @@ constexpr const char* kHelp =
     "\n"
     "and divide what it collected by TICKS.\n";
 
-// What `limpid bench` says of the same, over MuJoCo's step.
+// What limpid_bench says of the same, over MuJoCo's step.
 void print_chain(int joints) {
   const ArmDescription arm = chain(joints);
   const Eigen::VectorXd x = bent(arm);
