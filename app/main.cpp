@@ -92,7 +92,6 @@ std::map<std::string, Command> declare_commands(CLI::App& app, char** argv) {
   commands["devices"] = declare_devices(app);
   commands["identify"] = declare_identify(app);
   commands["doctor"] = declare_doctor(app);
-  commands["bench"] = declare_bench(app);
   commands["share"] = declare_share(app);
   commands["story"] =
       declare_story(app, [argv](const std::string& script, const VideoOptions& options, double) {

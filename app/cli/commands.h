@@ -25,7 +25,6 @@ Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
 Command declare_identify(CLI::App& app);
 Command declare_doctor(CLI::App& app);
-Command declare_bench(CLI::App& app);
 // Not told of: writes what is installed beside the program, made from the other commands.
 Command declare_share(CLI::App& app);
 Command declare_story(CLI::App& app, MakeVideo make_video);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "app/base/folders.h"
-#include "app/base/program_build.h"
 #include "app/base/version.h"
+#include "app/run/program_build.h"
 #include "app/run/scene_meshes.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Compares two tables of `limpid bench --json`: what became slower or faster, line by line.
+"""Compares two tables of `limpid_bench --json`: what became slower or faster, line by line.
 
 usage: compare.py BEFORE.json AFTER.json [--within PERCENT]
 
@@ -17,7 +17,7 @@ def read(path):
             report = json.load(file)
         return report, {line["id"]: line for line in report["lines"]}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        print(f"compare.py: {path}: no table of `limpid bench --json`: {error}", file=sys.stderr)
+        print(f"compare.py: {path}: no table of `limpid_bench --json`: {error}", file=sys.stderr)
         sys.exit(2)
 
 

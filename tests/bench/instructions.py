@@ -2,9 +2,9 @@
 """Counts the instructions of a tick with valgrind, which counts the same on every machine that
 runs the same binary, and compares them with what they were.
 
-usage: instructions.py LIMPID [--update]
+usage: instructions.py LIMPID_BENCH [--update]
 
-LIMPID: the program, an optimised build. The counts stand in instructions.json beside this file;
+LIMPID_BENCH: the program, an optimised build. The counts stand in instructions.json beside this file;
 --update writes them anew, once somebody has seen that they grew and wants them so. Exit status: 0
 nothing grew by more than 3 %, 1 something did, 77 they cannot be counted or compared here.
 """
@@ -19,7 +19,7 @@ import tempfile
 BUDGET = pathlib.Path(__file__).with_name("instructions.json")
 TICKS = 1000
 MOST_GROWTH = 0.03
-COUNTED = {  # the line of `limpid bench`, and the function that its instructions are those of
+COUNTED = {  # the line of limpid_bench, and the function that its instructions are those of
     "tick/3/standard": "limpid::Tick<3>::run(*",
     "tick/3/proposed": "limpid::Tick<3>::run(*",
     "tick/3/predictive": "limpid::Tick<3>::run(*",
@@ -40,8 +40,8 @@ def count(program, line, function):
     with tempfile.TemporaryDirectory() as folder:
         ran = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--toggle-collect={function}",
-             f"--callgrind-out-file={folder}/out", program, "bench", "--only", line, "--ticks",
-             str(TICKS), "--json"], capture_output=True, text=True, check=False)
+             f"--callgrind-out-file={folder}/out", program, "--only", line, "--ticks", str(TICKS),
+             "--json"], capture_output=True, text=True, check=False)
     found = re.search(r"Collected : (\d+)", ran.stderr)
     if ran.returncode != 0 or not found or int(found[1]) == 0:
         raise RuntimeError(f"{line}: nothing was counted:\n{ran.stderr[-2000:]}")

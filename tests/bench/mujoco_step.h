@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "app/bench/bench.h"
 #include "core/dynamics/arm_description.h"
 #include "core/touch/scene.h"
+#include "tests/bench/bench.h"
 
 namespace limpid::bench {
 

@@ -1,5 +1,5 @@
-// The controller and the virtual arm beside MuJoCo's step of the same arm, timed as in `limpid
-// bench`; or only their ticks, for counting instructions.
+// The controller and the virtual arm beside MuJoCo's step of the same arm, timed as limpid_bench
+// does; or only their ticks, for counting instructions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "app/bench/bench.h"
-#include "app/bench/mesh_stroke.h"
-#include "app/bench/pressed.h"
+#include "tests/bench/bench.h"
+#include "tests/bench/mesh_stroke.h"
 #include "tests/bench/mujoco_step.h"
+#include "tests/bench/pressed.h"
 
 namespace limpid::bench {
 namespace {
@@ -31,7 +31,7 @@ constexpr const char* kHelp =
     "\n"
     "and divide what it collected by TICKS.\n";
 
-// Prints the times of `limpid bench` for a chain, over MuJoCo's step.
+// Prints the times of limpid_bench for a chain, over MuJoCo's step.
 void print_chain(int joints) {
   const ArmDescription arm = chain(joints);
   const Eigen::VectorXd x = bent(arm);

@@ -166,7 +166,7 @@ class SessionFile(SystemTest):
             self.assertIn("rad/s", attributes["conventions"])
             said = limpid("--version").out.strip()
             self.assertTrue(attributes["build"].startswith(said + ", "), attributes["build"])
-            self.assertRegex(attributes["build"], r", (GCC|clang) [^;]*, build [0-9a-f]{12}; \w+")
+            self.assertRegex(attributes["build"], r", (GCC|clang) [^;]*, build [0-9a-f]{16}; \w+")
 
     def test_its_dimensions_have_scales(self) -> None:
         with h5py.File(self.recorded(self.scara(), "--duration", "0.1", "--twin")) as file:

@@ -1,4 +1,4 @@
-#include "app/bench/recorded_run.h"
+#include "tests/bench/recorded_run.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "app/bench/bench.h"
+#include "tests/bench/bench.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -18,14 +18,15 @@
 #include <stdexcept>
 #include <thread>
 
+#include "app/base/interrupt.h"
 #include "app/base/version.h"
-#include "app/bench/bodies.h"
-#include "app/bench/mesh_stroke.h"
-#include "app/bench/pressed.h"
-#include "app/bench/recorded_run.h"
 #include "app/live/rtkit.h"
 #include "core/realtime/clock.h"
 #include "core/realtime/realtime.h"
+#include "tests/bench/bodies.h"
+#include "tests/bench/mesh_stroke.h"
+#include "tests/bench/pressed.h"
+#include "tests/bench/recorded_run.h"
 
 namespace limpid::bench {
 
@@ -279,7 +280,7 @@ Report measure(const Wishes& wishes, const std::function<void(double, const std:
   const MonotonicTime time;
   const nanoseconds began = time.now();
   const double worked = processor_seconds();
-  for (std::size_t i = 0; i < all.size() && !wishes.stop.stop_requested(); ++i) {
+  for (std::size_t i = 0; i < all.size() && !interrupted; ++i) {
     done(static_cast<double>(i) / static_cast<double>(all.size()), all[i].id);
     all[i].measure(report);
     if (all[i].id == "wake") asleep = 1e-3 * kWakes;

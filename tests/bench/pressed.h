@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "app/bench/bench_arm.h"
 #include "core/tick/tick.h"
 #include "devices/simulated/virtual_arm.h"
+#include "tests/bench/bench_arm.h"
 
 namespace limpid::bench {
 

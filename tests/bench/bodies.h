@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/bench/bench.h"
+#include "tests/bench/bench.h"
 
 namespace limpid::bench {
 

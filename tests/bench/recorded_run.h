@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "app/bench/bench.h"
+#include "tests/bench/bench.h"
 
 namespace limpid::bench {
 

@@ -1,4 +1,4 @@
-#include "app/bench/bodies.h"
+#include "tests/bench/bodies.h"
 
 #include <fmt/format.h>
 

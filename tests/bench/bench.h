@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -99,13 +98,13 @@ struct Report {
 };
 
 struct Wishes {
-  int ticks = 20000;          // of each kind of tick
-  std::string only = {};      // this id, or those below it: "tick", "tick/3"; empty: all
-  std::stop_token stop = {};  // ends between two lines
+  int ticks = 20000;      // of each kind of tick
+  std::string only = {};  // this id, or those below it: "tick", "tick/3"; empty: all
 };
 
-// Measures; `done` hears what share is done and what comes next. Errors: std::invalid_argument
-// where nothing matches `only`, std::runtime_error where a file cannot be written.
+// Measures until it is interrupted; `done` hears what share is done and what comes next. Errors:
+// std::invalid_argument where nothing matches `only`, std::runtime_error where a file cannot be
+// written.
 Report measure(const Wishes& wishes, const std::function<void(double, const std::string&)>& done);
 
 // A table, and one JSON object.

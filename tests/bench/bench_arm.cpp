@@ -1,4 +1,4 @@
-#include "app/bench/bench_arm.h"
+#include "tests/bench/bench_arm.h"
 
 #include <cmath>
 

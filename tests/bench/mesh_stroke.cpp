@@ -1,4 +1,4 @@
-#include "app/bench/mesh_stroke.h"
+#include "tests/bench/mesh_stroke.h"
 
 #include <algorithm>
 #include <cmath>

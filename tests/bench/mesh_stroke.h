@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "app/bench/bench_arm.h"
 #include "core/tick/tick.h"
 #include "core/touch/triangle_mesh.h"
+#include "tests/bench/bench_arm.h"
 
 namespace limpid::bench {
 
