@@ -6,18 +6,16 @@
 
 namespace limpid {
 
-// Points of many axes side by side.
-
-// An upright for each axis of numbers, from its lowest value to its highest, and one for the
-// measure that the figure shows; each point a line across, in the colour of its measure: no and
-// yes, or by quarters. kMostLines at most, evenly thinned.
+// Parallel coordinates: an upright for each axis of numbers, from lowest to highest value, and one
+// for the figure's measure. Each point is a line across, coloured by its measure: no and yes, or
+// quarters. At most kMostLines, evenly thinned.
 FigurePanel parallel_coordinates(const SweepPlan& plan, const SweepTable& table);
 
 inline constexpr std::size_t kMostLines = 600;
 
-// Of what is done: a map over two axes of numbers, slices over one, parallel coordinates over
-// sampled ones; a boundary over one, with the lines of theory that the plan asks for. A panel for
-// each case of the other axes, kMostPanels at most, evenly thinned.
+// Figure of the points done: a map over two axes of numbers, slices over one, parallel coordinates
+// over sampled axes. A boundary over one axis, with the plan's lines of theory. A panel for each
+// case of the other axes, at most kMostPanels, evenly thinned.
 Figure sweep_figure(const SweepPlan& plan, const SweepTable& table);
 
 inline constexpr std::size_t kMostPanels = 12;

@@ -1,4 +1,4 @@
-// Which points a sweep has, in the order of its table's rows.
+// Points of a sweep, in the order of its table's rows.
 #pragma once
 
 #include <functional>
@@ -13,12 +13,12 @@ struct SweepBlock {
   std::uint64_t number = 0, first = 0, size = 0;
 };
 
-// All points of a grid. Where the plan refines: those of its coarse grid, and then, round by round,
-// those in the middle of the cells across which the map changes. A round follows from the values of
-// the rounds before it and from nothing else; its points are in the order of their numbers.
+// All points of a grid. If the plan refines: the coarse grid, then, round by round, the middles of
+// cells across which the map changes. A round follows only from the values of earlier rounds; its
+// points are in the order of their numbers.
 class SweepRows {
  public:
-  explicit SweepRows(const SweepPlan& plan);  // which has to outlive it
+  explicit SweepRows(const SweepPlan& plan);  // must outlive this
 
   std::uint64_t size() const { return ends_.back(); }
   std::uint64_t point(std::uint64_t row) const { return points_.empty() ? row : points_[row]; }
@@ -29,17 +29,18 @@ class SweepRows {
   std::uint64_t first_block() const { return first_block_; }  // of the last round
   SweepBlock block(std::uint64_t number) const;
   std::uint64_t round(std::uint64_t row) const;
-  std::uint64_t rounds() const { return ends_.size() - 1; }                // that are known
-  std::uint64_t begin_of_last() const { return ends_[ends_.size() - 2]; }  // round, a row
+  std::uint64_t rounds() const { return ends_.size() - 1; }  // rounds known
+  // First row of the last round.
+  std::uint64_t begin_of_last() const { return ends_[ends_.size() - 2]; }
 
-  // Adds the next round; false where there is none, and never will be. `value` of every row so far,
-  // in the column that the plan refines by.
+  // Adds the next round; false if there never will be one. `value` gives the refined column of
+  // every row so far.
   using Value = std::function<double(std::uint64_t row)>;
   bool grow(const Value& value);
   bool complete() const { return complete_; }
 
-  // What stands for a place that has no row: the corners of its cell, and how much each counts.
-  // Empty where there is no cell.
+  // Substitute for a place without a row: the corners of its cell with their weights. Empty if
+  // there is no cell.
   struct Corner {
     std::uint64_t row;
     double weight;
@@ -48,7 +49,7 @@ class SweepRows {
 
  private:
   using Places = std::vector<std::size_t>;
-  // A box of the grid that is not divided (yet), by its lowest corner and how often it was halved.
+  // An undivided box of the grid: its lowest corner and how often it was halved.
   struct CellKey {
     std::uint64_t origin;
     std::uint64_t level;
@@ -60,23 +61,24 @@ class SweepRows {
     }
   };
   struct Cell {
-    std::vector<std::uint64_t> rows;  // of the points in it, its edges among it
-    bool fresh = true;                // points came since it was looked at
+    std::vector<std::uint64_t> rows;  // of the points inside and on the edges
+    bool fresh = true;                // points came since it was last checked
   };
   using Cells = std::unordered_map<CellKey, Cell, CellHash>;
 
   std::uint64_t blocks_of_last() const;
-  std::size_t step(std::uint64_t level) const;  // places that a cell reaches over
+  std::size_t step(std::uint64_t level) const;  // width of a cell, in places
   bool refined(std::size_t axis) const;
   std::uint64_t number(const Places& place) const;
   void add_round(const std::vector<std::uint64_t>& points);
-  // Calls `take` with every place of a lattice over the refined axes from `from`, `count` each way.
+  // Calls `take` with every place of a lattice over the refined axes: from `from`, `count` steps
+  // along each.
   template <class Take>
   void each_of(const Places& from, std::size_t step, std::size_t count, const Take& take) const;
   std::optional<CellKey> cell_at(const Places& place, std::uint64_t side) const;
   void put_into_cells(const Places& place, std::uint64_t row);
   bool changes(const Cell& cell, const Value& value) const;
-  std::vector<std::uint64_t> split(const CellKey& key);  // points that it lacks then
+  std::vector<std::uint64_t> split(const CellKey& key);  // returns the points that are missing
 
   const SweepPlan* plan_;
   std::vector<std::uint64_t> points_;                      // of each row; empty: its number

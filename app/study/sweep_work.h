@@ -1,4 +1,4 @@
-// A sweep's folder: consecutive points as files of their own, each whole or not there.
+// A sweep's folder: blocks of points as files, each complete or absent; and the work on them.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace limpid {
 
 class SweepFolder {
  public:
-  // Creates it, or takes up what is there. Errors: FileError for a folder of another plan or build,
+  // Creates the folder, or continues one. Errors: FileError for a folder of another plan or build,
   // and for one that cannot be written.
   SweepFolder(const SweepPlan& plan, std::filesystem::path dir);
 
@@ -22,10 +22,10 @@ class SweepFolder {
   std::filesystem::path table() const { return dir_ / "table.h5"; }
   std::filesystem::path file(const SweepBlock& block) const;
   bool there(const SweepBlock& block) const;
-  // Its values, row by row; nothing if it is not there or damaged. Errors: FileError for one of
-  // another plan or build.
+  // Values of a block, row by row; nothing if it is absent or damaged. Errors: FileError for a
+  // block of another plan or build.
   std::optional<std::vector<double>> read(const SweepBlock& block) const;
-  // Whole, or as if never begun. Errors: FileError.
+  // Writes a block whole, or leaves no trace of it. Errors: FileError.
   void write(const SweepBlock& block, const std::vector<double>& rows) const;
 
  private:
@@ -34,23 +34,23 @@ class SweepFolder {
   std::size_t columns_;
 };
 
-// Where the plan of a sweep's folder came from, as a name at least: beside it are the files that it
-// names. In the folder itself, if that place is not known or gone. Errors: FileError.
+// Path of the plan behind a sweep's folder, beside the files that the plan names. A path in the
+// folder itself if the original is unknown or gone. Errors: FileError.
 std::filesystem::path plan_behind(const std::filesystem::path& dir);
 
-// Works a sweep's points off, and puts its table together.
+// A part of a sweep's work.
 struct SweepShare {
   std::uint64_t shard = 0, shards = 1;  // every shards-th block, from `shard` on
-  bool helps = false;                   // does what is missing of the others', too
+  bool helps = false;                   // also does missing blocks of other shares
   unsigned threads = 0;                 // 0: one a core
 };
 
-// Called for a block that is there now, from any thread, one at a time.
+// Called for each block that has come, from any thread, one call at a time.
 using TakeBlock = std::function<void(std::uint64_t block, const std::vector<double>& rows)>;
 
-// Does what of a share is not there yet, of the last round that is known. False if `stop` was set
-// meanwhile; blocks that were not finished are lost. `done` counts points. Errors: FileError,
-// std::runtime_error; what was finished stays.
+// Does the missing blocks of a share, up to the last round known. False if `stop` was set
+// meanwhile; unfinished blocks are lost. `done` counts points. Errors: FileError,
+// std::runtime_error; finished blocks stay.
 bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& folder,
               const SweepShare& share, const std::atomic<bool>& stop,
               std::atomic<std::uint64_t>& done, const TakeBlock& take);
@@ -58,7 +58,7 @@ bool work_off(const SweepPlan& plan, const SweepRows& rows, const SweepFolder& f
 // The table while it fills.
 class SweepBook {
  public:
-  // `told` hears of each block that comes in.
+  // `told` is called for each block that comes.
   SweepBook(const SweepPlan& plan, const SweepFolder& folder, bool csv, TakeBlock told = {})
       : plan_(plan),
         folder_(folder),
@@ -69,12 +69,12 @@ class SweepBook {
 
   const SweepTable& table() const { return table_; }
   bool complete() const { return table_.complete(); }
-  std::uint64_t missing() const;  // blocks of the rounds that are known
+  std::uint64_t missing() const;  // blocks missing in the rounds known
   bool has(std::uint64_t block) const { return taken_[block]; }
 
   void take(std::uint64_t block, const std::vector<double>& rows);
-  // Takes what blocks there are now, and goes on to the next round where one is complete; returns
-  // how many points were new. Errors: FileError.
+  // Takes the blocks that have come, and begins the next round when one is complete. Returns the
+  // number of new points. Errors: FileError.
   std::uint64_t gather();
   // Writes DIR/table.h5 (and .csv), atomically.
   void write() const;
