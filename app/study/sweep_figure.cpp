@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kQuarterInk[] = {"#440154", "#31688E", "#35B779", "#D9A400"};
 
-// Values along one upright.
+// Values along an upright.
 struct Upright {
   std::string name;
   std::vector<double> values;
@@ -40,7 +40,7 @@ std::size_t measure_shown(const SweepPlan& plan, const SweepTable& table) {
   return found == table.columns.end() ? 0 : static_cast<std::size_t>(found - table.columns.begin());
 }
 
-// Which of four equal parts of all values each is in.
+// Quarter of all values that each value is in.
 std::vector<std::size_t> quarters(const std::vector<double>& values) {
   std::vector<double> sorted = values;
   std::ranges::sort(sorted);
@@ -52,58 +52,6 @@ std::vector<std::size_t> quarters(const std::vector<double>& values) {
   return part;
 }
 
-}  // namespace
-
-FigurePanel parallel_coordinates(const SweepPlan& plan, const SweepTable& table) {
-  const std::size_t column = measure_shown(plan, table);
-  std::vector<std::uint64_t> points;
-  for (std::uint64_t i = 0; i < table.points(); ++i) {
-    if (table.done[i] && std::isfinite(table.at(i, column))) points.push_back(i);
-  }
-  FigurePanel panel{.title = table.columns[column].name};
-  if (points.empty()) return panel;
-  const std::size_t step = (points.size() + kMostLines - 1) / kMostLines;
-  std::vector<Upright> uprights(plan.axes.size() + 1);
-  for (std::size_t k = 0; k < points.size(); k += step) {
-    const SweepPoint point = point_of(plan, table.rows.point(points[k]));
-    for (std::size_t a = 0; a < plan.axes.size(); ++a)
-      uprights[a].values.push_back(point.values[a]);
-    uprights.back().values.push_back(table.at(points[k], column));
-  }
-  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
-    uprights[a].name = plan.axes[a].name;
-    uprights[a].logarithmic = plan.axes[a].logarithmic;
-  }
-  uprights.back().name = table.columns[column].name;
-  for (std::size_t a = 0; a < uprights.size(); ++a) {
-    uprights[a].fit();
-    panel.x_ticks.emplace_back(static_cast<double>(a), uprights[a].label());
-  }
-  const bool yes_no = table.columns[column].unit == "yes/no";
-  const std::vector<double>& measured = uprights.back().values;
-  const std::vector<std::size_t> part = quarters(measured);
-  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-  constexpr const char* kQuarter[] = {"lowest quarter", "second", "third", "highest quarter"};
-  for (std::size_t q = 0; q < (yes_no ? 2 : 4); ++q) {
-    Series& series = panel.series.emplace_back();
-    series.label = yes_no ? (q == 0 ? "not " : "") + table.columns[column].name : kQuarter[q];
-    series.color = yes_no ? (q == 0 ? kContactInk : kProxyInk) : kQuarterInk[q];
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      if (q != (yes_no ? (measured[i] == 1 ? 1 : 0) : part[i])) continue;
-      for (std::size_t a = 0; a < uprights.size(); ++a) {
-        series.points.push_back({static_cast<double>(a), uprights[a].height(i)});
-      }
-      series.points.push_back({kGap, kGap});
-    }
-  }
-  panel.x_range = {-0.2, static_cast<double>(uprights.size()) - 0.8};
-  panel.y_range = {-0.02, 1.02};
-  panel.y_label = "from the lowest to the highest value";
-  return panel;
-}
-
-namespace {
-
 constexpr const char *kYesTint = "#B8D8EC", *kNoTint = "#F2C4A8";
 
 std::string with_name(const SweepAxis& axis, std::size_t place) {
@@ -112,10 +60,10 @@ std::string with_name(const SweepAxis& axis, std::size_t place) {
 
 struct Mean {
   double sum = 0, count = 0;
-  std::uint64_t point = 0;  // one of them
+  std::uint64_t point = 0;  // number of a point among them
   double value() const { return sum / count; }
 };
-// Over repeats and samples: [panel][x][y], the places of axes.
+// Means over repeats and samples: [panel][x][y], by places on the axes.
 using Panels = std::map<std::vector<std::size_t>, std::map<std::array<std::size_t, 2>, Mean>>;
 
 class Drawing {
@@ -179,7 +127,7 @@ class Drawing {
     if (plan_.refine) y_ ? fill_panels() : keep_coarse_panels();
   }
 
-  // Where nothing else is on a finer step: panels are for the coarse ones.
+  // Drops panels at finer steps, which have little but the refined points.
   void keep_coarse_panels() {
     std::erase_if(panels_, [&](const auto& panel) {
       return std::ranges::any_of(plan_.refine->axes, [&](std::size_t a) {
@@ -188,7 +136,7 @@ class Drawing {
     });
   }
 
-  // What has no point of its own is what the corners of its cell make it.
+  // Fills places without a point from the corners of their cell.
   void fill_panels() {
     keep_coarse_panels();
     for (auto& [places, values] : panels_) {
@@ -263,7 +211,7 @@ class Drawing {
     if (axis.key == "coupling.eta") add_theory(panel, values.begin()->second.point);
   }
 
-  // Along x, everything else as it is at a point of the panel.
+  // Adds lines of theory along x, with all other settings of a point of the panel.
   void add_theory(FigurePanel& panel, std::uint64_t point) const {
     const SweepAxis& x = plan_.axes[x_];
     for (const std::string& line : plan_.figure.theory) {
@@ -281,6 +229,54 @@ class Drawing {
 };
 
 }  // namespace
+
+FigurePanel parallel_coordinates(const SweepPlan& plan, const SweepTable& table) {
+  const std::size_t column = measure_shown(plan, table);
+  std::vector<std::uint64_t> points;
+  for (std::uint64_t i = 0; i < table.points(); ++i) {
+    if (table.done[i] && std::isfinite(table.at(i, column))) points.push_back(i);
+  }
+  FigurePanel panel{.title = table.columns[column].name};
+  if (points.empty()) return panel;
+  const std::size_t step = (points.size() + kMostLines - 1) / kMostLines;
+  std::vector<Upright> uprights(plan.axes.size() + 1);
+  for (std::size_t k = 0; k < points.size(); k += step) {
+    const SweepPoint point = point_of(plan, table.rows.point(points[k]));
+    for (std::size_t a = 0; a < plan.axes.size(); ++a)
+      uprights[a].values.push_back(point.values[a]);
+    uprights.back().values.push_back(table.at(points[k], column));
+  }
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    uprights[a].name = plan.axes[a].name;
+    uprights[a].logarithmic = plan.axes[a].logarithmic;
+  }
+  uprights.back().name = table.columns[column].name;
+  for (std::size_t a = 0; a < uprights.size(); ++a) {
+    uprights[a].fit();
+    panel.x_ticks.emplace_back(static_cast<double>(a), uprights[a].label());
+  }
+  const bool yes_no = table.columns[column].unit == "yes/no";
+  const std::vector<double>& measured = uprights.back().values;
+  const std::vector<std::size_t> part = quarters(measured);
+  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+  constexpr const char* kQuarter[] = {"lowest quarter", "second", "third", "highest quarter"};
+  for (std::size_t q = 0; q < (yes_no ? 2 : 4); ++q) {
+    Series& series = panel.series.emplace_back();
+    series.label = yes_no ? (q == 0 ? "not " : "") + table.columns[column].name : kQuarter[q];
+    series.color = yes_no ? (q == 0 ? kContactInk : kProxyInk) : kQuarterInk[q];
+    for (std::size_t i = 0; i < measured.size(); ++i) {
+      if (q != (yes_no ? (measured[i] == 1 ? 1 : 0) : part[i])) continue;
+      for (std::size_t a = 0; a < uprights.size(); ++a) {
+        series.points.push_back({static_cast<double>(a), uprights[a].height(i)});
+      }
+      series.points.push_back({kGap, kGap});
+    }
+  }
+  panel.x_range = {-0.2, static_cast<double>(uprights.size()) - 0.8};
+  panel.y_range = {-0.02, 1.02};
+  panel.y_label = "from the lowest to the highest value";
+  return panel;
+}
 
 Figure sweep_figure(const SweepPlan& plan, const SweepTable& table) {
   Figure figure;

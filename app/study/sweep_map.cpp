@@ -64,12 +64,12 @@ std::string value_text(const SweepAxis& axis, std::size_t place) {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDecades = 1000;  // over so much colours go by the logarithm
-constexpr double kRoom = 0.05;     // above and below a curve, of its height
+constexpr double kDecades = 1000;  // larger ratios are coloured on a logarithmic scale
+constexpr double kRoom = 0.05;     // above and below a curve, as a share of its height
 
 bool sampled(const SweepAxis& axis) { return axis.spread != Spread::grid; }
 
-// Of a boundary's columns those that are values of its axis.
+// Whether a column has values of the boundary's axis.
 bool along_boundary(const SweepPlan& plan, std::size_t column) {
   return plan.boundary && column < 2;
 }
@@ -109,7 +109,7 @@ class Making {
   }
 
  private:
-  // The places of a grid's axis from its lowest value up; of a sampled one any.
+  // Places on a grid's axis from its lowest value up; a single one on a sampled axis.
   static std::vector<std::size_t> upwards(const SweepAxis* axis) {
     if (axis == nullptr || sampled(*axis)) return {0};
     std::vector<std::size_t> places(axis->values.size());
@@ -134,7 +134,7 @@ class Making {
     }
   }
 
-  // Over all repeats of these samples.
+  // Adds the mean over all repeats of samples `from` to `to`.
   void add_spot(const std::vector<std::size_t>& place, std::uint64_t from, std::uint64_t to) {
     MapSpot spot;
     spot.point = number_of(plan_, place, from, 0);
@@ -164,7 +164,7 @@ class Making {
       std::tie(spot.cell.x_low, spot.cell.x_high) = wide_.around(spot.x);
       std::tie(spot.cell.y_low, spot.cell.y_high) = high().around(spot.y);
     }
-    // Between the points of a curve there is nothing to be drawn.
+    // A curve has nothing between its points.
     if (spot.count > 0 || y_ != nullptr || !plan_.refine) map_.spots.push_back(spot);
   }
 
@@ -193,7 +193,7 @@ class Making {
     return map_.spots[ix * rows + iy];
   }
 
-  // Between cells that are there and differ.
+  // Draws edges between cells that differ.
   void add_changes() {
     const std::size_t rows = y_->values.size(), columns = x_.values.size();
     Series line{"changes", kNeutralInk, Series::Style::line, {}};
@@ -218,7 +218,7 @@ class Making {
     if (!line.points.empty()) map_.lines.push_back(std::move(line));
   }
 
-  // Where a boundary is crossed more than once.
+  // Draws the highest change if a boundary is crossed more than once.
   void add_last_change() {
     Series line{"highest change", kProxyInk, Series::Style::dashed, {}};
     bool other = false;
@@ -241,6 +241,13 @@ class Making {
   bool over_samples_ = false;
   SweepMap map_;
 };
+
+constexpr std::size_t kMostUp = 20;
+constexpr std::size_t kRowLabel = 11, kCellWidth = 2;  // in columns of a terminal
+constexpr const char* kShades[] = {"░░", "▒▒", "▓▓", "██"};
+
+constexpr int kTheoryPoints = 80;
+constexpr const char* kTheoryInk[] = {kNeutralInk, kHandInk, kEnergyInk};
 
 }  // namespace
 
@@ -274,14 +281,6 @@ MapChoice mended(const SweepPlan& plan, MapChoice choice) {
 SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice) {
   return Making(sweep, mended(*sweep.plan, choice)).make();
 }
-
-namespace {
-
-constexpr std::size_t kMostUp = 20;
-constexpr std::size_t kRowLabel = 11, kCellWidth = 2;  // in columns of a terminal
-constexpr const char* kShades[] = {"░░", "▒▒", "▓▓", "██"};
-
-}  // namespace
 
 MapText::MapText(const SweepPlan& plan, const std::vector<SweepColumn>& columns, std::size_t width)
     : plan_(plan), columns_(columns.size()) {
@@ -352,13 +351,6 @@ std::vector<std::string> MapText::lines() const {
                               value_text(across, sides_[0].count - 1)));
   return lines;
 }
-
-namespace {
-
-constexpr int kTheoryPoints = 80;
-constexpr const char* kTheoryInk[] = {kNeutralInk, kHandInk, kEnergyInk};
-
-}  // namespace
 
 std::string theory_label(const std::string& line) {
   if (line == "pr") return "PR (25)";

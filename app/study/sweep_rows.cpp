@@ -133,7 +133,7 @@ void SweepRows::put_into_cells(const Places& place, std::uint64_t row) {
   }
 }
 
-// In any of the repeats.
+// Whether the value changes in the cell, in any of the repeats.
 bool SweepRows::changes(const Cell& cell, const Value& value) const {
   const SweepRefine& refine = *plan_->refine;
   for (std::uint64_t r = 0; r < plan_->repeats; ++r) {
@@ -175,7 +175,7 @@ std::vector<std::uint64_t> SweepRows::split(const CellKey& key) {
 bool SweepRows::grow(const Value& value) {
   if (complete_) return false;
   std::set<std::uint64_t> points;
-  // Where all points of a division are there already, what comes of it is looked at at once.
+  // A division whose points are all there already is refined further at once.
   bool divided = true;
   while (divided && points.empty()) {
     std::vector<CellKey> changed;
