@@ -48,7 +48,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr unsigned kMostThreads = 1024;
 constexpr Seconds kBetweenTables{2};
 constexpr std::chrono::milliseconds kBetweenLooks{50};
-constexpr int kLooksATurn = 40;  // of Slurm's queue
+constexpr int kLooksATurn = 40;  // waits between two questions to Slurm's queue
 
 struct SweepOptions {
   std::string plan, out, shard;
@@ -58,7 +58,7 @@ struct SweepOptions {
   SlurmOptions array;
 };
 
-// "3/8" as the third of eight.
+// Reads "3/8" as the third of eight shares.
 SweepShare share_in(const std::string& text) {
   unsigned long i = 0, n = 0;
   int read = 0;
@@ -84,7 +84,7 @@ SweepShare share_of(const SweepOptions& options) {
   return share;
 }
 
-// Writes the table now and then while the work goes on, so that it can be read at any moment.
+// Writes the table now and then during the work, so that it can be read at any moment.
 class Bookkeeper {
  public:
   explicit Bookkeeper(SweepBook& book) : book_(book) { wait(kBetweenTables); }
@@ -104,7 +104,7 @@ class Bookkeeper {
   Clock::time_point next_;
 };
 
-// One call of the command.
+// A call of the command.
 class Sweeping {
  public:
   Sweeping(const SweepOptions& options, const SweepShare& share, const SweepPlan& plan,
@@ -121,7 +121,7 @@ class Sweeping {
 
   int carry_out() {
     if (options_.slurm) return on_slurm();
-    // One of many writes no table, for the others' sake.
+    // A share among several writes no table, which others may be writing.
     const bool alone = share_.shards == 1, first = options_.mpi && share_.shard == 0;
     if (!options_.gather) {
       const bool finished = work(alone);
@@ -143,7 +143,8 @@ class Sweeping {
             .picture = [this] { return map_.lines(); }};
   }
 
-  // False if it was stopped. A refined plan goes on, round by round, while all of a round is there.
+  // Works until done; false if stopped. A refined plan continues with the next round while rounds
+  // are complete.
   bool work(bool alone) {
     Bookkeeper keeper(book_);
     std::uint64_t rounds = 0;
@@ -199,7 +200,7 @@ class Sweeping {
                     array.name()));
   }
 
-  // Of one of many parts. What is refined follows from all parts of a round.
+  // Prints what is left after one of several shares: refinement needs all shares of a round.
   int say_what_is_left() {
     if (!plan_.refine || options_.mpi || book_.complete()) return 0;
     fmt::print(
@@ -226,11 +227,11 @@ class Sweeping {
     return book_.complete() ? 0 : 1;
   }
 
-  // Nodes of a cluster may have no gnuplot; the table is what counts.
+  // Draws the figure if possible; nodes of a cluster may have no gnuplot.
   void draw(const SweepTable& table) {
     try {
       Figure figure = sweep_figure(plan_, table);
-      // Without the day: the figure is the same however often the table is gathered.
+      // No date in it: the figure is the same however often the table is gathered.
       figure.made_by = provenance(hex(plan_.key).substr(0, 8), plan_.seed, "");
       draw_figure(figure, folder_.path(), "figure");
     } catch (const std::runtime_error& e) {
@@ -257,7 +258,7 @@ int sweep(const SweepOptions& options) {
   const SweepFolder folder(plan, options.out);
   try {
     return Sweeping(options, share, plan, folder).carry_out();
-  } catch (const FileError& e) {  // of this run's own making, no bad input
+  } catch (const FileError& e) {  // of the results, not of the input
     throw std::runtime_error(fmt::format("{}; the same command goes on from here", e.what()));
   }
 }
