@@ -125,7 +125,7 @@ class LiveLoop {
   bool device_plugged() const { return plugged_; }  // by the window; its connection may be lost
   // The settings as the loop takes them: as_taken() with a real device in the arm's place.
   Parameters taken(const Parameters& p) const { return device_in_place() ? as_taken(p, real_) : p; }
-  // Whether the loop may still hold a device that was replaced.
+  // Whether a slot still has a device, in use or replaced; devices are free once this is false.
   bool holds_device() const { return held_ > 0; }
 
   // Asks for force; nothing else does. Requests from before open() are forgotten.

@@ -46,7 +46,7 @@ struct AnyArm {
   }
 };
 
-// Cycles through the masses, so that mass does not follow the number of joints.
+// The i-th arm; masses come in an order that does not follow the number of joints.
 AnyArm any_arm(int i) {
   using P = WallsPlan;
   const int joints = 1 + i % P::kMostJoints;
