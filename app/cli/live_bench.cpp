@@ -106,7 +106,7 @@ void LiveBench::touch(const SceneDocument& document) {
   run_->touch(document.scene);
 }
 
-// Asks for the hand while the loop runs without force.
+// Prints the instruction and waits for Enter, while the loop runs without force.
 bool LiveBench::ask(const std::string& instruction) {
   fmt::print("{}\n", instruction);
   if (yes_) return run_->pass(kBreath, interrupted);

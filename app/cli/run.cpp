@@ -114,8 +114,8 @@ std::string short_name(const Parameters& p) {
   return fmt::format("{} {:.3g}", name(p.kind), p.eta);
 }
 
-// Second lane beside the chosen one: with the given settings, or else standard against the chosen
-// law.
+// Second lane beside the chosen one: with the given settings, else with the standard coupling
+// (predictive beside standard).
 Lane make_twin(const Parameters& chosen, const std::vector<std::string>& settings) {
   Lane twin{chosen, {}};
   for (const std::string& setting : settings) apply_setting(twin.parameters, setting);

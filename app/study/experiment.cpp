@@ -26,7 +26,7 @@
 
 namespace limpid {
 
-// Defined in NAME.cpp each.
+// Each is defined in NAME.cpp.
 Outcome coordination(TrialRunner& lab);
 Outcome inertia(TrialRunner& lab);
 Outcome passivity(TrialRunner& lab);

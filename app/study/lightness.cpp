@@ -32,7 +32,7 @@ Multisine shaking() {
 struct Law {
   CouplingKind kind;
   double eta;
-  std::vector<FeltMotion> felt = {};  // nothing where it diverged
+  std::vector<FeltMotion> felt = {};  // empty if it diverged
 
   // NaN if it diverged, so that its checks fail.
   FeltMotion at(double f) const {

@@ -19,7 +19,7 @@
 
 namespace limpid {
 
-// Defined below each.
+// Defined below.
 Outcome live_coordination(LiveLaboratory& lab);
 Outcome live_inertia(LiveLaboratory& lab);
 Outcome live_passivity(LiveLaboratory& lab);
