@@ -89,7 +89,8 @@ class LinkTheory {
     }
     return low;
   }
-  // The proposed law's wall without a link, its contact late by the whole trip.
+  // The proposed law's wall: its spring is the standard coupling's, its contact late by the whole
+  // trip.
   double proposed(int delay) const {
     if (!stable(kSoftest, delay)) return kSoftest;
     const double wall = proposed_wall(tip_at_table(), {.T = p_.tick,
