@@ -8,8 +8,8 @@
 
 namespace limpid {
 
-// One flat wall, an edge of two or a corner of three. They meet at kMeet: above, to the right of
-// and in front of the tip.
+// A flat wall, an edge of two walls or a corner of three. They meet at kMeet: above, to the right
+// of and in front of the tip.
 struct RoughWalls {
   int walls = 1;
   double stiffness = 1000;                           // [N/m]

@@ -26,8 +26,8 @@ std::optional<RecordedPoint> record_point(const SweepPlan& plan, std::uint64_t i
                                           const std::atomic<bool>& stop,
                                           const std::function<void(double part)>& part = {});
 
-// How values measured again differ from the table's row, in words; empty if they are equal to the
-// last bit.
+// Differences of values measured again from the table's row, in words; empty if they are equal to
+// the last bit.
 std::string differences(const SweepPlan& plan, const std::vector<double>& again,
                         std::span<const double> row);
 

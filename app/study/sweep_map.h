@@ -57,7 +57,7 @@ MapChoice first_choice(const SweepPlan& plan, const SweepTable& table);
 // `choice` with whatever the plan lacks replaced: x and y are two different axes.
 MapChoice mended(const SweepPlan& plan, MapChoice choice);
 
-// One point, or all that differ only in repeat and sample.
+// A point, or all that differ only in repeat and sample.
 struct MapSpot {
   FigureCell cell;  // around x and y; its value is the mean, NaN if no point is done
   double x = 0, y = 0;
