@@ -1,4 +1,4 @@
-// Chooses a command and says what went wrong.
+// The program `limpid`: runs a command and reports errors.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -22,13 +22,13 @@ using namespace limpid;
 
 namespace {
 
-// Bad usage or input, found before anything was written.
+// Reports bad usage or input, found before anything was written.
 int refuse(const std::exception& e) {
   fmt::print(stderr, "limpid: {}\n", e.what());
   return 2;
 }
 
-// Before a command that opens no window, the window's options would be lost.
+// Refuses options of the window before a command that opens none, where they would be lost.
 void check_order(const CLI::App& app, const CLI::App& command) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0) continue;
@@ -48,7 +48,7 @@ void check_order(const CLI::App& app, const CLI::App& command) {
   }
 }
 
-// What a command has printed may be all that it is for.
+// Reports a failed write to standard output, which may be all that a command is for.
 int if_written(int status) {
   errno = 0;
   std::cout.flush();
@@ -57,7 +57,7 @@ int if_written(int status) {
   return status == 0 ? 1 : status;
 }
 
-// `limpid help`, and `limpid help COMMAND`, where no file has that name.
+// Whether words are `limpid help` or `limpid help COMMAND`; not if a file is called help.
 bool asks_for_help(const std::vector<std::string>& words) {
   return !words.empty() && words.size() <= 2 && words[0] == "help" &&
          !std::filesystem::exists(words[0]);
@@ -78,7 +78,7 @@ UsageError unexpected(const CLI::App& app) {
                                 meant ? fmt::format("did you mean {}? ", *meant) : "", command));
 }
 
-// Those that open no window, by their names.
+// Declares the commands that open no window, by name.
 std::map<std::string, Command> declare_commands(CLI::App& app, char** argv) {
   std::map<std::string, Command> commands;
   commands["run"] = declare_run(app);
@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
     if (!words.empty() && words[0] == "complete") {
       return print_completions(app, std::span(words).subspan(1));
     }
-    // Completions and manual pages have lines of their own.
+    // Completions and manual pages break lines themselves.
     if (words.empty() || words[0] != "share") {
       wrap_help(app);
       for (CLI::App* command : app.get_subcommands({})) wrap_help(*command);
@@ -138,7 +138,7 @@ int main(int argc, char** argv) {
       words.erase(words.begin());
       words.emplace_back("--help");
     }
-    std::ranges::reverse(words);  // as CLI11 wants them
+    std::ranges::reverse(words);  // the order for CLI11
     app.parse(words);
     if (app.get_subcommands().empty()) return window.desktop();
     const CLI::App& command = *app.get_subcommands().front();

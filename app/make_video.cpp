@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "1280x720"
+// Reads the size, "1280x720", and the other options of the picture.
 FilmLook look(const VideoOptions& options, double text_scale) {
   FilmLook look{.plots = options.plots, .overlaid = options.overlaid, .text_scale = text_scale};
   if (options.size.empty()) return look;
@@ -34,7 +34,7 @@ FilmLook look(const VideoOptions& options, double text_scale) {
   return look;
 }
 
-// Of a file, or of all that is in a folder [MB].
+// Size of a file, or of all files in a folder [MB].
 double megabytes(const fs::path& out) {
   std::error_code none;
   if (!fs::is_directory(out, none)) return static_cast<double>(fs::file_size(out, none)) / 1e6;

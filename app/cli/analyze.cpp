@@ -124,7 +124,7 @@ nlohmann::ordered_json units() {
           {"tip.LAW.felt_damping", "N s/m"}};
 }
 
-// Shorter levers than this are round-off [m].
+// Levers shorter than this are round-off [m].
 constexpr double kNoLever = 1e-9;
 
 bool moves_tip(const ArmDescription& arm) {

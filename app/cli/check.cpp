@@ -1,4 +1,4 @@
-// What a file is, and what there is to know of it before it is used.
+// `limpid check`: reports what a file contains, before it is used.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -35,12 +35,12 @@ struct CheckOptions {
   bool json = false;
 };
 
-// Lines for people.
+// Lines of the report for people.
 struct CheckReport {
   std::vector<std::string> facts, warnings;
 };
 
-// Of slides in m, N, N s/m and kg.
+// Describes a joint; slides in m, N, N s/m and kg.
 std::string joint_line(const Joint& joint, const Link& link, double inertia) {
   const bool slides = joint.kind == Joint::Kind::prismatic;
   const double unit = slides ? kSlideUnit : 1;
@@ -87,7 +87,7 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
   }
 }
 
-// What leaves for the motors, however the gains are set.
+// Lists the limits on the motors' torque, which hold for any gains.
 void list_limits(const Parameters& p, CheckReport& report) {
   report.facts.push_back(fmt::format(
       "limits       torque {}, within {:.0f} ms from none; a real device's tip: {:.0f} N",
@@ -96,7 +96,7 @@ void list_limits(const Parameters& p, CheckReport& report) {
       1000 * SafetyLimits::kSlew, SafetyLimits{}.tip_force));
 }
 
-// Beyond this the travel of a slide is meant for "as far as you like" [m].
+// A slide longer than this is meant to have no limits [m].
 constexpr double kFar = 100;
 
 void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
@@ -115,9 +115,9 @@ void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
   }
 }
 
-// Moments that no link can have: CAD exports them in g mm^2, or a person has taken any.
+// Warns of impossible moments of inertia: CAD exports them in g mm^2, or somebody invented them.
 void list_inertias(const ArmDescription& arm, CheckReport& report) {
-  constexpr double kRounded = 1.01;  // moments of a thin plate, as files round them
+  constexpr double kRounded = 1.01;  // rounding of a thin plate's moments in files
   const double reach = farthest_tip(arm).distance;
   for (const Link& link : arm.links) {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
@@ -166,7 +166,7 @@ void list_mesh(const std::string& name, const Mesh& mesh, const Model& model, Ch
                                      name, model.indices.size() / 3, size.x(), size.y(), size.z()));
 }
 
-// The law that is named; else the one that the window begins with, which renders the most.
+// Parameters with the law that is named; else with the window's first law, which renders the most.
 Parameters law_to_check(const InputOptions& input, const ArmDescription& arm) {
   Parameters p = make_parameters(input, arm);
   Parameters usual;
@@ -235,7 +235,7 @@ CheckReport on(const CheckOptions& options) {
       options.file, model_suffixes()));
 }
 
-// Whatever cannot be opened is refused, whoever found that out.
+// Checks the file; whatever goes wrong is an error of the file.
 CheckReport opened(const CheckOptions& options) {
   try {
     return on(options);

@@ -1,4 +1,4 @@
-// The commands; each declares its options on the command line and returns what runs it.
+// Commands of the program: each declares its options and returns the function that runs it.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ class App;
 
 namespace limpid {
 
-// Returns the exit status.
+// Runs a command; returns the exit status.
 using Command = std::function<int()>;
 
 Command declare_run(CLI::App& app);
@@ -25,11 +25,11 @@ Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
 Command declare_identify(CLI::App& app);
 Command declare_doctor(CLI::App& app);
-// Not told of: writes what is installed beside the program, made from the other commands.
+// Hidden: writes what is installed beside the program, from the other commands.
 Command declare_share(CLI::App& app);
 Command declare_story(CLI::App& app, MakeVideo make_video);
-// The window: `limpid` without a command, and `limpid play`. The options of the app itself are the
-// window's and hold for both.
+// The window: `limpid` without a command, and `limpid play`. Both take the options of the app
+// itself.
 struct WindowCommands {
   Command desktop, play;
 };

@@ -29,7 +29,8 @@ std::vector<HelpWord> experiment_words() {
   return words;
 }
 
-// "FILE.csv|FILE.h5" names the suffixes of files, "DIR" folders, others the words that there are.
+// Adds values by an option's type: "FILE.csv|FILE.h5" names suffixes of files, "DIR" folders,
+// others words.
 void add_values(const std::string& name, Completions& into) {
   if (name == "KIND") {
     for (const auto& key : kLawKeys) into.words.push_back({std::string(key), ""});
@@ -71,7 +72,7 @@ const CLI::Option* option_called(const CLI::App& command, const std::string& nam
   return nullptr;
 }
 
-// What the words before the last one leave open.
+// Command, open option and number of positional words before the last word.
 struct Position {
   const CLI::App* command;
   const CLI::Option* open = nullptr;  // wants a value
@@ -105,7 +106,7 @@ void add_positional(const Position& at, Completions& into) {
   for (const CLI::Option* option : at.command->get_options()) {
     if (!option->get_positional() || left-- > 0) continue;
     const std::string name = value_name(*option);
-    if (name == "NAME" && at.command->get_name() != "experiment") return;  // of one's own choice
+    if (name == "NAME" && at.command->get_name() != "experiment") return;  // chosen freely
     add_values(name, into);
     return;
   }
@@ -116,7 +117,7 @@ void add_positional(const Position& at, Completions& into) {
 std::string value_name(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return {};
   std::string name = option.get_type_name();
-  name = name.substr(0, name.find(':'));  // what a check adds
+  name = name.substr(0, name.find(':'));  // without the description of a check
   const bool says_nothing = name.empty() || name == "TEXT";
   return option.get_positional() && says_nothing ? option.get_name(true) : name;
 }

@@ -1,4 +1,4 @@
-// What may come next on an unfinished command line, for the completions of the shells.
+// Completions of an unfinished command line, for the shells.
 #pragma once
 
 #include <span>
@@ -15,22 +15,22 @@ class Option;
 namespace limpid {
 
 struct Completions {
-  std::vector<HelpWord> words;        // whether they begin as the last word does or not
-  bool folders = false;               // files belong there; these need folders as a way to them
-  std::vector<std::string> suffixes;  // of files that do
+  std::vector<HelpWord> words;        // also words that do not begin like the last one
+  bool folders = false;               // files are allowed, and so folders on the way to them
+  std::vector<std::string> suffixes;  // of files allowed
 };
 
-// `words`: the line without the program, the last one unfinished, or empty. After "--option=" it is
-// the value that is completed.
+// `words`: the line without the program; the last word is unfinished or empty. After "--option=" it
+// is that option's value.
 Completions completions(const CLI::App& app, std::span<const std::string> words);
 
-// The value of an option as help and manual call it, such as "FILE.toml". Empty: it takes none.
+// Name of an option's value in help and manual, such as "FILE.toml"; empty if it takes none.
 std::string value_name(const CLI::Option& option);
-// The commands that people are told of.
+// The commands that help and manual list.
 std::vector<const CLI::App*> shown_commands(const CLI::App& app);
 
-// `limpid complete WORDS...`, which assets/completions call: WORD, tab, what it is; a line; and
-// where files belong a line of a tab, "folders" or "files", and their suffixes.
+// `limpid complete WORDS...`, called by assets/completions. Prints a line WORD, tab, meaning, for
+// each word. Where files are allowed it adds a line: tab, "folders" or "files", and their suffixes.
 int print_completions(const CLI::App& app, std::span<const std::string> words);
 
 }  // namespace limpid

@@ -21,7 +21,7 @@ struct WindowOptions {
   DesktopOptions desktop;
   std::string session;
   std::vector<std::string> files;     // to open
-  std::vector<std::string> commands;  // that there are besides
+  std::vector<std::string> commands;  // available commands
   std::string listen;                 // name of a socket; empty: none
   VideoOptions video;
 };
@@ -50,7 +50,7 @@ void add(CLI::App& command, WindowOptions& options) {
                    "print the state as a line of JSON ten times a second");
 }
 
-// Options before and behind the command; what is said twice holds as it is said behind it.
+// Merges the options before and behind the command; the latter win.
 WindowOptions both(const WindowOptions& before, WindowOptions behind) {
   behind.input = both(before.input, behind.input);
   if (behind.desktop.ui_scale == DesktopOptions{}.ui_scale) {
@@ -62,8 +62,8 @@ WindowOptions both(const WindowOptions& before, WindowOptions behind) {
   return behind;
 }
 
-// What is wrong with the input is said before a window opens, which reads it again: nothing of it
-// is kept. Models, which may be large, are the window's to read. None: the window's own.
+// Checks the input before a window opens and reads it again. Leaves out models, which may be large.
+// Returns null if the window keeps its own parameters.
 std::function<Parameters(const Parameters&)> checked_parameters(const InputOptions& input) {
   ArmDescription arm;
   SceneDocument document;
@@ -71,7 +71,7 @@ std::function<Parameters(const Parameters&)> checked_parameters(const InputOptio
   if (!input.set_parameters()) return nullptr;
   make_parameters(input, arm);
   return [input, arm](const Parameters& last) {
-    // A file has all of them; single ones change what was there.
+    // A file sets all parameters; single settings change the last ones.
     if (!input.configs.empty()) return make_parameters(input, arm);
     Parameters base = last;
     refit(base, nullptr, &arm);
@@ -118,7 +118,7 @@ int open_window(const WindowOptions& options) {
   return 0;
 }
 
-// Nothing is simulated for a video: what it shows is recorded.
+// Refuses options of a simulation: a video shows what is recorded.
 void check_no_world(const InputOptions& input) {
   if (!input.device.empty() || !input.scene.empty() || input.set_parameters()) {
     throw UsageError(

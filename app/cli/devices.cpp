@@ -17,12 +17,12 @@ namespace {
 
 constexpr const char* kAskAgain = "unsaid";
 
-// Which arm a device is, as somebody says it here.
+// Options that say which arm a device is.
 struct ArmOptions {
-  std::string device, arm, tip;  // device: its id; empty: the one in use, or the only one
+  std::string device, arm, tip;  // device: id; empty: the one in use, or the only one
 };
 
-// Connects to it, as only that tells what it is.
+// Stores the arm of a device. Connects to the device, which alone knows what it is.
 int say_arm(const ArmOptions& options) {
   DeviceHub hub(device_store_file(), {});
   const std::string in_use = hub.in_use();

@@ -48,8 +48,7 @@ void print_json(const DoctorFindings& all, State worst) {
 
 int doctor(bool json) {
   DoctorFindings all;
-  // The picture first: it is looked at in processes of their own, which are made while there is one
-  // thread only.
+  // The picture comes first: its processes must be made while there is only one thread.
   const DoctorFindings picture = look_at_picture();
   for (const DoctorFindings& some :
        {look_at_real_time(), look_at_devices(), picture, look_at_files()}) {

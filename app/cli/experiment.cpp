@@ -27,10 +27,10 @@ struct ExperimentOptions {
   std::uint64_t seed = 0;
   unsigned threads = 0;
   LiveOptions live;
-  InputOptions input;  // of a live one
+  InputOptions input;  // for live experiments
 };
 
-// The one of that name, or all.
+// Finds the experiment of that name, or all.
 template <class E>
 std::vector<const E*> chosen(std::span<const E> known, const std::string& name,
                              const char* refusal) {
@@ -57,7 +57,7 @@ void print(const std::string& name, const Outcome& outcome) {
   std::fflush(stdout);
 }
 
-// In words, with the experiment they are of. One without checks promises nothing.
+// Adds failed checks in words, with their experiment. An experiment without checks fails.
 void note_failures(const std::string& name, const Outcome& outcome,
                    std::vector<std::string>& failed) {
   for (const Check& c : outcome.checks) {
@@ -88,7 +88,7 @@ int finish(const ExperimentOptions& options, const std::vector<std::string>& fai
   return failed.empty() ? 0 : 1;
 }
 
-// An experiment has its own arms, worlds and settings, which its verdict is about.
+// Refuses options of world and settings: an experiment has its own, for which its verdict holds.
 void refuse_what_has_no_effect(const InputOptions& input) {
   for (const auto& [given, option] : {std::pair(!input.device.empty(), "--device"),
                                       {!input.tip.empty(), "--tip"},
@@ -123,13 +123,13 @@ int run(const ExperimentOptions& options) {
   } catch (const Cancelled&) {
     fmt::print(stderr, "limpid: stopped; the same command goes on from here\n");
     return 1;
-  } catch (const FileError& e) {  // of this run's own making, no bad input
+  } catch (const FileError& e) {  // of the results, not of the input
     throw std::runtime_error(e.what());
   }
   return finish(options, failed);
 }
 
-// What a live experiment has a hand do, recorded in the experiment's folder.
+// Functions that lead the hand through a trial of a live experiment, recorded in `folder`.
 LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
   LiveLaboratory lab{bench.plan().arm, bench.plan().document, bench.plan().parameters, {}, {}};
   lab.run = [&bench, folder](const LiveTrial& trial) {

@@ -33,7 +33,7 @@ struct InfoOptions {
   bool force = false, json = false;
 };
 
-// Summary of a recording's rows, which come in pieces and need not be in memory.
+// Summary of a recording's rows, which arrive in pieces and need not be in memory.
 class RowsTold {
  public:
   explicit RowsTold(std::string file) : file_(std::move(file)) {}
@@ -65,7 +65,7 @@ class RowsTold {
   }
 
   std::uint64_t count() const { return count_; }
-  // Warnings worked out of the rows, so that older recordings have them as well.
+  // Warnings computed from the rows, so that older recordings have them as well.
   std::vector<std::string> warnings() const {
     return watch_ ? watch_->warnings() : std::vector<std::string>();
   }
@@ -86,7 +86,7 @@ class RowsTold {
     if (!twin_) return first_->text();
     return "two runs on one hand\n" + Summary::beside(*first_, "first", *twin_, "twin");
   }
-  // Recordings of the first edition have but the torque of their contacts.
+  // Describes the recorded contacts; recordings of the first edition have only their torque.
   std::string contacts() const {
     if (!contacts_) return "where and how hard was not recorded";
     return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
@@ -98,10 +98,10 @@ class RowsTold {
   std::optional<Summary> first_, twin_;
   std::optional<ForceTally> force_;
   std::uint64_t count_ = 0;
-  bool contacts_ = false;  // are known
+  bool contacts_ = false;  // are recorded
 };
 
-// Those of the first row. What another version wrote and this one does not know is left out.
+// Settings of the first row; empty if this version does not know them.
 std::string settings_text(const Session& session, const std::string& file) {
   try {
     const Parameters p = session_parameters(session, file);
@@ -116,7 +116,7 @@ std::string settings_text(const Session& session, const std::string& file) {
   }
 }
 
-// Whose table a CSV is, for a file beside it as W3C's "CSV on the Web" has it.
+// Metadata of a CSV by W3C's "CSV on the Web": the source of the table.
 std::string metadata_of(const InfoOptions& options, const SessionInfo& i) {
   const nlohmann::ordered_json json{{"@context", "http://www.w3.org/ns/csvw"},
                                     {"url", std::filesystem::path(options.csv).filename().string()},
@@ -206,7 +206,7 @@ std::string happened(const Session& session) {
   return text;
 }
 
-// Only a table takes all of the recording into memory.
+// Reads a recording; only writing a table takes all of it into memory.
 Session read_and_tell(const InfoOptions& options, RowsTold& told) {
   if (options.csv.empty()) {
     return read_session(
@@ -244,7 +244,7 @@ int info(const InfoOptions& options) {
   if (const ToldSteps story = told_in(session, options.session); !story.steps.empty()) {
     text += fmt::format("story                    {}, {} steps\n", story.title, story.steps.size());
   }
-  // A table on standard output stands there alone.
+  // Text moves to standard error if standard output has the table.
   fmt::print(to_stdout ? stderr : stdout, "{}{}", text, happened(session));
   if (options.csv.empty()) return 0;
   std::fflush(stdout);

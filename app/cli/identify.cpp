@@ -22,6 +22,10 @@
 #include "devices/identify/unlike_device.h"
 
 namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
 void print(const Identification& identification) {
   const Identified& found = identification.found;
@@ -65,8 +69,6 @@ void print_drift(const Findings& last, const Identification& now) {
   }
 }
 
-namespace {
-
 constexpr double kEta = 0.7;  // above eta_min of the fitted gains, 0.59
 
 Parameters suited(const ArmDescription& arm, CouplingKind kind, double encoder_step) {
@@ -83,8 +85,6 @@ nlohmann::ordered_json as_json(const Rehearsal& r) {
   return {{"slope", r.slope},   {"off", r.off},       {"friction", r.friction},
           {"weight", r.weight}, {"energy", r.energy}, {"force", r.force}};
 }
-
-}  // namespace
 
 nlohmann::ordered_json rehearse_and_print(const ArmDescription& truth, const Unlikeness& bench,
                                           const ArmDescription& guess,
@@ -111,16 +111,11 @@ nlohmann::ordered_json rehearse_and_print(const ArmDescription& truth, const Unl
   return json;
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::ordered_json;
-
 constexpr const char* kSimulated = "simulated";
 
 struct IdentifyOptions {
   std::string device;  // id; empty: the one in use, or the only one
-  InputOptions input;  // the arm that it is taken for
+  InputOptions input;  // the arm that the device is taken for
   std::string out;
   std::string gravity = "0,0,-9.81";
   unsigned seed = 1;
@@ -175,7 +170,7 @@ IdentifyRun watched(const std::function<IdentifyRun(IdentifyProgress&)>& run) {
   return result.get();
 }
 
-// With the device in use that was before.
+// Saves the hub with `in_use` as the device in use again.
 void save(DeviceHub& hub, const std::string& in_use) {
   hub.use(in_use);
   if (const std::string wrong = hub.save(); !wrong.empty()) throw std::runtime_error(wrong);
@@ -202,7 +197,7 @@ int write_arm(const IdentifyOptions& options, const Identification& done,
   return wrong.empty() ? 0 : 1;
 }
 
-// How the device is moved.
+// Moves the device, with the load or without.
 using Move = std::function<IdentifyRun(bool with_load, IdentifyProgress&)>;
 
 void ask_for_load(const IdentifyOptions& options) {
@@ -211,8 +206,8 @@ void ask_for_load(const IdentifyOptions& options) {
   ask();
 }
 
-// Moves it, and moves it again with the load; what moved is kept, whatever becomes of it. False
-// where it ended before its end.
+// Moves the device, and again with the load, and writes each motion however it ended. False if one
+// ended early.
 bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
            IdentifyRun& with_load) {
   const auto move = [&](bool load, IdentifyRun& run, const char* file) {
@@ -229,7 +224,7 @@ bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
   return move(true, with_load, kLoadedMotionFile);
 }
 
-// On a device that is drawn at random, and what it is worth there.
+// Identifies a random simulated device, and rates the result.
 int identify_simulated(IdentifyOptions& options) {
   IdentifyRequest& order = options.order;
   if (order.masses_right) {
@@ -245,7 +240,7 @@ int identify_simulated(IdentifyOptions& options) {
       identification(bench.name, order, std::move(bare), std::move(with_load));
   print(done);
   if (done.torque_scale) fmt::print("{:<15}{:.3f} was drawn\n", "", bench.unlikeness.torque_scale);
-  bench.unlikeness.torque_scale = 1;  // what is told takes it into account
+  bench.unlikeness.torque_scale = 1;  // the identified torques include it
   const ordered_json rehearsal{{"rehearsal", rehearse_and_print(bench.truth, bench.unlikeness,
                                                                 order.guess, done.found.arm)}};
   return write_arm(options, done, {}, rehearsal.dump());
@@ -268,7 +263,7 @@ int identify_device(IdentifyOptions options) {
   const std::unique_ptr<Device> device = open_device(
       options.device, hub, fmt::format(", and \"{}\" tries it without one", kSimulated));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
-  // An arm that is named here counts before the one that was identified.
+  // A named arm wins over the one identified before.
   order.guess = options.input.device.empty() ? arm_of_device(device->traits(), hub, options.input)
                                              : narrowed(order.guess, device->traits());
   const auto move = [&](bool, IdentifyProgress& motion) {

@@ -17,11 +17,11 @@
 namespace limpid {
 namespace {
 
-constexpr double kGlance = 0.05;           // at what is typed, while the loop goes on [s]
-constexpr double kLongestWait = 20;        // for the force to come on [s]
-constexpr double kMostWithoutForce = 0.1;  // of a task
-constexpr double kWorthSaying = 0.005;     // [s]
-constexpr double kBreath = 1;              // before a task that nobody is asked about [s]
+constexpr double kGlance = 0.05;           // interval of looking for input while the loop runs [s]
+constexpr double kLongestWait = 20;        // longest wait for force [s]
+constexpr double kMostWithoutForce = 0.1;  // of a task's duration
+constexpr double kWorthSaying = 0.005;     // shortest time worth a message [s]
+constexpr double kBreath = 1;              // wait before a task without a question [s]
 
 }  // namespace
 
@@ -92,13 +92,13 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   plan_.models = build_meshes(plan_.document);
   const DeviceNotes& notes = hub.notes(hub.in_use());
   Parameters usual = make_parameters(input, plan_.arm);
-  notes.compensation.give(usual);  // as the window has it
+  notes.compensation.give(usual);  // as in the window
   plan_.parameters = make_parameters(input, usual);
   plan_.hand.source = "device";
   limits_ = notes.limits;
   catch_interrupts();
   run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), by_rtkit());
-  plan_.parameters = run_->taken(plan_.parameters);  // that verdicts and recordings rest on
+  plan_.parameters = run_->taken(plan_.parameters);  // as verdicts and recordings use them
 }
 
 void LiveBench::touch(const SceneDocument& document) {
@@ -106,7 +106,7 @@ void LiveBench::touch(const SceneDocument& document) {
   run_->touch(document.scene);
 }
 
-// The loop goes on meanwhile, without force.
+// Prints the instruction and waits for Enter, while the loop runs without force.
 bool LiveBench::ask(const std::string& instruction) {
   fmt::print("{}\n", instruction);
   if (yes_) return run_->pass(kBreath, interrupted);
@@ -137,7 +137,7 @@ std::unique_ptr<Recorder> LiveBench::recorder(const LiveTask& task, const Parame
                                     Recorder::kLiveRoom);
 }
 
-// What has no force says nothing of a coupling.
+// Refuses a task mostly without force, which shows nothing of a coupling.
 void LiveBench::WithoutForce::judge(double seconds) const {
   if (time <= kWorthSaying) return;
   fmt::print(stderr, "limpid: {:.2f} s were without force: {}\n", time, explain(why));
@@ -162,7 +162,7 @@ bool LiveBench::lead(const LiveTask& task, double T, const LiveRun::Row& row, Wi
 }
 
 bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveRun::Row& row) {
-  // Opened before the hand is asked for anything; one that nothing came of takes no file's place.
+  // Opened before the hand is asked for anything; without results it replaces no file.
   auto recording = task.out.empty() ? nullptr : recorder(task, p);
   const auto end = [&] {
     run_->cut();
@@ -182,7 +182,7 @@ bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveR
     whole = whole && lead(task, p.tick, row, off);
     lost = end();
   } catch (...) {
-    end();  // what came up to here is whole
+    end();  // keeps what was recorded
     throw;
   }
   if (lost > 0) {

@@ -1,4 +1,4 @@
-// Real devices in commands: the device, its arm and its world, and the prompts that lead a hand.
+// Real devices in commands: the device, its arm and world, and the prompts that lead a hand.
 #pragma once
 
 #include "app/cli/options.h"
@@ -11,10 +11,9 @@ class App;
 
 namespace limpid {
 
-// Which device, and whether to ask before it may push.
+// Options --live and --yes: the device, and whether it may push without a question.
 struct LiveOptions {
-  std::optional<std::string> device;  // its id; empty: the one in use, or the only one; none: no
-                                      // device
+  std::optional<std::string> device;  // id; empty: the one in use, or the only one; none: no device
   bool yes = false;
 
   // Declares --live and --yes.
@@ -24,22 +23,22 @@ struct LiveOptions {
 // Makes the device of this id the hub's, as open_device() does. Errors: UsageError.
 void choose_device(const std::string& id, DeviceHub& hub, const std::string& otherwise);
 
-// Of this id; empty: the one in use, or the only one. `otherwise`: what is said beside that none is
-// chosen. Errors: UsageError, HidError.
+// Opens the device of this id; empty: the one in use, or the only one. `otherwise` is added to the
+// message that none is chosen. Errors: UsageError, HidError.
 std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
                                     const std::string& otherwise);
 
-// The arm that the device in use is taken for, which it says on stderr; the arm of `input`, if that
-// names one by --device. Errors: as taken_arm().
+// The arm that the device in use is taken for, with a note on stderr; or the arm of --device in
+// `input`. Errors: as taken_arm().
 ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
                              const InputOptions& input);
 
-// What a hand is asked to do, and what is recorded of it.
+// A task for the hand, and its recording.
 struct LiveTask {
   std::string instruction;
   double seconds = 10;
-  std::filesystem::path out = {};  // its session; empty: none
-  bool force = false;              // replaces it
+  std::filesystem::path out = {};  // session of the task; empty: none
+  bool force = false;              // may replace `out`
 };
 
 class LiveBench {
@@ -49,14 +48,14 @@ class LiveBench {
   LiveBench(const LiveOptions& options, const InputOptions& input);
 
   const RunPlan& plan() const { return plan_; }  // arm, world and parameters
-  // Asks, arms, records, and takes the force away again; `row` sees every tick. False if it was
-  // interrupted. Errors: FileError, std::runtime_error where there is no force, or the device goes.
+  // Asks, arms, records, and takes the force away again; `row` receives every tick. False if
+  // interrupted. Errors: FileError; std::runtime_error without force or device.
   bool carry_out(const LiveTask& task, const Parameters& p, const LiveRun::Row& row = {});
-  // Another scene for the tasks that follow.
+  // Sets another scene for the tasks that follow.
   void touch(const SceneDocument& document);
 
  private:
-  // Of a task: how long, and why last.
+  // Time without force during a task, and its last reason.
   struct WithoutForce {
     double time = 0;  // [s]
     ForceState why = ForceState::on;

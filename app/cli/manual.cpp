@@ -19,7 +19,9 @@ namespace limpid {
 
 namespace {
 
-// As roff prints it: '-' is a minus that can be copied, and no line is taken for a request.
+namespace fs = std::filesystem;
+
+// `text` for roff: '-' stays a minus that can be copied, and no line is a request.
 std::string roff(const std::string& text) {
   std::string out;
   bool at_start = true;
@@ -48,7 +50,7 @@ std::string full_name(const CLI::App& app, const CLI::App& command, const char* 
   return app.get_name() + between + command.get_name();
 }
 
-// Lines that are tables or broken by hand stay as they are.
+// Keeps tables and lines broken by hand.
 std::string as_it_stands(const std::string& text) {
   return fmt::format(".nf\n{}\n.fi\n", roff(text));
 }
@@ -68,7 +70,7 @@ std::string bonds(const CLI::Option& option) {
   std::vector<std::string> with, without;
   for (const CLI::Option* other : option.get_needs()) with.push_back(other->get_name());
   for (const CLI::Option* other : option.get_excludes()) without.push_back(other->get_name());
-  std::ranges::sort(without);  // their order is that of addresses
+  std::ranges::sort(without);  // they come ordered by addresses
   std::string text;
   if (!with.empty()) text += fmt::format(" Only with {}.", fmt::join(with, ", "));
   if (!without.empty()) text += fmt::format(" Not with {}.", fmt::join(without, ", "));
@@ -136,12 +138,10 @@ std::string see_also(const CLI::App& app, const CLI::App& command) {
   return fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
 }
 
-}  // namespace
-
 std::string manual_page(const CLI::App& app, const CLI::App& command) {
   const bool whole = &app == &command;
   std::string about = command.get_description();
-  if (whole) about = about.substr(about.find(": ") + 2);  // its name is said before
+  if (whole) about = about.substr(about.find(": ") + 2);  // the name stands before
   std::string text =
       fmt::format(".TH {} 1 \"\" \"Limpid {}\" \"Limpid\"\n",
                   roff(upper(full_name(app, command, "-"))), roff(program_version()));
@@ -156,10 +156,6 @@ std::string manual_page(const CLI::App& app, const CLI::App& command) {
   if (whole) text += kFiles;
   return text + see_also(app, command);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 void write(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());

@@ -30,7 +30,7 @@ bool is_session(const std::string& file) {
   return file.ends_with(".h5") || file.ends_with(".h5.part");
 }
 
-// A number and nothing else.
+// Reads a text that is a number and nothing else.
 std::optional<double> number_in(const std::string& text) {
   double x = 0;
   const char* end = text.data() + text.size();
@@ -56,7 +56,7 @@ CLI::Validator whole_number() {
           ""};
 }
 
-// As the help says it.
+// Allowed values of a parameter, as in the help.
 std::string allowed_values(const ParameterInfo& info) {
   if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
     return fmt::format("{}", fmt::join(choice->words, ", "));
@@ -66,7 +66,7 @@ std::string allowed_values(const ParameterInfo& info) {
   return fmt::format("{} to {}{}", info.minimum, info.maximum, unit);
 }
 
-// A session brings its own world and parameters; options override them.
+// Plan of a session with its own world and parameters; options override them.
 RunPlan plan_from_session(const InputOptions& options) {
   const Session session = read_session(options.hand);
   if (session.size() == 0) throw FileError(options.hand + ": holds no rows");
@@ -87,7 +87,7 @@ RunPlan plan_from_session(const InputOptions& options) {
   }
   if (!options.device.empty()) {
     plan.arm = arm_of(options);
-    if (options.scene.empty()) {  // its joints and links may have other names here
+    if (options.scene.empty()) {  // the scene may name joints and links, which differ here
       plan.document = parse_scene(session.info.scene, options.hand + " (scene)",
                                   data_dir() / "assets/scenes", plan.arm, session.info.models);
     }
@@ -103,7 +103,7 @@ RunPlan plan_from_session(const InputOptions& options) {
   }
   if (!options.scene.empty()) {
     plan.document = read_scene(options.scene, plan.arm);
-    if (plan.start) plan.start->world.clear();  // another scene's
+    if (plan.start) plan.start->world.clear();  // poses of another scene
     for (Lane& lane : plan.beside) {
       if (lane.start) lane.start->world.clear();
     }
@@ -112,7 +112,7 @@ RunPlan plan_from_session(const InputOptions& options) {
   return plan;
 }
 
-// Errors: UsageError for a hand that does more than follow a path.
+// Varies the hand. Errors: UsageError for a hand that does more than follow a path.
 void vary(RunPlan& plan, const InputOptions& options) {
   if (options.variation.value_or(0) == 0) return;
   const HandPath& hand = plan.hand;
@@ -124,6 +124,29 @@ void vary(RunPlan& plan, const InputOptions& options) {
         options.hand));
   }
   plan.hand = varied(plan.hand, plan.seed, *options.variation);
+}
+
+constexpr std::size_t kHelpWidth = 79;
+
+// `text` in lines of at most `width` letters, each indented by `indent` spaces.
+std::string in_lines(std::string_view text, std::size_t indent, std::size_t width) {
+  std::string all, line;
+  const auto end_line = [&] {
+    if (!line.empty()) all += std::string(indent, ' ') + line + '\n';
+    line.clear();
+  };
+  const auto letters = [](std::string_view word) {  // counts letters of UTF-8
+    return static_cast<std::size_t>(
+        std::ranges::count_if(word, [](char c) { return (c & 0xc0) != 0x80; }));
+  };
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (letters(line) + 1 + letters(word) + indent > width) end_line();
+    line += (line.empty() ? "" : " ") + std::string(word);
+  }
+  end_line();
+  return all;
 }
 
 }  // namespace
@@ -149,7 +172,7 @@ std::function<std::string(std::string)> or_shipped(Kinds kinds) {
   return [kinds = std::move(kinds)](const std::string& named) {
     if (named.empty() || std::filesystem::exists(named)) return named;
     if (const auto own = shipped_file(named, kinds)) return own->string();
-    // An id of a device is no file.
+    // Ids of devices, without a dot, are not files.
     const std::string hint = named.find('.') != std::string::npos ? shipped_hint(named, kinds) : "";
     if (!hint.empty()) throw UsageError(named + ": no such file" + hint);
     return named;
@@ -288,33 +311,6 @@ void keep_apart(const char* option, const std::filesystem::path& out, const Inpu
   keep_apart(option, out, read);
 }
 
-namespace {
-
-constexpr std::size_t kHelpWidth = 79;
-
-// The text in lines of at most `width` letters, each with so many spaces before it.
-std::string in_lines(std::string_view text, std::size_t indent, std::size_t width) {
-  std::string all, line;
-  const auto end_line = [&] {
-    if (!line.empty()) all += std::string(indent, ' ') + line + '\n';
-    line.clear();
-  };
-  const auto letters = [](std::string_view word) {  // of UTF-8
-    return static_cast<std::size_t>(
-        std::ranges::count_if(word, [](char c) { return (c & 0xc0) != 0x80; }));
-  };
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (letters(line) + 1 + letters(word) + indent > width) end_line();
-    line += (line.empty() ? "" : " ") + std::string(word);
-  }
-  end_line();
-  return all;
-}
-
-}  // namespace
-
 std::string parameter_help() {
   std::string text = "Keys for --set and --config:\n";
   for (const ParameterInfo& info : parameter_table()) {
@@ -329,7 +325,7 @@ std::string parameter_help() {
 }
 
 void wrap_help(CLI::App& command) {
-  constexpr std::size_t kColumn = 30;  // where CLI11 begins what it says of an option
+  constexpr std::size_t kColumn = 30;  // where CLI11 begins an option's description
   for (CLI::Option* option : command.get_options()) {
     std::string text = in_lines(option->get_description(), 0, kHelpWidth - kColumn);
     if (!text.empty()) text.pop_back();

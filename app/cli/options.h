@@ -1,4 +1,4 @@
-// The options that several commands share, and what they amount to.
+// Options shared by several commands, and the plan, arm and parameters that they give.
 #pragma once
 
 #include <filesystem>
@@ -26,15 +26,15 @@ struct UsageError : std::runtime_error {
 
 struct InputOptions {
   std::string device, scene, hand;  // files; empty: the default
-  std::string tip;                  // of the device's links; empty: as its file has it
+  std::string tip;                  // link of the device that the hand holds; empty: the file's
   std::vector<std::string> configs;
   std::vector<std::string> settings;                // key=value
   std::optional<std::string> coupling, eta, alpha;  // short for three settings
   std::optional<double> duration;
-  std::optional<std::uint64_t> seed;       // which hand a variation is
-  std::optional<std::uint64_t> variation;  // of the hand; 0: as it is
+  std::optional<std::uint64_t> seed;       // seed of the variations
+  std::optional<std::uint64_t> variation;  // number of the hand's variation; 0: unchanged
 
-  // Whether any of them is given that add_parameters() declares.
+  // Whether an option of add_parameters() is given.
   bool set_parameters() const {
     return !configs.empty() || !settings.empty() || coupling || eta || alpha;
   }
@@ -47,39 +47,37 @@ struct InputOptions {
   void add_hand(CLI::App& command);
 };
 
-// What is given in two places: single ones as the second says, if it does; lists one after the
-// other.
+// Merges two sets of options: `second` wins for single values, lists are appended.
 InputOptions both(const InputOptions& first, InputOptions second);
 
-// Reads every file and checks every value. Errors: UsageError, FileError, ParameterError.
-// A session given as the hand brings its own device, scene and parameters; options override them.
+// Reads every file and checks every value. A session given as the hand brings its own device, scene
+// and parameters; options override them. Errors: UsageError, FileError, ParameterError.
 RunPlan make_plan(const InputOptions& options);
-// Parameters alone, over `base`.
+// Applies the options to `base`.
 Parameters make_parameters(const InputOptions& options, Parameters base = {});
-// The same over those that suit the arm.
+// Applies the options to the parameters that suit `arm`.
 Parameters make_parameters(const InputOptions& options, const ArmDescription& arm);
-// The id of the real device that is named where an arm's file could be; empty: none is. Errors:
+// Id of the real device that `words` name in place of an arm's file; empty: none. Errors:
 // UsageError.
 std::string device_named(const std::string& words);
-// The arm alone; of a real device that is named, the built-in one that is like it.
+// The arm of the options; for a named real device the built-in arm like it.
 ArmDescription arm_of(const InputOptions& options);
-// Device and scene alone, without the models of its meshes; by default a scene that the device can
-// reach.
+// Reads device and scene, without the models of its meshes; the default scene is one in the
+// device's reach.
 void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument& document);
 
-// That a command does not write over what it reads. `option`: that names the output, "--record".
-// Errors: UsageError.
+// Refuses to write over a file that is read. `option`: option of the output, "--record". Errors:
+// UsageError.
 void keep_apart(const char* option, const std::filesystem::path& out,
                 std::span<const std::string> read);
-// The same of all that these options name.
+// Refuses to write over any file that these options name.
 void keep_apart(const char* option, const std::filesystem::path& out, const InputOptions& input);
 
-// A transform of options: a file that is not there, and came along with the program under this name
-// in a folder of assets, is that one. A file that is nowhere, and nearly has the name of one of
-// these, is refused with that name. Errors: UsageError.
+// Transform of an option's value: a file that does not exist, but came with the program under this
+// name, is replaced by that one. A similar name is refused with the right one. Errors: UsageError.
 std::function<std::string(std::string)> or_shipped(Kinds kinds);
 
-// For the help text: every key with its default and what is allowed.
+// Help on parameters: every key with its default and allowed values.
 std::string parameter_help();
 // Breaks the texts of all options into lines that fit into a terminal.
 void wrap_help(CLI::App& command);
@@ -87,14 +85,14 @@ void wrap_help(CLI::App& command);
 struct HelpWord {
   std::string word, about;
 };
-// Every KEY=VALUE where the values are words, else KEY= and what is allowed.
+// KEY=VALUE for every value that is a word; KEY= with the allowed values for other keys.
 std::vector<HelpWord> parameter_words();
 
-// The option takes a whole number from 0 on.
+// Lets the option take only whole numbers from 0 on.
 void require_whole_number(CLI::Option* option);
-// The option takes a number above 0.
+// Lets the option take only numbers above 0.
 void require_above_zero(CLI::Option* option, double most, const std::string& unit);
-// No option of the command takes an empty word for a value.
+// Refuses empty values for all options of the command.
 void refuse_empty_values(CLI::App& command);
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// How far a piece of work is, on a terminal.
+// Commands at a terminal: a folder for results, questions, and a line of progress.
 #pragma once
 
 #include <atomic>
@@ -9,35 +9,31 @@
 
 namespace limpid {
 
-// A folder for what a command finds.
-
-// Before any work, so that none is lost on a place that cannot be written or is full: the folder is
-// there then. Errors: UsageError.
+// Makes the folder before any work, so that no result is lost to a place that cannot be written or
+// is full. Errors: UsageError.
 void prepare_out(const std::filesystem::path& dir);
 
-// Questions in a terminal before something moves or pushes.
-
-// Says the prompt and waits for Enter; what was typed before is no answer to it. `meanwhile` is
-// called all along and takes the time between two looks. False once that says false. Errors:
-// UsageError at the end of what can be typed.
+// Prints the prompt and waits for Enter, ignoring earlier input. Calls `meanwhile` until then,
+// which also paces the loop. False if `meanwhile` returns false. Errors: UsageError at the end of
+// input.
 bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhile);
 
-// One line on standard error, rewritten in place: "run: 41 %, 12.3 of 30.0 s, 85 times real time,
-// 4 s left". Only where that is a terminal, only once the work takes over a second; gone when the
-// work is over. Printed by a thread of its own, so that no work waits for a terminal.
+// Progress in a line on standard error, rewritten in place: "run: 41 %, 12.3 of 30.0 s, 85 times
+// real time, 4 s left". Shown only on a terminal and after a second of work, removed at the end.
+// Printed by its own thread, so that no work waits for a terminal.
 class Progress {
  public:
   struct Words {
     std::string title;   // "run"
-    double whole = 100;  // what at() comes to in the end
-    std::string unit;    // of it, where done and whole are worth saying: "s"; else empty
-    std::string rate;    // what it is called a second: "times real time"
+    double whole = 100;  // at() at the end
+    std::string unit;    // of done and whole, "s"; empty: these are not printed
+    std::string rate;    // name of units a second: "times real time"
   };
   explicit Progress(Words words);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // From any thread; going back begins anew.
+  // Sets the work done; from any thread. A smaller value starts the clock anew.
   void at(double done) { done_.store(done, std::memory_order_relaxed); }
 
  private:
@@ -48,7 +44,7 @@ class Progress {
   std::jthread thread_;
 };
 
-// That line, `seconds` after the work began at nothing done.
+// The line `seconds` after the work began.
 std::string progress_line(const Progress::Words& words, double done, double seconds);
 
 }  // namespace limpid

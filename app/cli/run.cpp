@@ -29,8 +29,7 @@
 namespace limpid {
 namespace {
 
-// `limpid run --live`.
-constexpr double kLiveSeconds = 10;  // without --duration
+constexpr double kLiveSeconds = 10;  // of --live without --duration [s]
 
 struct LiveRunOptions {
   LiveOptions live;
@@ -81,7 +80,7 @@ struct RunOptions {
   LiveOptions live;
 };
 
-// What goes wrong from here on is a failed run, no bad input.
+// Finishes the recording; from here on errors are a failed run, not bad input.
 void finish(Recorder& recorder) {
   try {
     recorder.finish();
@@ -92,7 +91,7 @@ void finish(Recorder& recorder) {
   }
 }
 
-// Before the run, so that it is not made for nothing.
+// Checks outputs before the run, so that it is not made in vain.
 void check_outputs(const RunOptions& options) {
   keep_apart("--record", options.record, options.input);
   const std::filesystem::path png = options.picture;
@@ -110,13 +109,13 @@ void check_outputs(const RunOptions& options) {
   }
 }
 
-// What tells two runs on one hand apart, in a word or two.
+// A word or two that tell two runs on one hand apart.
 std::string short_name(const Parameters& p) {
   return fmt::format("{} {:.3g}", name(p.kind), p.eta);
 }
 
-// Another pair than the one that the options ask for: standard beside the chosen law, or settings
-// that are given.
+// Second lane beside the chosen one: with the given settings, else with the standard coupling
+// (predictive beside standard).
 Lane make_twin(const Parameters& chosen, const std::vector<std::string>& settings) {
   Lane twin{chosen, {}};
   for (const std::string& setting : settings) apply_setting(twin.parameters, setting);
@@ -129,7 +128,7 @@ Lane make_twin(const Parameters& chosen, const std::vector<std::string>& setting
   return twin;
 }
 
-// Takes the ticks in while they come.
+// Takes the ticks as they come.
 class RunLog {
  public:
   RunLog(const RunPlan& plan, Recorder* recorder, bool waits)
@@ -142,7 +141,7 @@ class RunLog {
     }
   }
 
-  // False to end the run.
+  // Returns false to end the run.
   bool take(std::span<const double> rows, LaneChanges changed) {
     for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
       if (changed[lane] != nullptr) watches_[lane].change(rows_, *changed[lane]);
@@ -173,7 +172,7 @@ class RunLog {
     }
     return runs_json(lanes, warnings);
   }
-  // Beside that a run became unstable.
+  // Warnings besides that of an unstable run.
   std::vector<std::string> cautions() const {
     std::vector<std::string> all;
     for (std::size_t lane = 0; lane < watches_.size(); ++lane) {
@@ -183,7 +182,7 @@ class RunLog {
   }
   double time() const { return runs_[0].time(); }
   std::span<const double> memorable() const { return runs_[0].memorable(); }
-  std::span<const double> twin() const { return twin_; }  // at that time
+  std::span<const double> twin() const { return twin_; }  // at time()
   std::string text(const RunPlan& plan) const {
     if (plan.beside.empty()) return runs_[0].text();
     return Summary::beside(runs_[0], short_name(plan.parameters), runs_[1],
@@ -223,7 +222,7 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
       return 1;
     }
   }
-  if (end.diverged) {  // beside which the rest needs no word
+  if (end.diverged) {  // which explains all other warnings
     fmt::print(
         stderr,
         "limpid: unstable from t = {:.3f} s on: {}; try a larger eta, a smaller alpha or k_vc "
@@ -237,7 +236,7 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
   return 1;
 }
 
-// What was guessed about an arm, or fitted to it.
+// Prints notes on guesses about the arm and parameters fitted to it.
 void say_about(const RunPlan& plan) {
   if (!plan.note.empty()) fmt::print(stderr, "limpid: note: {}\n", plan.note);
   for (const std::string& warning : plan.arm.warnings) {
@@ -336,7 +335,7 @@ Command declare_run(CLI::App& app) {
           "--twin",
           [options](const auto& settings) {
             options->twin = settings;
-            std::erase(*options->twin, "");  // of --twin alone
+            std::erase(*options->twin, "");  // from --twin alone
           },
           "a second run on the same hand beside this one: with the standard coupling, or with "
           "these "

@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-// Between two turns: often enough for whoever waits for an answer, and seldom enough that one who
-// asks all the time takes no time from the loop. Requests cut it short, but not below the second.
+// Time between two turns. Short enough for clients that wait for an answer; long enough that
+// requests take no time from the loop. Requests shorten it to kShortestTurn at least.
 constexpr auto kTurn = 5ms, kShortestTurn = 2ms;
 
 struct ServeOptions {
@@ -37,7 +37,7 @@ struct ServeOptions {
   bool until_eof = false;
 };
 
-// The file that a client names: a path, or something that came along with the program.
+// Path of a file that a client names: its own, or one that came with the program.
 std::string file_of(const std::string& named, const char* key, const char* kind) {
   if (named.empty() || fs::path(named).is_absolute()) return named;
   if (const auto own = shipped_file(named, {kind})) return *own;
@@ -47,14 +47,14 @@ std::string file_of(const std::string& named, const char* key, const char* kind)
       named.substr(0, 100), hint.empty() ? ";" : hint, fmt::join(shipped_names(kind), ", ")));
 }
 
-// What is open follows what clients have opened, one after the other.
+// Worlds that clients open, each a change to the one before.
 class Worlds {
  public:
   explicit Worlds(InputOptions input) : input_(std::move(input)) {}
 
   ServedSession::World first() const { return world_of(input_); }
 
-  // From now on a device is in the arm's place, and scenes are read for its arm.
+  // Puts a device in the arm's place; from now on scenes are read for `arm`.
   void read_for(const ArmDescription& arm) { of_device_ = arm; }
 
   ServedSession::World operator()(const OpenRequest& asked, const Parameters& now) {

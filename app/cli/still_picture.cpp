@@ -13,7 +13,7 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
   const OffscreenContext context(kWidth, kHeight);
   SceneView picture(data_dir() / "shaders", plan.arm, plan.document.scene,
                     visual_pictures(plan.document));
-  picture.set_quality(Quality::level(0));  // there is time
+  picture.set_quality(Quality::level(0));  // best quality, as time does not matter
   picture.set_meshes(mesh_pictures(plan.document.scene, plan.models));
   const RowLayout layout = plan.layout();
   const RowView rows(plan.arm, plan.document.scene);

@@ -71,7 +71,7 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
   if (!options.record.empty()) {
     try {
       write_session(run.session, {story.title, story.steps}, options.record, options.video.force);
-    } catch (const FileError& e) {  // of this run's own making, no bad input
+    } catch (const FileError& e) {  // of the results, not of the input
       throw std::runtime_error(e.what());
     }
     fmt::print("recorded {} ticks of both runs in {}\n", run.session.size(), options.record);
@@ -102,7 +102,7 @@ Command declare_story(CLI::App& app, MakeVideo make_video) {
   auto* check = command->add_flag("--check", options->check, "read the script and list its steps");
   options->video.add(*command);
   CLI::Option* video = command->get_option("--video");
-  command->get_option("--force")->remove_needs(video);  // of a session, too
+  command->get_option("--force")->remove_needs(video);  // also for a session
   video->excludes(record)->excludes(check);
   record->excludes(check);
   command->footer("How to write one: assets/stories/README.md.");

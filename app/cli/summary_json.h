@@ -9,11 +9,11 @@
 
 namespace limpid {
 
-// The numbers of Summary::text(), each with its unit in its name; "unstable_at_s" only of a run
-// that became unstable.
+// Numbers of Summary::text(), with units in their names; "unstable_at_s" only for a run that became
+// unstable.
 nlohmann::ordered_json summary_json(const Summary& summary);
 
-// With the numbers of each lane, "runs", and the sentences to warn of, "warnings".
+// The numbers of each lane, "runs", and warnings in sentences, "warnings".
 nlohmann::ordered_json runs_json(const std::vector<const Summary*>& lanes,
                                  const std::vector<std::string>& warnings);
 

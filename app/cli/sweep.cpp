@@ -46,7 +46,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr unsigned kMostThreads = 1024;
 constexpr Seconds kBetweenTables{2};
 constexpr std::chrono::milliseconds kBetweenLooks{50};
-constexpr int kLooksATurn = 40;  // of Slurm's queue
+constexpr int kLooksATurn = 40;  // waits between two questions to Slurm's queue
 
 struct SweepOptions {
   std::string plan, out, shard;
@@ -56,7 +56,7 @@ struct SweepOptions {
   SlurmOptions array;
 };
 
-// "3/8" as the third of eight.
+// Reads "3/8" as the third of eight shares.
 SweepShare share_in(const std::string& text) {
   unsigned long i = 0, n = 0;
   int read = 0;
@@ -82,7 +82,7 @@ SweepShare share_of(const SweepOptions& options) {
   return share;
 }
 
-// Writes the table now and then while the work goes on, so that it can be read at any moment.
+// Writes the table now and then during the work, so that it can be read at any moment.
 class Bookkeeper {
  public:
   explicit Bookkeeper(SweepBook& book) : book_(book) { wait(kBetweenTables); }
@@ -102,7 +102,7 @@ class Bookkeeper {
   Clock::time_point next_;
 };
 
-// One call of the command.
+// A call of the command.
 class Sweeping {
  public:
   Sweeping(const SweepOptions& options, const SweepShare& share, const SweepPlan& plan,
@@ -115,7 +115,7 @@ class Sweeping {
 
   int carry_out() {
     if (options_.slurm) return on_slurm();
-    // One of many writes no table, for the others' sake.
+    // A share among several writes no table, which others may be writing.
     const bool alone = share_.shards == 1, first = options_.mpi && share_.shard == 0;
     if (!options_.gather) {
       const bool finished = work(alone);
@@ -132,7 +132,8 @@ class Sweeping {
     return {.title = plan_.title, .whole = points, .unit = "", .rate = "points a second"};
   }
 
-  // False if it was stopped.
+  // Works until done; false if stopped. A refined plan continues with the next round while rounds
+  // are complete.
   bool work(bool alone) {
     Bookkeeper keeper(book_);
     std::atomic<std::uint64_t> done{0};
@@ -188,11 +189,11 @@ class Sweeping {
     return book_.complete() ? 0 : 1;
   }
 
-  // Nodes of a cluster may have no gnuplot; the table is what counts.
+  // Draws the figure if possible; nodes of a cluster may have no gnuplot.
   void draw(const SweepTable& table) {
     try {
       Figure figure = sweep_figure(plan_, table);
-      // Without the day: the figure is the same however often the table is gathered.
+      // No date in it: the figure is the same however often the table is gathered.
       figure.made_by = provenance(hex(plan_.key).substr(0, 8), plan_.seed, "");
       draw_figure(figure, folder_.path(), "figure");
     } catch (const std::runtime_error& e) {
@@ -218,7 +219,7 @@ int sweep(const SweepOptions& options) {
   const SweepFolder folder(plan, options.out);
   try {
     return Sweeping(options, share, plan, folder).carry_out();
-  } catch (const FileError& e) {  // of this run's own making, no bad input
+  } catch (const FileError& e) {  // of the results, not of the input
     throw std::runtime_error(fmt::format("{}; the same command goes on from here", e.what()));
   }
 }

@@ -1,4 +1,4 @@
-// What `limpid play SESSION.h5 --video OUT` is asked for.
+// Options of `limpid play SESSION.h5 --video OUT`.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ class Option;
 namespace limpid {
 
 struct VideoOptions {
-  std::string out;   // empty: no video is asked for
+  std::string out;   // empty: no video
   std::string size;  // WIDTHxHEIGHT
   std::optional<int> fps;
   double from = 0;
@@ -27,8 +27,8 @@ struct VideoOptions {
   void add(CLI::App& command);
 };
 
-// Makes the session's video; `text_scale` 0: as the size wants it. Returns the exit status. Errors:
-// UsageError, FileError.
+// Makes the session's video; `text_scale` 0: in proportion to the size. Returns the exit status.
+// Errors: UsageError, FileError.
 using MakeVideo =
     std::function<int(const std::string& session, const VideoOptions& options, double text_scale)>;
 

@@ -16,9 +16,9 @@ namespace {
 using std::chrono::milliseconds;
 constexpr milliseconds kCheckTick{1};
 constexpr milliseconds kSilence{400};
-constexpr double kSmooth = 0.004;  // of the velocity that is judged [s]
+constexpr double kSmooth = 0.004;  // smoothing of the judged velocity [s]
 
-// The limits that are set for the device, at each tick.
+// The device's safety limits, judged at each tick.
 class Limits {
  public:
   using Vector = Vec<kAnyDof>;
@@ -35,10 +35,10 @@ class Limits {
     safety_.limit(limits);
   }
 
-  // Where the device is now, T [s] after the tick before; false beyond a limit.
+  // Judges the device at `x`, T [s] after the last tick; false beyond a limit.
   bool allow(std::span<const double> x, double T) noexcept {
     const Vector now = Eigen::Map<const Vector>(x.data(), x_.size());
-    if (!now.allFinite()) return true;  // the check itself ends then
+    if (!now.allFinite()) return true;  // which ends the check itself
     if (!started_) x_ = now;
     started_ = true;
     const double put_out = torque_.dot(now - x_);
@@ -47,7 +47,7 @@ class Limits {
     Arm<kAnyDof>::Frames frames;
     arm_.frames(x_, frames);
     arm_.point_jacobian(frames, arm_.dof() - 1, arm_.tip(frames), J_);
-    // Whether it moves at all is for the check to say: it hears of no torque here.
+    // The torque is given as none: whether the device moves at all is for the check to judge.
     const Objections against =
         safety_.judge({.guarded = true}, false, {x_, v_, J_, none_, put_out, T});
     return against.ceiling >= 1 && against.fault == ForceState::on;

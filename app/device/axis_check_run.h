@@ -1,5 +1,4 @@
-// The check of a device's axes as it goes on: a thread of its own drives the device, the window
-// shows how far it has come and may end it.
+// The check of a device's axes on a thread of its own, which the window follows and may cancel.
 #pragma once
 
 #include <atomic>
@@ -12,7 +11,7 @@
 
 namespace limpid {
 
-// What window and check tell one another; any thread's.
+// Exchange between window and check; for any thread.
 struct AxisCheckProgress {
   std::atomic<int> axis{0};
   std::atomic<AxisStage> stage{AxisStage::resting};
@@ -22,14 +21,14 @@ struct AxisCheckProgress {
   void see_window() { window_seen = std::chrono::steady_clock::now(); }
 };
 
-// Drives the device, which nobody else uses meanwhile, until the check is done or cancelled, or the
-// window has been silent for 0.4 s; it is without torque then. The force at the tip stays within
-// its limit, and any other limit of `limits` ends the check. `arm`: that the device is taken for,
-// of as many joints. Not for the window's thread. `ask`: see become_realtime().
+// Drives the device, which nobody else may use meanwhile, until the check is done or cancelled, or
+// the window has been silent for 0.4 s; leaves it without torque. The force at the tip stays within
+// its limit; any other limit of `limits` ends the check. `arm`: the arm that the device is taken
+// for, with as many joints. Not for the window's thread. `ask`: see become_realtime().
 AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
                          AxisCheckProgress& progress, const AskForPriority& ask);
 
-// What came of it, for people.
+// Result of a check, for people.
 std::string report_of(const AxisCheck& check);
 
 }  // namespace limpid

@@ -20,13 +20,25 @@ namespace {
 
 constexpr std::chrono::milliseconds kFirstReading{200};
 
-// A store can hold anything.
+// The Inverse3 that an id of the store names, where anything may stand.
 std::optional<InverseName> inverse_name_in(const std::string& id) {
   try {
     return inverse_name(id);
   } catch (const HidError&) {
     return std::nullopt;
   }
+}
+
+const FoundDevice& usable(const std::optional<FoundDevice>& found, const std::string& id) {
+  if (!found) throw HidError(fmt::format("{} is not connected", id));
+  if (!found->missing.empty()) {
+    throw HidError(fmt::format("{}: {}", found->place.name, found->missing));
+  }
+  return *found;
+}
+
+std::filesystem::path nature_file(const std::string& id, const char* extension) {
+  return user_data_dir() / "devices" / (as_file_name(id) + extension);
 }
 
 }  // namespace
@@ -78,8 +90,8 @@ std::string DeviceHub::save() {
   return {};
 }
 
-// In place: whoever refers to notes goes on doing so. What cannot be understood leaves them as they
-// were, as a device may be in the loop with their limits. This program's device in use stays.
+// Changes notes in place, as others refer to them. Entries that cannot be understood leave them
+// unchanged: a device may be in the loop with these limits. The device in use here stays.
 void DeviceHub::read_again() {
   const DeviceStore now = load_device_store(file_);
   store_.refusal = now.refusal;
@@ -106,7 +118,7 @@ void DeviceHub::take(std::vector<FoundDevice> found, bool services) {
     if (!services && before.kind->service) found.push_back(before);
   }
   found_ = std::move(found);
-  // Whoever asked for the first that a service has means that one from now on.
+  // The first device of a service, once found, is the one in use from now on.
   const auto wanted = inverse_name_in(store_.in_use);
   if (!wanted || !wanted->id.empty()) return;
   for (const FoundDevice& each : found_) {
@@ -129,18 +141,6 @@ const FoundDevice* DeviceHub::present() const {
 
 void DeviceHub::use(const std::string& id) { store_.in_use = id; }
 
-namespace {
-
-const FoundDevice& usable(const std::optional<FoundDevice>& found, const std::string& id) {
-  if (!found) throw HidError(fmt::format("{} is not connected", id));
-  if (!found->missing.empty()) {
-    throw HidError(fmt::format("{}: {}", found->place.name, found->missing));
-  }
-  return *found;
-}
-
-}  // namespace
-
 DeviceNotes DeviceHub::known() const {
   const auto notes = store_.notes.find(store_.in_use);
   return notes == store_.notes.end() ? DeviceNotes{} : notes->second;
@@ -157,7 +157,7 @@ std::string DeviceHub::refusal() const {
   return pushes && !store_.refusal.empty() ? store_.refusal : known().refusal;
 }
 
-// All that it takes, whatever the hub does meanwhile.
+// All that opening needs, whatever the hub does meanwhile.
 struct DeviceHub::Opening {
   std::string id, refusal;
   std::optional<FoundDevice> found;
@@ -199,14 +199,6 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
     return opened;
   };
 }
-
-namespace {
-
-std::filesystem::path nature_file(const std::string& id, const char* extension) {
-  return user_data_dir() / "devices" / (as_file_name(id) + extension);
-}
-
-}  // namespace
 
 std::string DeviceHub::remember(const Profile& profile) {
   DeviceNotes& notes = DeviceHub::notes(store_.in_use);

@@ -1,4 +1,4 @@
-// Which device drives the loop: what is plugged in, the one in use, and getting it back.
+// The device that drives the loop: devices found, the one in use, and how it is opened.
 #pragma once
 
 #include <functional>
@@ -15,88 +15,89 @@
 
 namespace limpid {
 
-// It pushes, and nobody has seen yet that its motors move its axes as they are told.
+// Thrown if a device pushes, but its axes have not been checked yet.
 struct UncheckedError : HidError {
   using HidError::HidError;
 };
 
 class DeviceHub {
  public:
-  // `file`: of the store. `ask`: for the devices' own threads.
+  // `file`: of the store. `ask`: priority for the devices' own threads.
   DeviceHub(std::filesystem::path file, AskForPriority ask);
 
-  // What is plugged in. Reads a few files of the kernel's: not for every frame. `wanted` and
-  // `services`: see DeviceSearch.
+  // Finds the devices that are plugged in. Reads a few files of the kernel, so not for every frame.
+  // `wanted` and `services`: see DeviceSearch.
   static std::vector<FoundDevice> look(const std::string& wanted = {}, bool services = true);
-  // Without services, those of before stay.
+  // Takes the list of devices; without `services` those found before stay.
   void take(std::vector<FoundDevice> found, bool services = true);
   const std::vector<FoundDevice>& found() const { return found_; }
 
-  // Of an Inverse3, which has an id with words left out: the whole of it; of others nothing. Throws
+  // Full id of an Inverse3, some of whose words may be missing; empty for other devices. Errors:
   // HidError, see inverse_name().
   static std::string id_of(const std::string& words);
 
   const std::string& in_use() const { return store_.in_use; }  // id; empty: the virtual arm
-  // What is plugged in of it; null: nothing.
+  // The device in use, if it is plugged in; else null.
   const FoundDevice* present() const;
-  // From now on this one; empty: the virtual arm.
+  // Makes this device the one in use; empty: the virtual arm.
   void use(const std::string& id);
   DeviceNotes& notes(const std::string& id) { return store_.notes[id]; }
-  // Why the device in use is not used for what its store says, or fails to say: an entry, or the
-  // whole file, that cannot be understood. Empty: it may be.
+  // Why the device in use must not be used: its entry in the store, or the whole store, cannot be
+  // understood. Empty: it may be used.
   std::string refusal() const;
 
-  // The first window that has a device connects to it by itself, any other one when it is told to.
-  // Makes this the first one, until give_way(), unless another program's window is. Returns who has
-  // it then, for people; empty: this one is.
+  // Makes this window the first one, until give_way(), unless another program's window is. The
+  // first window connects to a device by itself, others only when told. Returns the owner for
+  // people; empty: this window.
   std::string go_first();
   void give_way() { first_ = {}; }
 
   const AskForPriority& ask() const { return ask_; }
 
-  // Connects to the device in use, its axes adjusted, and waits a moment for its first reading. May
-  // be called from anywhere, later. Errors: HidError; UncheckedError where it has to be checked
-  // first; FileError where its store refuses it.
+  // Function that connects to the device in use with its axes adjusted, and waits briefly for its
+  // first reading; for any thread, at any time. Errors: HidError; UncheckedError if a check is
+  // needed first; FileError if the store refuses it.
   std::function<std::unique_ptr<Device>()> opening() const;
-  // The same without the check: for what moves nothing.
+  // Opens the device without need of a check, for use without motion.
   std::unique_ptr<Device> open_to_look() const;
-  // The arm that the device in use is taken for; `named`, and errors: see taken_arm().
+  // The arm that the device in use is taken for. `named`, and errors: see taken_arm().
   TakenArm arm_for(const DeviceTraits& traits, const ArmDescription* named = nullptr) const;
-  // From now on, once saved, the device in use is taken for this arm: kBuiltInArm, or a URDF with
-  // the tip in it; empty: nobody has said. `traits`: of the device, where it is connected.
+  // Takes the device in use for this arm: kBuiltInArm, or a URDF with the tip in it; empty:
+  // unknown. Call save() after it. `traits`: of the device, if it is connected.
   void say_arm(const std::string& file, const std::string& tip, const DeviceTraits* traits);
-  // The device of these traits is what was meant when somebody said it before it was connected.
-  // True if that was news.
+  // Notes that an arm chosen before the device was connected was meant for the device of these
+  // traits. True if that was news.
   bool note_said_arm(const DeviceTraits& traits);
-  // The device in use is there, and somebody may say which arm it is; nobody has.
+  // Whether the device in use is plugged in, and a person may choose its arm, see
+  // may_be_told_its_arm().
   bool may_say_arm() const;
+  // Whether may_say_arm(), and nobody has.
   bool asks_for_arm() const { return may_say_arm() && known().taken_for.empty(); }
-  // What a device was found to be.
+  // Results of an identification.
   struct Profile {
     std::string urdf;         // the arm
     std::string report;       // the findings, as JSON
     double delay = 0;         // [s]
-    double torque_scale = 1;  // what its motors give of what they were told meanwhile
+    double torque_scale = 1;  // real over commanded torque, besides the scale in the store
   };
-  // From now on the device in use is that, connected anew; once saved. Returns what went wrong,
-  // empty if nothing did.
+  // Takes the device in use for the identified arm, once it is connected anew; call save() after
+  // it. Returns the error; empty: none.
   std::string remember(const Profile& profile);
-  // The report of what the device in use was found to be; empty: nobody knows.
+  // Report of the identification of the device in use; empty: it was not identified.
   std::string remembered_report() const;
-  // Takes it for its file's again, and nothing of its forces off the hand.
+  // Forgets the identification, and the forces that motors took off the hand.
   void forget_arm();
-  // It is known to push, and its axes were not checked yet: it may not. Of others only opening()
-  // tells.
+  // Whether the device in use is known to push, and its axes have not been checked. For other
+  // devices only opening() tells.
   bool needs_check() const;
-  // Connects to it and checks its axes, as opening() and run_axis_check(), within the limits that
-  // are set for it, as the arm that it is taken for.
+  // Function that connects to the device and checks its axes as the arm that it is taken for,
+  // within its limits; see opening() and run_axis_check().
   std::function<AxisCheck()> checking(const std::shared_ptr<AxisCheckProgress>& progress) const;
-  // Writes what was changed here and takes in what other programs have changed. Returns what went
-  // wrong, empty if nothing did.
+  // Writes changes and takes in those of other programs. Returns the error; empty: none.
   std::string save();
-  // Takes in what the file says by now.
+  // Takes in the present file.
   void read_again();
-  std::string complaint() const { return store_.complaint(); }  // about the store; empty: none
+  std::string complaint() const { return store_.complaint(); }  // of the store; empty: none
 
  private:
   DeviceNotes known() const;  // of the device in use
@@ -106,7 +107,7 @@ class DeviceHub {
 
   std::filesystem::path file_;
   AskForPriority ask_;
-  DeviceStore written_;  // as it was last read or written
+  DeviceStore written_;  // as last read or written
   DeviceStore store_;
   std::vector<FoundDevice> found_;
   DeviceClaim first_;

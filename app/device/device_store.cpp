@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = 1 << 20;  // of the store
 
-// What stands in the file, or what it is without it. Never a value in place of one that cannot be
-// understood: it might let the device push harder, or the wrong way.
+// Reads an entry; absent keys keep their defaults. A key that cannot be understood is an error: a
+// default in its place might let the device push harder, or the wrong way.
 class Entry {
  public:
   Entry(const toml::table& table, const std::string& file, const std::string& path)
@@ -46,14 +46,14 @@ class Entry {
     if (found == names.end()) reader_.refuse(key, fmt::format("{}", fmt::join(names, ", ")));
     value = static_cast<std::size_t>(found - names.begin());
   }
-  // The table below this key, if there is one.
+  // The table at this key, if there is one.
   std::optional<Entry> below(const char* key) const {
     const toml::node* node = reader_.find(key);
     if (node == nullptr) return std::nullopt;
     if (!node->is_table()) reader_.refuse(key, "a table");
     return Entry(*node->as_table(), file_, fmt::format("{}.{}", path_, key));
   }
-  // Each element of a list, one a joint, at most as many as a device can have.
+  // Calls `use` for each element of a list, one a joint, at most as many as a device can have.
   template <class Use>
   void each(const char* key, const char* allowed, const Use& use) const {
     const toml::node* node = reader_.find(key);
@@ -64,7 +64,7 @@ class Entry {
       if (!use(i, *list->get(i))) reader_.refuse(key, allowed);
     }
   }
-  // A key that nobody knows stays; one that is nearly one of these is a slip of the hand.
+  // Refuses keys that are nearly one of `known`, likely slips; other unknown keys stay.
   void no_slips(const std::vector<std::string>& known) const {
     for (const auto& [key, node] : table_) {
       const std::string word(key.str());
@@ -135,7 +135,7 @@ DeviceNotes read_notes(const Entry& entry) {
     std::vector<const char*> keys;
     keys.reserve(kSafetyLimitInfo.size());
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) keys.emplace_back(info.key);
-    limits->only(keys);  // a limit that is not understood would be the widest
+    limits->only(keys);  // an unknown key would leave its limit at the widest
     for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
       double& value = notes.limits.*info.field;
       limits->take(info.key, info.least, value, value);
@@ -188,7 +188,7 @@ toml::table write_notes(const DeviceNotes& notes) {
   return table;
 }
 
-// What has changed between two tables, into a third; what that has besides stays.
+// Applies the changes from `before` to `now` to `into`, whose other keys stay.
 void merge(const toml::table& before, const toml::table& now, toml::table& into) {
   for (const auto& [key, node] : before) {
     if (!now.contains(key.str())) into.erase(key.str());
@@ -211,7 +211,7 @@ void merge(const toml::table& before, const toml::table& now, toml::table& into)
 
 std::string entry_path(std::string_view id) { return fmt::format("device.\"{}\"", id); }
 
-// The file, as TOML. Errors: FileError.
+// Reads the file as TOML. Errors: FileError.
 toml::table parse_store(const fs::path& file) {
   std::error_code none;
   if (fs::status(file, none).type() == fs::file_type::not_found) return {};
@@ -302,13 +302,13 @@ std::string save_device_store(const DeviceStore& before, const DeviceStore& now,
           write_notes(known == before.notes.end() ? DeviceNotes{} : known->second);
       const toml::table changed = write_notes(notes);
       if (old == changed) continue;
-      // Nor is anything written that would be refused.
+      // Entries that reading would refuse are not written either.
       read_notes({changed, file.string(), fmt::format("device.\"{}\"", id)});
       if (!devices.contains(id)) {
         devices.insert(id, changed);
         continue;
       }
-      notes_in(devices, id, file);  // nothing is written over that cannot be understood
+      notes_in(devices, id, file);  // refuses to write over an entry that cannot be understood
       merge(old, changed, *devices.get_as<toml::table>(id));
     }
     std::ostringstream written;

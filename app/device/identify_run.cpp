@@ -15,11 +15,11 @@ using std::chrono::steady_clock;
 
 constexpr milliseconds kIdentifyTick{1};
 constexpr double kT = 1e-3;         // [s]
-constexpr double kLongestWay = 30;  // to the middle, at the start [s]
+constexpr double kLongestWay = 30;  // longest way to the middle at the start [s]
 
 double seconds(steady_clock::duration t) { return duration<double>(t).count(); }
 
-// Everything of a run that its ticks write to; allocates when constructed, never after.
+// Data of a run that its ticks write; allocates only when constructed.
 class Recording {
  public:
   Recording(const ArmDescription& arm, const DeviceTraits& traits, const ExcitationPlan& plan)
@@ -33,16 +33,16 @@ class Recording {
   bool running() const { return motion_.end() == ExcitationEnd::running && rows_ < x_.cols(); }
   void cancel() noexcept { motion_.cancel(); }
 
-  // `periods` since the tick before, `dt` [s] the same as it really passed; `silence` of the
-  // watcher [s].
+  // Runs a tick: `periods` since the last one, the time that really passed, `dt` [s], and the
+  // watcher's `silence` [s].
   void tick(Device& device, int periods, double dt, double silence) noexcept {
     DeviceReading reading;
     const bool here = device.read(reading);
     note_arrival(reading);
-    if (rows_ <= 1) lapses_ = reading.lapses;  // those before the first torque are not this run's
+    if (rows_ <= 1) lapses_ = reading.lapses;  // lapses before the first torque do not count
     const DeviceHealth health = health_of(reading, here, true, dt, silence, lapses_);
     const std::span<const double> x = std::span(reading.x).first(joints_);
-    // The rows of ticks that were given up: nothing else was sent.
+    // Ticks that were given up: the last torque stayed.
     for (int i = 1; i < periods && rows_ > 0 && rows_ < x_.cols(); ++i, ++rows_) {
       x_.col(rows_) = Eigen::Map<const Eigen::VectorXd>(x.data(), x_.rows());
       torque_.col(rows_) = torque_.col(rows_ - 1);
@@ -84,7 +84,7 @@ class Recording {
   }
 
  private:
-  // When the newest reading came, from its age.
+  // Notes when the newest reading came, from its age.
   void note_arrival(const DeviceReading& reading) noexcept {
     const double now = seconds(steady_clock::now().time_since_epoch());
     const double arrived = now - reading.age;

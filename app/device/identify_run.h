@@ -1,5 +1,4 @@
-// The identification of a device as it goes on: a thread of its own moves the device, somebody
-// watches how far it has come and may end it.
+// The identification of a device on a thread of its own, which a watcher follows and may cancel.
 #pragma once
 
 #include <atomic>
@@ -12,7 +11,7 @@
 
 namespace limpid {
 
-// What watcher and motion tell one another; any thread's.
+// Exchange between watcher and motion; for any thread.
 struct IdentifyProgress {
   std::atomic<double> time{0}, duration{1};  // [s]
   std::atomic<ExcitationStage> stage{ExcitationStage::approach};
@@ -23,31 +22,31 @@ struct IdentifyProgress {
   void see() { seen = std::chrono::steady_clock::now(); }
 };
 
-// How punctually a device reports, as its readings arrive.
+// Punctuality of the device's reports.
 struct ReadingTimes {
   double rate = 0;                    // [Hz]
-  std::vector<double> intervals;      // between neighbouring readings [s]
-  double p50 = 0, p99 = 0, most = 0;  // of them [s]
+  std::vector<double> intervals;      // between successive readings [s]
+  double p50 = 0, p99 = 0, most = 0;  // of `intervals` [s]
 };
 
 struct IdentifyRun {
   ExcitationEnd end = ExcitationEnd::cancelled;
-  ForceState objection = ForceState::on;  // where a limit or the device ended it
-  int joint = 0;                          // that did not follow, where something held it
-  MotionRecord record;                    // as far as it came
+  ForceState objection = ForceState::on;  // the limit, or the device's fault, that ended it
+  int joint = 0;                          // that was held and did not follow
+  MotionRecord record;                    // up to the end
   ReadingTimes timing;
 };
 
-// The plan within limits that somebody set for the device.
+// Narrows the plan to a person's limits for the device.
 ExcitationPlan within(ExcitationPlan plan, const SafetyLimits& limits);
 
-// Drives the device, which nobody else uses meanwhile, until the motion is done, cancelled or
-// ended, or its watcher has been silent; it is without torque then. Not for the window's thread.
-// `ask`: see become_realtime().
+// Drives the device, which nobody else may use meanwhile, until the motion is done, cancelled or
+// ended, or its watcher is silent; leaves it without torque. Not for the window's thread. `ask`:
+// see become_realtime().
 IdentifyRun run_identification(Device& device, const ArmDescription& arm,
                                const ExcitationPlan& plan, IdentifyProgress& progress,
                                const AskForPriority& ask);
-// The same with a simulated device, as fast as it goes.
+// Runs a simulated device likewise, as fast as possible.
 IdentifyRun simulate_identification(Device& device, const ArmDescription& arm,
                                     const ExcitationPlan& plan, IdentifyProgress& progress);
 

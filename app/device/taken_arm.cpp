@@ -29,8 +29,7 @@ ArmDescription built_in(const DeviceTraits& traits) {
       fmt::format("{} has {}, and no built-in arm has as many", traits.name, joints(traits.dof)));
 }
 
-// Another arm in its place would be one that nobody has measured or named: it is for people to say
-// so.
+// Reads a known arm's file. An error adds `what_to_do`, as no other arm may take its place unasked.
 ArmDescription read_known(const std::string& file, const std::string& tip, const char* what_to_do) {
   try {
     return read_urdf(file, tip);
@@ -39,7 +38,7 @@ ArmDescription read_known(const std::string& file, const std::string& tip, const
   }
 }
 
-// The same joints at the same places, whatever they weigh.
+// Whether the joints are the same at the same places, whatever their links weigh.
 bool same_joints(const ArmDescription& one, const ArmDescription& other) {
   const auto same = [](const Joint& a, const Joint& b) {
     constexpr double kAlike = 1e-6;

@@ -1,6 +1,6 @@
-// Which arm a device is taken for. Ranges, levers and inertia of that arm bound what its motors may
-// do, so it never follows from what is open by chance: the device says it itself, it was
-// identified, or somebody has said it.
+// The arm that a device is taken for. Its ranges, levers and inertia limit the motors' force, so it
+// must be known: from the device itself, from an identification, or from a person. The arm that
+// happens to be open is never used.
 #pragma once
 
 #include <string>
@@ -12,37 +12,37 @@
 
 namespace limpid {
 
-// No arm is known for it, and no built-in one has as many joints.
+// Thrown if no arm is known for a device, and no built-in one has as many joints.
 struct UnknownArmError : FileError {
   using FileError::FileError;
 };
 
 struct TakenArm {
-  ArmDescription arm;  // its ranges and torques are within the device's own
-  std::string why;     // which it is, and by what it is known: sentences for people
-  bool known = false;  // else it is a built-in one for now, with less torque
+  ArmDescription arm;  // ranges and torques are within the device's own
+  std::string why;     // reason for this arm, in sentences for people
+  bool known = false;  // else a provisional built-in one, with less torque
 };
 
-// The arm within what the device declares: the narrower range of each joint, the lower torque.
-// Errors: FileError, where the joints are not as many, or a joint's ranges have nothing in common.
+// The arm within the limits of the device: the narrower range of each joint, the lower torque.
+// Errors: FileError if the numbers of joints differ, or ranges do not overlap.
 ArmDescription narrowed(ArmDescription arm, const DeviceTraits& traits);
 
-inline constexpr double kShortestLever = 0.05;  // of a device that nothing is known of [m]
+inline constexpr double kShortestLever = 0.05;  // of an unknown device [m]
 
-// The arm that it was identified as, else its own, else `named` (by the command that is carried
-// out; null: none is), else what somebody has said, else a built-in one. What is known but does not
-// fit the device any more is said, and not used. As nobody knows how long the levers of a device
-// are of which nothing is known, its torque is held to the tip's limit at kShortestLever.
-// `kind` null: nothing is plugged in. Errors: FileError, where an arm's file cannot be read;
-// UnknownArmError.
+// The identified arm, else the device's own, else `named` (by the running command; null: none),
+// else a person's choice, else a built-in one. A known arm that no longer fits the device is
+// reported and not used. Torques of a built-in one are held to the tip's limit at kShortestLever,
+// as its real levers are unknown. `kind` null: nothing is plugged in. Errors: FileError if an arm's
+// file cannot be read; UnknownArmError.
 TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const DeviceTraits& traits,
                    const ArmDescription* named = nullptr);
 
-// The same before it is connected to, as far as the notes tell: "its built-in arm, as was said".
+// The arm before the device is connected, as far as the notes tell: "its built-in arm, as was
+// said".
 std::string arm_words(const DeviceNotes& notes, const DeviceKind& kind);
 
-// Whether somebody may say which arm it is: it does not say so itself, was not identified, and has
-// an arm at all.
+// Whether a person may choose the arm: the device does not tell it, was not identified, and has an
+// arm.
 bool may_be_told_its_arm(const DeviceNotes& notes, const DeviceKind& kind);
 
 }  // namespace limpid

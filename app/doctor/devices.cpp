@@ -32,7 +32,7 @@ Finding rule() {
   std::string source = fmt::format("assets/udev/{}", kRule);
   try {
     source = (data_dir() / source).string();
-  } catch (const std::exception&) {  // said among the files
+  } catch (const std::exception&) {  // reported among the files
   }
   return {kDevicesArea,
           "udev rule",

@@ -43,7 +43,7 @@ Finding program(const char* name, const char* cost) {
   return {kFilesArea, name, State::broken, file.string() + " is missing", cost, kAgain};
 }
 
-// As the shell looks for it.
+// Looks for a program in PATH, as the shell does.
 Finding tool(const std::string& name, const char* cost, const std::string& package) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
@@ -55,7 +55,7 @@ Finding tool(const std::string& name, const char* cost, const std::string& packa
   return {kFilesArea, name, State::better, "not installed", cost, "sudo apt install " + package};
 }
 
-// Where it is, or would be made.
+// The folder, or the nearest one above that exists.
 fs::path nearest(fs::path folder) {
   std::error_code none;
   while (!fs::exists(folder, none) && folder.has_relative_path()) folder = folder.parent_path();

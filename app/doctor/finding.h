@@ -1,4 +1,4 @@
-// What was looked at on this computer, and what would make it better.
+// A finding about this computer, with its remedy.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct Finding {
   };
 
   std::string area;  // "real time", "devices", "picture", "files"
-  std::string what;  // that was looked at
+  std::string what;  // the thing looked at
   State state = State::fine;
   std::string found;
-  std::string cost;  // what is lost by it; empty if all is fine
-  std::string mend;  // a command, or what to do; empty if all is fine
+  std::string cost;  // consequence; empty if all is fine
+  std::string mend;  // a command, or advice; empty if all is fine
 };
 using DoctorFindings = std::vector<Finding>;
 

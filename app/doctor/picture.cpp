@@ -35,7 +35,7 @@ std::string offscreen_renderer() {
   return renderer_name();
 }
 
-// Of a window that is never shown, with the hints of the real one.
+// Renderer of a window that is never shown, with the real one's hints.
 std::string window_renderer() {
   const auto refuse = [](const char* otherwise) {
     const char* why = nullptr;
@@ -54,7 +54,7 @@ std::string window_renderer() {
 }
 
 [[noreturn]] void answer(int to, const std::function<std::string()>& renderer) {
-  setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);  // nothing is written to the disk
+  setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);  // writes nothing to the disk
   std::string text;
   try {
     text = "+" + renderer();
@@ -76,7 +76,7 @@ std::string all_of(int from) {
   return text;
 }
 
-// In a process of its own, whose end by a broken driver is an answer, too.
+// Asks in a process of its own, so that a driver's crash is an answer, too.
 Answer ask(const std::function<std::string()>& renderer) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) return {false, "no pipe"};
@@ -86,7 +86,7 @@ Answer ask(const std::function<std::string()>& renderer) {
   close(ends[1]);
   const std::string text = all_of(ends[0]);
   close(ends[0]);
-  kill(child, SIGKILL);  // it has said all, or hangs
+  kill(child, SIGKILL);  // it has answered, or hangs
   waitpid(child, nullptr, 0);
   if (text.empty()) return {false, "the OpenGL driver crashed, or hangs"};
   return {text.front() == '+', text.substr(1)};
@@ -135,7 +135,7 @@ Finding window() {
           "nvidia-driver"};
 }
 
-// Both do; which one opens is worth knowing.
+// Tells which file dialog opens; either one works.
 Finding file_dialog() {
   const auto version = file_portal_version();
   const std::string found =

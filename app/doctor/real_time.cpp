@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using State = Finding::State;
 
 constexpr const char* kRealTimeArea = "real time";
-constexpr const char* kGroup = "realtime";  // of assets/desktop/limits.conf
+constexpr const char* kGroup = "realtime";  // as in assets/desktop/limits.conf
 
 std::string first_line(const fs::path& file) {
   std::ifstream text(file);
@@ -44,8 +44,8 @@ std::string user() {
   return entry != nullptr ? entry->pw_name : "$USER";
 }
 
-// Puts the user into the group that the package's file of limits is for; without the package, gives
-// the user the limits by name.
+// Command that adds the user to the group of the package's limits; without the package, one that
+// gives the user the limits by name.
 std::string mend_limits() {
   if (fs::exists("/etc/security/limits.d/limpid.conf") && getgrnam(kGroup) != nullptr) {
     return fmt::format("sudo usermod -aG {} {}    # then log in again", kGroup, user());
@@ -61,7 +61,7 @@ struct Granted {
   int timer_slack = 0;  // [ns]
 };
 
-// In a thread that ends at once: this one stays as it is.
+// Asks in a thread that ends at once, so that this one stays as it is.
 Granted ask_for_all() {
   Granted granted;
   std::thread([&granted] {
@@ -106,7 +106,7 @@ Finding timers(int slack) {
   timespec resolution{};
   clock_getres(CLOCK_MONOTONIC, &resolution);
   const std::string found = fmt::format("every {} ns, slack {} ns", resolution.tv_nsec, slack);
-  // Real-time threads have none, whatever was asked for.
+  // Real-time threads have no slack, whatever was asked for.
   const bool fine =
       resolution.tv_sec == 0 && resolution.tv_nsec < 1'000'000 && (slack == 0 || slack == 1);
   if (fine) return {kRealTimeArea, "timers", State::fine, found, {}, {}};
@@ -150,7 +150,7 @@ Finding governor() {
           "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
 }
 
-// Nothing to mend: with SCHED_FIFO any of them is good enough on most computers.
+// Names the kernel; always fine, as SCHED_FIFO suffices with any on most computers.
 Finding kernel() {
   utsname name{};
   uname(&name);

@@ -1,4 +1,4 @@
-// How punctually a device reports, as its readings arrive: written by the loop, read by the window.
+// Punctuality of a device's reports: written by the loop, read by the window.
 #pragma once
 
 #include <atomic>
@@ -12,13 +12,13 @@ namespace limpid {
 class DevicePace {
  public:
   struct Figures {
-    std::uint64_t intervals = 0;  // between neighbouring readings, so far
-    double mean = 0;              // of them [s]
+    std::uint64_t intervals = 0;  // between successive readings, so far
+    double mean = 0;              // of the intervals [s]
     double jitter = 0;            // their standard deviation [s]
-    double rate = 0;              // readings a second, also of those that came between two ticks
+    double rate = 0;              // readings a second, also those between two ticks
   };
 
-  // Another device, or the same one anew. The loop's, like note().
+  // Begins anew, for another device or the same one. For the loop, like note().
   void start() noexcept {
     known_ = false;
     count_ = 0;
@@ -26,8 +26,8 @@ class DevicePace {
     readings_ = singles_ = 0;
     heard_ = sum_ = squares_ = 0;
   }
-  // At a tick: so many readings so far, the newest `age` old at `now` [s]. Where several came since
-  // the last tick only their number is known.
+  // Notes at a tick the number of readings so far; the newest is `age` old at `now` [s]. Of several
+  // readings since the last tick only the number is known.
   void note(std::uint64_t count, double age, double now) noexcept {
     const double arrived = now - age;
     if (known_ && count > count_) {
@@ -47,7 +47,7 @@ class DevicePace {
     arrived_ = arrived;
   }
 
-  // Any thread; a reading may be in one of them and not yet in another.
+  // For any thread; a reading may be in one value and not yet in another.
   const LatencyHistogram& intervals() const { return intervals_; }
   Figures figures() const noexcept {
     Figures f;
@@ -63,7 +63,7 @@ class DevicePace {
   }
 
  private:
-  // One thread writes.
+  // Adds without a lock: only one thread writes.
   template <class T>
   static void add(std::atomic<T>& to, T value) noexcept {
     to.store(to.load(std::memory_order_relaxed) + value, std::memory_order_relaxed);
@@ -72,7 +72,7 @@ class DevicePace {
   LatencyHistogram intervals_;
   std::atomic<std::uint64_t> readings_{0}, singles_{0};
   std::atomic<double> heard_{0}, sum_{0}, squares_{0};
-  // The loop's own.
+  // Used by the loop alone.
   bool known_ = false;
   std::uint64_t count_ = 0;
   double arrived_ = 0;

@@ -15,7 +15,7 @@
 namespace limpid {
 namespace {
 
-constexpr std::size_t kTraceRows = 1 << 13;  // eight seconds of a window that does not come
+constexpr std::size_t kTraceRows = 1 << 13;  // eight seconds without the window
 constexpr double kGuideReach = 0.03;         // a guided hand stays this near to the tip [m]
 
 }  // namespace
@@ -63,9 +63,9 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   std::ranges::fill(of_twin_, std::numeric_limits<double>::quiet_NaN());
   home_ = rebase_ = std::move(start);
   parameters_ = p;
-  limits_ = {};  // as a new rig has them; the first tick lowers them again
+  limits_ = {};  // as in a new rig; the first tick lowers them again
   rig_->start(p, home_);
-  rig_->present(rebase_);  // of the sizes that it needs from now on
+  rig_->present(rebase_);  // makes room for all sizes needed from now on
   twin_.room_for(rebase_);
   hand_.reset(home_.target);
   guided_.reset(home_.target);
@@ -82,7 +82,7 @@ void LiveLoop::close() {
   thread_.stop();
   if (rig_ && !in_place_) virtual_armed_ = rig_->force().armed();
   stop_recording();
-  recording_to_ = nullptr;  // the next loop's rows are not its
+  recording_to_ = nullptr;  // the next loop's rows are not for it
   has_let_go_.store(true, std::memory_order_relaxed);
   worlds_.clear();
   slots_.clear();
@@ -98,7 +98,7 @@ void LiveLoop::close() {
 
 LiveLoop::~LiveLoop() { close(); }
 
-// Rows are refused while the ring is full, so that all that it holds then is older.
+// The full ring refuses rows, so all rows that it holds then are older than the gap.
 std::size_t LiveLoop::drain(std::span<double> into) {
   if (!trace_) return 0;
   if (const std::uint64_t dropped = trace_->dropped(); before_gap_ == 0) {
@@ -120,7 +120,7 @@ void LiveLoop::plug(std::unique_ptr<Device> device) {
   slots_.offer(std::move(slot));
 }
 
-// What the window has offered.
+// Takes in what the window has offered.
 void LiveLoop::take_in() {
   if (TouchWorlds* worlds = worlds_.take()) {
     rig_->exchange(worlds->first);
@@ -145,7 +145,8 @@ HandInput LiveLoop::follow_path() {
   return input_at(path_->hand, k, parameters_.tick);
 }
 
-// A path that was given leads the hand, or else the mouse; a guide does while the mouse does not.
+// The hand's input: from a path if there is one, else from the mouse while it grabs, else from a
+// guide.
 HandInput LiveLoop::hand_input(const Controls& controls) {
   const Vec3 tip = rig_->tip();
   const double T = parameters_.tick;
@@ -188,7 +189,8 @@ RigInput LiveLoop::rig_input(const TickTiming& timing, const HandInput& hand) {
   return input;
 }
 
-// A device is where it is, and off; a virtual arm keeps its force, unless that had gone.
+// Starts over: a device where it is and without force, a virtual arm with its force unless that had
+// tripped.
 void LiveLoop::start_over(const Parameters& p) {
   if (in_place_) {
     rig_->present(home_);
@@ -204,7 +206,7 @@ void LiveLoop::start_over(const Parameters& p) {
   path_runs_ = path_ != nullptr && !path_->waits;
 }
 
-// Whether the arm's next tick comes now. A device's time cannot be stopped.
+// Whether the arm's next tick comes now; the time of a device cannot be stopped.
 bool LiveLoop::due(const Controls& controls) {
   const bool asked =
       controls.resets != resets_ || known_arms_ != arms_.load() || known_cuts_ != cuts_.load();
@@ -262,15 +264,15 @@ void LiveLoop::tick(const TickTiming& timing) {
   publish(timing);
 }
 
-// Takes up or lets go of the recorder. A recording starts the rig anew from where it stands, so
-// that its first row says all that the later ones depend on.
+// Takes up or releases the recorder. A recording restarts the rig where it stands, so that its
+// first row determines all later ones.
 void LiveLoop::follow_recorder(const Vec3& target) {
   if (recording_to_ != nullptr && let_go_.load(std::memory_order_relaxed)) {
     recording_to_ = nullptr;
     has_let_go_.store(true, std::memory_order_release);
   }
   if (offered_recorder_.load(std::memory_order_relaxed) == nullptr || !rig_->steady()) return;
-  // Taken back meanwhile: then it is not ours.
+  // Null if the window has withdrawn it meanwhile.
   Recorder* offered = offered_recorder_.exchange(nullptr, std::memory_order_acq_rel);
   if (offered == nullptr) return;
   recording_to_ = offered;
@@ -317,14 +319,15 @@ void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
 void LiveLoop::stop_recording() {
   if (!recording()) return;
   stopping_ = true;
-  // Still offered: then the loop never had it, and will not.
+  // A recorder still offered was never the loop's, and will not be.
   const bool never_taken =
       offered_recorder_.exchange(nullptr, std::memory_order_acq_rel) != nullptr;
   if (never_taken) has_let_go_.store(true, std::memory_order_relaxed);
   let_go_.store(true, std::memory_order_relaxed);
 }
 
-// A loop that has stopped does not say so, and does not write either.
+// Whether the loop has released the recorder; a loop that has stopped cannot confirm it, and writes
+// nothing.
 bool LiveLoop::recorder_is_free() {
   if (has_let_go_.load(std::memory_order_acquire)) return true;
   if (thread_.status().running) return false;

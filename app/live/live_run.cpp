@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBetween = 10ms;  // of what it says to the loop: well within SafetyLimits::kSilence
+constexpr auto kBetween = 10ms;  // between controls; well within SafetyLimits::kSilence
 constexpr auto kGone = 1s;
 constexpr std::size_t kDrained = 256;  // rows at a time
 
@@ -48,7 +48,7 @@ void LiveRun::drain(const Row& row) {
 
 bool LiveRun::pass(double seconds, const std::atomic<bool>& stop, const Row& row) {
   const MonotonicTime time;
-  drain({});  // what came before
+  drain({});  // drops older rows
   const nanoseconds end = time.now() + nanoseconds(std::llround(1e9 * seconds));
   while (time.now() < end) {
     if (stop) return false;

@@ -30,7 +30,7 @@ struct FreeMessage {
 using Connection = std::unique_ptr<DBusConnection, CloseConnection>;
 using Message = std::unique_ptr<DBusMessage, FreeMessage>;
 
-// A connection of our own: losing the shared one would make libdbus end the process.
+// A private connection: losing the shared one would make libdbus end the process.
 Connection connect(Error& error) {
   Connection bus(dbus_bus_get_private(DBUS_BUS_SYSTEM, &error));
   if (bus) dbus_connection_set_exit_on_disconnect(bus.get(), FALSE);

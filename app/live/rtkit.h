@@ -9,12 +9,12 @@
 
 namespace limpid {
 
-// Asks RealtimeKit on the system bus to schedule thread `tid` of this process in real time. Waits a
-// second for the answer at most. False when there is no bus, no RealtimeKit or it refuses; `why`
-// (may be null) then gets one line saying so. The process must have limited RLIMIT_RTTIME before.
+// Asks RealtimeKit on the system bus to schedule thread `tid` of this process in real time; waits
+// at most a second. False without bus or RealtimeKit, or if it refuses; `why` (may be null) then
+// gets a line with the reason. The process must have limited RLIMIT_RTTIME before.
 bool ask_rtkit(pid_t tid, int priority, std::string* why);
 
-// The same for become_realtime(), without a word of why not.
+// ask_rtkit() for become_realtime(), without the reason of a refusal.
 AskForPriority by_rtkit();
 
 }  // namespace limpid

@@ -1,5 +1,5 @@
 // A second run beside the loop's: another simulated device in the same world, on the same hand,
-// under settings of its own.
+// with settings of its own.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,8 @@ namespace limpid {
 
 class Twin {
  public:
-  // Not the loop's: they allocate. `rig`: with a simulated device, of the loop's arm and scene.
+  // For threads other than the loop's: they allocate. `rig`: a simulated device with the loop's arm
+  // and scene.
   void open(std::unique_ptr<Rig> rig, const RigStart& sizes);
   void room_for(const RigStart& sizes) { start_ = sizes; }
   void close() {
@@ -19,17 +20,17 @@ class Twin {
     running_ = changed_ = false;
   }
 
-  // The loop's. One tick, into `row`; begins where `first` stands when it is switched on. `row` is
-  // the same at every call, and not a number from when it is switched off.
+  // For the loop, like all below. Runs a tick into `row`; begins at the state of `first` when
+  // switched on. `row` must be the same at every call; it is NaN once switched off.
   void step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
             std::span<double> row) noexcept;
   void begin_anew() noexcept { anew_ = true; }  // at the next step
-  // Between two ticks, as Rig::restart_here().
+  // Restarts between two ticks, as Rig::restart_here().
   void restart_here(const Vec3& target) noexcept;
   const RigStart& start() const { return start_; }  // of the last restart_here()
   void exchange(TouchWorld& world) noexcept { rig_->exchange(world); }
   const Parameters& parameters() const { return parameters_; }
-  // Whether they have changed at the last step.
+  // Whether the parameters changed at the last step.
   bool changed() const { return changed_; }
 
  private:

@@ -25,16 +25,16 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestName = 64;
-constexpr std::size_t kPiece = std::size_t{16} << 10;  // that is read at once [bytes]
+constexpr std::size_t kPiece = std::size_t{16} << 10;  // bytes read at once
 constexpr std::size_t kLongestOwner = 200;
-constexpr std::size_t kMostEvents = 1024;  // that the owner may find; then nobody is let in
+constexpr std::size_t kMostEvents = 1024;  // for the owner; with more, no new client is accepted
 constexpr mode_t kFolderMode = 0700, kFileMode = 0600;
 
 ListenError failed(const fs::path& path) {
   return ListenError(fmt::format("{}: {}", path.string(), std::strerror(errno)));
 }
 
-// Ours alone, whatever the umask is and whoever made it.
+// Makes the folder private, whatever the umask and the owner.
 void make_private(const fs::path& folder) {
   if (mkdir(folder.c_str(), kFolderMode) != 0 && errno != EEXIST) throw failed(folder);
   struct stat is {};
@@ -62,14 +62,14 @@ std::string own_words() {
   return words.substr(words.substr(0, words.find(' ')).rfind('/') + 1);
 }
 
-// Who has a name, as the owner of its lock has written it.
+// The program that has a name, by its words in the lock's file.
 std::string owner_in(int lock) {
   std::array<char, kLongestOwner + 40> bytes{};
   const ssize_t size = pread(lock, bytes.data(), bytes.size(), 0);
   return size > 0 ? std::string(bytes.data(), static_cast<std::size_t>(size)) : "another program";
 }
 
-// The lock ends with the process, however that ends; the file stays.
+// Takes the lock, which ends with the process in any case; the file stays.
 int take_lock(const fs::path& path) {
   const fs::path file = path.string() + ".lock";
   const int lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kFileMode);
@@ -135,9 +135,9 @@ void ControlSocket::listen_at() {
                                   sizeof(address.sun_path) - 1));
   }
   text.copy(address.sun_path, text.size());
-  unlink(text.c_str());  // of one that was killed: the lock is ours
+  unlink(text.c_str());  // left by a killed program: the lock is ours
   file_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  // Nobody else can enter the folder, so it does not matter which mode it has for a moment.
+  // Nobody else can enter the folder, so the socket's mode does not matter for a moment.
   if (file_ < 0 || bind(file_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 ||
       chmod(text.c_str(), kFileMode) != 0 ||
       listen(file_, static_cast<int>(LineServer::kMostClients)) != 0) {
@@ -231,12 +231,12 @@ void LineServer::part(Connection& c) {
   c.until = Clock::now() + kParting;
 }
 
-// For the owner to take another of its lines: the answers that it does not fetch do not grow.
+// Whether another line may be passed to the owner: unfetched answers must not grow.
 bool LineServer::has_room(const Connection& c) {
   return c.unanswered < kMostUnanswered && c.out.size() < kMostUnsent;
 }
 
-// What it still asks for cannot be answered, or it has got all that it will.
+// Whether a connection is over: its client is gone, or has all answers that it can get.
 bool LineServer::done(const Connection& c) {
   if (c.file < 0) return true;
   const bool sent = c.out.empty();
@@ -257,7 +257,7 @@ void LineServer::live() {
   while (true) {
     files.assign({{wake_, POLLIN, 0}, {socket_.file(), POLLIN, 0}});
     ids.clear();
-    int longest = -1;  // no need to look before something happens [ms]
+    int longest = -1;  // no timeout [ms]
     {
       const std::lock_guard lock(mutex_);
       if (quit_) return;
@@ -266,7 +266,7 @@ void LineServer::live() {
         // A client without room is heard as well: it may ask to cut the force.
         const bool listens = !c.parting && !c.ended && !c.too_long;
         const int wanted = (listens ? POLLIN : 0) | (c.out.empty() ? 0 : POLLOUT);
-        // One that has ended would be reported all the time.
+        // A client that has ended would be reported all the time.
         files.push_back({c.ended && wanted == 0 ? -1 : c.file, static_cast<short>(wanted), 0});
         ids.push_back(id);
         if (c.parting) longest = static_cast<int>(kParting.count()) / 10;
@@ -301,7 +301,7 @@ void LineServer::greet() {
 }
 
 void LineServer::serve(Connection& c, Client id, short happened) {
-  // One that has hung up is read to its end: its last line may be the one that matters.
+  // The input of a client that has hung up is read to its end: its last line may matter.
   const bool gone = (happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if ((happened & POLLIN) != 0) read(c);
   split(c, id);
@@ -312,7 +312,7 @@ void LineServer::serve(Connection& c, Client id, short happened) {
   c.file = -1;
 }
 
-// False where there was nothing to read.
+// Returns false if there was nothing to read.
 bool LineServer::read(Connection& c) {
   if (c.file < 0 || c.parting || c.ended || c.too_long) return false;
   std::array<char, kPiece> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled next
@@ -329,7 +329,7 @@ bool LineServer::read(Connection& c) {
   return size > 0;
 }
 
-// At the lines that have just become whole.
+// Passes whole lines that have just arrived to at_once_, and drops those without room.
 void LineServer::look(Connection& c) {
   while (true) {
     const std::size_t end = std::min(c.in.find('\n', c.looked), c.in.size());

@@ -1,9 +1,6 @@
-// Lines of text from and to the programs that are connected to a socket of this computer, on a
-// thread of its own.
-//
-// Whatever a program on the other side does or fails to do costs its own connection and nothing
-// else: all that waits for it is bounded, and nothing here ever waits for it. The haptic thread has
-// no part in any of this.
+// Lines of text between this program and clients on a local socket, on a thread of its own.
+// Whatever a client does or fails to do costs only its own connection: its queues are bounded, and
+// nothing here waits for it. The haptic thread has no part in this.
 #pragma once
 
 #include <chrono>
@@ -22,20 +19,21 @@
 
 namespace limpid {
 
-// A socket that cannot be had; what() says why, for people.
+// Thrown if a socket cannot be opened; what() says why, for people.
 struct ListenError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// $XDG_RUNTIME_DIR/limpid/NAME.control. Errors: ListenError for a name of other characters than
-// letters, digits, - and _, of more than 64, or where that folder is not set.
+// $XDG_RUNTIME_DIR/limpid/NAME.control. Errors: ListenError if the name has other characters than
+// letters, digits, - and _, or more than 64; or if that folder is not set.
 std::filesystem::path control_path(const std::string& name);
 
-// A socket that listens there, and the lock that says so: one program has a name at a time, and
-// what one that was killed left behind is taken over.
+// A listening socket and its lock. One program has a name at a time; the socket of a killed program
+// is taken over.
 class ControlSocket {
  public:
-  // The folder gets mode 0700, the socket 0600. Errors: ListenError; it says who has the name.
+  // Gives the folder mode 0700, the socket 0600. Errors: ListenError; it names the program that has
+  // the name.
   explicit ControlSocket(const std::filesystem::path& path);
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
@@ -53,26 +51,26 @@ class ControlSocket {
 
 class LineServer {
  public:
-  using Client = std::uint64_t;  // its number, which no other one gets
+  using Client = std::uint64_t;  // number of a client, never used again
 
   static constexpr std::size_t kMostClients = 16;
   static constexpr std::size_t kLongestLine = std::size_t{64} << 10;  // [bytes]
   static constexpr std::size_t kMostUnanswered = 16;                  // lines of one client
-  // Then no further line of the client is taken [bytes].
+  // No further line of a client is taken while more than this is unsent [bytes].
   static constexpr std::size_t kMostUnsent = std::size_t{256} << 10;
-  // Room for lines that wait to be taken; lines beyond it are dropped, and the client is told how
-  // many [bytes].
+  // Room for lines that wait to be taken; further lines are dropped, and the client learns their
+  // number [bytes].
   static constexpr std::size_t kMostWaiting = std::size_t{256} << 10;
-  static constexpr std::chrono::milliseconds kParting{1000};  // to take what is left
+  static constexpr std::chrono::milliseconds kParting{1000};  // time for a client to take the rest
 
-  // Something that happened: a line came, or the client went.
+  // A line of a client, or the end of its connection.
   struct Event {
     Client from = 0;
-    std::optional<std::string> line;  // none: it is gone
+    std::optional<std::string> line;  // none: the client is gone
   };
 
-  // `at_once` hears of every line on the server's thread as soon as it arrives, also of one that
-  // waits or is dropped. Errors: as ControlSocket.
+  // `at_once` receives every line on the server's thread as soon as it arrives, also lines that
+  // wait or are dropped. Errors: as ControlSocket.
   explicit LineServer(const std::filesystem::path& path,
                       std::function<void(std::string_view line)> at_once = {});
   ~LineServer();
@@ -82,26 +80,26 @@ class LineServer {
   const std::filesystem::path& path() const { return socket_.path(); }
   std::size_t clients() const;
 
-  // The owner's. The oldest event, if there is one.
+  // For the owner's thread, like all below. The oldest event, if any.
   std::optional<Event> take();
-  // Returns when there is one, or at that time.
+  // Returns at the next event, or at `end`.
   void wait_until(std::chrono::steady_clock::time_point end);
-  // The answer to a line that was taken; each has to get one, as further lines wait for it.
+  // Answers a line that was taken. Every line needs an answer; further lines wait for it.
   void answer(Client to, std::string_view line);
-  // What nobody has asked for at this moment. False where too much waits for the client already.
+  // Sends a line without a request. False if too much is unsent already.
   bool offer(Client to, std::string_view line);
-  // Once it has taken what is on its way to it.
+  // Ends the connection once the client has taken what is unsent.
   void part_from(Client client);
 
  private:
   struct Connection {
     int file = -1;
     std::string in, out;
-    std::size_t looked = 0;  // so much of `in` is whole lines, of which at_once_ has heard
+    std::size_t looked = 0;  // length of the whole lines in `in`, passed to at_once_
     std::size_t unanswered = 0;
-    std::size_t dropped = 0;  // lines, of which the client was not told yet
-    bool too_long = false;    // a line was; nothing after it is read
-    bool ended = false;       // says nothing more, but may listen
+    std::size_t dropped = 0;  // lines dropped since the client was last told
+    bool too_long = false;    // a line was too long; nothing after it is read
+    bool ended = false;       // the client sends nothing more, but may listen
     bool parting = false;
     std::chrono::steady_clock::time_point until{};  // while parting
   };

@@ -11,7 +11,7 @@ json number(double x) { return std::isfinite(x) ? json(x) : json(); }
 
 namespace {
 
-// "hand/torque.1", "hand/torque.2", ...
+// Indices of "hand/torque.1", "hand/torque.2", ...
 std::vector<int> parts_of(const TraceChannels& channels, const std::string& name) {
   std::vector<int> parts;
   while (const auto part = channels.find(name + "." + std::to_string(parts.size() + 1))) {

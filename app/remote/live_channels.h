@@ -1,4 +1,4 @@
-// Channels by name over the control socket: those of plots, and those that sessions have.
+// Channels by name over the control socket: channels of plots and of sessions.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,23 +11,23 @@
 
 namespace limpid {
 
-// A number as the socket has it: null for what is none.
+// `x` in JSON: null if it is not finite.
 nlohmann::json number(double x);
 
-// A channel that a client asks for by its name. A session's vector comes as a list: "hand/torque"
-// of all joints, "device/tip" as x, y, z. A plot's channel, "hand/torque.1", comes as a number.
+// A channel by its name. A session's vector is a list: "hand/torque" of all joints, "device/tip" as
+// x, y, z. A plot's channel, "hand/torque.1", is a number.
 struct LiveChannel {
-  std::vector<int> parts = {};              // of TraceChannels, if it is made of these
-  std::optional<Column> column = {};        // else one of the row as it is
-  std::optional<std::size_t> derived = {};  // else a place in kDerivedInfo
+  std::vector<int> parts = {};              // of TraceChannels, if made of these
+  std::optional<Column> column = {};        // else a column of the row
+  std::optional<std::size_t> derived = {};  // else an index of kDerivedInfo
   bool vector = false;
 
-  // None for a name that neither plots nor sessions have.
+  // Finds a channel of plots or sessions; none if there is no such name.
   static std::optional<LiveChannel> find(const TraceChannels& channels, const std::string& name);
 
-  // The unit, or a list where a vector's numbers have several.
+  // The unit; a list if a vector has several.
   nlohmann::json unit(const TraceChannels& channels) const;
-  // `values`: of all of `channels` in this row. Null in place of what is no number.
+  // The channel's value in `row`; null for what is not finite. `values`: of all of `channels`.
   nlohmann::json value(const TraceChannels& channels, std::span<const double> row,
                        std::span<const double> values) const;
 };

@@ -10,8 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepest = 6;             // objects and lists in one another
-constexpr std::size_t kLongestId = 64;  // of a text
+constexpr int kDeepest = 6;             // most nested objects and lists
+constexpr std::size_t kLongestId = 64;  // of an id that is a text
 constexpr std::size_t kShown = 60;
 
 constexpr std::array<const char*, 0> kNone{};

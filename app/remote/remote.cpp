@@ -67,7 +67,7 @@ Remote::Remote(const std::filesystem::path& path, RemoteHost host, std::function
 
 bool Remote::turn() {
   bool any = false;
-  // Those that come meanwhile wait for the next turn.
+  // Events that come meanwhile wait for the next turn.
   constexpr std::size_t kMost = LineServer::kMostClients * LineServer::kMostUnanswered;
   for (std::size_t i = 0; i < kMost; ++i) {
     const auto event = server_.take();
@@ -119,7 +119,7 @@ Answer Remote::act(const Request& request, Client client) {
   throw RemoteError(fmt::format("{}: needs a window; `limpid --listen` has one", verb));
 }
 
-// What was asked for before, and is done, or has failed, by now.
+// Answers earlier requests that are done, or have failed, by now.
 void Remote::follow_up() {
   std::vector<Pending> left;
   for (Pending& p : std::exchange(pending_, {})) {
@@ -137,7 +137,7 @@ void Remote::follow_up() {
                   std::make_move_iterator(left.end()));
 }
 
-// Once to each; whoever has no room for it now hears of it later.
+// Tells the trouble to each client once; clients without room are told later.
 void Remote::tell_trouble() {
   if (std::string now = host_.trouble(); now != trouble_) {
     trouble_ = std::move(now);
@@ -196,7 +196,7 @@ json Remote::set(const Keys& keys, Client client) {
     set_values(p, keys, host_.highest());
     return p;
   };
-  changed();  // what is refused changes nothing
+  changed();  // throws before anything changes
   host_.before_set(client);
   const Parameters p = changed();
   host_.set(p, of_twin);

@@ -1,8 +1,6 @@
-// Answers what programs on the control socket ask for, on the thread that owns the loop.
-//
-// What a verb does is said by whoever has the loop, the window or `limpid serve`: there it is what
-// menus and keys do. Here are the verbs that are the same everywhere, and the rows that clients
-// follow.
+// Answers requests on the control socket, on the thread that owns the loop. The loop's owner, the
+// window or `limpid serve`, carries out its own verbs as its menus and keys do. Here are the verbs
+// common to both, and the rows that clients follow.
 #pragma once
 
 #include <chrono>
@@ -23,8 +21,8 @@
 
 namespace limpid {
 
-// What an action answers: at once, or later. `later` is asked in every turn until it has something
-// to say, or throws.
+// Answer of an action: at once, or later. `later` is called every turn until it returns an answer,
+// or throws.
 struct Answer {
   using Later = std::function<std::optional<nlohmann::json>()>;
 
@@ -35,55 +33,55 @@ struct Answer {
   Answer(Later in_time) : later(std::move(in_time)) {}         // NOLINT
 };
 
-// What the loop's owner has and does. Errors of all of them: any std::exception, whose what() the
-// client gets.
+// The loop's owner: its state and actions. Errors of all functions: any std::exception; the client
+// receives its what().
 struct RemoteHost {
   using Action = std::function<Answer(const Keys& keys, LineServer::Client client)>;
 
   std::string kind;  // "window" or "serve"
   std::function<nlohmann::json()> state;
   std::function<const Parameters&()> parameters;
-  std::function<const Parameters*()> twin;  // null: there is none
-  // What a person has chosen, as with_limits_of() has it.
+  std::function<const Parameters*()> twin;  // null: no twin
+  // Highest limits allowed to clients: a person's choice, by with_limits_of().
   std::function<Parameters()> highest;
-  // Before this client sets anything: ends what has put other settings in their place for a while.
+  // Called before this client sets anything: ends a temporary replacement of the settings.
   std::function<void(LineServer::Client)> before_set = [](LineServer::Client) {};
-  // All settings as they usually are for the arm, as far as they can be so while the loop runs.
+  // The arm's usual settings, as far as they can change while the loop runs.
   std::function<Parameters()> usual = [] { return Parameters{}; };
-  // The whole of them; the second run's where `of_twin`.
+  // Sets all settings, of the twin if `of_twin`.
   std::function<void(const Parameters&, bool of_twin)> set;
   std::function<const TraceChannels&()> channels;
-  std::function<std::span<const double>()> row, twin_row;  // empty: none
+  std::function<std::span<const double>()> row, twin_row;  // empty: no row
   std::function<std::uint64_t()> tick;                     // of the newest row
-  // By the names of their verbs; those that are missing need a window.
+  // Actions by verb; missing verbs need a window.
   std::map<std::string, Action> actions;
-  // Trouble that came by itself and lasts, in words, as a recording that has ended on a full disk;
-  // empty: none. Every client is told at once.
+  // A lasting trouble in words, such as a recording that ended on a full disk; empty: none. Every
+  // client is told at once.
   std::function<std::string()> trouble = [] { return std::string(); };
   std::function<void(LineServer::Client)> gone = [](LineServer::Client) {};
 };
 
-// What a state says of the loop, whoever has it.
+// The loop's part of a state, the same for every owner.
 nlohmann::json loop_state(const LiveLoop& loop, const ArmDescription& arm);
 
-// The text of a mark. Errors: RemoteError for one that is missing, or longer than sessions keep.
+// Text of a mark. Errors: RemoteError if it is missing, or longer than sessions allow.
 std::string noted(const Keys& keys);
 
 class Remote {
  public:
-  static constexpr std::size_t kMostChannels = 64;  // that a client follows
+  static constexpr std::size_t kMostChannels = 64;  // most channels a client follows
   static constexpr double kUsualRate = 100;         // [rows/s]
 
   Remote(const std::filesystem::path& path, RemoteHost host, std::function<void()> cut);
 
-  // Once a turn of the owner: does what was asked for, and says what has come of what was asked
-  // for before. True if anything was asked for.
+  // Answers requests, new ones and those answered later. Call it once a turn of the owner. True if
+  // there were new requests.
   bool turn();
-  // Another row, the twin's beside it (or empty), and which tick it is.
+  // Passes on a row, the twin's (or none), and the number of its tick.
   void row(std::span<const double> row, std::span<const double> twin, std::uint64_t tick);
-  // Rows are others from now on, with other channels.
+  // From now on rows and channels are of another world.
   void reopened();
-  // Returns when something was asked for, or at that time.
+  // Returns at the next request, or at `end`.
   void wait_until(std::chrono::steady_clock::time_point end) { server_.wait_until(end); }
   const std::filesystem::path& path() const { return server_.path(); }
   std::size_t clients() const { return server_.clients(); }
@@ -100,7 +98,7 @@ class Remote {
     std::vector<Wanted> wanted;
     std::uint64_t every = 1;  // ticks
     std::optional<std::uint64_t> last;
-    std::uint64_t dropped = 0;  // rows that were due
+    std::uint64_t dropped = 0;  // due rows that were dropped
     nlohmann::json rows = nlohmann::json::array();
   };
   struct Pending {
@@ -125,10 +123,10 @@ class Remote {
   RemoteHost host_;
   std::map<Client, Follower> followers_;
   std::vector<Pending> pending_;
-  std::set<Client> here_, untold_;  // who has asked for anything; who does not know `trouble_` yet
+  std::set<Client> here_, untold_;  // all clients; those not told of trouble_
   std::string trouble_;
   std::vector<double> values_, twin_values_;
-  LineServer server_;  // last: it goes first
+  LineServer server_;  // last, to be destroyed first
 };
 
 }  // namespace limpid

@@ -1,4 +1,4 @@
-// Settings as JSON has them, and what programs on the control socket may not set.
+// Settings in JSON, and the limits that programs on the control socket cannot raise.
 #pragma once
 
 #include <array>
@@ -18,19 +18,19 @@ inline constexpr std::size_t kMostSettings = 200;  // that one request names
 // after which `p` is as it was: RemoteError, ParameterError.
 void set_by_remote(Parameters& p, const std::string& key, const nlohmann::json& value,
                    const Parameters& highest);
-// The same of all `values` of a request, which are needed. Errors: the same.
+// Sets all "values" of a request, which must be there. Errors: as set_by_remote().
 void set_values(Parameters& p, const Keys& keys, const Parameters& highest);
 
-// The settings with what they leave to the arm said in numbers, where it is a limit.
+// Settings in which limits left to the arm are numbers.
 Parameters with_limits_of(const ArmDescription& arm, Parameters p);
-// Settings that come from a file, with limits no higher than a person has chosen for the arm.
+// Lowers limits of settings from a file to those that a person has chosen for the arm.
 void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& arm);
-// The settings that are usual for the arm, with limits no higher than a person has chosen. What is
-// fixed while a loop runs stays as it is `now`; with a real device in the arm's place, so does what
-// is the device's own: its encoders, and what its motors take off the hand.
+// Usual settings for the arm, with limits no higher than a person has chosen. Settings fixed while
+// a loop runs stay as in `now`; with a real device also its own: its encoders, and what its motors
+// take off the hand.
 Parameters usual_settings(const Parameters& now, const Parameters& chosen,
                           const ArmDescription& arm, bool with_device);
-// The value that a setting has; null where it is left to the arm, or to another setting.
+// Value of a setting; null if it is left to the arm, or to another setting.
 nlohmann::json value_of(const Parameters& p, const ParameterInfo& info);
 
 }  // namespace limpid

@@ -17,7 +17,7 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeastTick = 1e-4;  // of a loop that a recording asks for [s]
+constexpr double kLeastTick = 1e-4;  // in a loop that a recording asks for [s]
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -34,7 +34,7 @@ bool ready(const std::future<T>& work) {
   return work.valid() && work.wait_for(0s) == std::future_status::ready;
 }
 
-// The one before has not been done yet.
+// Whether the last work of this kind is still going on.
 template <class T>
 bool busy(const std::shared_ptr<std::future<T>>& work) {
   return work && work->valid() && !ready(*work);
@@ -65,7 +65,7 @@ ServedSession::~ServedSession() {
   loop_.close();
   try {
     if (recording_.opening.valid()) {
-      const auto empty = recording_.opening.get();  // it never began
+      const auto empty = recording_.opening.get();  // a recording that never began
       empty->finish();
       fs::remove(empty->out());
     }
@@ -76,7 +76,7 @@ ServedSession::~ServedSession() {
   }
 }
 
-// The virtual arm in this world; what went before goes on if it cannot be.
+// Opens the virtual arm in `world`; the last world goes on if that fails.
 void ServedSession::begin(World world, bool hand_waits) {
   RunPlan& plan = world.plan;
   hold_limits(plan.parameters, highest_, plan.arm);
@@ -160,10 +160,10 @@ void ServedSession::turn(Remote& remote) {
   }
 }
 
-// A device's own second button arms it, and takes its force away; nothing else here arms it.
+// Lets the device's second button arm it, and cut its force; nothing else here arms it.
 void ServedSession::watch_buttons() {
   if (!loop_.device_in_place()) return;
-  // A button that is held while it comes back asks for nothing.
+  // A button held while the device comes back asks for nothing.
   if (!loop_.snapshot().connected) return buttons_.forget();
   const std::uint32_t pressed = buttons_.take(loop_.snapshot().reading.buttons);
   if ((pressed & 2) == 0) return;
@@ -194,7 +194,7 @@ void ServedSession::set(const Parameters& p, bool of_twin) {
   }
 }
 
-// What is there goes on until the rest has come.
+// Opens other files; what is open goes on until they are read.
 Answer ServedSession::open(const Keys& keys) {
   const auto text = [&](const char* key) { return keys.text_if(key).value_or(""); };
   const OpenRequest asked{text("scene"), text("arm"), text("tip"), text("session"), text("hand")};
@@ -277,11 +277,11 @@ Answer ServedSession::record(const Keys& keys) {
 
 Answer ServedSession::stop() {
   if (!recording() && loop_.recorder() == nullptr && !recording_.closing.valid()) {
-    const std::string failure = std::exchange(recording_.failure, {});  // it ended by itself
+    const std::string failure = std::exchange(recording_.failure, {});  // ended by itself
     throw RemoteError("stop: " + (failure.empty() ? "nothing is being recorded" : failure));
   }
   return Answer::Later([this]() -> std::optional<json> {
-    if (recording_.opening.valid()) return std::nullopt;  // it is stopped as soon as it is there
+    if (recording_.opening.valid()) return std::nullopt;  // stopped once it is open
     loop_.stop_recording();
     if (!recording_.failure.empty()) throw RemoteError("stop: " + recording_.failure);
     if (!recording_.complete) return std::nullopt;

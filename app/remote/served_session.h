@@ -17,7 +17,7 @@
 
 namespace limpid {
 
-// What a client wants to be opened; empty: what is there stays, or its default.
+// A client's request to open files; empty: what is open stays, or its default.
 struct OpenRequest {
   std::string scene, arm, tip, session, hand;
 };
@@ -26,32 +26,32 @@ class ServedSession {
  public:
   struct World {
     RunPlan plan;      // arm, scene, settings, hand
-    bool led = false;  // by the plan's hand; else nobody holds the virtual arm
+    bool led = false;  // led by the plan's hand; else nobody holds the virtual arm
   };
   struct Options {
-    // Of the files that are named; called beside the loop. `now`: the settings at present, which
-    // stay where the arm does.
+    // Reads the world of the files; called on a thread beside the loop. `now`: present settings,
+    // kept if the arm stays.
     std::function<World(const OpenRequest& asked, const Parameters& now)> open;
     // Draws a row of the plan into a file; called beside the loop.
     std::function<void(const std::filesystem::path& png, const RunPlan&, std::span<const double>)>
         draw;
-    std::filesystem::path folder;  // of recordings without a name
+    std::filesystem::path folder;  // for recordings without a name
     AskForPriority ask;
   };
 
-  // `device`: in the arm's place, within these limits; null: the virtual arm. Errors: as
+  // `device` takes the arm's place, within `limits`; null: the virtual arm. Errors: as
   // LiveLoop::open().
   ServedSession(World world, std::unique_ptr<Device> device, const SafetyLimits& limits,
                 Options options);
-  ~ServedSession();  // what is recorded is complete then
+  ~ServedSession();  // completes a recording
 
   bool realtime() const { return loop_.status().realtime.realtime(); }
-  // What programs can ask for. Valid as long as this is.
+  // The verbs and state for programs. Valid as long as this.
   RemoteHost host();
-  // No force, from any thread.
+  // Cuts the force; from any thread.
   void cut() { loop_.cut(); }
-  // Once a turn, at least every SafetyLimits::kSilence / 4; hands the rows that came to `remote`.
-  // Errors: std::runtime_error where the loop has ended.
+  // Call once a turn, at least every SafetyLimits::kSilence / 4. Passes the new rows to `remote`.
+  // Errors: std::runtime_error if the loop has ended.
   void turn(Remote& remote);
 
  private:
@@ -59,7 +59,7 @@ class ServedSession {
     std::future<std::unique_ptr<Recorder>> opening;
     std::future<void> closing;
     std::filesystem::path file;
-    std::uint64_t rows = 0, dropped = 0;  // dropped: that found no room
+    std::uint64_t rows = 0, dropped = 0;  // dropped: rows that found no room
     std::string failure;
     std::string trouble;  // why it ended by itself, for people; empty: it did not
     bool complete = false;
@@ -84,19 +84,19 @@ class ServedSession {
   Options options_;
   World world_;
   Controls controls_;
-  Parameters highest_;  // of the settings: what a person has chosen
+  Parameters highest_;  // highest limits: a person's choice
   TraceChannels channels_;
-  std::vector<double> rows_, newest_;  // drained; the last of them with its twin
-  std::uint64_t tick_ = 0;             // of that
+  std::vector<double> rows_, newest_;  // rows drained; the last of them with its twin
+  std::uint64_t tick_ = 0;             // of newest_
   bool reopened_ = false;
   Recording recording_;
-  // Asked for by a client that may have gone; one of each at a time.
+  // Work for a client that may have gone; one of each kind at a time.
   std::shared_ptr<std::future<World>> opening_;
   std::shared_ptr<std::future<bool>> drawing_;
   ButtonPresses buttons_;
   std::optional<Parameters> of_twin_;
   TaskQueue recordings_, files_;  // beside the loop
-  LiveLoop loop_;                 // last: it goes first
+  LiveLoop loop_;                 // last, to be destroyed first
 };
 
 }  // namespace limpid

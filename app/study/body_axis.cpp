@@ -12,7 +12,7 @@ namespace {
 using namespace scene_limits;
 using Of = BodyProperty::Of;
 
-// A body of the same shape and another density: its moments, where they are given, go along.
+// Changes a body's density: its moments, where they are given, scale with the mass.
 void set_mass(Object& object, double mass) {
   Body& body = *object.body;
   if (body.inertia) *body.inertia *= mass / body.mass;
@@ -99,7 +99,7 @@ void set_of_body(const BodyAxis& axis, double value, SceneDocument& document) {
   for (Object& object : document.scene.objects) {
     if (!object.body || object.name != axis.body) continue;
     axis.property->set(object, value);
-    // Its mass is said now, and no longer follows from its density.
+    // A mass replaces the density that the scene's file gives.
     if (std::string_view(axis.property->name) == "mass") document.densities.erase(axis.body);
   }
 }

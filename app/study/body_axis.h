@@ -10,32 +10,32 @@
 
 namespace limpid {
 
-// Of the keys of an axis the part before a body's name.
+// Prefix of a body's keys; the body's name follows.
 inline constexpr const char* kBodyKey = "scene.body.";
 
 struct BodyProperty {
-  // What a body must be on to have it.
+  // Bodies that have the property.
   enum class Of : std::uint8_t { any_body, any_joint, slider_or_hinge };
 
-  const char* name;  // what a key ends with
+  const char* name;  // end of the key
   Range range;
   Of of;
   void (*set)(Object&, double);
 };
 
-// What a key names: scene.body.NAME.PROPERTY; nothing where it is no such key. The name may have
-// dots.
+// An axis' key taken apart: scene.body.NAME.PROPERTY, where NAME may have dots.
 struct BodyAxis {
   std::string body;
-  const BodyProperty* property = nullptr;  // none: there is no such property
+  const BodyProperty* property = nullptr;  // null: no such property
 };
+// Nothing if `key` does not begin with kBodyKey or ends with no property.
 std::optional<BodyAxis> body_axis(std::string_view key);
 // All properties, for messages: "scene.body.NAME. and mass, stiffness, ...".
 std::string body_properties();
 
-// Whether the scene has such a body with such a property; else what is wrong, with what is allowed.
+// Why the scene has no such body or property, with what is allowed; empty if it has them.
 std::string why_not(const BodyAxis& axis, const Scene& scene);
-// Precondition: it has.
+// Precondition: why_not() is empty.
 void set_of_body(const BodyAxis& axis, double value, SceneDocument& document);
 
 }  // namespace limpid

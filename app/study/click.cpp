@@ -1,4 +1,4 @@
-// What the hand feels of a button's force over its travel, against the force that the button has.
+// Click of a button: the force felt over its travel, against the button's own force.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kClickTop = -0.007;                         // of the button at
 constexpr double kClickGrip = 3000;                          // [N/m]
 constexpr double kClickTick = 0.001, kClickFastest = 0.035;  // [s, m/s]
 constexpr double kClickAbove = 0.002, kClickDeep = 0.0125, kClickRest = 0.2;  // [m, m, s]
-constexpr double kClickFrom = 2e-4;                 // travel that is judged [m]
+constexpr double kClickFrom = 2e-4;                 // least travel that is judged [m]
 constexpr double kClickDamping = 2;                 // [N s/m]
 constexpr double kClickHard[] = {600, 2000, 5000};  // [N/m]
 constexpr double kClickUsual = 2000;
@@ -41,7 +41,7 @@ std::string button(double stiffness) {
                   fmt::format("gravity = [0, 0, 0]\ntip_radius = {}\n", kClickTip));
 }
 
-// Down, a rest, and up again, at most at kClickFastest.
+// Path down, a rest, and up again, at most at kClickFastest.
 HandPath pressing() {
   const double way = kClickAbove + kClickDeep, down = 1.875 * way / kClickFastest;
   return hand_path(
@@ -60,15 +60,14 @@ Parameters in_a_stiff_hand(CouplingKind kind) {
   return p;
 }
 
-// A press: the travel, and the force that the hand gave there, down and up.
+// A press: travel and the hand's force, down and up.
 struct Press {
   std::string label;
   const char* ink;
   std::vector<double> travel = {}, force = {};  // at each tick [m, N]
   double beyond = 0;                            // [J]
 
-  // Rms of felt less given where the button is pressed [N]; infinite where it
-  // diverged.
+  // Rms of felt less given force where the button is pressed [N]; infinite if it diverged.
   double off() const {
     double sum = 0;
     int count = 0;
@@ -90,7 +89,7 @@ struct Press {
   }
 };
 
-// Both means over the same tick.
+// Adds travel and force, both means over the same tick.
 void add_ticks(Press& press, const TipRecord& record, const std::vector<double>& travel) {
   for (std::size_t k = 0; k + 1 < travel.size() && k < record.force.size(); ++k) {
     press.travel.push_back((travel[k] + travel[k + 1]) / 2);

@@ -1,5 +1,5 @@
-// A device whose torque answers its reading late: what the predictive coupling gives the hand then,
-// and what is felt, free and at the walls that `limpid analyze` names.
+// A device whose torque answers its reading late: energy given to the hand under the predictive
+// coupling, and what is felt, free and at the walls that `limpid analyze` names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,22 +15,22 @@
 namespace limpid {
 namespace {
 
-// All that is varied, and what is promised.
+// Values varied, and bounds promised.
 struct DelayPlan {
   static constexpr double kEtas[] = {0.1, 0.2, 0.5, 1, 2, 3.5, 5};
   static constexpr int kMost = 3;                             // ticks
   static constexpr double kGrips[] = {100, 300, 1000, 3000};  // [N/m]
-  static constexpr double kPress = 2;                         // that the arm's own motors bear [N]
+  static constexpr double kPress = 2;                         // within the arm's own motors [N]
   static constexpr double kSettle = 1, kPeriod = 2;           // of the shaking [s]
   static constexpr double kAmplitude = 2.5e-4;                // at 1 Hz [m]
   static constexpr double kInertiaTo = 1;                     // [Hz]
-  static constexpr double kGiven = 5e-3, kOff = 0.05;         // [J], of what is set
-  // Of an inertia under a delay that is known: what is foretold of velocities is too late for it.
+  static constexpr double kGiven = 5e-3, kOff = 0.05;         // [J]; of the value wanted [-]
+  // kOff of an inertia under a known delay: velocities are predicted too late for it.
   static constexpr double kOffKnown = 0.15;
   static constexpr double kSoftestNamed = 100;  // [N/m]
 };
 
-// A delay, and whether the law knows of it.
+// A delay, and whether the law knows it.
 struct Late {
   int ticks;
   bool known;
@@ -83,15 +83,15 @@ Trial free_trial(const Late& late, double eta, double grip) {
   return trial;
 }
 
-// Of one delay at one eta, the worst of all grips.
+// Worst values over all grips for one delay at one eta.
 struct LateFelt {
   double free = 0;     // most that the hand was given in free motion [J]
   double wall = 0;     // the same at the wall [J]
-  double inertia = 0;  // felt, off what is wanted where it is furthest, by max(eta, 1) [-]
-  double felt = 1;     // stiffness felt, by that set, where it is furthest from it [-]
-  double named = 0;    // by `limpid analyze` [N/m]
+  double inertia = 0;  // felt inertia off the wanted one, where furthest, over max(eta, 1) [-]
+  double felt = 1;     // felt stiffness over the one set, where furthest from 1 [-]
+  double named = 0;    // wall named by `limpid analyze` [N/m]
 
-  // Keeps what is further from what is wanted, or no number.
+  // Keeps the value furthest from `wanted`, or NaN.
   static void further(double& kept, double value, double wanted) {
     if (!(std::abs(value - wanted) <= std::abs(kept - wanted))) kept = value;
   }
@@ -99,7 +99,7 @@ struct LateFelt {
 
 using LateTable = std::vector<std::vector<LateFelt>>;  // of each delay and eta
 
-// Runs `trial_of(late, eta, grip)` for all of them, and hands on what came.
+// Runs `trial_of(late, eta, grip)` for all of them, and passes each result to `take`.
 template <class TrialOf, class Take>
 void for_all(TrialRunner& lab, const TrialOf& trial_of, const Take& take) {
   struct Place {
@@ -130,15 +130,15 @@ double highest_port(const Session& s) {
   return most;
 }
 
-// What inertia is felt there by theory, of the arm's own: what networks and, where the delay is not
-// known, dampers give comes late by it, as `limpid analyze` reckons.
+// Felt inertia by theory, over the arm's own. The torque of networks and, if the delay is not
+// known, of dampers comes late, as in `limpid analyze`.
 double wanted_inertia(const Late& late, const FeltMotion& felt, const RunPlan& plan) {
   const Parameters& p = plan.parameters;
   const double w = 2 * std::numbers::pi * felt.f, t_d = late.ticks * p.tick;
   const AddedMass added = added_mass(p.eta, most_delay(p, {}, false), p.tick);
   const std::complex<double> networks =
       network_impedance(added, p.band, w) * std::polar(1.0, -w * t_d);
-  // What motors give of the damping felt besides the networks [N s/m].
+  // Damping that motors give besides the networks [N s/m].
   const double by_motors =
       felt.damping - plan.arm.joints.front().damping - felt.mass * networks.real();
   return 1 + networks.imag() / w - (late.known ? 0 : by_motors * t_d / felt.mass);
@@ -192,7 +192,7 @@ void at_walls(TrialRunner& lab, LateTable& table) {
       });
 }
 
-// Against eta, a curve for each delay; what lies beyond the frame is drawn at its edge.
+// A curve over eta for each delay; values beyond the frame are drawn at its edge.
 template <class Value>
 FigurePanel against_etas(const LateTable& table, const std::string& title, const std::string& y,
                          std::pair<double, double> range, const Value& value) {

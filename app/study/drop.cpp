@@ -1,4 +1,4 @@
-// A body that falls on the tip: what its energy does to the ledger, and to the hand.
+// A body that falls on the tip: its energy in the ledger, and the force on the hand.
 #include <fmt/format.h>
 
 #include <algorithm>

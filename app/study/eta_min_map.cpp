@@ -1,4 +1,4 @@
-// Section 4.2, (22)-(25): where the loop is stable, over eta and how stiff the hand holds.
+// Section 4.2, (22)-(25): stability of the loop over eta and the stiffness of the grip.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ constexpr double kEtaStep = 0.05;    // of the plan's axis
 enum Axis : std::size_t { kTicks, kGrip, kEta };
 enum Ticks : std::size_t { kFine, kPaper };
 
-// How far the furthest point of a map lies on the wrong side of a line of theory, in eta; infinite
-// where none was compared.
+// Largest distance of a map's point from a line of theory on its wrong side, in eta; infinite if
+// none was compared.
 double misplaced(const SweepPlan& plan, const SweepTable& table, Ticks ticks, double stiffest,
                  const std::string& line) {
   double worst = 0;

@@ -1,4 +1,4 @@
-// Experiments: the runs that they make, their checks, and what comes of them.
+// Experiments: their runs, checks and results.
 #pragma once
 
 #include <algorithm>
@@ -20,19 +20,18 @@
 
 namespace limpid {
 
-// Under which conditions an experiment's runs were made, for its caption.
-
-// Gathers them from the runs themselves, so that none goes unsaid: arm, limit of the motors, grip,
-// mass of the hand, encoders, delay and tick.
+// Conditions under which an experiment's runs were made, for its caption: arm, limit of the motors,
+// grip, mass of the hand, encoders, delay and tick. They come from the runs, so that none is left
+// out.
 class Conditions {
  public:
   void add(const ArmDescription& arm, const Parameters& p);
 
   // "Conditions: ...", a sentence; empty without any run.
   std::string text() const;
-  // The same without the hand, which is a person's, and what belongs to a simulated device.
+  // The same sentence without the hand and what only simulated devices have.
   std::string of_the_device() const;
-  // Digest of all runs' settings, as settings_digest() has it; empty without any run.
+  // Digest of all runs' settings, by settings_digest(); empty without any run.
   std::string settings() const;
 
  private:
@@ -42,7 +41,7 @@ class Conditions {
   std::set<std::string> configs_;
   std::set<std::string> arms_;
   std::set<int> joints_;
-  std::set<double> own_limits_;  // of the arms whose motors are not limited otherwise [N m]
+  std::set<double> own_limits_;  // limits of arms whose motors have no other [N m]
   std::set<double> limits_;      // of every motor [N m]
   std::set<double> grips_;       // [N/m]
   std::set<double> dampers_;     // of grips [N s/m]
@@ -52,11 +51,10 @@ class Conditions {
   std::set<double> ticks_;       // [ms]
 };
 
-// The experiments: what each needs, finds and promises.
 struct SweepPlan;
 struct SweepTable;
 
-// One promise: `value` stands in a relation to `bound` that `what` says in words.
+// A promise: `value` stands to `bound` in the relation that `what` names.
 struct Check {
   std::string what;
   double value = 0;
@@ -71,13 +69,13 @@ inline Check at_least(std::string what, double value, double bound) {
   return {std::move(what), value, bound, value >= bound};
 }
 
-// The larger of two, for the worst of many; not a number if one of them is none: what could not be
-// measured fails its check, where std::max would leave it out.
+// The larger of two, for the worst of many. NaN if either is NaN, so that what could not be
+// measured fails its check; std::max would drop it.
 inline double worse(double a, double b) {
   return std::isnan(a) || std::isnan(b) ? std::nan("") : std::max(a, b);
 }
 
-// The same of what should be large.
+// The smaller of two, for the worst of many values that should be large; NaN as in worse().
 inline double worse_low(double a, double b) { return -worse(-a, -b); }
 
 struct Outcome {
@@ -91,17 +89,17 @@ struct Outcome {
   }
 };
 
-// One run of the ordinary loop within an experiment.
+// A run of the ordinary loop within an experiment.
 struct Trial {
   std::string name;  // of its session file: DIR/NAME/name.h5
   RunPlan plan;
-  bool keep = true;          // record it; maps of hundreds of short runs need not
+  bool keep = true;          // recorded; maps of hundreds of short runs need no recordings
   std::string folder = {};   // in place of NAME, for trials that experiments share
-  bool may_diverge = false;  // whether it does is what is asked; any other that does is a failure
+  bool may_diverge = false;  // diverging is what is tested; else it is a failure
 };
 
 struct TrialResult {
-  Session session;  // its rows, also those of trials that were not kept
+  Session session;  // rows too, even if the trial was not kept
   RunEnd end;
 };
 
@@ -110,38 +108,39 @@ struct Cancelled : std::runtime_error {
   Cancelled() : std::runtime_error("stopped") {}
 };
 
-// What an experiment runs in. Results do not depend on the number of threads.
+// Runs the trials of an experiment. Results do not depend on the number of threads.
 class TrialRunner {
  public:
   struct Options {
     std::filesystem::path dir;
     std::uint64_t seed = 0;
     unsigned threads = 0;       // 0: one a core
-    std::uint64_t program = 0;  // trials of another one are run again; 0: this program's
+    std::uint64_t program = 0;  // trials recorded by another program are run again; 0: this program
     const std::atomic<bool>* stop = nullptr;
-    // Part done of the experiment, 0 to 1; called from any thread, one at a time.
+    // Receives the share of the experiment that is done, 0 to 1; called from any thread, one call
+    // at a time.
     std::function<void(double part)> progress;
   };
   TrialRunner(std::string experiment, Options options);
 
   std::uint64_t seed() const { return options_.seed; }
 
-  // Runs all trials on all cores, in any order; results in the order given. A kept trial whose
-  // session file is there already, whole, from the same program and plan, is read instead of run.
-  // Throws Cancelled; FileError.
+  // Runs all trials on all cores, in any order; results in the order given. A kept trial with a
+  // complete recording from the same program and plan is read instead. Errors: Cancelled,
+  // FileError.
   std::vector<TrialResult> run(const std::vector<Trial>& trials);
   // Runs trials too many to hold: `take` gets each result, from any thread, with its index.
   void run(const std::vector<Trial>& trials,
            const std::function<void(std::size_t, const TrialResult&)>& take);
-  // How many diverged of those that may not.
+  // Number of trials that diverged without may_diverge.
   std::size_t diverged() const { return diverged_; }
-  const Conditions& conditions() const { return conditions_; }  // of all that was run
+  const Conditions& conditions() const { return conditions_; }  // of all trials run
 
-  // All points of a plan. Throws Cancelled; std::runtime_error.
+  // Runs all points of a plan. Errors: Cancelled, std::runtime_error.
   SweepTable sweep(const SweepPlan& plan);
 
  private:
-  // Does every one of them, on all cores.
+  // Calls `work` for each index below `count`, on all cores.
   void each(std::size_t count, const std::function<void(std::size_t)>& work);
   TrialResult run_one(const Trial& trial) const;
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
@@ -158,27 +157,25 @@ struct Experiment {
   Outcome (*run)(TrialRunner&);
 };
 
-// The paper's in its order, then those of the predictive coupling and of bodies that move.
+// The paper's experiments in its order, then those of the predictive coupling and of bodies that
+// move.
 std::span<const Experiment> experiments();
 
 // Writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError.
 void write_outcome(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& dir);
 
-// Runs one and writes DIR/NAME.csv, .png, .svg and .json; its caption says under which conditions
-// it was run, and a check of its own that no trial diverged that may not. Errors: FileError,
-// Cancelled, std::runtime_error.
+// Runs `experiment`, then write_outcome(). Adds the conditions to the caption, and a check that no
+// trial diverged against expectation. Errors: FileError, Cancelled, std::runtime_error.
 Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options);
 
-// Writes DIR/report.html over every verdict found in DIR.
+// Writes DIR/report.html with every verdict found in DIR.
 void write_report(const std::filesystem::path& dir);
 
-// Trials that were run before: taken again only from the very same program and plan.
-
-// Beside NAME.h5 lies NAME.key: the trial's key and what the session file's bytes add up to.
-// Written once the recording is closed. Errors: FileError.
+// Writes NAME.key beside NAME.h5: the trial's key and a digest of the recording. Call it once the
+// recording is closed. Errors: FileError.
 void stamp(const std::filesystem::path& session, std::uint64_t key);
-// The recording, if its stamp is there, says the same key, and not a byte has changed since.
+// Reads a recording if its stamp has the same key and its bytes have not changed since.
 std::optional<Session> stamped_session(const std::filesystem::path& file, std::uint64_t key);
 
 }  // namespace limpid

@@ -37,6 +37,53 @@ class Shaken {
   std::vector<double> torque_, velocity_;
 };
 
+constexpr double kRoamingGrip = 3000;                   // [N/m]
+constexpr double kRoamingTick = 0.001, kRoaming = 2.5;  // [s]
+constexpr double kRoamingLowest = 0.1;                  // eta
+
+// eta over time, for an arm that roams in a stiff undamped grip.
+struct Wobble {
+  std::string label;
+  double frequency;  // of a square wave [Hz]; 0: a sine of 0.8 Hz
+  CouplingKind kind = CouplingKind::predictive;
+
+  double eta(double t) const {
+    if (frequency > 0) return std::fmod(t * frequency, 1) < 0.5 ? kRoamingLowest : 1;
+    return kRoamingLowest + (1 - kRoamingLowest) / 2 * (1 + sine(5 * t));
+  }
+};
+
+Trial roaming(const Wobble& wobble) {
+  Parameters p;
+  p.kind = wobble.kind;
+  p.eta = wobble.eta(0);
+  p.hand_stiffness = kRoamingGrip;
+  p.hand_damping = 0;
+  p.torque_limit = 100;
+  const auto at = [](double t) {
+    return Vec3(kHome + 0.02 * Vec3(sine(9 * t), sine(7 * t), sine(8 * t)));
+  };
+  Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kRoamingTick, kRoaming, at), p)};
+  trial.keep = false;
+  trial.may_diverge = wobble.kind == CouplingKind::proposed;  // diverging is checked
+  double before = p.eta;
+  for (std::uint64_t k = 1; k < trial.plan.rows; ++k) {
+    const double eta = wobble.eta(static_cast<double>(k) * kRoamingTick);
+    if (eta == before) continue;
+    trial.plan.changes.push_back({k, fmt::format("coupling.eta = {:.6f}", eta)});
+    before = eta;
+  }
+  return trial;
+}
+
+double highest_energy(const TrialResult& result) {
+  double most = 0;
+  for (std::size_t k = 0; k < result.session.size(); ++k) {
+    most = worse(most, result.session.at(k, Column::energy_total)[0]);
+  }
+  return result.end.diverged ? std::numeric_limits<double>::infinity() : most;
+}
+
 }  // namespace
 
 Impedance measured_impedance(const Session& session, std::size_t from, int joint,
@@ -80,57 +127,6 @@ double apparent_inertia(const Impedance& felt, double highest) {
   }
   return wz / ww;
 }
-
-namespace {
-
-constexpr double kRoamingGrip = 3000;                   // [N/m]
-constexpr double kRoamingTick = 0.001, kRoaming = 2.5;  // [s]
-constexpr double kRoamingLowest = 0.1;                  // eta
-
-// eta over time, for an arm that roams in a stiff undamped grip.
-struct Wobble {
-  std::string label;
-  double frequency;  // of a square wave [Hz]; 0: a sine of 0.8 Hz
-  CouplingKind kind = CouplingKind::predictive;
-
-  double eta(double t) const {
-    if (frequency > 0) return std::fmod(t * frequency, 1) < 0.5 ? kRoamingLowest : 1;
-    return kRoamingLowest + (1 - kRoamingLowest) / 2 * (1 + sine(5 * t));
-  }
-};
-
-Trial roaming(const Wobble& wobble) {
-  Parameters p;
-  p.kind = wobble.kind;
-  p.eta = wobble.eta(0);
-  p.hand_stiffness = kRoamingGrip;
-  p.hand_damping = 0;
-  p.torque_limit = 100;
-  const auto at = [](double t) {
-    return Vec3(kHome + 0.02 * Vec3(sine(9 * t), sine(7 * t), sine(8 * t)));
-  };
-  Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kRoamingTick, kRoaming, at), p)};
-  trial.keep = false;
-  trial.may_diverge = wobble.kind == CouplingKind::proposed;  // that it does is checked
-  double before = p.eta;
-  for (std::uint64_t k = 1; k < trial.plan.rows; ++k) {
-    const double eta = wobble.eta(static_cast<double>(k) * kRoamingTick);
-    if (eta == before) continue;
-    trial.plan.changes.push_back({k, fmt::format("coupling.eta = {:.6f}", eta)});
-    before = eta;
-  }
-  return trial;
-}
-
-double highest_energy(const TrialResult& result) {
-  double most = 0;
-  for (std::size_t k = 0; k < result.session.size(); ++k) {
-    most = worse(most, result.session.at(k, Column::energy_total)[0]);
-  }
-  return result.end.diverged ? std::numeric_limits<double>::infinity() : most;
-}
-
-}  // namespace
 
 void roam(TrialRunner& lab, Outcome& outcome) {
   const std::vector<Wobble> wobbles{{"proposed, sine", 0, CouplingKind::proposed},

@@ -1,4 +1,4 @@
-// What a hand feels of one joint, or of the whole arm: impedance, measured.
+// Measured impedance of one joint, or of the whole arm, as the hand feels it.
 #pragma once
 
 #include <complex>
@@ -16,21 +16,21 @@ struct Impedance {
   std::vector<std::complex<double>> Z;
 };
 
-// Human torque over velocity of a joint at the lines of a shaking hand; the session's rows from
-// `from` on, but for the last, last whole periods of it.
+// Human torque over velocity of a joint at the frequencies of the shaking. Uses the session's rows
+// from `from` on, without the last, over whole periods.
 Impedance measured_impedance(const Session& session, std::size_t from, int joint,
                              const Multisine& shaking);
 
-// What a hand feels of the whole arm along its own motion, at one frequency.
+// Inertia and damping of the whole arm along its own motion, as felt at one frequency.
 struct FeltMotion {
   double f = 0;        // [Hz]
-  double inertia = 0;  // by that of M [-]
+  double inertia = 0;  // over that of M [-]
   double damping = 0;  // [N m s/rad]
-  double mass = 0;     // of M along the motion [kg m^2]
+  double mass = 0;     // of M, along the motion [kg m^2]
 };
 
-// The same as measured_impedance(), of all joints together: the force's part in and against the
-// motion. M is the inertia matrix where the arm is shaken [kg m^2].
+// Like measured_impedance(), for all joints together: the force in phase with acceleration and
+// velocity. M is the inertia matrix where the arm is shaken [kg m^2].
 std::vector<FeltMotion> measured_motion(const Session& session, std::size_t from,
                                         const Eigen::MatrixXd& M, const Multisine& shaking);
 
@@ -38,11 +38,12 @@ std::vector<FeltMotion> measured_motion(const Session& session, std::size_t from
 // apparent inertia of a free joint [kg m^2].
 double apparent_inertia(const Impedance& felt, double highest);
 
-// An arm that roams in free space, and eta changing meanwhile.
+// World of the roaming arm: free space.
 inline constexpr const char* kFreeSpace = "title = \"Free space\"\nabout = \"Nothing to touch.\"\n";
 inline const Vec3 kHome(0.2, 0, -0.02);  // middle of the motion [m]
 
-// Adds the panel of E_c and the promise that the predictive law's is none.
+// Lets an arm roam while eta changes. Adds a panel of E_c, and the check that E_c of the predictive
+// law stays zero.
 void roam(TrialRunner& lab, Outcome& outcome);
 
 }  // namespace limpid

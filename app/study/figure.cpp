@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As CSV spells text: in quotes, quotes inside doubled.
+// `text` in quotes for CSV, quotes inside doubled.
 std::string csv_text(const std::string& text) {
   std::string safe = "\"";
   for (const char c : text) {
@@ -52,7 +52,7 @@ int gnuplot(const fs::path& file) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  // In a process group of its own: Ctrl-C in the terminal is for Limpid, which ends cleanly.
+  // A process group of its own keeps Ctrl-C in the terminal from gnuplot; Limpid ends cleanly.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -77,65 +77,11 @@ int gnuplot(const fs::path& file) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-}  // namespace
-
-void write_figure_data(const Figure& figure, const fs::path& csv) {
-  try {
-    auto file = fmt::output_file(csv.string());
-    file.print("panel,series,x,y,low,high\n");
-    for (const FigurePanel& panel : figure.panels) {
-      for (const Series& series : panel.series) {
-        const std::string names = csv_text(panel.title) + ',' + csv_text(series.label);
-        for (const FigurePoint& p : series.points) {
-          file.print("{},{},{},{},{}\n", names, p.x, p.y, p.low, p.high);
-        }
-        for (const FigureCell& c : series.cells) {
-          file.print("{},{},{},{},{}\n", names, middle(c.x_low, c.x_high, panel.log_x),
-                     middle(c.y_low, c.y_high, panel.log_y), c.value, c.value);
-        }
-      }
-    }
-    file.close();
-  } catch (const std::system_error& e) {
-    throw FileError(fmt::format("{}: {}", csv.string(), e.what()));
-  }
-}
-
-namespace {
-
 void add_metadata(const fs::path& svg, const std::string& line) {
   std::ostringstream drawn;
   drawn << std::ifstream(svg, std::ios::binary).rdbuf();
   std::ofstream(svg, std::ios::binary) << with_metadata(drawn.str(), line);
 }
-
-}  // namespace
-
-void draw_figure(const Figure& figure, const fs::path& dir, const std::string& name) {
-  // Others may be drawing the same.
-  const auto part = [&](const char* extension) {
-    return dir / fmt::format(".{}.{}{}", name, getpid(), extension);
-  };
-  constexpr double kForPrint = 1.5;  // 300 dots per inch over a page's text
-  const std::array files{FigureFile{"pngcairo", kForPrint, part(".png")},
-                         FigureFile{"svg", 1, part(".svg")}};
-  const fs::path script = part(".gnuplot");
-  std::ofstream(script) << gnuplot_script(figure, files);
-  const int status = gnuplot(script);
-  std::error_code failure, none;
-  fs::remove(script, none);
-  if (status == 0) add_metadata(part(".svg"), figure.made_by);
-  for (const FigureFile& file : files) {
-    const fs::path out = dir / (name + file.out.extension().string());
-    if (status == 0) fs::rename(file.out, out, failure);
-    if (status == 0 && !failure) continue;
-    for (const FigureFile& each : files) fs::remove(each.out, none);
-    throw std::runtime_error(
-        fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));
-  }
-}
-
-namespace {
 
 // The layout, in pixels: the figure's title on top, in each panel's cell the panel's title, its
 // legend and the axes.
@@ -143,16 +89,16 @@ constexpr int kPanelWidth = 640;
 constexpr int kTitleHeight = 52;
 constexpr int kLeft = 92, kRight = 26, kBottom = 58;  // from the axes to the cell's edges
 constexpr int kPanelTitle = 38, kLegendLine = 20;
-constexpr int kBar = 14, kBarRoom = 104;  // of a map's colours: its width; beside the axes
+constexpr int kBar = 14, kBarRoom = 104;  // bar of a map's colours; room for it beside the axes
 constexpr double kLetter = 6.8, kSample = 26, kGap = 20;  // widths in a legend
 constexpr double kYLabel = 20;                            // from the cell's left edge
 
-// What the text of data, readable anywhere, looks like in print.
+// Plain spellings and their symbols in print.
 constexpr std::pair<const char*, const char*> kSymbols[] = {
     {"eta", "η"}, {"x1", "x₁"}, {"x2", "x₂"},   {"v1", "v₁"},   {"f1", "f₁"},
     {"f2", "f₂"}, {"-", "−"},   {"w_f", "ω_f"}, {"w_c", "ω_c"}, {"w", "ω"}};
 
-// "m^2" -> "m²": digits and a minus behind a caret stand above the line.
+// "m^2" -> "m²": raises digits and a minus behind a caret.
 std::string with_powers(const std::string& text) {
   constexpr const char* kAbove[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string out;
@@ -180,27 +126,7 @@ std::string symbol_of(const std::string& word) {
   return word;
 }
 
-}  // namespace
-
-// Whole words, lone minus signs and apostrophes alone are replaced. (gnuplot misreads texts that
-// begin with a quoted apostrophe.)
-std::string typeset(const std::string& text) {
-  std::string out, word;
-  for (const char c : with_powers(text) + ' ') {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-') {
-      word += c;
-      continue;
-    }
-    out += symbol_of(word) + (c == '\'' ? std::string("’") : std::string(1, c));
-    word.clear();
-  }
-  out.pop_back();
-  return out;
-}
-
-namespace {
-
-// Nothing in single quotes means anything to gnuplot but the quote itself.
+// `text` in single quotes for gnuplot, where only the quote itself is special.
 std::string quoted(const std::string& text) {
   std::string safe = "'";
   for (const char c : text) {
@@ -212,15 +138,15 @@ std::string quoted(const std::string& text) {
 
 std::string printed(const std::string& text) { return quoted(typeset(text)); }
 
-// Letters, not bytes of UTF-8.
+// Number of letters, not of bytes of UTF-8.
 double letters(const std::string& text) {
   return static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
   }));
 }
 
-// gnuplot's own legend knows neither its width nor its height beforehand; here entries flow in
-// lines from left to right above the axes, where no curve can lie under them.
+// An entry of the legend. Entries flow in lines above the axes, where no curve can lie under them;
+// gnuplot does not know its own legend's size beforehand.
 struct LegendEntry {
   const Series* series;
   double x;  // from the axes' left edge
@@ -233,7 +159,8 @@ std::vector<LegendEntry> legend_of(const FigurePanel& panel) {
   int line = 0;
   for (const Series& series : panel.series) {
     const bool nothing = series.points.empty() && series.cells.empty();
-    if (series.label.empty() || series.color.empty() || nothing) continue;  // or a bar of colours
+    // Series without a colour have a bar of colours.
+    if (series.label.empty() || series.color.empty() || nothing) continue;
     const double width = kSample + 6 + letters(series.label) * kLetter;
     if (x > 0 && x + width > kPanelWidth - kLeft - kRight) {
       x = 0;
@@ -253,7 +180,7 @@ std::string range_text(const std::optional<std::pair<double, double>>& range) {
   return range ? fmt::format("[{}:{}]", range->first, range->second) : "[*:*]";
 }
 
-// gnuplot's own choice leaves out the edges of bands.
+// Range with the edges of bands, which gnuplot's own choice leaves out.
 std::optional<std::pair<double, double>> y_range(const FigurePanel& panel) {
   if (panel.y_range) return panel.y_range;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -310,7 +237,7 @@ std::string data_blocks(const Figure& figure) {
   return text;
 }
 
-// From pixels, counted from the bottom left, to gnuplot's coordinates.
+// Converts pixels, counted from the bottom left, to gnuplot's coordinates.
 struct Screen {
   double width, height;
   std::string at(double x, double y) const {
@@ -370,7 +297,7 @@ const Series* map_of(const FigurePanel& panel) {
   return found == panel.series.end() ? nullptr : &*found;
 }
 
-// The bar of a map's colours, right of the axes.
+// Bar of a map's colours, right of the axes.
 std::string colour_bar(const FigurePanel& panel, const Screen& screen, double right, double bottom,
                        double top) {
   const Series* map = map_of(panel);
@@ -393,7 +320,7 @@ std::string x_ticks(const FigurePanel& panel) {
   return "set xtics noenhanced (" + text + ")\n";
 }
 
-// All of a panel but its curves, in the cell whose upper left corner is given.
+// Commands for everything of a panel but its curves, in the cell with the given upper left corner.
 std::string panel_commands(const FigurePanel& panel, const Screen& screen, double cell_left,
                            double cell_top, double cell_height) {
   const std::vector<LegendEntry> legend = legend_of(panel);
@@ -425,34 +352,6 @@ std::string into(const FigureFile& file, const Screen& screen) {
       file.scale == 1 ? "" : fmt::format(" fontscale {0} linewidth {0} pointscale {0}", file.scale),
       quoted(std::filesystem::absolute(file.out).string()));
 }
-
-}  // namespace
-
-std::string gnuplot_script(const Figure& figure, std::span<const FigureFile> files) {
-  const int columns = std::max(1, figure.columns);
-  const int rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
-  const Screen screen{static_cast<double>(columns * kPanelWidth),
-                      static_cast<double>(rows * figure.panel_height + kTitleHeight)};
-  std::string panels =
-      fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
-  int block = 0, at = 0;
-  for (const FigurePanel& panel : figure.panels) {
-    const int column = at % columns, row = at++ / columns;
-    const double top = screen.height - kTitleHeight - row * figure.panel_height;
-    panels += panel_commands(panel, screen, column * kPanelWidth, top, figure.panel_height) +
-              plot_command(panel, block);
-    block += static_cast<int>(panel.series.size());
-  }
-  std::string text = "set encoding utf8\n" + data_blocks(figure) +
-                     "unset key\nset palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 "
-                     "'#5ec962', 4 '#fde725')\nset border 3 lc rgb '#444444' lw 0.8\n"
-                     "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
-                     "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
-  for (const FigureFile& file : files) text += into(file, screen) + panels + "unset multiplot\n";
-  return text + "set output\n";  // closes the last one
-}
-
-namespace {
 
 constexpr const char* kStyle = R"css(
 :root { --ink: #1c2126; --soft: #5b6670; --line: #dfe3e7; --good: #00734f; --bad: #b3261e; }
@@ -488,6 +387,92 @@ a { color: inherit; }
 )css";
 
 }  // namespace
+
+void write_figure_data(const Figure& figure, const fs::path& csv) {
+  try {
+    auto file = fmt::output_file(csv.string());
+    file.print("panel,series,x,y,low,high\n");
+    for (const FigurePanel& panel : figure.panels) {
+      for (const Series& series : panel.series) {
+        const std::string names = csv_text(panel.title) + ',' + csv_text(series.label);
+        for (const FigurePoint& p : series.points) {
+          file.print("{},{},{},{},{}\n", names, p.x, p.y, p.low, p.high);
+        }
+        for (const FigureCell& c : series.cells) {
+          file.print("{},{},{},{},{}\n", names, middle(c.x_low, c.x_high, panel.log_x),
+                     middle(c.y_low, c.y_high, panel.log_y), c.value, c.value);
+        }
+      }
+    }
+    file.close();
+  } catch (const std::system_error& e) {
+    throw FileError(fmt::format("{}: {}", csv.string(), e.what()));
+  }
+}
+
+void draw_figure(const Figure& figure, const fs::path& dir, const std::string& name) {
+  // Names with the process' number: others may be drawing the same figure.
+  const auto part = [&](const char* extension) {
+    return dir / fmt::format(".{}.{}{}", name, getpid(), extension);
+  };
+  constexpr double kForPrint = 1.5;  // 300 dots per inch over a page's text
+  const std::array files{FigureFile{"pngcairo", kForPrint, part(".png")},
+                         FigureFile{"svg", 1, part(".svg")}};
+  const fs::path script = part(".gnuplot");
+  std::ofstream(script) << gnuplot_script(figure, files);
+  const int status = gnuplot(script);
+  std::error_code failure, none;
+  fs::remove(script, none);
+  if (status == 0) add_metadata(part(".svg"), figure.made_by);
+  for (const FigureFile& file : files) {
+    const fs::path out = dir / (name + file.out.extension().string());
+    if (status == 0) fs::rename(file.out, out, failure);
+    if (status == 0 && !failure) continue;
+    for (const FigureFile& each : files) fs::remove(each.out, none);
+    throw std::runtime_error(
+        fmt::format("{}: gnuplot could not draw it; is the disk full?", out.string()));
+  }
+}
+
+// Replaces whole words, lone minus signs and apostrophes. (gnuplot misreads texts that begin with a
+// quoted apostrophe.)
+std::string typeset(const std::string& text) {
+  std::string out, word;
+  for (const char c : with_powers(text) + ' ') {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-') {
+      word += c;
+      continue;
+    }
+    out += symbol_of(word) + (c == '\'' ? std::string("’") : std::string(1, c));
+    word.clear();
+  }
+  out.pop_back();
+  return out;
+}
+
+std::string gnuplot_script(const Figure& figure, std::span<const FigureFile> files) {
+  const int columns = std::max(1, figure.columns);
+  const int rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
+  const Screen screen{static_cast<double>(columns * kPanelWidth),
+                      static_cast<double>(rows * figure.panel_height + kTitleHeight)};
+  std::string panels =
+      fmt::format("set multiplot title {} noenhanced font ',16'\n", printed(figure.title));
+  int block = 0, at = 0;
+  for (const FigurePanel& panel : figure.panels) {
+    const int column = at % columns, row = at++ / columns;
+    const double top = screen.height - kTitleHeight - row * figure.panel_height;
+    panels += panel_commands(panel, screen, column * kPanelWidth, top, figure.panel_height) +
+              plot_command(panel, block);
+    block += static_cast<int>(panel.series.size());
+  }
+  std::string text = "set encoding utf8\n" + data_blocks(figure) +
+                     "unset key\nset palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 "
+                     "'#5ec962', 4 '#fde725')\nset border 3 lc rgb '#444444' lw 0.8\n"
+                     "set tics nomirror scale 0.6 font ',11' textcolor rgb '#222222'\n"
+                     "set grid lc rgb '#d8d8d8' lw 0.7 dt 1 back\n";
+  for (const FigureFile& file : files) text += into(file, screen) + panels + "unset multiplot\n";
+  return text + "set output\n";  // closes the last one
+}
 
 void write_page(const std::filesystem::path& file, const std::string& title,
                 const std::string& summary, const std::string& body) {

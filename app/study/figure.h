@@ -1,4 +1,4 @@
-// A figure as data: what an experiment found, for the table, the picture and the report alike.
+// A figure as data, drawn alike in table, picture and report.
 #pragma once
 
 #include <filesystem>
@@ -30,10 +30,10 @@ struct Series {
   Style style = Style::line;
   std::vector<FigurePoint> points;
   std::vector<FigureCell> cells = {};  // of a map, whose label stands at the bar of colours
-  double width = 1.8;                  // of a line, for those that lie under another one [px]
+  double width = 1.8;                  // of a line; wider for those that lie under another one [px]
 };
 
-// One pair of axes.
+// A pair of axes with its curves.
 struct FigurePanel {
   std::string title = {};
   std::string x_label = {}, y_label = {};  // with unit
@@ -50,48 +50,47 @@ struct Figure {
   int columns = 1;
   int panel_height = 420;  // [px], of 640 px width
   std::vector<FigurePanel> panels;
-  std::string made_by = {};  // a line, as provenance() has it; SVG has it as metadata
+  std::string made_by = {};  // line from provenance(); SVG keeps it as metadata
 };
 
-// Okabe and Ito's colours for the things of the paper, as everywhere in the program.
+// Okabe and Ito's colours for the paper's quantities, as everywhere in the program.
 inline constexpr const char* kDeviceInk = "#E69F00";
 inline constexpr const char* kProxyInk = "#0072B2";
 inline constexpr const char* kHandInk = "#009E73";
 inline constexpr const char* kContactInk = "#D55E00";
 inline constexpr const char* kEnergyInk = "#CC79A7";
 inline constexpr const char* kNeutralInk = "#555555";
-// The couplings have colours of their own; a variant of one is a tint of it.
+// Colours of the couplings; a variant of a coupling is a tint.
 inline constexpr const char* kStandardInk = kLawColours[0].on_light;
 inline constexpr const char* kProposedInk = kLawColours[1].on_light;
 inline constexpr const char* kProposedTint = kLawColours[1].tint;
 inline constexpr const char* kPredictiveInk = kLawColours[2].on_light;
 inline constexpr const char* kPredictiveTint = kLawColours[2].tint;
 inline constexpr const char* kTankInk = kLawColours[3].on_light;
-// For a family of curves, such as values of eta.
+// Colours for a family of curves, such as values of eta.
 inline constexpr const char* kFamilyInk[] = {"#0072B2", "#E69F00", "#009E73",
                                              "#D55E00", "#CC79A7", "#56B4E9"};
 
-// What the text of data, readable anywhere, looks like in print: "eta w^2" -> "η ω²".
+// Text of data as printed: "eta w^2" -> "η ω²".
 std::string typeset(const std::string& text);
 // Writes DIR/NAME.csv with what is plotted: panel,series,x,y,low,high. Errors: FileError.
 void write_figure_data(const Figure& figure, const std::filesystem::path& csv);
-// A file that gnuplot draws: `terminal` is its picture format, `scale` the pixels of the picture
-// per pixel of the layout.
+// A picture that gnuplot draws: `terminal` is its format, `scale` its pixels per pixel of the
+// layout.
 struct FigureFile {
   std::string terminal;
   double scale = 1;
   std::filesystem::path out;
 };
-// What gnuplot is told to draw, the same into each of the files.
+// Commands for gnuplot that draw the figure into each of the files.
 std::string gnuplot_script(const Figure& figure, std::span<const FigureFile> files);
 // Draws DIR/NAME.png and DIR/NAME.svg with gnuplot. Errors: std::runtime_error when gnuplot is
 // missing or fails.
 void draw_figure(const Figure& figure, const std::filesystem::path& dir, const std::string& name);
 
-// A report as a web page of its own, for the screen and for paper.
-
-// `body`: HTML, of <section>s with <header>, <figure>, <table>; classes: soft, number, verdict,
-// passed, failed. `summary`: a sentence, after version and time. Errors: FileError.
+// Writes a report as a web page, for the screen and for paper. `body`: HTML, of <section>s with
+// <header>, <figure>, <table>; classes: soft, number, verdict, passed, failed. `summary`: a
+// sentence, after version and time. Errors: FileError.
 void write_page(const std::filesystem::path& file, const std::string& title,
                 const std::string& summary, const std::string& body);
 

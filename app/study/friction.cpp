@@ -1,3 +1,4 @@
+// Friction: sticking, slipping, edges and corners, and that it only ever takes energy.
 #include "app/study/friction.h"
 
 #include <fmt/format.h>
@@ -13,11 +14,11 @@ namespace limpid {
 
 namespace {
 
-// Of friction: as stiff as the wall, up to 2000 N/m.
+// Stiffness of the friction's spring: the wall's, at most 2000 N/m.
 double spring_of(const RoughWalls& walls) { return std::min(walls.stiffness, 2000.0); }
 
-// How deep a wall is entered over a tick from one place of the tip to another [m]; where it is not,
-// how far from it that stays, less than nothing.
+// Mean depth of the tip in a wall over a tick from `from` to `to` [m]; outside, its negative
+// distance.
 double entered(int wall, const Vec3& from, const Vec3& to) {
   const Vec3& n = kOutward[wall];
   const double d = n.dot(kMeet - from), next = n.dot(kMeet - to);
@@ -25,8 +26,8 @@ double entered(int wall, const Vec3& from, const Vec3& to) {
   return inside > 0 ? inside : std::max(d, next);
 }
 
-// The forces of a row, which are in the order of the walls, each with the wall it is of: of as many
-// walls as there are forces, those that are entered the deepest.
+// The forces of a row, each with its wall. Forces are in the order of the walls; those entered
+// deepest have them.
 std::vector<std::pair<int, Vec3>> pushes(const std::vector<double>& depths,
                                          std::span<const double> columns) {
   std::vector<Vec3> forces;
@@ -45,69 +46,11 @@ std::vector<std::pair<int, Vec3>> pushes(const std::vector<double>& depths,
   return pairs;
 }
 
-}  // namespace
-
-Trial rubbing(const std::string& name, const RoughWalls& walls, HandPath hand,
-              const Parameters& p) {
-  std::string text = "title = \"Rough walls\"\nabout = \"Planes that rub.\"\n";
-  for (int i = 0; i < walls.walls; ++i) {
-    const Vec3& n = kOutward[i];
-    text += fmt::format(
-        "\n[[plane]]\nname = \"wall {}\"\npoint = [{:.3f}, {:.3f}, {:.3f}]\n"
-        "normal = [{:.1f}, {:.1f}, {:.1f}]\nstiffness = {:.1f}\n"
-        "friction_static = {}\nfriction_kinetic = {}\n",
-        i + 1, kMeet.x(), kMeet.y(), kMeet.z(), n.x(), n.y(), n.z(), walls.stiffness,
-        walls.friction_static, walls.friction_kinetic);
-  }
-  return {name, plan_in(text, std::move(hand), p)};
-}
-
-std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& walls,
-                                      const Session& s) {
-  const Arm<kAnyDof> arm(trial.plan.arm);
-  Arm<kAnyDof>::Frames frames;
-  Jacobian<kAnyDof> J;
-  std::vector<std::vector<Rub>> all;
-  for (std::size_t k = 0; k + 1 < s.size(); ++k) {
-    const Eigen::VectorXd x2 = vector_at(s, k, Column::proxy_position);
-    arm.frames(x2, frames);
-    const Vec3 tip = arm.tip(frames);
-    arm.point_jacobian(frames, arm.dof() - 1, tip, J);
-    const Eigen::VectorXd next = vector_at(s, k + 1, Column::proxy_position);
-    const Vec3 moved = J * (next - x2);
-    std::vector<double> depths;
-    for (int i = 0; i < walls.walls; ++i) depths.push_back(entered(i, tip, arm.tip_at(next)));
-    std::vector<Rub> rubs(static_cast<std::size_t>(walls.walls));
-    for (const auto& [i, force] : pushes(depths, s.at(k, Column::contact_force))) {
-      const Vec3& n = kOutward[i];
-      rubs[static_cast<std::size_t>(i)] = {force.dot(n), force - force.dot(n) * n,
-                                           moved - moved.dot(n) * n};
-    }
-    all.push_back(std::move(rubs));
-  }
-  return all;
-}
-
-double given_by_friction(const RoughWalls& walls, const Rub& before, const Rub& now) {
-  const double k_t = spring_of(walls);
-  const double stored = (now.friction.squaredNorm() - before.friction.squaredNorm()) / (2 * k_t);
-  return now.friction.dot(now.moved) + stored;
-}
-
-double slipped(const RoughWalls& walls, const Rub& before, const Rub& now) {
-  return (now.moved + (now.friction - before.friction) / spring_of(walls)).norm();
-}
-
-// Friction: what sticks, what slips, in an edge and a corner too, and that it only ever takes
-// energy.
-
-namespace {
-
 constexpr double kStatic = 0.5, kKinetic = 0.3;
 constexpr double kWall = 1000, kPress = 3;  // [N/m], [N]
 constexpr double kDrag = 0.03;              // there and back [m]
 constexpr double kDown = 0.5, kEnd = 3.5;   // [s]
-constexpr double kSlipping = 5e-3;          // of the tip, surely [m/s]
+constexpr double kSlipping = 5e-3;          // the tip surely slips above this [m/s]
 constexpr double kEdgeWall = 3000, kEdgePress = 5, kEdgeEnd = 1.6;
 constexpr double kStrong = 100;  // motors that never meet their limit [N m]
 
@@ -127,7 +70,7 @@ std::vector<Case> drags() {
           {"smooth", kNeutralInk, {.stiffness = kWall}}};
 }
 
-// How far the hand is aside at t [m].
+// Sideways position of the hand at t [m].
 double aside(double t) {
   const double half = (kEnd - kDown) / 2;
   return kDrag * (minimum_jerk((t - kDown) / half) - minimum_jerk((t - kDown - half) / half));
@@ -145,7 +88,7 @@ Trial drag(const RoughWalls& walls) {
                  hand_path(source, p.tick, kEnd, at), p);
 }
 
-// Pressed into an edge or a corner, wandering about in it. `motors`: their limit [N m].
+// Trial that presses into an edge or a corner and wanders about in it. `motors`: their limit [N m].
 Trial wander(const RoughWalls& walls, double eta, double grip, double motors) {
   Parameters p;
   p.kind = CouplingKind::predictive;
@@ -171,15 +114,15 @@ Trial wander(const RoughWalls& walls, double eta, double grip, double motors) {
 
 double ratio(const Rub& rub) { return rub.normal > 0 ? rub.friction.norm() / rub.normal : 0; }
 
-// What friction is judged by, over all of a trial's ticks and walls.
+// Friction over all ticks and walls of a trial.
 struct Verdict {
   double given = 0;         // most in a tick [J]
-  double beyond = 0;        // most that it is over the cone, of the normal force [-]
-  double off_kinetic = 0;   // furthest off the kinetic force while the tip slips, of it [-]
-  double crept = 0;         // most that the tip moved besides the spring while it stuck [m]
+  double beyond = 0;        // most over the friction cone, of the normal force [-]
+  double off_kinetic = 0;   // largest error of the force while slipping, of the kinetic force [-]
+  double crept = 0;         // most that the tip moved besides the spring while sticking [m]
   double broke_away = 0;    // highest tangential over normal force [-]
-  int stuck = 0, slid = 0;  // ticks of which the two before were asked
-  int touched = 0;          // ticks that all walls did
+  int stuck = 0, slid = 0;  // ticks judged as sticking, as slipping
+  int touched = 0;          // ticks in which all walls were touched
   std::vector<double> sum;  // given up to each tick [J]
 };
 
@@ -203,7 +146,7 @@ Verdict judge(const RoughWalls& walls, const std::vector<std::vector<Rub>>& rubs
         v.off_kinetic = worse(v.off_kinetic, std::abs(ratio(now[i]) / walls.friction_kinetic - 1));
       }
       last[i] = slip;
-      // Strictly inside both cones nothing can slip.
+      // Strictly inside both cones the tip cannot slip.
       if (ratio(now[i]) < 0.99 * walls.friction_kinetic && before[i].normal > 0) {
         ++v.stuck;
         v.crept = worse(v.crept, slip);
@@ -293,7 +236,7 @@ FigurePanel taken_panel(const std::vector<Dragged>& all) {
   return panel;
 }
 
-// Edge and corner, with motors of one kind: a panel of E_c, and what is promised of them.
+// Edge and corner with motors of one limit: a panel of E_c, and its checks.
 FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& which,
                           std::vector<Check>& checks) {
   FigurePanel panel{.title = fmt::format("Wandering in walls of {} N/m, {}", kEdgeWall, which),
@@ -340,6 +283,57 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
 }
 
 }  // namespace
+
+Trial rubbing(const std::string& name, const RoughWalls& walls, HandPath hand,
+              const Parameters& p) {
+  std::string text = "title = \"Rough walls\"\nabout = \"Planes that rub.\"\n";
+  for (int i = 0; i < walls.walls; ++i) {
+    const Vec3& n = kOutward[i];
+    text += fmt::format(
+        "\n[[plane]]\nname = \"wall {}\"\npoint = [{:.3f}, {:.3f}, {:.3f}]\n"
+        "normal = [{:.1f}, {:.1f}, {:.1f}]\nstiffness = {:.1f}\n"
+        "friction_static = {}\nfriction_kinetic = {}\n",
+        i + 1, kMeet.x(), kMeet.y(), kMeet.z(), n.x(), n.y(), n.z(), walls.stiffness,
+        walls.friction_static, walls.friction_kinetic);
+  }
+  return {name, plan_in(text, std::move(hand), p)};
+}
+
+std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& walls,
+                                      const Session& s) {
+  const Arm<kAnyDof> arm(trial.plan.arm);
+  Arm<kAnyDof>::Frames frames;
+  Jacobian<kAnyDof> J;
+  std::vector<std::vector<Rub>> all;
+  for (std::size_t k = 0; k + 1 < s.size(); ++k) {
+    const Eigen::VectorXd x2 = vector_at(s, k, Column::proxy_position);
+    arm.frames(x2, frames);
+    const Vec3 tip = arm.tip(frames);
+    arm.point_jacobian(frames, arm.dof() - 1, tip, J);
+    const Eigen::VectorXd next = vector_at(s, k + 1, Column::proxy_position);
+    const Vec3 moved = J * (next - x2);
+    std::vector<double> depths;
+    for (int i = 0; i < walls.walls; ++i) depths.push_back(entered(i, tip, arm.tip_at(next)));
+    std::vector<Rub> rubs(static_cast<std::size_t>(walls.walls));
+    for (const auto& [i, force] : pushes(depths, s.at(k, Column::contact_force))) {
+      const Vec3& n = kOutward[i];
+      rubs[static_cast<std::size_t>(i)] = {force.dot(n), force - force.dot(n) * n,
+                                           moved - moved.dot(n) * n};
+    }
+    all.push_back(std::move(rubs));
+  }
+  return all;
+}
+
+double given_by_friction(const RoughWalls& walls, const Rub& before, const Rub& now) {
+  const double k_t = spring_of(walls);
+  const double stored = (now.friction.squaredNorm() - before.friction.squaredNorm()) / (2 * k_t);
+  return now.friction.dot(now.moved) + stored;
+}
+
+double slipped(const RoughWalls& walls, const Rub& before, const Rub& now) {
+  return (now.moved + (now.friction - before.friction) / spring_of(walls)).norm();
+}
 
 Outcome friction(TrialRunner& lab) {
   const std::vector<Dragged> all = drag_all(lab);

@@ -62,7 +62,7 @@ std::string device_text(const Identification& identification) {
   return with_plus_minus(text);
 }
 
-// With the digits that the deviation leaves, four that count at most.
+// Rounds to the digits that the deviation leaves, at most four significant ones.
 std::string text_of(const Found& found, double per_unit) {
   const auto size = [](double x) {
     return x > 0 ? static_cast<int>(std::floor(std::log10(x))) : 0;
@@ -130,6 +130,8 @@ Drift drift_of(std::string what, const char* unit, const Found& before, const Fo
   return {std::move(what), unit, before, now, certain};
 }
 
+constexpr double kMostFriction = 0.03;  // [N m]
+
 }  // namespace
 
 std::string findings_text(const Identification& identification, const std::string& more) {
@@ -185,12 +187,6 @@ std::vector<Drift> drift(const Findings& before, const Identification& now) {
   all.push_back(drift_of("delay", "ms", in_units(before.delay, 1e-3), in_units(found.delay, 1e-3)));
   return all;
 }
-
-namespace {
-
-constexpr double kMostFriction = 0.03;  // [N m]
-
-}  // namespace
 
 SimulatedBench simulated_bench(const IdentifyRequest& order, unsigned seed) {
   SimulatedBench bench{order.guess.name + ", simulated", unlike(order.guess, seed, kMostFriction),

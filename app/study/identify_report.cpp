@@ -83,57 +83,6 @@ void write_report(const Identification& identification, const std::optional<Find
              "The arm was taken for " + identification.order.guess.name + ".", body);
 }
 
-}  // namespace
-
-std::string identified_urdf(const Identification& identification) {
-  return urdf_text(identification.found.arm,
-                   fmt::format("identified by {} on {}, from {}", provenance("", std::nullopt),
-                               identification.device, identification.order.guess.name));
-}
-
-DeviceHub::Profile profile_of(const Identification& identification) {
-  return {.urdf = identified_urdf(identification),
-          .report = findings_text(identification),
-          .delay = identification.found.delay.value,
-          .torque_scale = identification.torque_scale ? identification.torque_scale->value : 1};
-}
-
-void write_motion(const IdentifyRun& run, const fs::path& file) {
-  const MotionRecord& record = run.record;
-  std::string text = "time";
-  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",x{}", j);
-  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",torque{}", j);
-  text += '\n';
-  for (Eigen::Index i = 0; i < record.rows(); ++i) {
-    text += fmt::format("{:.3f}", static_cast<double>(i) * record.T);
-    for (const Eigen::MatrixXd* columns : {&record.x, &record.torque}) {
-      for (const double value : columns->row(i)) text += fmt::format(",{:.9g}", value);
-    }
-    text += '\n';
-  }
-  write(file, text);
-}
-
-std::string write_identification(const Identification& identification,
-                                 const std::optional<Findings>& last, const fs::path& dir,
-                                 const std::string& more) {
-  write(dir / "identified.urdf", identified_urdf(identification));
-  write(dir / "identified.json", findings_text(identification, more));
-  Figure figure = identify_figure(identification);
-  figure.made_by = provenance("", std::nullopt);
-  write_figure_data(figure, dir / "identified.csv");
-  std::string wrong;
-  try {
-    draw_figure(figure, dir, "identified");
-  } catch (const std::exception& e) {
-    wrong = e.what();
-  }
-  write_report(identification, last, wrong.empty(), dir / "report.html");
-  return wrong;
-}
-
-namespace {
-
 const std::string& name_of(const Identification& identification, Eigen::Index joint) {
   return identification.found.arm.joints[static_cast<std::size_t>(joint)].name;
 }
@@ -157,7 +106,7 @@ FigurePanel torque_panel(const Identification& identification, Eigen::Index join
           .series = {told, same}};
 }
 
-// What is left of the torque without inertia, weight and springs.
+// Torque without inertia, weight and springs, over velocity.
 FigurePanel friction_panel(const Identification& identification, Eigen::Index joint) {
   const JointFinding& finding = identification.found.joints[static_cast<std::size_t>(joint)];
   Series left{.label = "measured, without the others",
@@ -207,6 +156,53 @@ FigurePanel readings_panel(const ReadingTimes& timing) {
 }
 
 }  // namespace
+
+std::string identified_urdf(const Identification& identification) {
+  return urdf_text(identification.found.arm,
+                   fmt::format("identified by {} on {}, from {}", provenance("", std::nullopt),
+                               identification.device, identification.order.guess.name));
+}
+
+DeviceHub::Profile profile_of(const Identification& identification) {
+  return {.urdf = identified_urdf(identification),
+          .report = findings_text(identification),
+          .delay = identification.found.delay.value,
+          .torque_scale = identification.torque_scale ? identification.torque_scale->value : 1};
+}
+
+void write_motion(const IdentifyRun& run, const fs::path& file) {
+  const MotionRecord& record = run.record;
+  std::string text = "time";
+  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",x{}", j);
+  for (Eigen::Index j = 1; j <= record.joints(); ++j) text += fmt::format(",torque{}", j);
+  text += '\n';
+  for (Eigen::Index i = 0; i < record.rows(); ++i) {
+    text += fmt::format("{:.3f}", static_cast<double>(i) * record.T);
+    for (const Eigen::MatrixXd* columns : {&record.x, &record.torque}) {
+      for (const double value : columns->row(i)) text += fmt::format(",{:.9g}", value);
+    }
+    text += '\n';
+  }
+  write(file, text);
+}
+
+std::string write_identification(const Identification& identification,
+                                 const std::optional<Findings>& last, const fs::path& dir,
+                                 const std::string& more) {
+  write(dir / "identified.urdf", identified_urdf(identification));
+  write(dir / "identified.json", findings_text(identification, more));
+  Figure figure = identify_figure(identification);
+  figure.made_by = provenance("", std::nullopt);
+  write_figure_data(figure, dir / "identified.csv");
+  std::string wrong;
+  try {
+    draw_figure(figure, dir, "identified");
+  } catch (const std::exception& e) {
+    wrong = e.what();
+  }
+  write_report(identification, last, wrong.empty(), dir / "report.html");
+  return wrong;
+}
 
 Figure identify_figure(const Identification& identification) {
   Figure figure{.title = "Identification of " + identification.device,

@@ -1,4 +1,4 @@
-// An identification in a folder, for people and for other programs.
+// Reports of an identification: a folder for people and other programs.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,25 @@
 
 namespace limpid {
 
-// The arm that was found, as its file.
+// URDF of the identified arm.
 std::string identified_urdf(const Identification& identification);
 
-// What the hub remembers of it.
+// Profile of the device for the hub.
 DeviceHub::Profile profile_of(const Identification& identification);
 
-// Where a folder has the motion, and the one with the load.
+// Names of the recorded motions in a folder; the second has the load at the tip.
 inline constexpr const char* kMotionFile = "motion.csv";
 inline constexpr const char* kLoadedMotionFile = "motion-with-load.csv";
-// As CSV. Errors: FileError.
+// Writes a motion as CSV. Errors: FileError.
 void write_motion(const IdentifyRun& run, const std::filesystem::path& file);
 
-// What explains the torques of each joint, its friction over its velocity, and how punctually the
-// device reports.
+// Panels: torques of each joint and what explains them, friction over velocity, punctuality of the
+// reports.
 Figure identify_figure(const Identification& identification);
 
-// DIR/identified.urdf, .json (see findings_text()), .csv, .png, .svg and report.html, which names
-// the motion's file; `last`: what was found before. Returns why there are no pictures, empty if
-// there are. Errors: FileError.
+// Writes DIR/identified.urdf, .json (see findings_text()), .csv, .png, .svg and report.html, which
+// names the motion's file. `last`: earlier findings to compare with. Returns why there are no
+// pictures; empty if there are. Errors: FileError.
 std::string write_identification(const Identification& identification,
                                  const std::optional<Findings>& last,
                                  const std::filesystem::path& dir, const std::string& more = {});

@@ -1,4 +1,4 @@
-// Fig. 5: the same free motion with eta 0.6, 1 and 5; the human torque it takes.
+// Fig. 5: human torque for the same free motion with eta 0.6, 1 and 5.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace limpid {
 namespace {
 
 constexpr double kInertiaEtas[] = {0.6, 1, 5};
-// Stiff enough that the three motions are the same.
+// A grip stiff enough that the three motions are the same.
 constexpr double kGripStiffness = 6000;  // [N/m]
 constexpr double kGripDamping = 20;      // [N s/m]
 

@@ -1,5 +1,5 @@
-// How light each coupling makes the arm: inertia and damping felt in free motion, what a passive
-// law has to pay for it, and eta changing while the arm moves.
+// Lightness of the arm under each coupling: inertia and damping felt in free motion, the price of
+// it for a passive law, and eta changing while the arm moves.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr double kLightEtas[] = {0.2, 0.3, 0.5, 1, 2, 5};
 constexpr double kLightGrip = 300, kLightGripDamping = 4;              // [N/m], [N s/m]
 constexpr double kSettle = 2, kShakenPeriod = 2, kShakenTick = 0.001;  // [s]
 constexpr double kAmplitude = 2.5e-4;                                  // at 1 Hz [m]
-constexpr double kSlow = 0.5, kMiddle = 2;  // where laws are compared [Hz]
+constexpr double kSlow = 0.5, kMiddle = 2;  // frequencies at which laws are compared [Hz]
 
 Multisine shaking() {
   constexpr std::pair<int, double> kLines[] = {{1, 0},    {2, 1.1},  {4, 2.3}, {6, 0.7},
@@ -32,22 +32,22 @@ Multisine shaking() {
 struct Law {
   CouplingKind kind;
   double eta;
-  std::vector<FeltMotion> felt = {};  // nothing where it diverged
+  std::vector<FeltMotion> felt = {};  // empty if it diverged
 
-  // Not a number where it diverged: what is asked of it then fails.
+  // NaN if it diverged, so that its checks fail.
   FeltMotion at(double f) const {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     if (felt.empty()) return {f, kNone, kNone, kNone};
     return *std::ranges::min_element(felt, {},
                                      [f](const FeltMotion& m) { return std::abs(m.f - f); });
   }
-  // Torque over speed [N m s/rad].
+  // |Z|, torque over speed [N m s/rad].
   double impedance(double f) const {
     const FeltMotion m = at(f);
     return std::hypot(m.damping, 2 * std::numbers::pi * m.f * m.inertia * m.mass);
   }
   std::string label() const {
-    // What the proposed coupling makes felt at eta = 1 is the same: its curve lies under this one.
+    // The proposed coupling at eta = 1 has the same curve, hidden under this one.
     return kind == CouplingKind::standard ? "standard, on eta = 1" : fmt::format("eta = {}", eta);
   }
 };
@@ -101,7 +101,7 @@ std::vector<Law> of(const std::vector<Law>& laws, CouplingKind kind) {
   return some;
 }
 
-// What an inertia of eta up to 5.3 Hz costs any passive law in damping felt at low frequency.
+// Least damping felt at low frequency under any passive law with inertia eta up to 5.3 Hz.
 double least_damping(double eta, double mass) {
   return std::max(0.0, 1 - eta) * mass * 2 * std::numbers::pi * Parameters{}.band;
 }
@@ -126,7 +126,7 @@ FigurePanel over_frequency(const std::vector<Law>& laws, const std::string& titl
   return panel;
 }
 
-// Of all laws, against eta.
+// A curve over eta for each law.
 template <class Value>
 FigurePanel against_eta(const std::vector<Law>& laws, const std::string& title,
                         const std::string& y, const Value& value) {
@@ -152,7 +152,7 @@ FigurePanel against_eta(const std::vector<Law>& laws, const std::string& title,
   return panel;
 }
 
-// What eta itself would be, beside what is felt.
+// The line y = eta, beside the felt values.
 Series eta_itself() {
   Series line{"eta", kHandInk, Series::Style::dashed, {}};
   for (double eta = 0.1; eta < 10; eta *= 1.05) line.points.push_back({eta, eta});
@@ -186,7 +186,7 @@ FigurePanel price_panel(const std::vector<Law>& laws) {
 
 constexpr const char *kInertia = "inertia, of the arm's own [-]", *kDamping = "damping [N m s/rad]";
 
-// What the proposed coupling makes felt is of several sizes: lighter and heavier apart.
+// Panels of the proposed coupling, lighter and heavier apart: their sizes differ.
 std::vector<FigurePanel> proposed_panels(const std::vector<Law>& laws) {
   std::vector<Law> papers = of(laws, CouplingKind::proposed), light, heavy;
   for (const Law& law : papers) (law.eta <= 1 ? light : heavy).push_back(law);
@@ -266,7 +266,7 @@ void judge_predictive(const std::vector<Law>& laws, std::vector<Check>& checks) 
   }
 }
 
-// What eta scales is the damping; the inertia goes another way.
+// Under the proposed coupling damping scales with eta; inertia does not.
 void judge_proposed(const std::vector<Law>& laws, std::vector<Check>& checks) {
   const auto one = std::ranges::find(laws, 1.0, &Law::eta);
   for (const Law& law : laws) {

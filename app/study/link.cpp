@@ -1,5 +1,5 @@
-// A delay between device and proxy: the stiffest wall on which a tap comes to rest, what is felt of
-// it, and what the hand is given, under each coupling.
+// Delay between device and proxy: the stiffest wall on which a tap comes to rest, its felt
+// stiffness, and the energy given to the hand, under each coupling.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -24,8 +24,8 @@ struct LinkStudy {
   static constexpr double kGiven = 5e-3;                                    // [J]
   static constexpr double kAtRest = 5e-3;                                   // [m/s]
   static constexpr double kWalls[] = {600, 5000};                           // for the energy [N/m]
-  static constexpr unsigned kRandom = 60;                                   // links for the tanks
-  static constexpr std::pair kDrawn{1e-3, 1e5};                             // energies [mJ]
+  static constexpr unsigned kRandom = 60;        // random links for the tanks
+  static constexpr std::pair kDrawn{1e-3, 1e5};  // energies [mJ]
   static constexpr const char* kStandardTint = "#B4B9C3";
 };
 
@@ -33,15 +33,15 @@ bool comes_to_rest(const Touch& touch, bool) {
   return touch.energy <= LinkStudy::kGiven && touch.moving <= LinkStudy::kAtRest;
 }
 
-// One law over the delays.
+// Walls of a law over the delays.
 struct LinkCurve {
   std::string label;
   const char* ink;
   TapSetting base;
-  double width = 1.8;  // of its line: curves of which much is the same lie on one another [px]
+  double width = 1.8;  // of its line; differs for curves that lie on one another [px]
   std::vector<double> walls = {}, felt = {}, energy = {};  // [N/m, N/m, J]
 
-  // The predictive law knows no link: the whole trip is put into its motors, as far as that goes.
+  // Whether the whole trip is put into the motors' delay: the predictive law knows no link.
   bool in_motors() const { return base.kind == CouplingKind::predictive; }
   std::vector<int> delays() const {
     std::vector<int> all;
@@ -76,7 +76,7 @@ std::vector<LinkCurve> linked_laws() {
           {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
 }
 
-// What theory says at the table, in the hand of the taps.
+// Walls by theory at the table, in the grip of the taps.
 class LinkTheory {
  public:
   double standard(int delay) const {
@@ -89,7 +89,8 @@ class LinkTheory {
     }
     return low;
   }
-  // Its spring is the same, and its contact comes late by the whole trip, too.
+  // The proposed law's wall: its spring is the standard coupling's, its contact late by the whole
+  // trip.
   double proposed(int delay) const {
     if (!stable(kSoftest, delay)) return kSoftest;
     const double wall = proposed_wall(tip_at_table(), {.T = p_.tick,
@@ -103,10 +104,9 @@ class LinkTheory {
  private:
   using Complex = Eigen::Matrix3cd;
 
-  // The standard coupling in that hand, the proxy without weight: s times the impedance at the
-  // joints of arm, grip, spring and wall. Stable where the angle of its determinant grows by two
-  // right angles for each joint along the imaginary axis, as that of a mass on a spring and a
-  // damper does.
+  // Stability of the standard coupling in that grip, with a massless proxy: s times the impedance
+  // at the joints of arm, grip, spring and wall. Stable if the angle of its determinant grows along
+  // the imaginary axis by two right angles a joint, as for a mass on a spring and a damper.
   bool stable(double wall, int delay) const {
     constexpr double kStep = 0.5, kTo = 4000;  // [rad/s]
     const Eigen::Matrix3d M = at_.M, JJ = at_.J.transpose() * at_.J,
@@ -187,7 +187,7 @@ void measure_laws(TrialRunner& lab, std::vector<LinkCurve>& laws) {
   }
 }
 
-// The highest E_c of the tanks' taps through links with jitter and loss [J].
+// Highest E_c of the tanks' taps through links with jitter and loss [J].
 double through_random_links(TrialRunner& lab) {
   std::vector<TapBench> benches;
   std::vector<Trial> trials;
@@ -212,7 +212,7 @@ double through_random_links(TrialRunner& lab) {
   return worst;
 }
 
-// On a logarithmic axis that begins with no delay.
+// Position of a delay on a logarithmic axis that begins with no delay.
 double on_axis(int delay) { return delay > 0 ? delay : 0.5; }
 
 FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& title,
@@ -221,7 +221,7 @@ FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& t
   FigurePanel panel{
       .title = title, .x_label = "delay each way [ms]", .y_label = y, .log_x = true, .log_y = true};
   panel.x_range = {0.45, 112};
-  panel.y_range = {0.5 * range.first, 2 * range.second};  // what is at an end is seen
+  panel.y_range = {0.5 * range.first, 2 * range.second};  // values at an end stay visible
   panel.x_ticks = {{0.5, "none"}, {1, "1"},   {2, "2"},   {5, "5"},
                    {10, "10"},    {20, "20"}, {50, "50"}, {100, "100"}};
   for (const LinkCurve& law : laws) {
@@ -230,7 +230,7 @@ FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& t
     const std::vector<int> delays = law.delays();
     for (std::size_t k = 0; k < delays.size(); ++k) {
       const double value = scale * (law.*values)[k];
-      if (std::isnan(value)) continue;  // nothing to be felt
+      if (std::isnan(value)) continue;  // nothing was felt
       line.points.push_back({on_axis(delays[k]), std::clamp(value, range.first, range.second)});
     }
     panel.series.push_back(line);
@@ -286,7 +286,7 @@ double longest(const LinkCurve& law, const WallAt& wall_at) {
   return longest;
 }
 
-// Of delays up to `most` [ticks] the softest of the walls, by what is expected of it.
+// Least ratio of a wall to the expected one, for delays up to `most` [ticks].
 template <class Expected>
 double least_of(const LinkCurve& law, int most, const Expected& expected) {
   double least = HUGE_VAL;

@@ -1,3 +1,4 @@
+// Live experiments: Figs. 3 to 6 and the stiffest wall, in a human hand.
 #include "app/study/live.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@
 
 namespace limpid {
 
-// Each in its own file, live_NAME.cpp.
+// Defined below.
 Outcome live_coordination(LiveLaboratory& lab);
 Outcome live_inertia(LiveLaboratory& lab);
 Outcome live_passivity(LiveLaboratory& lab);
@@ -35,7 +36,7 @@ constexpr std::array kLiveExperiments{
     LiveExperiment{"zwidth", "the stiffest wall that does not buzz in your hand", live_zwidth},
 };
 
-// The mean over as many rows to both sides, twice: nothing is shifted in time.
+// Mean over `reach` rows to both sides, taken twice; shifts nothing in time.
 std::vector<Eigen::VectorXd> smooth(const std::vector<Eigen::VectorXd>& raw, std::size_t reach) {
   std::vector<Eigen::VectorXd> values = raw;
   for (int pass = 0; pass < 2; ++pass) {
@@ -51,6 +52,54 @@ std::vector<Eigen::VectorXd> smooth(const std::vector<Eigen::VectorXd>& raw, std
     }
   }
   return values;
+}
+
+constexpr double kSeconds = 20;
+constexpr int kContacts = 3;
+
+constexpr double kInertiaSeconds = 15;
+constexpr double kMargin = 1.1;    // over the least passive eta
+constexpr double kOff = 0.25;      // of the promised value: hands and arms differ
+constexpr double kLargest = 1.75;  // eta
+
+// Inertia by (24) in a slow hand: Z = eta (b + s m (1 + (1 - eta) b / alpha)). The estimate lags by
+// m / alpha; the lag of its damping acts like inertia.
+double promised_inertia(const Parameters& p, double b) {
+  return p.eta * (1 + (1 - p.eta) * b / p.alpha);
+}
+
+LiveTrial swing(const Parameters& p) {
+  return {
+      fmt::format("eta-{:.2f}", p.eta), p, kInertiaSeconds,
+      fmt::format("eta = {:.2f}: swing the tip through free space, about once a second, without "
+                  "touching anything, 15 s.",
+                  p.eta)};
+}
+
+constexpr double kPassivitySeconds = 20;
+constexpr double kHighestLive = 4e-3;  // from unknown steps of encoders and friction [J]
+
+constexpr double kZwidthSeconds = 6;
+constexpr double kSoft = 250;                 // the first wall [N/m]
+constexpr std::size_t kZwidthTouching = 500;  // least rows in contact for a result
+
+struct Wall {
+  double stiffness, chatter;
+  bool renders;
+};
+
+Wall tap(LiveLaboratory& lab, const Parameters& p, double stiffness) {
+  lab.stiffen(stiffness);
+  const Session s =
+      lab.run({fmt::format("{}-{:.0f}", name(p.kind), stiffness), p, kZwidthSeconds,
+               fmt::format("A wall of {:.0f} N/m, {} coupling: tap it, press, hold, 6 s.",
+                           stiffness, name(p.kind))});
+  std::size_t touching = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) touching += contact_torque(s, k) > 0;
+  if (touching < kZwidthTouching)
+    throw std::runtime_error("the wall was hardly touched; once more");
+  const double chatter = chatter_in_contact(s, lab.arm);
+  return {stiffness, chatter, chatter <= WellRendered::kChatter};
 }
 
 }  // namespace
@@ -70,7 +119,7 @@ Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
 
 Felt felt_of(const Session& s, const ArmDescription& arm) {
   constexpr std::size_t kReach = 25;  // rows: passes a hand's few hertz, no tremor
-  constexpr std::size_t kStep = 10;   // rows from one place that is looked at to the next
+  constexpr std::size_t kStep = 10;   // rows from one evaluation to the next
   if (s.size() < 8 * kReach) throw std::runtime_error("too short to say what is felt");
   std::vector<Eigen::VectorXd> x, torque;
   for (std::size_t k = 0; k < s.size(); ++k) {
@@ -80,8 +129,8 @@ Felt felt_of(const Session& s, const ArmDescription& arm) {
   x = smooth(x, kReach);
   torque = smooth(torque, kReach);
   const double T = s.info.tick;
-  // f1_hat = share M a + what each joint has of damping and of a steady push: so that neither of
-  // them leaks into the share.
+  // Model: f1 = share M a + each joint's damping and steady push. Fitting these keeps them out of
+  // the share.
   const Eigen::Index n = x[0].size();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(1 + 2 * n, 1 + 2 * n);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(1 + 2 * n);
@@ -92,7 +141,7 @@ Felt felt_of(const Session& s, const ArmDescription& arm) {
     along.col(0) = M * (x[k + kStep] - 2 * x[k] + x[k - kStep]) / (h * h);
     along.middleCols(1, n) = ((x[k + kStep] - x[k - kStep]) / (2 * h)).asDiagonal();
     along.rightCols(n).setIdentity();
-    // Without the observer's lag, (17): f1 = f1_hat + M f1_hat' / alpha.
+    // (17) without the observer's lag: f1 = f1_hat + M f1_hat' / alpha.
     const Eigen::VectorXd f1 = torque[k] + M * (torque[k + kStep] - torque[k - kStep]) /
                                                (2 * h * s.at(k, Column::alpha)[0]);
     normal += along.transpose() * along;
@@ -120,15 +169,6 @@ double chatter_in_contact(const Session& s, const ArmDescription& description) {
   }
   return touching > 0 ? std::sqrt(sum / static_cast<double>(touching)) : 0;
 }
-
-// Figs. 3 and 4 in a human hand.
-
-namespace {
-
-constexpr double kSeconds = 20;
-constexpr int kContacts = 3;
-
-}  // namespace
 
 Outcome live_coordination(LiveLaboratory& lab) {
   struct Run {
@@ -175,32 +215,6 @@ Outcome live_coordination(LiveLaboratory& lab) {
                                    contact_slope(runs[1].session) / standard, 0.2));
   return outcome;
 }
-
-// Fig. 5 in a human hand, which never moves twice alike: what counts is torque by acceleration and
-// by speed.
-
-namespace {
-
-constexpr double kInertiaSeconds = 15;
-constexpr double kMargin = 1.1;    // of the least eta that is passive
-constexpr double kOff = 0.25;      // of what is promised: hands and arms differ
-constexpr double kLargest = 1.75;  // eta
-
-// Of (24) where the hand is slow: Z = eta (b + s m (1 + (1 - eta) b / alpha)). The estimate lags by
-// m / alpha, and what it lags by of the damping acts like inertia.
-double promised_inertia(const Parameters& p, double b) {
-  return p.eta * (1 + (1 - p.eta) * b / p.alpha);
-}
-
-LiveTrial swing(const Parameters& p) {
-  return {
-      fmt::format("eta-{:.2f}", p.eta), p, kInertiaSeconds,
-      fmt::format("eta = {:.2f}: swing the tip through free space, about once a second, without "
-                  "touching anything, 15 s.",
-                  p.eta)};
-}
-
-}  // namespace
 
 Outcome live_inertia(LiveLaboratory& lab) {
   Parameters p = lab.parameters;
@@ -257,15 +271,6 @@ Outcome live_inertia(LiveLaboratory& lab) {
   return outcome;
 }
 
-// Fig. 6 in a human hand.
-
-namespace {
-
-constexpr double kPassivitySeconds = 20;
-constexpr double kHighestLive = 4e-3;  // of encoders' steps and friction that nobody knows [J]
-
-}  // namespace
-
 Outcome live_passivity(LiveLaboratory& lab) {
   struct Law {
     CouplingKind kind;
@@ -294,7 +299,7 @@ Outcome live_passivity(LiveLaboratory& lab) {
     energy.series.push_back(over_time(s, label, law.ink, Series::Style::line, [&](auto k) {
       return 1e3 * s.at(k, Column::energy_total)[0];
     }));
-    // Who touches nothing has shown nothing.
+    // A hand that touches nothing shows nothing.
     outcome.checks.push_back(
         at_least("lasting contacts, " + label + " coupling", lasting_contacts(s), 1));
     outcome.checks.push_back(
@@ -303,35 +308,6 @@ Outcome live_passivity(LiveLaboratory& lab) {
   outcome.figure.panels = {energy};
   return outcome;
 }
-
-// The stiffest wall in a human hand: the hand taps and presses, the wall doubles until it buzzes.
-
-namespace {
-
-constexpr double kZwidthSeconds = 6;
-constexpr double kSoft = 250;                 // the first wall [N/m]
-constexpr std::size_t kZwidthTouching = 500;  // rows without which nothing is known
-
-struct Wall {
-  double stiffness, chatter;
-  bool renders;
-};
-
-Wall tap(LiveLaboratory& lab, const Parameters& p, double stiffness) {
-  lab.stiffen(stiffness);
-  const Session s =
-      lab.run({fmt::format("{}-{:.0f}", name(p.kind), stiffness), p, kZwidthSeconds,
-               fmt::format("A wall of {:.0f} N/m, {} coupling: tap it, press, hold, 6 s.",
-                           stiffness, name(p.kind))});
-  std::size_t touching = 0;
-  for (std::size_t k = 0; k < s.size(); ++k) touching += contact_torque(s, k) > 0;
-  if (touching < kZwidthTouching)
-    throw std::runtime_error("the wall was hardly touched; once more");
-  const double chatter = chatter_in_contact(s, lab.arm);
-  return {stiffness, chatter, chatter <= WellRendered::kChatter};
-}
-
-}  // namespace
 
 Outcome live_zwidth(LiveLaboratory& lab) {
   Outcome outcome;

@@ -1,4 +1,4 @@
-// Experiments on a real device in a human hand: what the hand is asked to do, and what comes of it.
+// Experiments on a real device in a human hand: what the hand is asked to do, and the results.
 #pragma once
 
 #include <functional>
@@ -15,15 +15,15 @@ struct LiveTrial {
   std::string instruction;
 };
 
-// What a live experiment runs in.
+// Arm, scene and settings of a live experiment, and the functions that run its trials.
 struct LiveLaboratory {
   ArmDescription arm;
   SceneDocument document;
-  Parameters parameters;  // as asked for; an experiment changes what it varies
+  Parameters parameters;  // as requested; an experiment changes those that it varies
   // Leads the hand through a trial and returns its recording. Throws Cancelled; FileError;
   // std::runtime_error.
   std::function<Session(const LiveTrial&)> run;
-  // Another stiffness of all that can be touched, for the trials that follow [N/m].
+  // Sets the stiffness of everything in the scene for the trials that follow [N/m].
   std::function<void(double stiffness)> stiffen;
 };
 
@@ -33,7 +33,7 @@ struct LiveExperiment {
   Outcome (*run)(LiveLaboratory&);
 };
 
-// Of what it leaves: live-NAME.
+// Name of its result files.
 inline std::string live_name(const LiveExperiment& e) { return std::string("live-") + e.name; }
 
 std::span<const LiveExperiment> live_experiments();
@@ -42,16 +42,16 @@ std::span<const LiveExperiment> live_experiments();
 Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
                   const std::filesystem::path& dir);
 
-// What the hand feels of the arm along its own motion: of f1, which is f1_hat without the
-// observer's lag, the part along M(x1) a1, and each joint's along v1; beside a steady push of each
-// joint, and without what is faster than a hand.
+// Felt inertia and damping along the arm's own motion. f1 is f1_hat without the observer's lag: its
+// part along M(x1) a1 gives the inertia, each joint's part along v1 the damping. A steady push of
+// each joint, and parts faster than a hand, are taken off.
 struct Felt {
-  double inertia = 0;       // by that of the model's M [-]
+  double inertia = 0;       // over that of the model's M [-]
   Eigen::VectorXd damping;  // [N m s/rad]
 };
 Felt felt_of(const Session& s, const ArmDescription& arm);
 
-// The tip's speed above 20 Hz while it touches, rms [m/s].
+// The tip's rms speed above 20 Hz while it touches [m/s].
 double chatter_in_contact(const Session& s, const ArmDescription& arm);
 
 }  // namespace limpid

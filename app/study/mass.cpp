@@ -1,5 +1,5 @@
-// The mass that the hand feels of a body that it holds, over frequency, and the least mass with
-// which a body can be held at all, over the stiffness that holds it.
+// Felt mass of a held body over frequency, and the least mass of a body that can be held, over the
+// stiffness that holds it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,11 +20,11 @@ constexpr double kHeldTick = 0.001, kHeldPeriod = 2, kHeldSettle = 6;  // [s]
 constexpr double kHeldAmplitude = 2.5e-4;                              // at 1 Hz [m]
 constexpr double kHeldLines[] = {0.5, 1, 2, 3, 5};                     // [Hz]
 constexpr double kHeldGrip = 3000;                                     // [N/m]
-constexpr double kHeldDamping = 2;  // of the staggered way [N s/m]
+constexpr double kHeldDamping = 2;  // of the staggered coupling [N s/m]
 constexpr double kHeldTip = 0.004, kHeldCube = 0.01, kHeldGap = 0.002;  // [m]
 
-// A ball of the tip, and beside it a cube whose centre of mass is where the tip is: held there by
-// the magnet, it is a point of mass.
+// Scene: a ball as the tip, and beside it a cube whose centre of mass is at the tip. Held there by
+// the magnet it is a point mass.
 std::string held_cube(double mass, double stiffness) {
   const double below = kHeldTip + kHeldGap + kHeldCube / 2;
   return scene_of({{.name = "cube",
@@ -36,7 +36,7 @@ std::string held_cube(double mass, double stiffness) {
                   fmt::format("gravity = [0, 0, 0]\ntip_radius = {}\n", kHeldTip));
 }
 
-// A way to hold a body: one of the laws, or staggered.
+// A way to hold a body: a law, or the staggered coupling.
 struct HeldWay {
   std::string label;
   const char* ink;
@@ -44,8 +44,9 @@ struct HeldWay {
   double eta = 1;
   double stiffness = kHeld;  // [N/m]
 
-  // What is shaken instead of the body, to be taken off: the predictive law gives back no damping
-  // while the magnet holds anything; with the others so light a body would not stay [kg].
+  // Mass that is shaken alone and subtracted [kg]. The predictive law gives back no damping while
+  // the magnet holds something, so it needs a speck; under the other laws so light a body would not
+  // stay.
   double instead() const { return law == CouplingKind::predictive ? kSpeck : 0; }
   Parameters parameters() const {
     Parameters p;
@@ -90,13 +91,13 @@ double mass_of_theory(double mass, double stiffness, double f) {
   return mass / (1 - mass * w * w / stiffness);
 }
 
-// What is felt of a body at each frequency [kg]; nothing where it was not held to the end.
+// Felt mass of a body at each frequency [kg]; empty if it was not held to the end.
 struct FeltBody {
   HeldWay way;
   double mass;
   std::vector<double> felt = {};
 
-  // Largest distance from theory, of it; not a number where nothing was felt.
+  // Largest error against theory, relative; NaN if nothing was felt.
   double off() const {
     double most = felt.empty() ? std::nan("") : 0;
     for (std::size_t i = 0; i < felt.size(); ++i) {
@@ -130,21 +131,21 @@ std::vector<double> felt_staggered(const ArmDescription& arm, const HeldWay& way
   return run.diverged ? std::vector<double>{} : masses_of(run.record);
 }
 
-// Its force grows until the magnet lets go, where a law cannot hold it; without a body there is
-// none.
+// Whether the magnet still holds at the end: where a law cannot hold a body, its force grows until
+// the magnet lets go. True without a body.
 bool held_to_the_end(const TrialResult& r) {
   const Session& s = r.session;
   if (r.end.diverged) return false;
   return s.info.bodies.empty() || s.at(s.size() - 1, Column::magnet)[0] > 0;
 }
 
-// Of each, the same shaking with next to nothing taken off.
+// Felt masses of all bodies, less those of the same shaking with instead().
 std::vector<FeltBody> feel_bodies(TrialRunner& lab) {
   std::vector<FeltBody> all;
   std::vector<Trial> trials;
   for (const HeldWay& way : held_ways()) {
     for (const double mass : {way.instead(), 0.005, 0.05, 0.5}) {
-      // So softly held, 500 g would swing at 5.5 Hz.
+      // 500 g held so softly would swing at 5.5 Hz.
       if (way.stiffness == kHeldSoftly && mass == kHeldMasses[2]) continue;
       all.push_back({way, mass});
       if (way.law) trials.push_back(held_and_shaken(way, mass));
@@ -168,7 +169,7 @@ std::vector<FeltBody> feel_bodies(TrialRunner& lab) {
   return all;
 }
 
-// In words, with a space behind them; nothing where all hold all.
+// Sentence on the bodies that were not held, with a space behind it; empty if all were.
 std::string not_held(const std::vector<FeltBody>& all) {
   std::vector<std::string> words;
   for (const FeltBody& one : all) {
@@ -202,11 +203,9 @@ FigurePanel felt_panel(const std::vector<FeltBody>& all, double mass) {
   return panel;
 }
 
-// The least mass that can be held.
-
 constexpr double kStiffnesses[] = {100, 200, 500, 1000, 2000, 5000, 10000, 20000};  // [N/m]
 constexpr double kLightest = 1e-4, kHeaviest = 3;                                   // tried [kg]
-constexpr double kStillDevice = 5000;  // to which the device stands still enough for theory [N/m]
+constexpr double kStillDevice = 5000;  // device stiff enough to stand still for theory [N/m]
 constexpr double kNudge = 1e-4;        // [m]
 constexpr double kStrongMotors = 100;  // [N m]
 constexpr int kHalvings = 10;
@@ -227,8 +226,8 @@ Parameters in_a_still_hand() {
   return p;
 }
 
-// The least mass with which it is stable between those tried, for each stiffness; the lightest
-// where it is stable with that, none where it is not with the heaviest.
+// Least stable mass for each stiffness, between kLightest and kHeaviest; none if even the heaviest
+// is unstable.
 using StableMasses = std::function<std::vector<char>(const std::vector<double>& masses)>;
 std::vector<std::optional<double>> least_masses(const StableMasses& stable) {
   constexpr std::size_t n = std::size(kStiffnesses);
@@ -251,7 +250,7 @@ std::vector<std::optional<double>> least_masses(const StableMasses& stable) {
   return least;
 }
 
-// Under the predictive law, for each stiffness.
+// Whether the lightest body is stable under the predictive law, for each stiffness.
 std::vector<char> stable_with_the_lightest(TrialRunner& lab) {
   std::vector<Trial> trials;
   for (const double K : kStiffnesses) {
@@ -282,7 +281,7 @@ StableMasses when_staggered(const ArmDescription& arm, double damping) {
   };
 }
 
-// Of the staggered way, with the line of theory.
+// Curve of the staggered coupling, with the line of theory.
 void add_staggered(const ArmDescription& arm, double damping, const char* ink, FigurePanel& panel,
                    std::vector<Check>& checks) {
   const std::string law = damping > 0 ? "K T^2/4 + B T/2" : "K T^2/4";

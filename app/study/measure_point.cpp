@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// The one whose bits are the same everywhere.
+// Makes all NaN the same to the bit, on every machine.
 double plain(double x) { return std::isnan(x) ? kNone : x; }
 
 bool needs_felt(const SweepPlan& plan) {
@@ -21,7 +21,7 @@ bool needs_felt(const SweepPlan& plan) {
   return felt;
 }
 
-// Where the condition changes along the boundary's axis.
+// Search for changes of the condition along the boundary's axis.
 class BoundarySearch {
  public:
   BoundarySearch(const SweepPlan& plan, std::uint64_t index, const std::atomic<bool>& stop)
@@ -63,7 +63,7 @@ class BoundarySearch {
   double bisect(double low, double high, bool at_low) {
     while (!interrupted_ && !close(low, high)) {
       const double at = middle(low, high);
-      if (!(at > low && at < high)) break;  // finer than numbers are
+      if (!(at > low && at < high)) break;  // no number lies between
       (met(at) == at_low ? low : high) = at;
     }
     return middle(low, high);

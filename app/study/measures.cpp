@@ -9,7 +9,7 @@ namespace limpid {
 namespace {
 
 constexpr double kNoMeasure = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFast = 20;  // what chatter is above [Hz]
+constexpr double kFast = 20;  // lowest frequency that counts as chatter [Hz]
 
 double yes(bool is) { return is ? 1 : 0; }
 const Summary::Totals& of(const RunMeter& m) { return m.summary().totals(); }
@@ -163,7 +163,7 @@ void RunMeter::add_felt(std::span<const double> row) {
   if (!f.free) add_contact(f, f.f1);
 }
 
-// Welford's sums of the hand's force at the tip, J^T F = f1.
+// Adds to Welford's sums of the hand's force at the tip, J^T F = f1.
 void RunMeter::add_contact(Felt& f, const Vec<kAnyDof>& f1) const {
   f.arm.point_jacobian(f.frames, f.arm.dof() - 1, f.tip, f.J);
   const Mat3 JJ = f.J * f.J.transpose();
@@ -176,7 +176,7 @@ void RunMeter::add_contact(Felt& f, const Vec<kAnyDof>& f1) const {
   f.xf += dx * (force - f.mean_f).transpose();
 }
 
-// The tick that ends with velocity v.
+// Adds the tick that ends with velocity v.
 void RunMeter::add_free(Felt& f, const Vec<kAnyDof>& v) const {
   const Vec<kAnyDof> inertial = f.M * ((v - f.v) / T_) + f.Cv, speed = (v + f.v) / 2;
   const Eigen::LDLT<Mat<kAnyDof>> M(f.M);
@@ -214,7 +214,7 @@ std::array<double, 2> RunMeter::felt_inertia_damping() const {
   return {(f.af * f.vv - f.vf * f.av) / determinant, (f.vf * f.aa - f.af * f.av) / determinant};
 }
 
-// Growing, or not dying away, is unstable.
+// A motion that grows, or does not die away, is unstable.
 bool RunMeter::dies_away() const {
   const std::uint64_t span = rows_ / kSpans;
   if (span == 0 || row_ < kSpans * span) return false;

@@ -1,4 +1,4 @@
-// What a sweep can measure of a run.
+// Measures that a sweep can take of a run.
 #pragma once
 
 #include <array>
@@ -28,15 +28,15 @@ struct MeasureInfo {
 std::span<const MeasureInfo> measure_table();
 const MeasureInfo* find_measure(std::string_view name);
 
-// Energy that does not count [J].
+// Energies up to this one count as zero [J].
 inline constexpr double kNoEnergy = 1e-6;
 
-// Takes a run's rows in turn; at any moment every measure has a value of the run so far, not a
-// number where there is nothing to measure.
+// Takes a run's rows in turn. At any moment every measure has its value for the run so far, NaN
+// where there is nothing to measure.
 class RunMeter {
  public:
-  // Of a run of `rows` ticks of T [s], in a world with this plane and so many bodies. `felt`:
-  // whether what needs the arm's inertia and tip is wanted, which costs as much as a tick.
+  // For a run of `rows` ticks of T [s] with `bodies` bodies; `wall`: the plane, if any. `felt`:
+  // compute measures that need the arm's inertia and tip, which costs as much as a tick.
   RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
            const Object* wall = nullptr, int bodies = 0);
 
@@ -46,36 +46,37 @@ class RunMeter {
   double seconds() const { return static_cast<double>(row_) * T_; }
   double error_slope() const;  // |x_E| over |f2|, least squares through the origin [rad/(N m)]
   double highest_port() const { return highest_port_; }  // [J]
-  // Most that the human was given beyond what bodies gave [J], that bodies had beyond what they had
-  // at first and were given [J], and furthest that one got from where it was [m]; without bodies
-  // the last two are none.
+  // Most energy that the human was given beyond what bodies gave [J]; most that bodies had beyond
+  // their initial energy and what they were given [J]; furthest that a body moved from its start
+  // [m]. Without bodies the last two are NaN.
   double highest_beyond() const { return highest_beyond_; }
   double bodies_gain() const { return bodies_gain_; }
   double bodies_moved() const { return bodies_moved_; }
-  // Of the wall [N/m]; as it is felt, by that; its force above 20 Hz, in the second half, rms [N].
+  // The wall's stiffness [N/m]; the felt one over that; rms of the wall's force above 20 Hz in the
+  // second half [N].
   double wall() const { return wall_stiffness_; }
   double wall_felt() const;
   double wall_rattle() const;
   double chatter() const;  // of the tip above 20 Hz in the second half, rms [m/s]
-  double felt_stiffness()
-      const;  // slope of the hand's force over the tip's way, along the mean force in contact [N/m]
+  // Slope of the hand's force over the tip's motion, along the mean force in contact [N/m].
+  double felt_stiffness() const;
   // f1 = m M a + b v out of contact, least squares in the metric of M^-1: m [-], b [N m s/rad].
   std::array<double, 2> felt_inertia_damping() const;
   bool dies_away() const;  // the device's speed, over twentieths of the run
 
  private:
-  // Only with `felt`.
+  // State of the measures that need `felt`.
   struct Felt {
     Arm<kAnyDof> arm;
     std::array<HighPass, 3> fast;
     Arm<kAnyDof>::Frames frames = {};
     Jacobian<kAnyDof> J = {};
-    // Of the row before.
+    // Values of the previous row.
     bool began = false, free = false;
     Vec3 tip = Vec3::Zero();                // [m]
     Mat<kAnyDof> M = {};                    // [kg m^2]
     Vec<kAnyDof> Cv = {}, v = {}, f1 = {};  // [N m, rad/s, N m]
-    // Sums: of the second half; of rows in contact; of free ones.
+    // Sums over the second half, over rows in contact, and over free rows.
     double fast2 = 0, settled = 0;
     double touching = 0;
     Vec3 mean_x = Vec3::Zero(), mean_f = Vec3::Zero();

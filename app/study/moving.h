@@ -1,4 +1,4 @@
-// Runs with bodies that move: scenes for them, what they are judged by, and what the hand did.
+// Runs with moving bodies: scenes, verdicts and the hand's part.
 #pragma once
 
 #include <optional>
@@ -22,35 +22,35 @@ struct BoxText {
 };
 std::string scene_of(const std::vector<BoxText>& boxes, const std::string& before);
 
-// What a run is judged by. Of one that diverged all energies are infinite.
+// Verdict on a run; if it diverged, all energies are infinite.
 struct MovingVerdict {
-  double energy = 0;    // highest E_c [J]
-  double beyond = 0;    // most that the human was given beyond what bodies gave [J]
-  double gain = 0;      // most that bodies had beyond what they had at first and were given [J]
-  double reserve = 0;   // the ledger's lowest, less what it was at first [J]
+  double energy = 0;  // highest E_c [J]
+  double beyond = 0;  // most that the human was given beyond what bodies gave [J]
+  double gain = 0;  // most that bodies had beyond their initial energy and what they were given [J]
+  double reserve = 0;   // the ledger's lowest value less its first [J]
   double governor = 1;  // the least share of the contact's force that the ledger let through [-]
-  double sweeps = 0;    // the most over contacts between bodies in a tick
+  double sweeps = 0;    // most iterations over contacts between bodies in a tick
   double unsolved = 0;  // ticks for which the proxy stood still
 };
 MovingVerdict judge_moving(const TrialResult& result);
 
-// The same energy at each row, for a curve [J].
+// The energy `beyond` up to row k, for a curve [J].
 double beyond_at(const Session& session, std::size_t k);
 
 // The device's tip at each tick, and the hand's mean force there over the tick that follows.
 struct TipRecord {
   double tick = 0;          // [s]
-  std::vector<Vec3> tip;    // one more than of forces [m]
+  std::vector<Vec3> tip;    // one more than `force` [m]
   std::vector<Vec3> force;  // [N]
 };
-// Of an arm whose tip every force moves: three joints.
+// Precondition: an arm of three joints, whose tip every force moves.
 TipRecord tip_record(const ArmDescription& arm, const Session& session);
 
 // Mass that the hand feels at frequency f [Hz], from tick `from` on, over whole periods: its force
 // in phase with the tip's acceleration, along the tip's own motion [kg].
 double felt_mass(const TipRecord& record, std::size_t from, double f);
 
-// Whether a motion dies away, of its speeds over time: the last fifth is slower than the second.
+// Whether a motion dies away: the last fifth of `speeds` is slower than the second.
 bool dies_away(const std::vector<double>& speeds);
 
 }  // namespace limpid

@@ -1,3 +1,4 @@
+// Section 3.1: speed of the human force observer, for every gain.
 #include "app/study/observer.h"
 
 #include <fmt/format.h>
@@ -37,56 +38,11 @@ std::vector<double> along(const Session& s, std::size_t from, Column column,
   return values;
 }
 
-}  // namespace
-
-double gain_bandwidth(const Response& response) {
-  return 2 * kPi * falls_through(response.f, response.gain, std::numbers::sqrt2 / 2);
-}
-
-double phase_bandwidth(const Response& response) {
-  return 2 * kPi * falls_through(response.f, response.phase, -kPi / 4);
-}
-
-Response measured_response(const Session& session, std::size_t from, const Eigen::VectorXd& u,
-                           const Multisine& shaking) {
-  const double T = session.info.tick;
-  const std::vector<double> human = along(session, from, Column::hand_torque, u);
-  const std::vector<double> estimate = along(session, from, Column::hand_torque_estimate, u);
-  Response response;
-  for (const Multisine::Line& line : shaking.lines) {
-    const double f = shaking.frequency(line);
-    // A row holds the mean torque over the tick that follows t_k.
-    const double half = kPi * f * T;
-    const std::complex<double> mean = std::polar(std::sin(half) / half, half);
-    add(response, f, amplitude_at(estimate, T, f) * mean / amplitude_at(human, T, f));
-  }
-  return response;
-}
-
-Response sampled_response(const std::vector<double>& f, double w_f, double T) {
-  const double E = lag(w_f, T);
-  Response response;
-  for (const double hertz : f) {
-    const double half = kPi * hertz * T;
-    const double sinc = std::sin(half) / half;
-    const std::complex<double> delay = std::polar(1.0, -2 * half);
-    add(response, hertz, sinc * sinc * delay * (1 - E) / (1.0 - E * delay));
-  }
-  return response;
-}
-
-// Of fast modes the error changes its sign from tick to tick.
-double sampled_decay(double w_f, double T) { return -std::log(std::abs(lag(w_f, T))) / T; }
-
-// Section 3.1: how fast the human force observer is, for every gain.
-
-namespace {
-
 constexpr double kTick = 0.001;                  // [s]
-constexpr double kPeriod = 5;                    // of the shaking; one to settle, one to look [s]
+constexpr double kPeriod = 5;                    // of the shaking; one to settle, one measured [s]
 constexpr double kLowest = 0.2, kHighest = 200;  // [Hz]
 constexpr double kSpeed = 5e-4;                  // of the shaking at each frequency [m/s]
-constexpr double kUnsampled = 0.05;              // w_f T up to which sampling does not show
+constexpr double kUnsampled = 0.05;  // largest w_f T without a visible effect of sampling
 constexpr double kShown[] = {0.0035, 0.035, 0.35};  // gains worth a curve [N m s/rad]
 
 constexpr const char* kFree = R"(title = "Free space"
@@ -95,8 +51,8 @@ about = "Nothing to touch."
 
 Vec3 start() { return {0.19, 0, 0}; }
 
-// The built-in arm, at the paper's gains with eta = 1. The grip has no damper: it would answer to
-// the steps in the target's rate from tick to tick.
+// Built-in arm at the paper's gains with eta = 1. The grip has no damper, which would answer to the
+// steps in the target's rate from tick to tick.
 RunPlan free_plan(double alpha, HandPath hand) {
   Parameters p;
   p.alpha = alpha;
@@ -105,7 +61,7 @@ RunPlan free_plan(double alpha, HandPath hand) {
   return plan_in(kFree, std::move(hand), p);
 }
 
-// Each mode of the arm where the hand starts is an observer of its own.
+// Modes of the arm where the hand starts; each is an observer of its own.
 struct Modes {
   Eigen::VectorXd m;  // lightest first [kg m^2]
   Eigen::MatrixXd u;  // columns, unit
@@ -150,7 +106,7 @@ class Shaking {
 
 double off(double value, double wanted) { return std::abs(value / wanted - 1); }
 
-// Bandwidth over alpha / m for a sweep of gains and every mode of the arm.
+// Draws and checks bandwidth over alpha / m for a sweep of gains and every mode of the arm.
 void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<double> gains;
   for (int i = 0; i <= 18; ++i) gains.push_back(0.002 * std::pow(500, i / 18.0));
@@ -176,7 +132,8 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
     const double w_gain = gain_bandwidth(seen[i]), w_phase = phase_bandwidth(seen[i]);
     by_phase.points.push_back({w_f, w_phase});
     off_sampled = worse(off_sampled, off(w_phase, phase_bandwidth(sampled)));
-    // In the band of the shaking some gains never fall so far; those that do are to be seen.
+    // In the band of the shaking some gains have no bandwidth; compare where measurement or theory
+    // has one.
     const bool falls = gain_bandwidth(sampled_response(seen[i].f, w_f, kTick)) > 0;
     if (w_gain > 0) by_gain.points.push_back({w_f, w_gain});
     if (w_gain > 0 || falls) {
@@ -210,7 +167,7 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
               off_sampled, 0.03));
 }
 
-// f1_hat over f1 along the heaviest mode for three gains.
+// Draws f1_hat over f1 along the heaviest mode for three gains.
 void response(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<Trial> trials;
   for (const double alpha : kShown) trials.push_back(shaking.trial(alpha, 2 * kPeriod, true));
@@ -238,7 +195,7 @@ void response(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   outcome.figure.panels.push_back(panel);
 }
 
-// (18): an estimate that is wrong at first, in a hand that rests.
+// (18): decay of a wrong first estimate, in a hand that rests.
 void error_decay(TrialRunner& lab, Outcome& outcome) {
   constexpr double kWrong = 1e-3;  // [N m]
   std::vector<Trial> trials;
@@ -271,7 +228,7 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
         const double t = static_cast<double>(k) * kTick;
         const double error = std::abs(modes.u.col(mode).dot(
             vector_at(s, k, Column::hand_torque_estimate) - vector_at(s, k, Column::hand_torque)));
-        // What is gone within a tick or two is still seen to go.
+        // Keeps three errors even if they decay within a tick or two.
         if (error < 1e-2 * kWrong && errors.size() >= 3) break;
         errors.push_back(error);
         seen.points.push_back({t, error / kWrong});
@@ -286,7 +243,7 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
       at_most("decay rate of a wrong estimate off that of (18) in ticks, all modes", worst, 0.02));
 }
 
-// Estimates stay bounded for every gain there is.
+// Checks that estimates stay bounded for gains over many decades.
 void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<double> gains;
   for (int decade = -5; decade <= 3; ++decade) gains.push_back(std::pow(10.0, decade));
@@ -317,6 +274,45 @@ void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
 }
 
 }  // namespace
+
+double gain_bandwidth(const Response& response) {
+  return 2 * kPi * falls_through(response.f, response.gain, std::numbers::sqrt2 / 2);
+}
+
+double phase_bandwidth(const Response& response) {
+  return 2 * kPi * falls_through(response.f, response.phase, -kPi / 4);
+}
+
+Response measured_response(const Session& session, std::size_t from, const Eigen::VectorXd& u,
+                           const Multisine& shaking) {
+  const double T = session.info.tick;
+  const std::vector<double> human = along(session, from, Column::hand_torque, u);
+  const std::vector<double> estimate = along(session, from, Column::hand_torque_estimate, u);
+  Response response;
+  for (const Multisine::Line& line : shaking.lines) {
+    const double f = shaking.frequency(line);
+    // A row holds the mean torque over the tick that follows t_k.
+    const double half = kPi * f * T;
+    const std::complex<double> mean = std::polar(std::sin(half) / half, half);
+    add(response, f, amplitude_at(estimate, T, f) * mean / amplitude_at(human, T, f));
+  }
+  return response;
+}
+
+Response sampled_response(const std::vector<double>& f, double w_f, double T) {
+  const double E = lag(w_f, T);
+  Response response;
+  for (const double hertz : f) {
+    const double half = kPi * hertz * T;
+    const double sinc = std::sin(half) / half;
+    const std::complex<double> delay = std::polar(1.0, -2 * half);
+    add(response, hertz, sinc * sinc * delay * (1 - E) / (1.0 - E * delay));
+  }
+  return response;
+}
+
+// For fast modes the error changes its sign from tick to tick.
+double sampled_decay(double w_f, double T) { return -std::log(std::abs(lag(w_f, T))) / T; }
 
 Outcome observer(TrialRunner& lab) {
   const Shaking shaking(lab.seed());

@@ -1,4 +1,4 @@
-// How the human force observer answers to torques of every frequency: measured, and in theory.
+// Frequency response of the human force observer: measured, and in theory.
 #pragma once
 
 #include <complex>
@@ -16,21 +16,21 @@ struct Response {
   std::vector<double> phase;  // [rad], without jumps
 };
 
-// Where the gain falls below 1/sqrt(2) and where the phase falls below -45 degrees [rad/s]; a
-// first-order lag has both at its w_f. 0 if it never happens.
+// Frequencies where the gain falls below 1/sqrt(2) and the phase below -45 degrees [rad/s]; both
+// are w_f for a first-order lag. 0 if that never happens.
 double gain_bandwidth(const Response& response);
 double phase_bandwidth(const Response& response);
 
-// Measured along the direction u in joint space at the lines of a shaking hand; the session's rows
-// from `from` on last whole periods of it.
+// Response measured along the direction u in joint space, at the frequencies of the shaking. The
+// session's rows from `from` on must last whole periods.
 Response measured_response(const Session& session, std::size_t from, const Eigen::VectorXd& u,
                            const Multisine& shaking);
 
-// (17) in ticks: the torque of the last two ticks, seen through the lag
-// f1_hat_k = E f1_hat_k-1 + (1 - E) d_k, E = 1 / (1 + w_f T + (w_f T)^2 / 2).
+// Response of the sampled (17): the torque of the last two ticks seen through the lag f1_hat_k = E
+// f1_hat_k-1 + (1 - E) d_k, E = 1 / (1 + w_f T + (w_f T)^2 / 2).
 Response sampled_response(const std::vector<double>& f, double w_f, double T);
 
-// The rate at which an error dies away in that lag [1/s]; w_f while w_f T is small.
+// Rate at which an error of that lag decays [1/s]; w_f while w_f T is small.
 double sampled_decay(double w_f, double T);
 
 }  // namespace limpid

@@ -1,3 +1,4 @@
+// Fig. 6: controller energy over many trials of free motion, contact and circles on the surface.
 #include "app/study/passivity.h"
 
 #include <fmt/format.h>
@@ -24,38 +25,12 @@ const std::array<PassivityCase, 5> kCases{{
     {"standard", "standard", CouplingKind::standard, 1},
 }};
 
-}  // namespace
-
-std::span<const PassivityCase> passivity_cases() { return kCases; }
-
-std::vector<Trial> passivity_trials(const PassivityCase& one, std::uint64_t seed) {
-  Parameters p;
-  p.kind = one.kind;
-  p.eta = one.eta;
-  std::vector<Trial> trials;
-  for (std::size_t i = 0; i < kTrialsOfACase; ++i) {
-    Trial trial{fmt::format("{}-{}", one.file_name, i), plan_of("table", "circle", p)};
-    trial.folder = "passivity";
-    trial.plan.seed = seed;
-    if (i > 0) {
-      trial.plan.hand = varied(trial.plan.hand, seed, i);
-      trial.plan.rows = rows_of(trial.plan);
-    }
-    trials.push_back(std::move(trial));
-  }
-  return trials;
-}
-
-// Fig. 6: controller energy over many trials of free motion, contact and circles on the surface.
-
-namespace {
-
 constexpr std::size_t kGrid = 201;   // points of normalised time
-constexpr double kNoise = 1e-4;      // energy that does not count [J]
+constexpr double kNoise = 1e-4;      // energies up to this one count as zero [J]
 constexpr double kStiffGrip = 3000;  // [N/m]
-constexpr double kOffLimit = 0.1;    // how far off Routh's limit the two runs are
+constexpr double kOffLimit = 0.1;    // distance of the two runs from Routh's limit, relative
 
-// A trial's energy over normalised time, and its highest.
+// A trial's energy over normalised time, and its highest value.
 struct Books {
   std::vector<double> total, commanded;  // kGrid [J]
   double highest_total = 0, highest_commanded = 0;
@@ -77,7 +52,7 @@ Books books_of(const Session& s) {
 
 using Curve = std::vector<double> Books::*;
 
-// Mean, lowest and highest of the trials of a case.
+// Mean, lowest and highest curve of the trials of a case.
 std::vector<FigurePoint> spread(std::span<const Books> trials, Curve curve) {
   std::vector<FigurePoint> points(kGrid);
   for (std::size_t i = 0; i < kGrid; ++i) {
@@ -112,8 +87,8 @@ double highest(std::span<const Books> trials, double Books::*energy) {
   return most;
 }
 
-// The hand holds still in a stiff grip after a nudge of a tenth of a millimetre: whether the loop
-// calms down tells on which side of Routh's limit it is.
+// A hand in a stiff grip that holds still after a nudge of a tenth of a millimetre: the loop calms
+// down on one side of Routh's limit and swings on the other.
 Trial held_still(double eta, const std::string& name) {
   Parameters p;
   p.eta = eta;
@@ -139,7 +114,7 @@ double grip_limit() {
 
 // Highest speed of each stretch, once something moves.
 std::vector<FigurePoint> envelope(const Session& s) {
-  constexpr std::size_t kStretch = 20;  // rows, some periods of the oscillation
+  constexpr std::size_t kStretch = 20;  // rows; spans some periods of the oscillation
   std::vector<FigurePoint> points;
   for (std::size_t from = 0; from + kStretch <= s.size(); from += kStretch) {
     double most = 0;
@@ -177,13 +152,13 @@ std::vector<Trial> all_trials(const Runs& runs, std::uint64_t seed) {
   for (const PassivityCase& one : runs.cases) {
     for (Trial& trial : passivity_trials(one, seed)) trials.push_back(std::move(trial));
   }
-  // The last case is this experiment's own; the others' sessions are for the spectrum, too.
+  // The last case is this experiment's own; the others' sessions also serve the spectrum.
   for (std::size_t i = runs.compared() * kTrialsOfACase; i < trials.size(); ++i) {
     trials[i].keep = false;
   }
   trials.push_back(held_still(runs.limit * (1 + kOffLimit), "grip-above"));
   trials.push_back(held_still(runs.limit * (1 - kOffLimit), "grip-below"));
-  trials.back().may_diverge = true;  // that it grows is checked
+  trials.back().may_diverge = true;  // growth is checked
   return trials;
 }
 
@@ -262,7 +237,7 @@ std::vector<Check> judge(const Runs& runs) {
         at_most(fmt::format("highest E_c, commanded, of all trials, {} [J]", runs.cases[i].name),
                 highest(runs.of(i), &Books::highest_commanded), kNoise));
   }
-  // 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
+  // Order: 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
   for (const auto& [low, high] : {std::pair(4, 0), {2, 4}, {1, 0}, {2, 1}, {3, 2}}) {
     const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
     checks.push_back(at_most(fmt::format("mean final E_c, total, {} less {} [J]",
@@ -287,6 +262,26 @@ std::vector<Check> judge(const Runs& runs) {
 }
 
 }  // namespace
+
+std::span<const PassivityCase> passivity_cases() { return kCases; }
+
+std::vector<Trial> passivity_trials(const PassivityCase& one, std::uint64_t seed) {
+  Parameters p;
+  p.kind = one.kind;
+  p.eta = one.eta;
+  std::vector<Trial> trials;
+  for (std::size_t i = 0; i < kTrialsOfACase; ++i) {
+    Trial trial{fmt::format("{}-{}", one.file_name, i), plan_of("table", "circle", p)};
+    trial.folder = "passivity";
+    trial.plan.seed = seed;
+    if (i > 0) {
+      trial.plan.hand = varied(trial.plan.hand, seed, i);
+      trial.plan.rows = rows_of(trial.plan);
+    }
+    trials.push_back(std::move(trial));
+  }
+  return trials;
+}
 
 Outcome passivity(TrialRunner& lab) {
   const Runs runs = run_all(lab);

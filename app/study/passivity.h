@@ -7,7 +7,7 @@
 
 namespace limpid {
 
-// One of the couplings compared, over all its trials.
+// A coupling to compare over all its trials.
 struct PassivityCase {
   std::string name;       // "eta = 0.6", "standard"
   std::string file_name;  // "eta-0.6"
@@ -19,7 +19,7 @@ inline constexpr std::size_t kTrialsOfACase = 10;
 
 // eta = 0.6, 1, 3, 5 and standard, in this order.
 std::span<const PassivityCase> passivity_cases();
-// kTrialsOfACase trials: the same hand paths for every case. The first path is that of the assets.
+// kTrialsOfACase trials with the same hand paths for every case. The first path is an asset.
 std::vector<Trial> passivity_trials(const PassivityCase& one, std::uint64_t seed);
 
 }  // namespace limpid

@@ -20,61 +20,16 @@ namespace limpid {
 
 namespace {
 
-// Boost's distributions, unlike the standard's, are the same everywhere.
+// Boost's distributions are the same everywhere, unlike the standard library's.
 using Twister = boost::random::mt19937_64;
 
 double unit(Twister& random) { return boost::random::uniform_01<double>()(random); }
-
-}  // namespace
-
-UnitSamples random_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
-  Twister random(seed);
-  UnitSamples samples(dimensions, std::vector<double>(count));
-  for (auto& dimension : samples) {
-    for (double& x : dimension) x = unit(random);
-  }
-  return samples;
-}
-
-UnitSamples latin_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
-  Twister random(seed);
-  UnitSamples samples(dimensions, std::vector<double>(count));
-  std::vector<std::size_t> cell(count);
-  for (auto& dimension : samples) {
-    std::iota(cell.begin(), cell.end(), std::size_t{0});
-    for (std::size_t i = count; i > 1; --i) {  // Fisher and Yates
-      std::swap(cell[i - 1],
-                cell[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      dimension[i] = (static_cast<double>(cell[i]) + unit(random)) / static_cast<double>(count);
-    }
-  }
-  return samples;
-}
-
-UnitSamples sobol_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
-  Twister random(seed);
-  std::vector<double> shift(dimensions);
-  for (double& s : shift) s = unit(random);
-  boost::random::sobol sequence(dimensions);
-  UnitSamples samples(dimensions, std::vector<double>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t d = 0; d < dimensions; ++d) {
-      const double x = static_cast<double>(sequence() >> 11) * 0x1p-53 + shift[d];
-      samples[d][i] = x - std::floor(x);
-    }
-  }
-  return samples;
-}
-
-namespace {
 
 constexpr std::size_t kLongestName = 40;
 constexpr std::uint64_t kMostValues = 1'000'000;
 constexpr Range kAnything{-1e300, 1e300};
 
-// What is no parameter, and no file.
+// A key that names neither a parameter nor a file.
 struct OwnKey {
   const char* key;
   const char* unit;
@@ -114,7 +69,7 @@ std::size_t choice_in(const TomlTable& table, const char* key, std::span<const c
 
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
 
-// An axis of files: a case for each.
+// Reads an axis of files: a case for each.
 void read_files(const TomlTable& table, std::string SweepWorld::*part, SweepAxis& axis) {
   for (const std::string& file : table.texts("values")) {
     SweepCase& one = axis.cases.emplace_back();
@@ -141,7 +96,7 @@ void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis)
   }
 }
 
-// Refuses what is not allowed of a parameter.
+// Refuses numbers that the axis' parameter does not allow.
 double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
   if (const OwnKey* own = own_key(axis.key)) {
     const bool allowed = x >= own->low && x <= own->high && !(own->whole && x != std::floor(x));
@@ -241,7 +196,7 @@ void read_numbers(const TomlTable& table, ReadAxis& read) {
   }
 }
 
-// Names of columns, and in figures.
+// Refuses names unfit for columns and figures.
 void check_name(const TomlTable& table, const std::string& name) {
   const auto plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == ' ';
@@ -250,7 +205,106 @@ void check_name(const TomlTable& table, const std::string& name) {
   table.refuse("name", fmt::format("up to {} letters, digits, _, - and spaces", kLongestName));
 }
 
+constexpr std::uint64_t kMostDepth = 10;
+constexpr std::size_t kMostAxes = 4;
+constexpr double kMostNumbers = 9e15;  // largest whole numbers that a double tells apart
+constexpr Range kAnyBound{-1e300, 1e300};
+
+// Whether other values are possible between the axis' values.
+bool may_be_finer(const SweepAxis& axis) {
+  const ParameterInfo* info = find_parameter(axis.key);
+  const bool whole = info && std::holds_alternative<int Parameters::*>(info->field);
+  return axis.spread == Spread::grid && axis.words.empty() && !whole && axis.values.size() > 1 &&
+         std::ranges::adjacent_find(axis.values, std::greater_equal{}) == axis.values.end();
+}
+
+std::vector<std::size_t> read_axes(const TomlTable& table, const SweepPlan& plan) {
+  std::vector<std::size_t> axes;
+  const std::vector<std::string> names = table.texts("axes");
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    const bool named = std::ranges::find(names, plan.axes[a].name) != names.end();
+    if (names.empty() ? may_be_finer(plan.axes[a]) : named) axes.push_back(a);
+    if (named && !may_be_finer(plan.axes[a])) {
+      table.refuse("axes", plan.axes[a].name + " has no values in between; a grid's axes of " +
+                               "numbers that are not whole, increasing");
+    }
+  }
+  const bool all = names.empty() || axes.size() == names.size();
+  if (!all || axes.empty() || axes.size() > kMostAxes) {
+    table.refuse("axes", fmt::format("the names of 1 to {} axes", kMostAxes));
+  }
+  return axes;
+}
+
+void read_condition(const TomlTable& table, const SweepPlan& plan, SweepRefine& refine) {
+  const std::vector<SweepColumn> columns = measured_columns(plan);
+  const std::string name = table.text("measure").value_or(columns.front().name);
+  const auto column = std::ranges::find(columns, name, &SweepColumn::name);
+  if (column == columns.end()) table.refuse("measure", "one that is measured");
+  refine.column = static_cast<std::size_t>(column - columns.begin());
+  refine.above = table.number("above", kAnyBound);
+  refine.below = table.number("below", kAnyBound);
+  refine.tolerance = table.number("tolerance", {0, 1e300, true});
+  const bool limit = refine.above || refine.below;
+  if (limit && refine.tolerance) table.refuse("tolerance", "nothing beside above or below");
+  if (column->unit != "yes/no" && !limit && !refine.tolerance) table.refuse_missing("tolerance");
+}
+
+// Halves the steps of the axis `depth` times.
+void make_finer(SweepAxis& axis, std::uint64_t depth) {
+  for (std::uint64_t i = 0; i < depth; ++i) {
+    std::vector<double> finer{axis.values.front()};
+    for (std::size_t k = 1; k < axis.values.size(); ++k) {
+      const double low = axis.values[k - 1], high = axis.values[k];
+      finer.push_back(axis.logarithmic ? std::sqrt(low * high) : (low + high) / 2);
+      finer.push_back(high);
+    }
+    axis.values = std::move(finer);
+  }
+}
+
 }  // namespace
+
+UnitSamples random_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
+  Twister random(seed);
+  UnitSamples samples(dimensions, std::vector<double>(count));
+  for (auto& dimension : samples) {
+    for (double& x : dimension) x = unit(random);
+  }
+  return samples;
+}
+
+UnitSamples latin_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
+  Twister random(seed);
+  UnitSamples samples(dimensions, std::vector<double>(count));
+  std::vector<std::size_t> cell(count);
+  for (auto& dimension : samples) {
+    std::iota(cell.begin(), cell.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1; --i) {  // Fisher and Yates
+      std::swap(cell[i - 1],
+                cell[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      dimension[i] = (static_cast<double>(cell[i]) + unit(random)) / static_cast<double>(count);
+    }
+  }
+  return samples;
+}
+
+UnitSamples sobol_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
+  Twister random(seed);
+  std::vector<double> shift(dimensions);
+  for (double& s : shift) s = unit(random);
+  boost::random::sobol sequence(dimensions);
+  UnitSamples samples(dimensions, std::vector<double>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const double x = static_cast<double>(sequence() >> 11) * 0x1p-53 + shift[d];
+      samples[d][i] = x - std::floor(x);
+    }
+  }
+  return samples;
+}
 
 std::vector<double> spread(const AxisRange& range, std::uint64_t count, bool logarithmic) {
   std::vector<double> values;

@@ -28,7 +28,7 @@ constexpr Range kRunSeconds{0, 3600, true, "s"};
 constexpr Range kMetres{-10, 10, false, "m"};
 constexpr Range kPress{0, 1000, true, "N"};
 
-// The plan while it is read.
+// State while a plan is read.
 class Reader {
  public:
   Reader(const TomlTable& file, const std::string& where, SweepPlan& plan)
@@ -99,7 +99,7 @@ class Reader {
     if (plan_.repeats > 1) file_.refuse("repeats", "1 for a hand that jumps: all would be alike");
   }
 
-  // It makes its own wall, and its own way to it.
+  // A tap makes its own wall and path.
   void read_tap(const TomlTable& hand) const {
     for (const char* key : {"at", "jump"}) {
       if (hand.find(key) != nullptr) hand.refuse(key, "nothing: a hand that taps finds its way");
@@ -127,7 +127,7 @@ class Reader {
     if (sampled && plan_.samples < 2) file_.refuse_missing("samples");
     if (!sampled && plan_.samples > 1) file_.refuse("samples", "nothing: no axis is sampled");
     read_boundary();
-    // Before so many are drawn that the memory does not hold them.
+    // Checked before drawing more points than memory holds.
     double points = static_cast<double>(plan_.samples * plan_.repeats);
     for (const ReadAxis& read : axes) {
       if (read.axis.spread == Spread::grid) points *= static_cast<double>(read.axis.values.size());
@@ -208,7 +208,7 @@ class Reader {
   SweepPlan& plan_;
 };
 
-// Whether the scene has the bodies that axes speak of.
+// Refuses axes of bodies that the scene does not have.
 void check_bodies(const SweepPlan& plan, const RunPlan& run, const SweepWorld& world) {
   const auto check = [&](const std::string& key) {
     const auto axis = body_axis(key);
@@ -221,7 +221,7 @@ void check_bodies(const SweepPlan& plan, const RunPlan& run, const SweepWorld& w
   if (plan.boundary) check(plan.boundary->axis.key);
 }
 
-// Arm, scene and hand as they are named.
+// Reads arm, scene and hand.
 RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
   const auto file = [&](const std::string& name, const char* kind, const fs::path& otherwise) {
     if (name.empty()) return otherwise;
@@ -244,7 +244,7 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
     run.hand.source = "a jump";
   } else {
     run.hand = limpid::read_hand(file(world.hand, "hands", default_hand()));
-    run.hand.source = world.hand;  // wherever the plan lies
+    run.hand.source = world.hand;  // the same wherever the plan lies
   }
   if (const std::string why = out_of_reach(run); !why.empty()) {
     throw FileError(fmt::format("{}: {}", plan.file.string(), why));
@@ -254,7 +254,7 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
 
 }  // namespace
 
-// Of every choice of cases.
+// Reads the worlds of every combination of cases.
 void read_worlds(SweepPlan& plan) {
   std::set<SweepWorld> worlds{plan.world};
   for (const SweepAxis& axis : plan.axes) {

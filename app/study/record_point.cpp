@@ -25,7 +25,7 @@ std::optional<RecordedPoint> record_point(const SweepPlan& plan, std::uint64_t i
                                           const std::function<void(double part)>& part) {
   try {
     RunPlan run = run_of(plan, index, at);
-    run.document.toml = scene_text(run.document, run.arm);  // as the axes have made it
+    run.document.toml = scene_text(run.document, run.arm);  // as changed by the axes
     fs::create_directories(out.parent_path());
     std::optional<RunMeter> meter;
     {
@@ -34,7 +34,7 @@ std::optional<RecordedPoint> record_point(const SweepPlan& plan, std::uint64_t i
         if (part) part(static_cast<double>(recorder.rows()) / static_cast<double>(run.rows));
         return recorder.push_waiting(row);
       });
-      if (meter || !stop) recorder.finish();  // also says why it failed
+      if (meter || !stop) recorder.finish();  // also reports why it failed
     }
     if (meter) return RecordedPoint{measured(plan, *meter), meter->summary()};
   } catch (const std::invalid_argument& e) {

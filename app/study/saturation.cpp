@@ -1,3 +1,5 @@
+// Section 3.1: a contact pressed beyond the torque limit and pulled out of, with and without the
+// remedy against wind-up.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,14 +16,14 @@ namespace limpid {
 
 namespace {
 
-// What the corners are drawn from, and what is promised of them. The tests of the rig run some
-// hundreds of both; these are the first of them.
+// Distribution of random corners, and their bounds. Tests of the rig run some hundreds of each;
+// these are the first.
 struct CornerSet {
   const char* label;
   const char* ink;
   CornerWidth width;
   unsigned first, count;  // seeds
-  double most_torque;     // of the contacts, by the motors' limit [-]
+  double most_torque;     // of the contacts, over the motors' limit [-]
 };
 constexpr CornerSet kCornerSets[] = {
     {"built-in arm", kPredictiveInk, {}, 0, 120, 1.3},
@@ -42,14 +44,14 @@ Trial corner_trial(const LimitedCorner& corner, unsigned seed) {
   return trial;
 }
 
-// Of a run, or the worst of many.
+// Worst values of a run, or of many.
 struct Cornered {
   double energy = 0;          // highest E_c [J]
   double port = 0;            // most that the hand was given [J]
-  double torque = 0;          // largest of the contacts on a joint, by the motor's limit [-]
+  double torque = 0;          // largest of the contacts on a joint, over the motor's limit [-]
   double jump = 0;            // farthest that the proxy's joints go in a tick [rad]
   double reserve = HUGE_VAL;  // least [J]
-  bool at_limit = false;      // a motor was
+  bool at_limit = false;      // a motor reached its limit
 
   void add(const Cornered& other) {
     energy = worse(energy, other.energy);
@@ -89,67 +91,13 @@ void judge(const CornerSet& set, const Cornered& worst, int at_limit, std::vecto
   checks.push_back(at_least(where + "least reserve [J]", worst.reserve, 0));
 }
 
-}  // namespace
-
-void press_into_corners(TrialRunner& lab, Outcome& outcome) {
-  const ArmDescription desktop = read_urdf(default_device());
-  FigurePanel torque{.title = "Pressed into random corners: contact torque",
-                     .x_label = "limit of every motor [N m]",
-                     .y_label = "largest contact torque, by the limit [-]"};
-  FigurePanel jump{.title = "Pressed into random corners: the proxy's steps",
-                   .x_label = "limit of every motor [N m]",
-                   .y_label = "farthest in a tick [mrad]"};
-  torque.x_range = jump.x_range = {0.08, 0.62};
-  torque.y_range = {0, 2};
-  jump.y_range = {0, 14};
-  for (const CornerSet& set : kCornerSets) {
-    std::vector<LimitedCorner> corners;
-    std::vector<Trial> trials;
-    for (unsigned i = 0; i < set.count; ++i) {
-      corners.push_back(limited_corner(set.first + i, set.width, desktop));
-      trials.push_back(corner_trial(corners.back(), set.first + i));
-    }
-    std::vector<Cornered> found(trials.size());
-    lab.run(trials, [&](std::size_t i, const TrialResult& r) {
-      found[i] = cornered(r.session, corners[i].limit);
-    });
-    Series torques{set.label, set.ink, Series::Style::points, {}}, jumps = torques;
-    Cornered worst;
-    int at_limit = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      worst.add(found[i]);
-      at_limit += found[i].at_limit;
-      torques.points.push_back({corners[i].limit, found[i].torque});
-      jumps.points.push_back({corners[i].limit, 1e3 * found[i].jump});
-    }
-    torque.series.push_back(torques);
-    torque.series.push_back({fmt::format("bound, {}", set.label),
-                             set.ink,
-                             Series::Style::dashed,
-                             {{0.08, set.most_torque}, {0.62, set.most_torque}}});
-    jump.series.push_back(jumps);
-    judge(set, worst, at_limit, outcome.checks);
-  }
-  jump.series.push_back({"bound",
-                         kNeutralInk,
-                         Series::Style::dashed,
-                         {{0.08, 1e3 * kMostJump}, {0.62, 1e3 * kMostJump}}});
-  outcome.figure.panels.push_back(torque);
-  outcome.figure.panels.push_back(jump);
-}
-
-// Section 3.1: a contact pressed beyond the torque limit and pulled out of, with and without the
-// remedy against wind-up.
-
-namespace {
-
 constexpr double kLimit = 0.2;  // of every motor [N m]
 constexpr double kPushLimit = 0.4;
 constexpr double kEta = 0.6;
 constexpr double kSurface = -0.04, kDeepest = -0.055, kAhead = 0.19;        // [m]
 constexpr double kReached = 0.5, kPullOut = 1.2, kOut = 1.35, kOver = 1.7;  // [s]
 constexpr double kHeldFrom = 0.8;  // everything at rest [s]
-constexpr int kShoulder = 1;       // the joint that bears most of it
+constexpr int kShoulder = 1;       // the joint that bears most of the press
 
 Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
   Parameters p;
@@ -167,7 +115,7 @@ Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
   return {name, plan_in(kTableScene, hand_path(source, p.tick, kOver, at), p)};
 }
 
-// One run and what is asked of it.
+// A run, and the quantities judged.
 class Run {
  public:
   Run(const Trial& trial, const TrialResult& result)
@@ -175,7 +123,7 @@ class Run {
 
   const Session& session() const { return session_; }
   double shoulder(std::size_t k, Column column) const { return session_.at(k, column)[kShoulder]; }
-  // Of the tip below the surface [mm].
+  // Depth of the tip below the surface [mm].
   double depth(std::size_t k, Column column) const {
     return 1e3 * (kSurface - tip_at(arm_, vector_at(session_, k, column)).z());
   }
@@ -187,7 +135,7 @@ class Run {
   std::size_t row(double t) const {
     return std::min(session_.size(), static_cast<std::size_t>(t / session_.info.tick));
   }
-  // rms over [from, to) [s].
+  // Rms over [from, to) [s].
   template <class Value>
   double rms(double from, double to, const Value& value) const {
     double sum = 0;
@@ -202,7 +150,7 @@ class Run {
     const Eigen::VectorXd estimate = of(Column::hand_torque_estimate);
     return (estimate - (of(Column::hand_torque) - excess)).norm() / estimate.norm();
   }
-  // How hard the hand has to pull the shoulder up to get out [N m].
+  // Torque with which the hand has to pull the shoulder up to get out [N m].
   double largest_pull() const {
     double pull = 0;
     for (std::size_t k = row(kPullOut); k < session_.size(); ++k) {
@@ -216,7 +164,8 @@ class Run {
   const Session& session_;
 };
 
-// The predictive coupling pushed with 8 N against motors of 0.4 N m: the worst over walls and etas.
+// Worst result over walls and etas of the predictive coupling, pushed with 8 N against motors of
+// 0.4 N m.
 Touch worst_push(TrialRunner& lab) {
   std::vector<TapBench> benches;
   std::vector<Trial> trials;
@@ -287,6 +236,53 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
 }
 
 }  // namespace
+
+void press_into_corners(TrialRunner& lab, Outcome& outcome) {
+  const ArmDescription desktop = read_urdf(default_device());
+  FigurePanel torque{.title = "Pressed into random corners: contact torque",
+                     .x_label = "limit of every motor [N m]",
+                     .y_label = "largest contact torque, by the limit [-]"};
+  FigurePanel jump{.title = "Pressed into random corners: the proxy's steps",
+                   .x_label = "limit of every motor [N m]",
+                   .y_label = "farthest in a tick [mrad]"};
+  torque.x_range = jump.x_range = {0.08, 0.62};
+  torque.y_range = {0, 2};
+  jump.y_range = {0, 14};
+  for (const CornerSet& set : kCornerSets) {
+    std::vector<LimitedCorner> corners;
+    std::vector<Trial> trials;
+    for (unsigned i = 0; i < set.count; ++i) {
+      corners.push_back(limited_corner(set.first + i, set.width, desktop));
+      trials.push_back(corner_trial(corners.back(), set.first + i));
+    }
+    std::vector<Cornered> found(trials.size());
+    lab.run(trials, [&](std::size_t i, const TrialResult& r) {
+      found[i] = cornered(r.session, corners[i].limit);
+    });
+    Series torques{set.label, set.ink, Series::Style::points, {}}, jumps = torques;
+    Cornered worst;
+    int at_limit = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      worst.add(found[i]);
+      at_limit += found[i].at_limit;
+      torques.points.push_back({corners[i].limit, found[i].torque});
+      jumps.points.push_back({corners[i].limit, 1e3 * found[i].jump});
+    }
+    torque.series.push_back(torques);
+    torque.series.push_back({fmt::format("bound, {}", set.label),
+                             set.ink,
+                             Series::Style::dashed,
+                             {{0.08, set.most_torque}, {0.62, set.most_torque}}});
+    jump.series.push_back(jumps);
+    judge(set, worst, at_limit, outcome.checks);
+  }
+  jump.series.push_back({"bound",
+                         kNeutralInk,
+                         Series::Style::dashed,
+                         {{0.08, 1e3 * kMostJump}, {0.62, 1e3 * kMostJump}}});
+  outcome.figure.panels.push_back(torque);
+  outcome.figure.panels.push_back(jump);
+}
 
 Outcome saturation(TrialRunner& lab) {
   using enum CouplingKind;

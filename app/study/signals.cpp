@@ -23,7 +23,7 @@ double Multisine::at(double t) const {
 
 Multisine multisine(double base, double low, double high, int count, double speed,
                     std::uint64_t seed) {
-  // Not a distribution of the standard library: those differ between libraries.
+  // Distributions of the standard library differ between libraries, so none is used.
   std::mt19937_64 random(seed);
   Multisine signal{base, {}};
   for (int i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ Vec3 tip_at(const ArmDescription& description, const Eigen::VectorXd& x) {
 
 std::complex<double> amplitude_at(const std::vector<double>& samples, double T, double f) {
   const double step = 2 * std::numbers::pi * f * T;
-  // Turned on from sample to sample, and anew before round-off gathers.
+  // The phase is turned on from sample to sample, and computed anew before round-off gathers.
   constexpr std::size_t kAnew = 64;
   const std::complex<double> turn = std::polar(1.0, -step);
   std::complex<double> sum = 0, at = 1;

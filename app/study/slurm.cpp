@@ -16,6 +16,8 @@ namespace limpid {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 std::optional<std::uint64_t> number_in(const char* variable) {
   const char* text = std::getenv(variable);
   if (text == nullptr) return std::nullopt;
@@ -24,6 +26,21 @@ std::optional<std::uint64_t> number_in(const char* variable) {
   const auto result = std::from_chars(text, end, n);
   if (result.ec != std::errc{} || result.ptr != end) return std::nullopt;
   return n;
+}
+
+// Output of a shell command. Errors: std::runtime_error with the output.
+std::string said_by(const std::string& command) {
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("no shell to start " + command);
+  std::string text;
+  std::array<char, 4096> block;
+  while (const std::size_t count = std::fread(block.data(), 1, block.size(), pipe)) {
+    text.append(block.data(), count);
+  }
+  const int status = ::pclose(pipe);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text;
+  const std::string program = command.substr(0, command.find(' '));
+  throw std::runtime_error(fmt::format("{}: {}", program, text.substr(0, text.find('\n'))));
 }
 
 }  // namespace
@@ -40,27 +57,6 @@ std::optional<Rank> own_rank() {
   }
   return std::nullopt;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-// What a shell command prints. Errors: std::runtime_error with what it said.
-std::string said_by(const std::string& command) {
-  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) throw std::runtime_error("no shell to start " + command);
-  std::string text;
-  std::array<char, 4096> block;
-  while (const std::size_t count = std::fread(block.data(), 1, block.size(), pipe)) {
-    text.append(block.data(), count);
-  }
-  const int status = ::pclose(pipe);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text;
-  const std::string program = command.substr(0, command.find(' '));
-  throw std::runtime_error(fmt::format("{}: {}", program, text.substr(0, text.find('\n'))));
-}
-
-}  // namespace
 
 std::string array_text(const std::set<std::uint64_t>& numbers) {
   std::string text;
@@ -96,7 +92,7 @@ SlurmArray::SlurmArray(const SweepPlan& plan, const SweepFolder& folder,
 }
 
 std::uint64_t SlurmArray::turn(SweepBook& book) {
-  // In this order: a task that is gone has written what it had.
+  // The order matters: a task that has left the queue has written its blocks.
   const std::set<std::uint64_t> there = queued();
   const std::uint64_t came = book.gather();
   std::map<std::uint64_t, std::uint64_t> missing;  // blocks of each task
@@ -121,7 +117,7 @@ std::uint64_t SlurmArray::turn(SweepBook& book) {
 }
 
 std::set<std::uint64_t> SlurmArray::queued() const {
-  // One line for each task, pending ones too.
+  // Lists one line for each task, also of pending ones.
   const std::string text = said_by("squeue -h -r -o %K -n " + name_);
   std::set<std::uint64_t> tasks;
   for (std::size_t at = 0; at < text.size();) {

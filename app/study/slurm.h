@@ -1,5 +1,4 @@
-// Which of many like processes this one is, as mpirun or srun tell by the environment: what needs
-// no messages needs no MPI.
+// Sweeps on many processes: ranks under mpirun or srun, and array jobs of Slurm.
 #pragma once
 
 #include <cstdint>
@@ -13,32 +12,33 @@
 
 namespace limpid {
 
+// Number of this process among `size` alike, from the environment of mpirun or srun; needs no MPI.
 struct Rank {
   std::uint64_t rank = 0, size = 1;
 };
 std::optional<Rank> own_rank();
 
-// A sweep as an array job of Slurm, whose tasks share a file system with whoever gathers.
+// A sweep as an array job of Slurm; tasks and the gathering process share a file system.
 struct SlurmOptions {
-  std::uint64_t tasks = 100;         // at most: no more than there are blocks
-  std::vector<std::string> options;  // of sbatch, as they are
+  std::uint64_t tasks = 100;         // most tasks; no more than there are blocks
+  std::vector<std::string> options;  // of sbatch, unchanged
 };
 
 // "1-3,7": numbers as sbatch --array has them.
 std::string array_text(const std::set<std::uint64_t>& numbers);
-// In single quotes for a shell.
+// Quotes `text` for a shell, in single quotes.
 std::string shell_quoted(const std::string& text);
 
-// Submits what is missing, gathers what comes, submits again what was lost; tasks of an earlier
-// call that still wait or run are left to it. Knows its tasks by the job's name alone.
+// Submits missing blocks, gathers results, and submits lost tasks again. Tasks of an earlier call
+// that still wait or run are left alone. Recognizes its tasks by the job's name alone.
 class SlurmArray {
  public:
   SlurmArray(const SweepPlan& plan, const SweepFolder& folder, const SlurmOptions& options);
 
   const std::string& name() const { return name_; }
-  // Once: submits tasks whose blocks are missing and that are not in the queue. Returns how many
-  // points' blocks came since the last call. Errors: std::runtime_error where Slurm refuses, or
-  // where a task brought nothing kMostTries times; FileError.
+  // Submits once each task with missing blocks that is not in the queue. Returns the number of
+  // points that came since the last call. Errors: std::runtime_error if Slurm refuses, or if a task
+  // brought nothing kMostTries times; FileError.
   std::uint64_t turn(SweepBook& book);
 
   static constexpr int kMostTries = 3;
@@ -46,7 +46,7 @@ class SlurmArray {
  private:
   struct Try {
     int count = 0;
-    std::uint64_t missing = 0;  // when it was last submitted
+    std::uint64_t missing = 0;  // blocks missing at the last submission
   };
   std::set<std::uint64_t> queued() const;
   void submit(const std::set<std::uint64_t>& tasks) const;

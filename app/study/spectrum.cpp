@@ -15,7 +15,7 @@ constexpr std::size_t kSegment = 2048;  // samples
 constexpr double kBand = 5;             // [Hz]
 constexpr double kShownBand = 25;       // [Hz]
 
-// Device velocity, joint after joint.
+// Device velocity of each joint.
 std::vector<std::vector<double>> velocities(const Session& s) {
   std::vector<std::vector<double>> joints(static_cast<std::size_t>(s.info.dof));
   for (std::size_t k = 0; k < s.size(); ++k) {
@@ -25,7 +25,7 @@ std::vector<std::vector<double>> velocities(const Session& s) {
   return joints;
 }
 
-// All joints together.
+// Spectrum of all joints together.
 Spectrum spectrum_of(const std::vector<std::vector<double>>& joints, double rate) {
   Spectrum sum;
   for (const std::vector<double>& signal : joints) {
@@ -39,7 +39,7 @@ Spectrum spectrum_of(const std::vector<std::vector<double>>& joints, double rate
 
 double share(const Spectrum& s, double up_to) { return s.power(up_to) / s.power(); }
 
-// Mean over trials with lowest and highest, up to the frequency shown.
+// Mean, lowest and highest over trials, up to the frequency shown.
 std::vector<FigurePoint> spread(const std::vector<Spectrum>& trials,
                                 const std::function<double(const Spectrum&, std::size_t)>& value) {
   std::vector<FigurePoint> points;

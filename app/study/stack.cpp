@@ -1,5 +1,5 @@
-// Stacks of blocks with the tip on top: how far they sink, how many sweeps over their contacts a
-// tick takes, and that they make no energy.
+// Stacks of blocks under the tip: how far they sink, iterations over their contacts in a tick, and
+// that they make no energy.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,13 +11,13 @@ namespace limpid {
 namespace {
 
 constexpr double kStackEdge = 0.03, kStackTip = 0.004, kStackGravity = 9.81;  // [m, m, m/s^2]
-constexpr double kStackBetween = 20000;                                  // K_o of a point [N/m]
-constexpr int kStackPoints = 4;                                          // at which two blocks meet
-constexpr double kBelow = kStackPoints * kStackBetween;                  // of all of them [N/m]
-constexpr double kStackPress = 1, kStackWall = 2000;                     // [N, N/m]
+constexpr double kStackBetween = 20000;                  // K_o of a contact point [N/m]
+constexpr int kStackPoints = 4;                          // contact points of two blocks
+constexpr double kBelow = kStackPoints * kStackBetween;  // of all points together [N/m]
+constexpr double kStackPress = 1, kStackWall = 2000;     // [N, N/m]
 constexpr double kStackTick = 0.001, kStackDown = 1, kStackSeconds = 3;  // [s]
-constexpr double kStackAbove = 0.005;                                    // of the tip at first [m]
-constexpr double kStackGrip = 300;                                       // [N/m]
+constexpr double kStackAbove = 0.005;   // height of the tip at the start [m]
+constexpr double kStackGrip = 300;      // [N/m]
 constexpr double kStackMeasured = 0.9;  // just before the tip touches [s]
 
 struct Stack {
@@ -29,8 +29,8 @@ struct Stack {
   double top() const {
     return kStackEdge * static_cast<double>(masses.size());
   }  // above the floor [m]
-  // What the hand's force comes to at the end: springs of hand, tip and all contacts in a row, of
-  // which those of the contacts are pressed in by the weight already [N].
+  // Force of the hand at the end: springs of hand, tip and all contacts in series; the contacts are
+  // already pressed in by the weight [N].
   double force() const {
     constexpr double kGive = 1 / kStackGrip + 1 / kStackWall;
     double sunk = 0;
@@ -52,7 +52,7 @@ std::vector<Stack> stacks() {
           {"hundred-times", "5, 500 g from below", kFamilyInk[3], {0.005, 0.5}}};
 }
 
-// The floor lies so that the stack ends within reach.
+// Height of the floor that brings the top of the stack within reach [m].
 double floor_of(const Stack& stack) { return -0.02 - stack.top(); }
 
 Trial stack_pressed(const Stack& stack) {
@@ -84,7 +84,7 @@ Trial stack_pressed(const Stack& stack) {
           plan_in(scene_of(boxes, before), hand_path(source, kStackTick, kStackSeconds, at), p)};
 }
 
-// How far each contact is pressed in before the tip is there, from the floor up [m].
+// Depth of each contact before the tip arrives, from the floor up [m].
 std::vector<double> pressed_in(const Stack& stack, const Session& s) {
   const auto row = static_cast<std::size_t>(kStackMeasured / kStackTick);
   const auto pose = s.at(row, Column::body_pose);

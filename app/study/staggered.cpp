@@ -11,9 +11,9 @@ namespace limpid {
 
 namespace {
 
-constexpr double kTooFast = 100;  // of the tip or the body: it has diverged [m/s]
+constexpr double kTooFast = 100;  // faster tips or bodies have diverged [m/s]
 
-// The body, and what the tip's spring says.
+// The staggered body, and the force of the tip's spring.
 class Partner {
  public:
   Partner(const StaggeredBody& body, const Vec3& tip, double T) : body_(body), T_(T), tip_(tip) {
@@ -21,7 +21,7 @@ class Partner {
     q_ = tip - stretch_;
   }
 
-  // On the tip, over the tick that begins [N].
+  // Force on the tip over the tick that begins [N].
   Vec3 force(const Vec3& tip) {
     const Vec3 x = tip - q_, rate = (tip - tip_) / T_ - v_;
     tip_ = tip;
@@ -30,7 +30,7 @@ class Partner {
     if (depth <= 0) return Vec3::Zero();
     return std::max(0.0, body_.stiffness * depth + body_.damping * deeper) * *body_.normal;
   }
-  // Lives through it; returns what the tip gave [J].
+  // Steps the body over the tick; returns the energy that the body gave the tip [J].
   double live(const Vec3& on_tip) {
     Vec3 all = -on_tip;
     if (body_.own) all += body_.own(travel_) * *body_.normal;

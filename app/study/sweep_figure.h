@@ -6,7 +6,7 @@
 
 namespace limpid {
 
-// Of what is done: a map over two axes of a grid's numbers, a line over one, dots over the first
+// Figure of the points done: a map over two axes of a grid's numbers, a line over one, dots over the first
 // axis where all are sampled or words; a boundary over one, with the lines of theory that the plan
 // asks for. A panel for each case of the other axes, kMostPanels at most, evenly thinned.
 Figure sweep_figure(const SweepPlan& plan, const SweepTable& table);

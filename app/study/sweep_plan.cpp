@@ -18,7 +18,7 @@
 namespace limpid {
 namespace {
 
-// What an axis does to a run: parameters, the scene and the arm; what a case names of the world.
+// Choices of the axes for a run: parameters, scene, arm, and the world of a case.
 struct Chosen {
   SweepWorld world;
   Parameters parameters;
@@ -48,13 +48,13 @@ struct Chosen {
   }
 };
 
-// An arm in some pose.
+// An arm in a pose.
 struct PosedArm {
   ArmDescription arm;
   Eigen::VectorXd x;
 };
 
-// As its own file has it: a session of it holds that file, and comes again as it was.
+// A random arm as its own URDF: a session contains that file, so it can be repeated.
 PosedArm random_one(const Chosen& chosen) {
   constexpr double kDesktopLink = 0.05;  // [kg]
   const int joints = static_cast<int>(chosen.joints.value_or(3));
@@ -66,9 +66,9 @@ PosedArm random_one(const Chosen& chosen) {
   return {parse_urdf(text, "random arm", {}), Random(seed + 1000).vector(joints, 0.6)};
 }
 
-// A hand that taps a wall, as stiff as an axis says or as tip_limits() names it.
+// A run that taps a wall, as stiff as an axis says or as tip_limits() names it.
 RunPlan tapping(const SweepPlan& plan, const Chosen& chosen, const RunPlan& world) {
-  constexpr double kSoftest = 1;  // where none is named [N/m]
+  constexpr double kSoftest = 1;  // if no wall is named [N/m]
   PosedArm posed{world.arm, {}};
   if (chosen.random_arm()) {
     posed = random_one(chosen);

@@ -1,4 +1,4 @@
-// What a sweep has found so far, and its files.
+// A sweep's table: the values found so far, and its files.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,15 @@
 
 namespace limpid {
 
-// HDF5 files made in memory and put in their place whole.
-
+// An HDF5 file made in memory and written whole.
 class FileImage {
  public:
-  // Errors of all: FileError naming `file`, whose place it will take.
+  // Errors of all functions: FileError naming `file`, which it will replace.
   explicit FileImage(std::filesystem::path file);
 
   hid_t root() const { return file_.get(); }
-  // Rows x width, or a list where the width is 1; without times, so that equal contents are equal
-  // bytes. Protected by a checksum.
+  // Adds an array of rows x width, or a list if the width is 1. Keeps no times, so that equal
+  // contents are equal bytes; a checksum protects it.
   hdf5::Dataset add(const std::string& path, hid_t stored_as, hid_t held_as, hsize_t rows,
                     hsize_t width, const void* data);
   void number(hid_t object, const char* name, std::uint64_t value);
@@ -45,7 +44,7 @@ struct SweepTable {
 
   std::vector<SweepColumn> columns;
   std::vector<std::uint8_t> done;  // of each point: 1 if its values are there
-  std::vector<double> values;      // points x columns; not a number where they are not
+  std::vector<double> values;      // points x columns; NaN where not done
 
   std::uint64_t points() const { return done.size(); }
   std::uint64_t count() const;  // done
@@ -53,7 +52,7 @@ struct SweepTable {
   double at(std::uint64_t point, std::size_t column) const {
     return values[point * columns.size() + column];
   }
-  // Puts the values of consecutive points in their place.
+  // Sets the values of consecutive points.
   void take(std::uint64_t first, const std::vector<double>& found);
 };
 
@@ -66,31 +65,32 @@ struct SweepTable {
 inline constexpr const char* kSweepFormat = "limpid-sweep";
 inline constexpr std::uint64_t kSweepVersion = 1;
 void write_table(const SweepPlan& plan, const SweepTable& table, const std::filesystem::path& file);
-// The same as text: a header of names, a row for each point that is done.
+// Writes the table as text: a header of names, a row for each point done.
 void write_table_csv(const SweepPlan& plan, const SweepTable& table,
                      const std::filesystem::path& file);
 
-// Stands for this program on this kind of processor: what differs in it may differ in the last bit.
+// Digest of this program and this kind of processor; another one may change results in the last
+// bit.
 std::uint64_t build_digest();
 std::string hex(std::uint64_t digest);
 
 // A sweep's table, taken from its file together with the plan in it.
 struct OpenedSweep {
   std::filesystem::path file;             // the table
-  std::shared_ptr<const SweepPlan> plan;  // without worlds where these could not be had
+  std::shared_ptr<const SweepPlan> plan;  // without worlds if their files are missing
   SweepTable table;
-  std::string build;       // of who made it, as hex(build_digest())
-  std::string why_no_run;  // what keeps its points from being run again; empty: nothing does
-  // Of each column over all points that are done.
+  std::string build;       // of the program that made it, as hex(build_digest())
+  std::string why_no_run;  // why its points cannot be run again; empty: they can
+  // Lowest and highest value of each column over all points done.
   std::vector<std::pair<double, double>> ranges;
 };
 
-// DIR/table.h5 of a folder that holds one, and a file that says that it is one; else nothing. Of
-// recordings, which may be large, it reads the beginning.
+// The table of a sweep: DIR/table.h5 of a folder, or `path` if its file is a table; else nothing.
+// Reads only the beginning of recordings, which may be large.
 std::optional<std::filesystem::path> sweep_table_at(const std::filesystem::path& path);
 
-// `before`: the same table as it was earlier, whose plan is then not read again. Errors: FileError
-// for what is no table, or a damaged one.
+// Opens a table. `before`: the same table earlier; its plan is not read again. Errors: FileError if
+// the file is no table, or damaged.
 std::shared_ptr<const OpenedSweep> open_table(const std::filesystem::path& file,
                                               const OpenedSweep* before = nullptr);
 

@@ -1,4 +1,4 @@
-// A sweep's folder: consecutive points as files of their own, each whole or not there.
+// A sweep's folder: blocks of points as files, each complete or absent; and the work on them.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ SweepBlock block_of(const SweepPlan& plan, std::uint64_t number);
 
 class SweepFolder {
  public:
-  // Creates it, or takes up what is there. Errors: FileError for a folder of another plan or build,
+  // Creates the folder, or continues one. Errors: FileError for a folder of another plan or build,
   // and for one that cannot be written.
   SweepFolder(const SweepPlan& plan, std::filesystem::path dir);
 
@@ -28,10 +28,10 @@ class SweepFolder {
   std::filesystem::path table() const { return dir_ / "table.h5"; }
   std::filesystem::path file(const SweepBlock& block) const;
   bool there(const SweepBlock& block) const;
-  // Its values, row by row; nothing if it is not there or damaged. Errors: FileError for one of
-  // another plan or build.
+  // Values of a block, row by row; nothing if it is absent or damaged. Errors: FileError for a
+  // block of another plan or build.
   std::optional<std::vector<double>> read(const SweepBlock& block) const;
-  // Whole, or as if never begun. Errors: FileError.
+  // Writes a block whole, or leaves no trace of it. Errors: FileError.
   void write(const SweepBlock& block, const std::vector<double>& rows) const;
 
  private:
@@ -40,23 +40,22 @@ class SweepFolder {
   std::size_t columns_;
 };
 
-// Where the plan of a sweep's folder came from, as a name at least: beside it are the files that it
-// names. In the folder itself, if that place is not known or gone. Errors: FileError.
+// Path of the plan behind a sweep's folder, beside the files that the plan names. A path in the
+// folder itself if the original is unknown or gone. Errors: FileError.
 std::filesystem::path plan_behind(const std::filesystem::path& dir);
 
-// Works a sweep's points off, and puts its table together.
+// A part of a sweep's work.
 struct SweepShare {
   std::uint64_t shard = 0, shards = 1;  // every shards-th block, from `shard` on
-  bool helps = false;                   // does what is missing of the others', too
+  bool helps = false;                   // also does missing blocks of other shares
   unsigned threads = 0;                 // 0: one a core
 };
 
-// Called for a block that is there now, from any thread, one at a time.
+// Called for each block that has come, from any thread, one call at a time.
 using TakeBlock = std::function<void(std::uint64_t block, const std::vector<double>& rows)>;
 
-// Does what of a share is not there yet. False if `stop` was set meanwhile; blocks that were not
-// finished are lost. `done` counts points. Errors: FileError, std::runtime_error; what was finished
-// stays.
+// Does the missing blocks of a share. False if `stop` was set meanwhile; unfinished blocks are lost.
+// `done` counts points. Errors: FileError, std::runtime_error; finished blocks stay.
 bool work_off(const SweepPlan& plan, const SweepFolder& folder, const SweepShare& share,
               const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
               const TakeBlock& take);
@@ -72,7 +71,7 @@ class SweepBook {
   bool has(std::uint64_t block) const { return taken_[block]; }
 
   void take(std::uint64_t block, const std::vector<double>& rows);
-  // Takes what blocks there are now; returns how many points were new. Errors: FileError.
+  // Takes the blocks that have come. Returns the number of new points. Errors: FileError.
   std::uint64_t gather();
   // Writes DIR/table.h5 (and .csv), atomically.
   void write() const;

@@ -1,5 +1,5 @@
-// Contacts made and broken, and couplings switched while pressing: nobody gains energy by it, and
-// the torque does not jump.
+// Contacts made and broken, and couplings switched while pressing: no energy is made, and the
+// torque does not jump.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,15 +15,16 @@ namespace {
 
 constexpr double kSwitchingTick = 0.001;
 constexpr double kSwitchingAhead = 0.19,
-                 kSwing = 0.006;   // of the tip, and of the hand sideways [m]
+                 kSwing = 0.006;   // place of the tip; sideways amplitude of the hand [m]
 constexpr double kSwinging = 3.3;  // [Hz]
 constexpr double kLasts = 2.5;     // [s]
-// [N m/rad]: one that both render, and one so stiff that its spring breaks contact, not its damper.
+// Stiffness [N m/rad]: one that both render, and one so stiff that contact is broken by its spring,
+// not its damper.
 constexpr double kStop = 20, kStiffStop = 500;
 constexpr int kTurret = 0;
 constexpr double kWallDamping = 0.2;  // the fine preset's, as a part of a joint's inertia a tick
 constexpr double kSwitchingPress = 1, kSwitchingSurface = -0.04;  // [N], [m]
-constexpr double kFirst = 0.8, kEvery = 0.3;                      // of the switches [s]
+constexpr double kFirst = 0.8, kEvery = 0.3;                      // first switch; interval [s]
 constexpr std::array kOrder{CouplingKind::standard,   CouplingKind::proposed,
                             CouplingKind::predictive, CouplingKind::proposed,
                             CouplingKind::standard,   CouplingKind::predictive};
@@ -42,7 +43,7 @@ stiffness = {:.1f}
                      stiffness);
 }
 
-// Sideways into the stop and out of it, with ticks at ever other depths.
+// Trial that swings sideways into the stop and out of it, with ticks at ever other depths.
 Trial swinging(CouplingKind kind, double stop) {
   Parameters p;
   p.kind = kind;
@@ -54,7 +55,7 @@ Trial swinging(CouplingKind kind, double stop) {
           plan_in(stop_scene(stop), hand_path(source, kSwitchingTick, kLasts, at), p)};
 }
 
-// Presses the table, while the couplings take turns: each hands over to each other once.
+// Trial that presses the table while couplings take turns: each follows each other once.
 Trial pressing() {
   Parameters p;
   p.kind = CouplingKind::predictive;
@@ -74,11 +75,10 @@ Trial pressing() {
   return trial;
 }
 
-// The stop's energy: what it gave, what it still stores, and what its damper took are to make
-// nothing.
+// Energy of the stop: given, still stored and taken by its damper; the sum must not be positive.
 struct Balance {
   std::vector<double> gain;  // with the damper's share [J]
-  int touched = 0;           // times
+  int touched = 0;           // number of contacts
 };
 
 Balance balance_of(const Trial& trial, const Session& s) {
@@ -93,13 +93,13 @@ Balance balance_of(const Trial& trial, const Session& s) {
     const double next = s.at(k + 1, Column::proxy_position)[kTurret];
     if (d <= 0 && next > 0) ++balance.touched;
     if (damper == 0 || (d <= 0 && next <= 0)) continue;
-    // It acts for the share of the tick that is spent inside.
+    // The damper acts for the share of the tick spent inside.
     const Eigen::MatrixXd M =
         (1 + trial.plan.parameters.inertia_ratio) *
         inertia_at(trial.plan.arm, vector_at(s, k, Column::measured_position));
     const double B = wall_damping(K, 1 / M.inverse()(kTurret, kTurret), kSwitchingTick, damper, 0);
     const double in = std::max(d, 0.0), in_next = std::max(next, 0.0);
-    // A wall does not pull: where its damper would, that has what the spring lets go.
+    // A wall does not pull: where its damper would, the damper takes what the spring releases.
     const bool pushes = s.at(k, Column::contact_torque)[kTurret] != 0;
     taken += pushes ? B * (next - d) / kSwitchingTick * (in_next - in)
                     : K / 2 * (in * in - in_next * in_next);
@@ -113,11 +113,11 @@ double furthest(const std::vector<double>& values) {
   return most;
 }
 
-// Largest that any joint's motor torque changes in a tick [N m]: on the way from one law's torque
-// to the other's, and once it is there.
+// Largest change of any joint's motor torque in a tick [N m]: during the change from one law's
+// torque to the other's, and after it.
 struct Steps {
   double on_the_way = 0, there = 0;
-  int arrived = 0;  // how often it got there
+  int arrived = 0;  // number of changes completed
 };
 
 Steps steps_of(const Session& s) {
@@ -137,7 +137,7 @@ Steps steps_of(const Session& s) {
   return steps;
 }
 
-// How far the recorded energies are from what torques and motions add up to [J].
+// Largest difference of the recorded energies from the sums of torques and motions [J].
 double books_off(const Session& s) {
   double commanded = 0, most = 0;
   for (std::size_t k = 0; k + 1 < s.size(); ++k) {

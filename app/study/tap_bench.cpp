@@ -36,6 +36,35 @@ stiffness = {:.9g}
                      kTapAhead, TapBench::kSurface, wall);
 }
 
+struct WallSearch {
+  double low = kSoftest, high = kStiffest;
+  bool done = false;
+};
+
+// Whether each wall is good in every grip; NaN walls are not tried. A wall that is bad in one grip
+// is not tried in the next.
+std::vector<char> try_walls(TrialRunner& lab, std::span<const TapSetting> settings,
+                            const std::vector<double>& walls, const WallTest& test) {
+  std::vector<char> good(settings.size(), 1);
+  for (const double grip : test.grips) {
+    std::vector<std::size_t> of;
+    std::vector<TapBench> benches;
+    std::vector<Trial> trials;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      if (std::isnan(walls[i]) || good[i] == 0) continue;
+      of.push_back(i);
+      benches.emplace_back(settings[i], walls[i], grip, 1);
+      trials.push_back(benches.back().trial());
+      trials.back().may_diverge = true;  // the search looks for the onset of divergence
+    }
+    lab.run(trials, [&](std::size_t t, const TrialResult& result) {
+      const bool exact = settings[of[t]].encoder_step == 0;
+      good[of[t]] = test.good(benches[t].touch(result), exact) ? 1 : 0;
+    });
+  }
+  return good;
+}
+
 }  // namespace
 
 TapBench::TapBench(const TapSetting& setting, double wall, double grip, int taps)
@@ -55,7 +84,7 @@ Parameters TapBench::parameters() const {
   p.kind = setting_.kind;
   p.eta = setting_.eta;
   p.tick = setting_.tick;
-  // The device is stepped as finely whatever the tick.
+  // The device's step stays the same for any tick.
   p.substeps = std::max(1, static_cast<int>(std::lround(p.substeps * p.tick / 0.001)));
   p.encoder_step = setting_.encoder_step;
   p.hand_mass_at_tip = setting_.hand_mass;
@@ -134,39 +163,6 @@ double named_wall(const TapSetting& setting) {
   return limits.walls[static_cast<std::size_t>(p.kind)].stiffness;
 }
 
-namespace {
-
-struct WallSearch {
-  double low = kSoftest, high = kStiffest;
-  bool done = false;
-};
-
-// Whether each wall, not a number where none is asked for, is good in every grip. What one grip
-// finds bad is not tried in the next.
-std::vector<char> try_walls(TrialRunner& lab, std::span<const TapSetting> settings,
-                            const std::vector<double>& walls, const WallTest& test) {
-  std::vector<char> good(settings.size(), 1);
-  for (const double grip : test.grips) {
-    std::vector<std::size_t> of;
-    std::vector<TapBench> benches;
-    std::vector<Trial> trials;
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-      if (std::isnan(walls[i]) || good[i] == 0) continue;
-      of.push_back(i);
-      benches.emplace_back(settings[i], walls[i], grip, 1);
-      trials.push_back(benches.back().trial());
-      trials.back().may_diverge = true;  // where that begins is what is looked for
-    }
-    lab.run(trials, [&](std::size_t t, const TrialResult& result) {
-      const bool exact = settings[of[t]].encoder_step == 0;
-      good[of[t]] = test.good(benches[t].touch(result), exact) ? 1 : 0;
-    });
-  }
-  return good;
-}
-
-}  // namespace
-
 bool well_rendered(const Touch& touch, bool exact_encoder) {
   using W = WellRendered;
   return touch.port <= W::kPort && touch.chatter <= W::kChatter &&
@@ -178,7 +174,7 @@ std::vector<double> stiffest_walls(TrialRunner& lab, std::span<const TapSetting>
                                    const WallTest& test) {
   std::vector<WallSearch> searches(settings.size());
   std::vector<double> walls(settings.size());
-  // First the ends: where one of them is the answer there is nothing between to look for.
+  // The ends come first: if one is the answer, nothing lies between.
   for (int step = -2; step < kBisections; ++step) {
     for (std::size_t i = 0; i < settings.size(); ++i) {
       const WallSearch& s = searches[i];

@@ -1,3 +1,4 @@
+// Transparency of the couplings: inertia felt in free motion, stiffness felt in contact.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ struct FeltSetting {
   double wall = 0;  // beside the tip [N/m], 0: free space
 };
 
-// Only the first joint turns, so that everything is scalar.
+// A bench in which only the first joint turns, so that everything is scalar.
 class SidewaysBench {
  public:
   static constexpr int kJoint = 0;
@@ -28,8 +29,9 @@ class SidewaysBench {
   static constexpr double kPeriod = 2, kSettle = 2;       // of the shaking [s]
   static constexpr double kLowest = 0.5, kHighest = 200;  // [Hz]
   static constexpr double kSpeed = 2e-3;                  // at each frequency [m/s]
-  // Soft, and undamped in free space: a damper would answer to the steps in the target's rate from
-  // tick to tick. At a wall the hand must damp, or the proposed coupling is unstable.
+  // Grip: soft, and undamped in free space, where a damper would answer to the steps in the
+  // target's rate from tick to tick. At a wall the hand must damp, or the proposed coupling is
+  // unstable.
   static constexpr double kGrip = 100;       // [N/m]
   static constexpr double kGripDamping = 2;  // [N s/m]
   static constexpr double kPress = 1;        // mean force at a wall [N]
@@ -38,10 +40,10 @@ class SidewaysBench {
       : seed_(seed), shaking_(multisine(1 / kPeriod, kLowest, kHighest, 40, kSpeed, seed)) {}
 
   const Multisine& shaking() const { return shaking_; }
-  // The rows from settled() on last one period of the shaking, and one row more.
+  // Trial of shaking; rows from settled() on last one period of it, and one row more.
   Trial shaken(const FeltSetting& setting) const;
   static std::size_t settled();
-  // Presses the wall and stays.
+  // Trial that presses the wall and stays.
   Trial pressed(const FeltSetting& setting) const;
 
  private:
@@ -65,7 +67,7 @@ stiffness = {:.1f}
                      wall);
 }
 
-// How far beyond the wall the hand aims [m].
+// Depth of the hand's target in the wall [m].
 double aim(double wall) {
   return wall > 0 ? SidewaysBench::kPress * (1 / SidewaysBench::kGrip + 1 / wall) : 0;
 }
@@ -81,35 +83,6 @@ Trial trial(const FeltSetting& setting, const std::string& source, double second
   return {fmt::format("{}-eta-{}-wall-{}", name(p.kind), p.eta, setting.wall),
           plan_in(world(setting.wall), hand_path(source, SidewaysBench::kTick, seconds, at), p)};
 }
-
-}  // namespace
-
-std::size_t SidewaysBench::settled() {
-  return static_cast<std::size_t>(std::llround(kSettle / kTick));
-}
-
-Trial SidewaysBench::shaken(const FeltSetting& setting) const {
-  const double press = aim(setting.wall);
-  const auto at = [&](double t) {
-    return Vec3(kArm, shaking_.at(t) - press * minimum_jerk(t / (kSettle / 2)), 0);
-  };
-  const std::string source =
-      fmt::format("shaking from {} to {} Hz at {} m/s, pressing {:.4g} m, seed {}", kLowest,
-                  kHighest, kSpeed, press, seed_);
-  return trial(setting, source, kSettle + kPeriod + kTick, at);
-}
-
-Trial SidewaysBench::pressed(const FeltSetting& setting) const {
-  const double press = aim(setting.wall);
-  const auto at = [&](double t) { return Vec3(kArm, -press * minimum_jerk(t / 0.5), 0); };
-  Trial press_only = trial(setting, fmt::format("pressing {:.4g} m", press), 1.5, at);
-  press_only.keep = false;
-  return press_only;
-}
-
-// What the couplings let through: inertia felt in free motion, stiffness felt in contact.
-
-namespace {
 
 using Bench = SidewaysBench;
 using Setting = FeltSetting;
@@ -151,8 +124,8 @@ double off(std::complex<double> value, std::complex<double> wanted) {
   return std::abs(value - wanted) / std::abs(wanted);
 }
 
-// Furthest that the measured impedance is from what `wanted` says between two frequencies; infinite
-// where nothing was measured there.
+// Largest distance of the measured impedance from `wanted` between two frequencies; infinite if
+// nothing was measured there.
 template <class Wanted>
 double furthest(const Impedance& felt, double from, double to, const Wanted& wanted) {
   double worst = 0;
@@ -216,7 +189,7 @@ double worst_off_theory(const Felt& felt, double to) {
   return worst;
 }
 
-// The curve of |Z| over |Z| at eta = 1 against eta, at one frequency.
+// Curve of |Z| over |Z| at eta = 1 against eta, at one frequency.
 Series scaling_line(const FeltJoint& joint, double w_f, double f, const char* ink) {
   Series line{"", ink, Series::Style::line, {}};
   for (double eta = 0.3; eta < 7; eta *= 1.05) {
@@ -347,6 +320,29 @@ void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
 }
 
 }  // namespace
+
+std::size_t SidewaysBench::settled() {
+  return static_cast<std::size_t>(std::llround(kSettle / kTick));
+}
+
+Trial SidewaysBench::shaken(const FeltSetting& setting) const {
+  const double press = aim(setting.wall);
+  const auto at = [&](double t) {
+    return Vec3(kArm, shaking_.at(t) - press * minimum_jerk(t / (kSettle / 2)), 0);
+  };
+  const std::string source =
+      fmt::format("shaking from {} to {} Hz at {} m/s, pressing {:.4g} m, seed {}", kLowest,
+                  kHighest, kSpeed, press, seed_);
+  return trial(setting, source, kSettle + kPeriod + kTick, at);
+}
+
+Trial SidewaysBench::pressed(const FeltSetting& setting) const {
+  const double press = aim(setting.wall);
+  const auto at = [&](double t) { return Vec3(kArm, -press * minimum_jerk(t / 0.5), 0); };
+  Trial press_only = trial(setting, fmt::format("pressing {:.4g} m", press), 1.5, at);
+  press_only.keep = false;
+  return press_only;
+}
 
 Outcome transparency(TrialRunner& lab) {
   const Bench bench(lab.seed());

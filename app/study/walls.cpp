@@ -1,4 +1,4 @@
-// Walls of any arm: tapped at the stiffness that `limpid analyze` names for it.
+// Walls of random arms: tapped at the stiffness that `limpid analyze` names for each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,27 +14,27 @@
 namespace limpid {
 namespace {
 
-// All that is varied, and what is promised.
+// Values varied, and bounds promised.
 struct WallsPlan {
-  static constexpr int kArms = 36, kMostJoints = 12;         // three of each number of joints
+  static constexpr int kArms = 36, kMostJoints = 12;         // three arms of each number of joints
   static constexpr double kLightest = 0.02, kHeaviest = 30;  // [kg]
   static constexpr unsigned kSeed = 100;                     // of the first arm
   static constexpr double kSteps[] = {0, 1e-5, 1e-4};        // of encoders [rad]
-  // Hands that a desktop device and a robot are held by.
-  static constexpr double kRobot = 5;  // arms from here on are robots [kg]
+  // Grips of desktop devices and of robots.
+  static constexpr double kRobot = 5;  // heavier arms are robots [kg]
   struct Grip {
     double stiffness, damping;  // [N/m, N s/m]
   };
   static constexpr Grip kDesktopGrips[] = {{300, 2}, {3000, 5}};
   static constexpr Grip kRobotGrips[] = {{1000, 5}, {3000, 10}};
-  static constexpr double kPress = 4;                  // at most, as far as the motors bear it [N]
-  static constexpr double kGiven = 5e-3, kOff = 0.05;  // [J], of the stiffness set
-  static constexpr double kRattle = 0.1, kRobotRattle = 2;  // of the press, and of robots [N]
-  static constexpr double kSoftestNamed = 10;               // softer is no wall [N/m]
-  static constexpr int kNamed[] = {36, 36, 24};             // arms that have one, for each step
+  static constexpr double kPress = 4;                  // at most, within the motors' limits [N]
+  static constexpr double kGiven = 5e-3, kOff = 0.05;  // [J]; off the stiffness set [-]
+  static constexpr double kRattle = 0.1, kRobotRattle = 2;  // share of the press [-]; robots' [N]
+  static constexpr double kSoftestNamed = 10;               // softer ones count as no wall [N/m]
+  static constexpr int kNamed[] = {36, 36, 24};             // arms with a wall, for each step
 };
 
-// One of the arms in a pose of its own.
+// A random arm in a random pose.
 struct AnyArm {
   ArmDescription arm;
   Eigen::VectorXd x;
@@ -46,7 +46,7 @@ struct AnyArm {
   }
 };
 
-// From light to heavy in turns, so that mass does not go with the number of joints.
+// The i-th arm; masses come in an order that does not follow the number of joints.
 AnyArm any_arm(int i) {
   using P = WallsPlan;
   const int joints = 1 + i % P::kMostJoints;
@@ -59,7 +59,7 @@ AnyArm any_arm(int i) {
   return any;
 }
 
-// With the gains that the program fits to the arm.
+// Parameters with the gains that the program fits to the arm.
 Parameters wall_parameters(const ArmDescription& arm, double step) {
   Parameters p = fitted(arm);
   p.kind = CouplingKind::predictive;
@@ -67,13 +67,13 @@ Parameters wall_parameters(const ArmDescription& arm, double step) {
   return p;
 }
 
-// Of an arm with an encoder: the worst of both grips.
+// Worst results of both grips for an arm with an encoder.
 struct WallFelt {
   double mass = 0;    // of the arm [kg]
   double named = 0;   // [N/m]
   double port = 0;    // most that the hand was given [J]
-  double felt = 1;    // by the stiffness set, where it is furthest from it [-]
-  double rattle = 0;  // rms force above 20 Hz, by what is allowed [-]
+  double felt = 1;    // felt stiffness over the one set, where furthest from 1 [-]
+  double rattle = 0;  // rms force above 20 Hz, over the one allowed [-]
 
   bool has_wall() const { return named >= WallsPlan::kSoftestNamed; }
 };
@@ -102,7 +102,7 @@ AnyTap any_tap(const AnyArm& any, double step, const WallsPlan::Grip& grip, doub
 
 using Felts = std::vector<WallFelt>;  // of each arm
 
-// Of every step of the encoders.
+// Results for every step of the encoders.
 std::vector<Felts> tap_all(TrialRunner& lab) {
   std::vector<Felts> felts;
   std::vector<AnyTap> taps;
@@ -150,8 +150,8 @@ std::string step_label(double step) {
   return step > 0 ? fmt::format("encoders of {} rad", step) : "exact encoders";
 }
 
-// Against the arms' mass; what lies beyond the frame is drawn at its edge, a little apart for each
-// encoder.
+// A dot for each arm over its mass, a little apart for each encoder; values beyond the frame are
+// drawn at its edge.
 template <class Value>
 FigurePanel against_mass(const std::vector<Felts>& felts, const std::string& title,
                          const std::string& y, std::pair<double, double> range,

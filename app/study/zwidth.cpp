@@ -1,5 +1,5 @@
-// How stiff a wall each coupling renders well: against eta, tick, encoders, the hand's mass and the
-// device's delay.
+// Z-width: the stiffest wall that each coupling renders well, against eta, tick, encoders, the
+// hand's mass and the device's delay.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@ constexpr double kSteps[] = {1e-5, 3e-5, 1e-4, 1.5e-4, 2e-4, 5e-4, 1e-3};  // [r
 constexpr double kMasses[] = {0.02, 0.05, 0.1, 0.2, 0.5, 1};               // [kg]
 constexpr double kDelays[] = {0, 1, 2, 3, 4, 6};                           // [ticks]
 constexpr double kOwnEtas[] = {0.3, 0.6, 1, 2};
-constexpr double kOwnPress = 2;  // that the arm's own motors bear [N]
+constexpr double kOwnPress = 2;  // within the arm's own motors [N]
 
-// A boundary to be found: one point for each value of what its panel varies.
+// A curve of stiffest walls: one point for each value that its panel varies.
 struct WallCurve {
   std::size_t panel;
   std::string label;
@@ -67,7 +67,7 @@ std::vector<WallCurve> all_curves() {
       curve(5, "proposed", kProposedInk, own_paper, &TapSetting::eta, kOwnEtas)};
 }
 
-// What theory says, in the hand of the benches.
+// Stiffest walls by theory, in the grip of the benches.
 struct Theory {
   TipAlong tip = tip_at_table();
 
@@ -147,8 +147,7 @@ struct Found {
   std::vector<WallCurve> curves;
   std::vector<std::vector<double>> walls;  // of each curve's points [N/m]
 
-  // The softest of a curve's walls where `which` holds for the value; not a number where it holds
-  // for none.
+  // The softest of a curve's walls whose value satisfies `which`; NaN if there is none.
   template <class Which>
   double softest(std::size_t curve, const Which& which) const {
     double least = std::nan("");
@@ -158,7 +157,7 @@ struct Found {
     }
     return least;
   }
-  // The same of what was found by what `limpid analyze` names, as far as walls were tried.
+  // The least ratio of a wall to the one that `limpid analyze` names, clamped to the walls tried.
   double least_of_named(std::size_t curve) const {
     double least = HUGE_VAL;
     for (std::size_t i = 0; i < walls[curve].size(); ++i) {
@@ -170,7 +169,7 @@ struct Found {
   }
 };
 
-// Equal settings of different curves are looked at once.
+// Finds all walls; equal settings of different curves are searched once.
 Found find_all(TrialRunner& lab) {
   Found found{all_curves(), {}};
   std::vector<TapSetting> settings;
@@ -252,8 +251,8 @@ void judge_taps(TrialRunner& lab, std::vector<Check>& checks) {
   checks.push_back(at_most(where + "chatter [m/s]", own.chatter, 1e-4));
 }
 
-// Every curve of the predictive coupling against what `limpid analyze` says before anybody builds
-// it; the search is not finer than this.
+// Checks every curve of the predictive coupling against `limpid analyze`, as finely as the search
+// goes.
 void judge_named(const Found& found, std::vector<Check>& checks) {
   const double finest = std::pow(kSoftest / kStiffest, 1.0 / (1 << kBisections));
   constexpr std::pair<std::size_t, const char*> kCurves[] = {

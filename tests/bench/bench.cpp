@@ -51,35 +51,11 @@ int open_counter() {
   return static_cast<int>(syscall(SYS_perf_event_open, &event, 0, -1, -1, PERF_FLAG_FD_CLOEXEC));
 }
 
-}  // namespace
-
-InstructionCounter::InstructionCounter() : file_(open_counter()) {}
-
-InstructionCounter::~InstructionCounter() {
-  if (counts()) close(file_);
-}
-
-void InstructionCounter::start() const {
-  if (counts()) ioctl(file_, PERF_EVENT_IOC_ENABLE, 0);
-}
-
-void InstructionCounter::stop() const {
-  if (counts()) ioctl(file_, PERF_EVENT_IOC_DISABLE, 0);
-}
-
-std::optional<std::uint64_t> InstructionCounter::total() const {
-  std::uint64_t count = 0;
-  if (!counts() || read(file_, &count, sizeof count) != sizeof count) return std::nullopt;
-  return count;
-}
-
-namespace {
-
 using namespace std::chrono_literals;
 
 constexpr int kWakes = 2000;
 
-// A fixed piece of arithmetic: what it takes is the processor's.
+// Measures a fixed piece of arithmetic, which depends only on the processor.
 Line yardstick(int times) {
   Eigen::Matrix<double, 24, 24> matrix;
   for (int i = 0; i < 24; ++i) {
@@ -95,7 +71,7 @@ Line yardstick(int times) {
   return line_of("yardstick", "yardstick: Cholesky of 24 rows", taken);
 }
 
-// How late an ordinary thread wakes up, as cyclictest has it.
+// Measures how late an ordinary thread wakes up, like cyclictest.
 Line wakes() {
   const MonotonicTime time;
   Samples late(kWakes);
@@ -108,7 +84,7 @@ Line wakes() {
   return line_of("wake", "waking up after 1 ms, late by", late);
 }
 
-// Of a line that is not what it says.
+// Note on a line whose run was unstable, or touched too little.
 std::string remark(bool diverged, int touching, int ticks) {
   if (diverged) return ", unstable";
   if (touching >= ticks * 9 / 10) return "";
@@ -125,7 +101,7 @@ Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind l
   const auto live = [&] { pressed.live(*torque); };
   int touching = 0;
   for (int k = 0; k < wishes.ticks; ++k) {
-    // Counted apart: asking the system around every tick would be in its time.
+    // Times and instructions alternate: reading the counter would take part in the time.
     if (of_arm) {
       control();
       k % 2 ? counter.count(live) : taken.time(live);
@@ -152,7 +128,7 @@ Line pressing(const Wishes& wishes, const Line& unit, int joints, CouplingKind l
   return with_dof(joints, [&](auto n) { return pressing<n>(wishes, unit, joints, law, of_arm); });
 }
 
-// Embree's query alone at the places of a stroke, and the tick there.
+// Measures Embree's query alone at the places of a stroke.
 Line bare_query(const Wishes& wishes, const std::shared_ptr<const TriangleMesh>& shape,
                 const std::string& id, const std::string& what) {
   const StrokePlace place;
@@ -182,7 +158,7 @@ Line stroking(const Wishes& wishes, const std::shared_ptr<const TriangleMesh>& s
   return line_of(id, what + remark(stroke.diverged(), touching, wishes.ticks), taken, &query);
 }
 
-// What is measured, in turn.
+// A group of lines and how to measure it.
 struct Piece {
   std::string id;
   std::function<void(Report&)> measure;
@@ -251,7 +227,7 @@ std::vector<Piece> pieces(const Wishes& wishes, const Line& unit) {
   return all;
 }
 
-// "tick" and "tick/3" stand for all below.
+// Keeps the pieces at or below `only`, such as "tick" or "tick/3".
 void keep_only(std::vector<Piece>& all, const std::string& only) {
   std::string known;
   for (const Piece& piece : all) known += (known.empty() ? "" : ", ") + piece.id;
@@ -266,7 +242,68 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+// Asks in a thread that ends at once, so that this one stays as it is.
+std::string granted() {
+  std::string said;
+  std::thread([&said] { said = become_realtime(by_rtkit()).explanation; }).join();
+  return said.substr(0, said.find(';'));
+}
+
+nlohmann::ordered_json json_of(const Machine& m) {
+  return {{"processor", m.processor}, {"processors", m.processors}, {"kernel", m.kernel},
+          {"compiler", m.compiler},   {"haptic_thread", m.threads}, {"counts", m.counts}};
+}
+
+nlohmann::ordered_json json_of(const Line& line) {
+  nlohmann::ordered_json json{{"id", line.id},         {"what", line.what}, {"unit", line.unit},
+                              {"median", line.median}, {"p99", line.p99},   {"p99.9", line.p999},
+                              {"max", line.largest}};
+  if (line.ratio) {
+    json["of"] = line.of;
+    json["ratio"] = *line.ratio;
+  }
+  if (line.instructions) json["instructions"] = *line.instructions;
+  if (line.real_time) json["real_time"] = *line.real_time;
+  return json;
+}
+
+// `us` in a readable unit.
+std::string time_text(double us) {
+  if (us < 9.995) return fmt::format("{:.2f}", us);
+  if (us < 9999) return fmt::format("{:.{}f}", us, us < 99.95 ? 1 : 0);
+  return us < 999.5e3 ? fmt::format("{:.3g} ms", 1e-3 * us) : fmt::format("{:.3g} s", 1e-6 * us);
+}
+
 }  // namespace
+
+InstructionCounter::InstructionCounter() : file_(open_counter()) {}
+
+InstructionCounter::~InstructionCounter() {
+  if (counts()) close(file_);
+}
+
+void InstructionCounter::start() const {
+  if (counts()) ioctl(file_, PERF_EVENT_IOC_ENABLE, 0);
+}
+
+void InstructionCounter::stop() const {
+  if (counts()) ioctl(file_, PERF_EVENT_IOC_DISABLE, 0);
+}
+
+std::optional<std::uint64_t> InstructionCounter::total() const {
+  std::uint64_t count = 0;
+  if (!counts() || read(file_, &count, sizeof count) != sizeof count) return std::nullopt;
+  return count;
+}
 
 Report measure(const Wishes& wishes, const std::function<void(double, const std::string&)>& done) {
   Report report{.program = program_version(),
@@ -291,26 +328,6 @@ Report measure(const Wishes& wishes, const std::function<void(double, const std:
   return report;
 }
 
-namespace {
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
-// In a thread that ends at once: this one stays as it is.
-std::string granted() {
-  std::string said;
-  std::thread([&said] { said = become_realtime(by_rtkit()).explanation; }).join();
-  return said.substr(0, said.find(';'));
-}
-
-}  // namespace
-
 Machine this_machine() {
   utsname name{};
   uname(&name);
@@ -325,35 +342,6 @@ Machine this_machine() {
         granted(), InstructionCounter().counts()
   };
 }
-
-namespace {
-
-nlohmann::ordered_json json_of(const Machine& m) {
-  return {{"processor", m.processor}, {"processors", m.processors}, {"kernel", m.kernel},
-          {"compiler", m.compiler},   {"haptic_thread", m.threads}, {"counts", m.counts}};
-}
-
-nlohmann::ordered_json json_of(const Line& line) {
-  nlohmann::ordered_json json{{"id", line.id},         {"what", line.what}, {"unit", line.unit},
-                              {"median", line.median}, {"p99", line.p99},   {"p99.9", line.p999},
-                              {"max", line.largest}};
-  if (line.ratio) {
-    json["of"] = line.of;
-    json["ratio"] = *line.ratio;
-  }
-  if (line.instructions) json["instructions"] = *line.instructions;
-  if (line.real_time) json["real_time"] = *line.real_time;
-  return json;
-}
-
-// In us as far as that can be read.
-std::string time_text(double us) {
-  if (us < 9.995) return fmt::format("{:.2f}", us);
-  if (us < 9999) return fmt::format("{:.{}f}", us, us < 99.95 ? 1 : 0);
-  return us < 999.5e3 ? fmt::format("{:.3g} ms", 1e-3 * us) : fmt::format("{:.3g} s", 1e-6 * us);
-}
-
-}  // namespace
 
 Line line_of(std::string id, std::string what, const Samples& times, const Line* yardstick) {
   Line line{std::move(id),       std::move(what),      "us",
@@ -372,7 +360,7 @@ std::string table_head() {
 }
 
 std::string table_line(const Line& line) {
-  const bool many = line.largest > line.median || line.p99 > line.median;  // or only one
+  const bool many = line.largest > line.median || line.p99 > line.median;  // else one value
   const auto beside = [&](double us) { return many ? time_text(us) : std::string(); };
   return fmt::format("{:<46}{:>9}{:>9}{:>9}{:>9}{:>8}{:>14}\n", line.what, time_text(line.median),
                      beside(line.p99), beside(line.p999), beside(line.largest),

@@ -1,4 +1,4 @@
-// How fast the parts of the program are here, in times, ratios and instructions.
+// Measures the speed of the program's parts here, in times, ratios and instructions.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,7 @@
 
 namespace limpid::bench {
 
-// Times of many runs of the same thing, and what they amount to.
-
+// Times of many runs of the same thing, and their quantiles.
 class Samples {
  public:
   explicit Samples(std::size_t expected) { values_.reserve(expected); }
@@ -27,18 +26,15 @@ class Samples {
   }
   void add(double value) { values_.push_back(value); }
 
-  // What a share of all values stays below, 0.5 the median, 1 the largest; there must be one.
+  // Value that a share of all values stays below: 0.5 the median, 1 the largest. Precondition:
+  // there are values.
   double quantile(double share) const;
 
  private:
   std::vector<double> values_;
 };
 
-}  // namespace limpid::bench
-// Counts the instructions of the calling thread, where processor and system let one.
-
-namespace limpid::bench {
-
+// Counts the instructions of the calling thread, where processor and system allow it.
 class InstructionCounter {
  public:
   InstructionCounter();
@@ -47,14 +43,14 @@ class InstructionCounter {
   ~InstructionCounter();
 
   bool counts() const { return file_ >= 0; }
-  // Of `work`, without what the system does for it.
+  // Counts the instructions of `work`, without those of the system.
   template <class Work>
   void count(Work&& work) {
     start();
     work();
     stop();
   }
-  // All so far; nothing where they cannot be counted.
+  // Instructions so far; nothing if they cannot be counted.
   std::optional<std::uint64_t> total() const;
 
  private:
@@ -64,36 +60,33 @@ class InstructionCounter {
   int file_;
 };
 
-}  // namespace limpid::bench
-namespace limpid::bench {
-
-// What one thing took.
+// Figures of one measured thing.
 struct Line {
   std::string id;    // "tick/3/proposed": for scripts; stays the same from version to version
   std::string what;  // for people
   std::string unit;  // of the figures: "us", or "us a tick"
   double median = 0, p99 = 0, p999 = 0, largest = 0;
-  std::string of = {};                      // the id of the line that `ratio` is of, if any
+  std::string of = {};                      // id of the line that `ratio` refers to, if any
   std::optional<double> ratio = {};         // of the medians [-]
-  std::optional<double> instructions = {};  // each time; nothing where they cannot be counted
-  std::optional<double> real_time = {};     // of a run: how many times faster than life [-]
+  std::optional<double> instructions = {};  // of each run; nothing if they cannot be counted
+  std::optional<double> real_time = {};  // of a recorded run: how many times faster than life [-]
 };
 
 struct Machine {
-  std::string processor;  // as it calls itself
+  std::string processor;  // by its own name
   int processors = 0;
   std::string kernel;
   std::string compiler;
   std::string threads;  // what the system grants the haptic thread
-  bool counts = false;  // can instructions be counted?
+  bool counts = false;  // whether instructions can be counted
 };
 Machine this_machine();
 
 struct Report {
   std::string program;  // its version
-  std::string date;     // when it was measured, UTC: 2026-01-31T12:00:00Z
+  std::string date;     // of the measurement, UTC: 2026-01-31T12:00:00Z
   Machine machine = {};
-  double share = 1;  // of a processor that the measuring thread had: below 0.95 others were busy
+  double share = 1;  // of a processor for the measuring thread; below 0.95 others were busy
   std::vector<Line> lines = {};
 };
 
@@ -102,19 +95,18 @@ struct Wishes {
   std::string only = {};  // this id, or those below it: "tick", "tick/3"; empty: all
 };
 
-// Measures until it is interrupted; `done` hears what share is done and what comes next. Errors:
-// std::invalid_argument where nothing matches `only`, std::runtime_error where a file cannot be
-// written.
+// Measures until it is interrupted; `done` receives the share done and the next id. Errors:
+// std::invalid_argument if nothing matches `only`, std::runtime_error if a file cannot be written.
 Report measure(const Wishes& wishes, const std::function<void(double, const std::string&)>& done);
 
-// A table, and one JSON object.
+// The report as a table, and as a JSON object.
 std::string text_of(const Report& report);
 std::string json_of(const Report& report);
 
-// One line of the table, and its head: for other tables like it.
+// A line of the table, and its head, for other tables like it.
 std::string table_head();
 std::string table_line(const Line& line);
-// Of times; with the ratio to another line's, if there is one.
+// A line of `times`, with their ratio to `yardstick`, if any.
 Line line_of(std::string id, std::string what, const Samples& times,
              const Line* yardstick = nullptr);
 

@@ -6,16 +6,16 @@
 
 namespace limpid::bench {
 
-// A chain half a metre long and a quarter of a kilogram in all, its axes turning about z, y, x and
-// askew by turns.
+// A chain of half a metre and a quarter of a kilogram in all; its axes turn about z, y, x and askew
+// by turns.
 ArmDescription chain(int joints);
 
-// A posture without anything special about it [rad].
+// A posture without any singularity [rad].
 Eigen::VectorXd bent(const ArmDescription& arm);
-// Where the tip then is [m].
+// The tip in posture x [m].
 Vec3 tip_of(const ArmDescription& arm, const Eigen::VectorXd& x);
 
-// A level surface 2 mm above that point.
+// A level plane 2 mm above the tip.
 Scene plane_over(const Vec3& tip);
 
 }  // namespace limpid::bench

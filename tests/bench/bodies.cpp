@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kTick = 1e-3;  // [s]
 constexpr int kSettling = 200;  // ticks, after which boxes lie still; they sleep after 500
-constexpr int kLetAlone = 250;  // ticks in which they are measured, before they begin anew
-constexpr double kSpeed = 0.5;  // of those that slide [m/s]
+constexpr int kLetAlone = 250;  // measured ticks before the boxes begin anew
+constexpr double kSpeed = 0.5;  // of sliding boxes [m/s]
 
 Scene on_a_floor(int count) {
   Scene scene;
@@ -41,10 +41,10 @@ void step(BodyWorld& world) {
   world.settle();
   world.finish();
 }
-// One that is measured: by itself, so that valgrind can tell it apart.
+// A measured step, as a function of its own that valgrind can tell apart.
 [[gnu::noinline]] void measured_step(BodyWorld& world) { step(world); }
 
-// As it is after so many ticks; sliding if wanted.
+// State of the world after it has settled, or fallen asleep; sliding if wanted.
 std::vector<double> begun(BodyWorld& world, int count, Boxes what) {
   for (int k = 0; k < (what == Boxes::asleep ? 1000 : kSettling); ++k) step(world);
   if (what == Boxes::slide) {

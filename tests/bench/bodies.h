@@ -7,16 +7,16 @@
 
 namespace limpid::bench {
 
-// What they do.
+// The boxes' motion.
 enum class Boxes {
-  rest,    // awake
+  rest,    // all awake
   slide,   // all of them
   asleep,  // all of them
 };
 
-// What a line of them is called: "bodies/10/rest".
+// Id of their line: "bodies/10/rest".
 std::string id_of(int count, Boxes what);
-// So many of them, 3 cm and 50 g each, one beside the other. Times of a tick without an arm [us].
+// Measures a tick of `count` boxes side by side, 3 cm and 50 g each, without an arm [us].
 Line boxes(const Wishes& wishes, const Line& unit, int count, Boxes what);
 
 }  // namespace limpid::bench

@@ -10,7 +10,7 @@
 namespace limpid::bench {
 namespace {
 
-constexpr double kSize = 0.05;  // of the body, its radius [m]
+constexpr double kSize = 0.05;  // radius of the body [m]
 constexpr double kDepth = 0.0015;
 
 double radius_at(const Vec3& direction) {

@@ -10,27 +10,28 @@
 
 namespace limpid::bench {
 
-// A body with bumps of a centimetre and ripples of a millimetre, 5 cm in radius.
+// A body of 5 cm radius, with bumps of a centimetre and ripples of a millimetre.
 std::shared_ptr<const TriangleMesh> bumpy_body(std::size_t triangles);
 
-// Where the arm, the body and its substitute are.
+// Place of the arm, and of the body or its substitute.
 struct StrokePlace {
   ArmDescription arm = chain(3);
   Vec3 middle = tip_of(arm, bent(arm)) * 0.75 + Vec3(0.05, 0, 0);
 
-  // `capsule`: the last link touches as well, but for what the tip reaches in with.
+  // Scene with the body. `capsule`: the last link touches as well, except where only the tip
+  // reaches in.
   Scene on_mesh(std::shared_ptr<const TriangleMesh> shape, double tip_radius, bool capsule) const;
   Scene on_plane(double tip_radius, bool capsule) const;
 };
 
-// The tip is led over the surface of the body, pressed in: figures of 3 cm over the front, at 0.05
-// to 0.15 m/s, in from outside.
+// A tip led over the body's surface, pressed in: figures of 3 cm over its front, at 0.05 to 0.15
+// m/s, from outside.
 class Stroke {
  public:
-  // Errors: std::runtime_error where the arm does not reach the body.
+  // Errors: std::runtime_error if the arm does not reach the body.
   Stroke(const StrokePlace& place, double tip_radius, const Scene& scene);
 
-  // The device's tip goes to the next place; the encoders are exact.
+  // Moves the device's tip to the next place, with exact encoders.
   void move();
   void control() { tick_.run(p_, {x_, x_, Vec<3>::Zero()}, ForceRequest::as_it_is, row_); }
   Vec3 tip() const { return target(k_); }

@@ -14,7 +14,7 @@ template <int N>
 class Pressed {
  public:
   Pressed(const ArmDescription& arm, CouplingKind law) : Pressed(arm, law, bent(arm)) {}
-  // From posture x [rad, m].
+  // Starts in posture x [rad, m].
   Pressed(const ArmDescription& arm, CouplingKind law, const Eigen::VectorXd& x)
       : tip_(tip_of(arm, x)),
         tick_(arm, plane_over(tip_)),
@@ -25,12 +25,12 @@ class Pressed {
     arm_.place(x, Vec<N>::Zero(x.size()), tip_);
   }
 
-  // One tick of the controller: the torque of the device [N m, N].
+  // Runs a tick of the controller; returns the device's torque [N m, N].
   const Vec<N>& control() {
     const Reading<N> reading = arm_.read(p_.encoder_step);
     return tick_.run(p_, reading, ForceRequest::as_it_is, row_);
   }
-  // One tick of the device and the hand.
+  // Runs a tick of the device and the hand.
   void live(const Vec<N>& torque) {
     const double angle = 1e-3 * k_++;
     arm_.live(p_, torque, {tip_ + 0.01 * Vec3(std::cos(angle) - 1, std::sin(angle), -0.1), 1});

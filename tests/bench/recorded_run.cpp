@@ -29,7 +29,7 @@ RunPlan touching_the_table() {
   return plan;
 }
 
-// Of all threads of the process [us].
+// Processor time of all threads of the process [us].
 double processor_time() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -50,7 +50,7 @@ Line timed(const char* id, const char* what, const Line& unit, double tick, Work
   return line;
 }
 
-// Gone however this ends.
+// A temporary file, removed in any case.
 struct Temporary {
   std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("limpid-bench-{}.h5", getpid());

@@ -7,9 +7,9 @@
 
 namespace limpid::bench {
 
-// The built-in arm on its table: simulated alone, recorded, and the file written alone; processor
-// time of the whole process for a tick of 1 ms. Errors: std::runtime_error where the folder for
-// temporary files takes none.
+// Runs the built-in arm on its table: simulated alone, recorded, and the file written alone.
+// Measures the processor time of the process for a tick of 1 ms. Errors: std::runtime_error if the
+// folder for temporary files cannot be written.
 std::vector<Line> recorded_runs(const Line& unit);
 
 }  // namespace limpid::bench
