@@ -10,7 +10,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
-#include "app/desktop/document/scene_loader.h"
+#include "app/desktop/scene/scene_loader.h"
 #include "app/run/analysis.h"
 #include "app/run/body_report.h"
 #include "app/run/fitted_gains.h"

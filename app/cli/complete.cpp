@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "app/device/device_hub.h"
-#include "app/study/experiment.h"
+#include "app/experiments/experiment.h"
 #include "core/base/model_kinds.h"
 
 namespace limpid {

@@ -10,7 +10,7 @@
 #include "app/desktop/shell/run_desktop.h"
 #include "app/remote/line_server.h"
 #include "app/run/fitted_gains.h"
-#include "app/study/sweep_table.h"
+#include "app/sweep/sweep_table.h"
 #include "devices/files/toml_reader.h"
 
 namespace limpid {

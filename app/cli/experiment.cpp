@@ -9,7 +9,7 @@
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
-#include "app/study/live.h"
+#include "app/experiments/live.h"
 #include "core/realtime/realtime.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/toml_reader.h"

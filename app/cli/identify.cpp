@@ -17,8 +17,8 @@
 #include "app/device/device_hub.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/rehearsal.h"
-#include "app/study/identification.h"
-#include "app/study/identify_report.h"
+#include "app/experiments/identification.h"
+#include "app/experiments/identify_report.h"
 #include "devices/identify/unlike_device.h"
 
 namespace limpid {

@@ -11,11 +11,11 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/run/provenance.h"
-#include "app/study/record_point.h"
-#include "app/study/slurm.h"
-#include "app/study/sweep_figure.h"
-#include "app/study/sweep_plan.h"
-#include "app/study/sweep_work.h"
+#include "app/sweep/record_point.h"
+#include "app/sweep/slurm.h"
+#include "app/sweep/sweep_figure.h"
+#include "app/sweep/sweep_plan.h"
+#include "app/sweep/sweep_work.h"
 
 namespace limpid {
 

@@ -13,7 +13,7 @@
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/base/window_layout.h"
-#include "app/desktop/live/pad_hand.h"
+#include "app/desktop/device/pad_hand.h"
 #include "app/desktop/shell/commands.h"
 #include "core/tick/arming.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "app/desktop/live/live_session.h"
-#include "app/desktop/panels/export_dialog.h"
+#include "app/desktop/plots/export_dialog.h"
 #include "app/desktop/shell/dialogs.h"
 
 namespace limpid {

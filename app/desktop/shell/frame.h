@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "app/desktop/panels/coupling_panel.h"
-#include "app/desktop/panels/range_panel.h"
-#include "app/desktop/panels/view_panel.h"
+#include "app/desktop/coupling/coupling_panel.h"
+#include "app/desktop/plots/range_panel.h"
+#include "app/desktop/view/view_panel.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/layout.h"

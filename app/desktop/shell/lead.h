@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/shell/tuning.h"
+#include "app/desktop/coupling/tuning.h"
 #include "app/desktop/shell/world.h"
 
 namespace limpid {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/panels/gallery.h"
+#include "app/desktop/scene/gallery.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/picture_shelf.h"
 

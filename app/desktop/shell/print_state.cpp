@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/desktop/document/picking.h"
-#include "app/desktop/panels/device_panel.h"
-#include "app/desktop/panels/identify_dialog.h"
+#include "app/desktop/scene/picking.h"
+#include "app/desktop/device/device_panel.h"
+#include "app/desktop/device/identify_dialog.h"
 #include "app/desktop/shell/layout.h"
 #include "app/desktop/widgets/modal.h"
 

@@ -6,12 +6,12 @@
 #include <array>
 #include <memory>
 
-#include "app/desktop/panels/analysis_panel.h"
-#include "app/desktop/panels/device_panel.h"
-#include "app/desktop/panels/parameter_rows.h"
-#include "app/desktop/panels/scene_panel.h"
-#include "app/desktop/panels/tick_panel.h"
-#include "app/desktop/panels/timing_panel.h"
+#include "app/desktop/coupling/analysis_panel.h"
+#include "app/desktop/device/device_panel.h"
+#include "app/desktop/widgets/parameter_rows.h"
+#include "app/desktop/scene/scene_panel.h"
+#include "app/desktop/coupling/tick_panel.h"
+#include "app/desktop/coupling/timing_panel.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"

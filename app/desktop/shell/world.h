@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/desktop/document/document.h"
-#include "app/desktop/live/device_controller.h"
+#include "app/desktop/scene/document.h"
+#include "app/desktop/device/device_controller.h"
 #include "app/desktop/live/live_session.h"
 #include "devices/files/urdf_file.h"
 

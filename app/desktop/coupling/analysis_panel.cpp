@@ -1,0 +1,257 @@
+#include "app/desktop/coupling/analysis_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/desktop/widgets/chart.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+#include "app/style/ticks.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kLookAgain = 0.25;                  // time between two analyses [s]
+constexpr int kPoints = 120;                         // of a curve
+constexpr double kSoftest = 100, kStiffest = 30000;  // range of the walls' axis [N/m]
+constexpr double kSlowest = 0.3, kFastest = 30;      // range of free motion [Hz]
+constexpr double kGram = 1000;                       // [g/kg]
+
+// Returns H_L(jw) times b, which is 1/eta at standstill for every mode.
+std::vector<std::complex<double>> nyquist(const LockedMode& mode, double eta) {
+  std::vector<std::complex<double>> curve;
+  const double slow = 0.01 * mode.w_c(), fast = 100 * std::max(mode.w_f(), mode.w_c());
+  for (int i = 0; i < kPoints; ++i) {
+    const double w = slow * std::pow(fast / slow, i / (kPoints - 1.0));
+    curve.push_back(mode.b * locked_response(mode, eta, w));
+  }
+  return curve;
+}
+
+template <class Value>
+std::vector<ChartPoint> over_frequency(const Value& value) {
+  std::vector<ChartPoint> curve;
+  for (int i = 0; i < kPoints; ++i) {
+    const double f = kSlowest * std::pow(kFastest / kSlowest, i / (kPoints - 1.0));
+    curve.push_back({f, value(f)});
+  }
+  return curve;
+}
+
+CouplingKind law(std::size_t i) { return static_cast<CouplingKind>(i); }
+
+Rgb law_colour(const Palette& colours, std::size_t i, const Parameters& p) {
+  return law(i) == p.kind ? colours.text : mix(colours.muted, colours.panel, 0.35f);
+}
+
+std::string newtons_per_metre(double stiffness) {
+  return stiffness >= 1e4 ? fmt::format("{:.0f}k", stiffness / 1000)
+                          : fmt::format("{:.0f}", stiffness);
+}
+
+// Returns "-11.9 rad/s", or "-11.9 ± 40i rad/s" for a pair.
+std::string pole_text(std::complex<double> pole) {
+  const std::string real = fixed_text(pole.real(), 1);
+  if (std::abs(pole.imag()) < 0.5) return real + " rad/s";
+  return fmt::format("{} \xC2\xB1 {:.0f}i rad/s", real, std::abs(pole.imag()));
+}
+
+}  // namespace
+
+void AnalysisPanel::update(const Parameters& p, const ArmDescription& arm, const Scene& scene,
+                           std::span<const double> x, double band) {
+  if (ImGui::GetTime() < due_) return;
+  due_ = ImGui::GetTime() + kLookAgain;
+  const Eigen::VectorXd pose =
+      Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  analysis_ = analyze(arm, pose, p, 2 * std::numbers::pi * band);
+  tip_ = tip_limits(arm, pose, p, scene);
+  poles_ = handle_poles(arm, pose, p);
+  basis_ = basis_text(arm, p);
+}
+
+void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const Scene& scene,
+                         std::span<const double> x, double& band) {
+  update(p, arm, scene, x, band);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));
+  ImGui::TextWrapped("for %s", basis_.c_str());
+  ImGui::PopStyleColor();
+  draw_walls(p);
+  draw_felt(p, band);
+  if (info(p.kind).observes) draw_observed(p, band);
+}
+
+// Draws one bar a law on a logarithmic axis, and the scene's stiffest wall across them.
+void AnalysisPanel::draw_walls(const Parameters& p) const {
+  const Palette& colours = current_palette();
+  const double rows = kLaws;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  {
+    const Chart chart("stiffest wall [N/m]", {kSoftest, kStiffest, true}, {0, rows, false, false},
+                      104);
+    const float thick = 0.55f * chart.inside().height() / static_cast<float>(rows);
+    const auto across = [&](double stiffness, Rgb rgb) {
+      const float at = chart.place({stiffness, 0}).x;
+      draw.AddLine({at, chart.inside().min.y}, {at, chart.inside().max.y}, colour(rgb),
+                   1.4f * current_scale());
+    };
+    across(tip_.every_hand, colours.axis);
+    if (tip_.scene > 0) across(tip_.scene, ink(colours, Ink::contact));
+    for (std::size_t i = 0; i < tip_.walls.size(); ++i) {
+      const double y = rows - 0.5 - static_cast<double>(i);
+      const ImVec2 end = chart.place({std::min(tip_.walls[i].stiffness, kStiffest), y});
+      const Rgb ink = law_colour(colours, i, p);
+      draw.AddRectFilled({chart.inside().min.x, end.y - thick / 2}, {end.x, end.y + thick / 2},
+                         colour(ink, 0.3f), 2);
+      const std::string label =
+          fmt::format("{} {}", info(law(i)).key, newtons_per_metre(tip_.walls[i].stiffness));
+      chart.text({chart.inside().min.x, end.y - 0.6f * font(Face::small)->FontSize}, label,
+                 colour(law(i) == p.kind ? colours.text : colours.muted));
+    }
+  }
+  const TipLimits::Wall& mine = tip_.walls[static_cast<std::size_t>(p.kind)];
+  tooltip(fmt::format("How stiff a wall each coupling renders well at this pose, along the tip's "
+                      "least damped direction.\n{}: {:.0f} N/m, {}.\nGrey line: {:.0f} N/m, the "
+                      "most that any linear law can show and be passive in every hand "
+                      "(b_d/(T/2 + delay)). "
+                      "Coloured line: the stiffest thing in this scene.",
+                      info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
+              .c_str());
+  if (tip_.scene <= 0) return;
+  const bool soft = !info(p.kind).solves_together && !info(p.kind).observes;
+  const bool over = !soft && tip_.scene > mine.stiffness;
+  read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
+           over ? fmt::format("Stiffer than what {} renders well here, {:.0f} N/m: {}.",
+                              info(p.kind).key, mine.stiffness, mine.bound)
+                : "",
+           soft ? "Felt softer than that: this coupling's spring is in between."
+                : "Within what this coupling renders well");
+}
+
+void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
+  const Palette& colours = current_palette();
+  const auto curve = [&](CouplingKind kind, auto part) {
+    return over_frequency([&](double f) { return part(felt_at_tip(tip_, p, kind, f)); });
+  };
+  const auto mass = [](const FeltAtTip& felt) { return kGram * felt.mass; };
+  const auto damping = [](const FeltAtTip& felt) { return felt.damping; };
+  const double natural = kGram * tip_.felt.m, wanted = p.eta * natural;
+  const double least = tip_.felt.least_damping(p.eta, p.band);
+  const auto draw_all = [&](const Chart& chart, auto part) {
+    for (std::size_t i = 0; i < kLaws; ++i) {
+      if (law(i) != p.kind) chart.line(curve(law(i), part), colour(law_colour(colours, i, p)));
+    }
+    chart.line(curve(p.kind, part), colour(colours.text), 2.4f);
+  };
+  const ChartAxis frequency{kSlowest, kFastest, true};
+  {
+    const Chart chart("inertia felt [g at the tip] over frequency [Hz]", frequency,
+                      {0, 1.25 * std::max(natural, wanted)}, 120);
+    chart.dashes(over_frequency([&](double) { return wanted; }), colour(colours.muted));
+    draw_all(chart, mass);
+  }
+  tooltip(
+      fmt::format("Each coupling at eta {:.3g} in free motion; thick: {}. Dashed: eta times the "
+                  "natural {:.3g} g. From theory, without the encoder's steps.",
+                  p.eta, info(p.kind).key, natural)
+          .c_str());
+  {
+    const double own = tip_.felt.b_d + tip_.felt.b_v;
+    const Chart chart("damping felt [N s/m] over frequency [Hz]", frequency,
+                      {0, 1.6 * std::max(own, least)}, 100);
+    if (least > 0) {
+      chart.dashes(over_frequency([&](double) { return least; }), colour(colours.muted));
+    }
+    draw_all(chart, damping);
+  }
+  tooltip(fmt::format("Dashed: {:.2g} N s/m, the least at low frequency that every passive law "
+                      "has to make felt for this inertia up to {:.3g} Hz.",
+                      least, p.band)
+              .c_str());
+  if (info(p.kind).solves_together) {
+    if (const std::string late = late_text(tip_, p); !late.empty()) {
+      read_out("\xCE\xB7", late, {},
+               "An added mass that moves fast is a damper; where the torque may be late it would "
+               "push on. model.delay_most says how late it may be.");
+    }
+  }
+  const FeltAtTip now = felt_at_tip(tip_, p, p.kind, band);
+  read_out(fmt::format("felt at {:.3g} Hz", band).c_str(),
+           fmt::format("{:.3g} g, {:.2g} N s/m", kGram * now.mass, now.damping), {},
+           "Inertia and damping at the tip at the human's bandwidth");
+}
+
+void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
+  draw_nyquist(p);
+  auto hertz = static_cast<float>(band);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderFloat("##band", &hertz, 0.5f, 100, "human below %.1f Hz",
+                         ImGuiSliderFlags_Logarithmic)) {
+    band = hertz;
+    due_ = 0;
+  }
+  tooltip("The human's bandwidth: eta_min counts only the frequencies below it.");
+  const auto limit = [&](const char* label, double value, const char* help) {
+    read_out(label, fmt::format("{:.3f}", value), {}, help);
+  };
+  limit("\xCE\xB7_min, all frequencies", analysis_.eta_min, "(25), the worst mode at this pose");
+  limit("\xCE\xB7_min, this band", analysis_.eta_min_band.value_or(0),
+        "Re H_L >= 0 is asked only below the human's bandwidth");
+  limit("\xCE\xB7_min in this grip", analysis_.eta_min_grip, "Routh: stable in the hand above it");
+  std::string modes;
+  for (const LockedMode& mode : analysis_.modes) {
+    modes += fmt::format("{}{:.2f}", modes.empty() ? "" : ", ", 1e4 * mode.m);
+  }
+  read_out("modes of M_L",
+           "(" + modes +
+               ")\xC2\xB7"
+               "10\xE2\x81\xBB\xE2\x81\xB4 kg m\xC2\xB2",
+           {}, "Eigenvalues of M1 + M2 at this pose");
+  std::complex<double> worst(-1e300, 0);
+  for (const auto& pole : poles_) worst = pole.real() > worst.real() ? pole : worst;
+  read_out("slowest pole in the hand", pole_text(worst),
+           worst.real() > 0 ? "A pole in the right half plane: unstable while the hand holds." : "",
+           "Of the locked system held by the grip, in continuous time");
+}
+
+void AnalysisPanel::draw_nyquist(const Parameters& p) const {
+  const Palette& colours = current_palette();
+  double left = -0.1, right = 0.1, low = -0.1;
+  std::vector<std::vector<std::complex<double>>> curves;
+  for (const LockedMode& mode : analysis_.modes) {
+    curves.push_back(nyquist(mode, p.eta));
+    for (const auto& h : curves.back()) {
+      left = std::min(left, h.real());
+      right = std::max(right, h.real());
+      low = std::min(low, h.imag());
+    }
+  }
+  const double margin = 0.08 * (right - left);
+  const bool passive = p.eta >= analysis_.eta_min;
+  {
+    const Chart chart(fmt::format("b H_L(j\xCF\x89) at \xCE\xB7 {:.3f}: {}", p.eta,
+                                  passive ? "passive" : "not passive"),
+                      {left - margin, right + margin}, {1.1 * low, -0.15 * low}, 150);
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        chart.inside().min, {chart.place({0, 0}).x, chart.inside().max.y},
+        colour(passive ? colours.muted : colours.broken, 0.14f));
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      std::vector<ChartPoint> points;
+      for (const auto& h : curves[i]) points.push_back({h.real(), h.imag()});
+      chart.line(points, colour(ink(colours, Ink::proxy, 0.4f - 0.4f * static_cast<float>(i))));
+    }
+    const ImVec2 corner = chart.inside().max;
+    chart.text({corner.x, corner.y}, "Re", colour(colours.muted), true);
+    chart.text(chart.inside().min, "Im", colour(colours.muted));
+  }
+  tooltip(
+      "H_L(jw) of (24), one curve a mode of the inertia at the present pose. Positive real, and "
+      "so passive, while it stays right of the shaded half.");
+}
+
+}  // namespace limpid

@@ -1,0 +1,119 @@
+#include "app/desktop/coupling/chatter_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/desktop/base/passivity_break.h"
+#include "app/desktop/scene/picking.h"
+#include "app/run/tip_limits.h"
+#include "core/dynamics/arm.h"
+
+namespace limpid {
+namespace {
+
+constexpr auto kStays = std::chrono::seconds(30);
+
+// Returns a value of two digits, which is enough for a slider.
+double rounded_down(double stiffness) {
+  const double step = std::pow(10, std::floor(std::log10(stiffness)) - 1);
+  return step * std::floor(stiffness / step + 1e-9);
+}
+
+}  // namespace
+
+// Notes the object at the hardest contact, which is the first in a row.
+void ChatterWatch::note_touch() {
+  const Stage& stage = live_.stage();
+  const RowLayout& layout = stage.channels().layout();
+  const auto p = layout.in(live_.row(), Column::contact_point);
+  const auto f = layout.in(live_.row(), Column::contact_force);
+  const Vec3 point(p[0], p[1], p[2]), force(f[0], f[1], f[2]);
+  if (!point.allFinite() || !(force.norm() > 0)) return;
+  constexpr double kOutside = 0.005;  // start of the ray outside of the contact [m]
+  const Vec3 out = force.normalized();
+  const SceneEditor& editor = document_.editor();
+  const auto under = object_under({point + kOutside * out, -out}, editor.scene(), editor.models(),
+                                  stage.rows().bodies(layout, live_.row()));
+  if (under) touched_ = under;
+}
+
+std::optional<ChatterWatch::Wall> ChatterWatch::wall_of(const Parameters& p) const {
+  const Scene& scene = document_.scene();
+  if (!touched_ || *touched_ >= scene.objects.size()) return std::nullopt;
+  const Object& object = scene.objects[*touched_];
+  const ArmDescription& arm = live_.stage().arm();
+  const double holds =
+      tip_limits(arm, rest_pose(arm), p, scene).walls[static_cast<std::size_t>(p.kind)].stiffness;
+  const double stiffness = object.material.stiffness;
+  const double softer = std::min(holds > 0 ? holds : stiffness, stiffness / 2);
+  return Wall{*touched_, object.name, stiffness, rounded_down(softer)};
+}
+
+void ChatterWatch::follow() {
+  const Stage& stage = live_.stage();
+  if (std::exchange(of_, &stage) != &stage) {
+    chatter_ = {};
+    touched_.reset();
+    found_.reset();
+  }
+  note_touch();
+  if (found_ && is_over()) found_.reset();
+  const int channels = stage.channels().count();
+  for (const bool twin : {false, true}) {
+    Chatter& chatter = chatter_[twin ? 1 : 0];
+    if (twin && (!settings_.twin.on || stage.history.channels() < 2 * channels)) {
+      chatter.start_over();
+      continue;
+    }
+    const Parameters& p = run(twin);
+    chatter.follow(stage.history, stage.history.end(), twin ? channels : 0, stage.arm().dof(),
+                   p.k_vc);
+    if (!chatter.there() || passivity_broken(settings_)) continue;
+    if (!found_) found_ = Found{twin, p, wall_of(p)};
+    if (found_->of_twin == twin) seen_ = Clock::now();
+  }
+}
+
+// Returns whether the finding is out of date: other settings or another wall are judged anew.
+bool ChatterWatch::is_over() const {
+  const Parameters& now = run(found_->of_twin);
+  const Scene& scene = document_.scene();
+  const auto& wall = found_->wall;
+  const bool same_wall =
+      !wall ||
+      (wall->place < scene.objects.size() && scene.objects[wall->place].name == wall->name &&
+       scene.objects[wall->place].material.stiffness == wall->stiffness);
+  return Clock::now() - seen_ > kStays || !(now == found_->parameters) || !same_wall ||
+         (found_->of_twin && !settings_.twin.on) || passivity_broken(settings_);
+}
+
+std::string ChatterWatch::text() const {
+  const LawInfo& law = info(found_->parameters.kind);
+  const std::string of = found_->of_twin ? " of the twin" : "";
+  const auto& wall = found_->wall;
+  if (!wall) return fmt::format("It chatters: the {} law{} gives energy.", law.key, of);
+  return fmt::format("It chatters: {} ({:.4g} N/m) is stiffer than the {} law{} holds here.",
+                     wall->name, wall->stiffness, law.key, of);
+}
+
+void ChatterWatch::take_predictive() {
+  Parameters& p = found_->of_twin ? settings_.twin.parameters : settings_.parameters;
+  p.kind = CouplingKind::predictive;
+  forget();
+  for (Chatter& each : chatter_) each.start_over();
+}
+
+void ChatterWatch::soften_wall() {
+  if (!found_->wall || !document_.may_edit()) return;
+  const Wall wall = *found_->wall;
+  Object object = document_.scene().objects[wall.place];
+  object.material.stiffness = wall.softer;
+  document_.editor().set(wall.place, std::move(object), "stiffness");
+  forget();
+  for (Chatter& each : chatter_) each.start_over();
+}
+
+}  // namespace limpid

@@ -1,0 +1,383 @@
+#include "app/desktop/coupling/coupling_panel.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/run/fitted_gains.h"
+#include "app/style/palette.h"
+#include "app/style/sliders.h"
+#include "app/style/theme.h"
+#include "app/style/words.h"
+
+namespace limpid {
+namespace {
+
+// Returns the violated condition, by how much, and a remedy; empty if it holds. So do all
+// ..._broken().
+std::string eta_broken(const Parameters& p, const Analysis& a) {
+  if (!info(p.kind).observes || a.above_eta_min) return {};
+  return fmt::format(
+      "eta {:.3g} is below eta_min {:.3f} of (25): the locked system is not passive.\nRaise eta by "
+      "{:.3f}, lower alpha, or raise b_v.",
+      p.eta, a.eta_min, a.eta_min - p.eta);
+}
+
+// Adds the delays that tighten condition (3): of the device's answer, and of the link.
+std::string with_delays(const Analysis& a, std::string text) {
+  if (a.delay > 0) text += fmt::format(", delay {:.1f} ms", 1e3 * a.delay);
+  if (a.link > 0) text += fmt::format(", link {:.4g} ms", 1e3 * a.link);
+  return text;
+}
+std::string device_needs(const Parameters& p, const Analysis& a) {
+  const char* const link = a.link > 0 ? " + link" : "";
+  const std::string b_vc =
+      p.link_jitter > 0 ? fmt::format("{:.3g} b_vc", 2 + 0.5 * p.link_jitter) : "2 b_vc";
+  if (a.delay > 0) return with_delays(a, fmt::format("{} + k_vc (T + 3/2 delay{})", b_vc, link));
+  if (a.link > 0) return with_delays(a, b_vc + " + k_vc (T + link)");
+  return b_vc + " + k_vc T";
+}
+std::string proxy_needs(const Parameters& p, const Analysis& a) {
+  const std::string b_vc =
+      p.link_jitter > 0 ? fmt::format("{:.3g} b_vc + ", 0.5 * p.link_jitter) : "";
+  if (a.link > 0) {
+    return with_delays(
+        a, fmt::format("{}k_vc ({} / 2 + link)", b_vc, a.delay > 0 ? "(T + delay)" : "T"));
+  }
+  return a.delay > 0 ? with_delays(a, "k_vc (T + delay) / 2") : "k_vc T / 2";
+}
+
+std::string device_broken(const Parameters& p, const Analysis& a) {
+  if (!a.condition3.known) {
+    return "Condition (3): no bound is known where packets are lost (link loss): what is held for "
+           "want of a newer one may be of any age.\nThe tank law is passive all the same.";
+  }
+  if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
+  return fmt::format("Condition (3): b_d is {:.4g} N m s/rad short of {}.\nLower k_vc or b_vc.",
+                     -a.condition3.device_margin, device_needs(p, a));
+}
+
+std::string proxy_broken(const Parameters& p, const Analysis& a) {
+  if (a.condition3.holds || a.condition3.proxy_margin >= 0) return {};
+  return fmt::format(
+      "Condition (3): b_v is {:.4g} N m s/rad short of {}.\nRaise b_v or lower k_vc.",
+      -a.condition3.proxy_margin, proxy_needs(p, a));
+}
+
+void slider(Parameters& p, const char* key, const std::string& broken = {}) {
+  const ParameterInfo& info = *find_parameter(key);
+  Parameters shown = p;
+  if (std::isnan(shown.felt_damping)) shown.felt_damping = p.damping_share(p.eta);
+  if (parameter_slider(info, shown, parameter_number(Parameters{}, info),
+                       broken.empty() ? nullptr : broken.c_str())) {
+    set_parameter_number(p, info, parameter_number(shown, info));
+  }
+}
+
+void kind_buttons(Parameters& p) {
+  const Palette& colours = palette(current_theme());
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float width = ImGui::GetContentRegionAvail().x;
+  // Buttons are as wide as their words, with the rest of the width shared: so they fit into the
+  // narrowest panel.
+  float left = width - gap * (kLaws - 1);
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    left -= ImGui::CalcTextSize(info(static_cast<CouplingKind>(i)).label).x;
+  }
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
+    const bool chosen = p.kind == kind;
+    const Rgb law = law_ink(colours, i);
+    if (i > 0) ImGui::SameLine();
+    if (chosen) {
+      ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(law));
+      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(law));
+      ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(text_on(law)));
+    }
+    const ImVec2 size(ImGui::CalcTextSize(info(kind).label).x + left / kLaws,
+                      ImGui::GetFrameHeight() * 1.2f);
+    if (ImGui::Button(info(kind).label, size)) p.kind = kind;
+    if (chosen) ImGui::PopStyleColor(3);
+    underline_button(law);
+    tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
+  }
+  ImGui::PopStyleVar();
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+  // The verdict has the same height for every law, so that nothing below it moves.
+  const float below = ImGui::GetCursorPosY() + 2 * ImGui::GetTextLineHeightWithSpacing();
+  ImGui::TextWrapped("%s", info(p.kind).verdict);
+  ImGui::SetCursorPosY(below);
+  ImGui::PopStyleColor();
+}
+
+// Returns whether few people change the parameter: those that tie device and proxy, and its energy.
+bool advanced(std::string_view key) {
+  return key == "coupling.k_vc" || key == "coupling.b_vc" || key == "coupling.b_v" ||
+         key == "coupling.band" || key == "ledger.energy" || key == "tank.energy" ||
+         key == "tank.damping";
+}
+bool of_link(std::string_view key) { return key.starts_with("link."); }
+
+// Draws whether the gains suit the arm, and a button that makes them suit it.
+void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
+  Parameters fit = p;
+  const Parameters own = fitted(arm, fit, a.delay, p);
+  for (const char* key : kFittedKeys) {
+    const ParameterInfo& info = *find_parameter(key);
+    set_parameter_number(fit, info, parameter_number(own, info));
+  }
+  const std::string text = fit_text(own);
+  const char* const help =
+      "From the arm's damping b_d, its delay and the link's: k_vc, b_vc, b_v so that condition (3) "
+      "just holds, "
+      "alpha so that eta_min is the paper's. An arm whose file says no damping gets one that suits "
+      "its inertia.";
+  if (fit == p) {
+    read_out("Gains for this arm", text.empty() ? "the paper's" : "fitted", {}, help);
+    return;
+  }
+  if (ImGui::Button("Fit gains to this arm", {ImGui::GetContentRegionAvail().x, 0})) p = fit;
+  tooltip((std::string(help) + (text.empty() ? "\nThe paper's suit it." : "\n" + text)).c_str());
+}
+
+// Draws a delay between device and proxy, as if the world were far away.
+void draw_link(Parameters& p) {
+  const std::string set =
+      p.linked() ? fmt::format("Link: {:.4g} ms each way###link", 1e3 * p.tick * p.link_delay)
+                 : "Link###link";
+  if (!section(set.c_str(), false)) return;
+  if (info(p.kind).solves_together) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
+    ImGui::TextWrapped("This law solves device and proxy at once, and knows no link.");
+    ImGui::PopStyleColor();
+    return;
+  }
+  for (const std::string_view key : info(p.kind).sliders) {
+    if (of_link(key)) slider(p, key.data());
+  }
+  if (p.linked()) read_out("Through it", info(p.kind).through_link);
+}
+
+void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
+  const std::string eta = eta_broken(p, a);
+  // Condition (3) does not apply to the tanks, nor to laws that solve both sides together, unless
+  // linked.
+  const LawInfo& law = info(p.kind);
+  const bool asked = !law.keeps_ledger || (law.solves_together && !p.linked());
+  const std::string device = asked ? device_broken(p, a) : "";
+  const std::string proxy = asked ? proxy_broken(p, a) : "";
+  const auto draw = [&](bool which) {
+    for (const std::string_view key : info(p.kind).sliders) {
+      if (advanced(key) != which || of_link(key)) continue;
+      const bool of_device = key == "coupling.k_vc" || key == "coupling.b_vc";
+      slider(p, key.data(),
+             key == "coupling.eta"   ? eta
+             : key == "coupling.b_v" ? proxy
+             : of_device             ? device
+                                     : std::string());
+    }
+  };
+  draw(false);
+  const bool broken = !device.empty() || !proxy.empty();
+  if (section(broken ? "Advanced: condition (3) broken###advanced" : "Advanced###advanced",
+              false)) {
+    draw(true);
+    draw_fit(p, arm, a);
+  }
+  draw_link(p);
+}
+
+void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
+  const std::string eta = eta_broken(p, a);
+  const std::string device = device_broken(p, a);
+  const std::string proxy = proxy_broken(p, a);
+  heading("Passivity");
+  if (a.measured || real) {
+    read_out("These figures are", a.measured ? "measured" : "assumed", {},
+             a.measured ? "They follow from the inertia, damping and delay that limpid identify "
+                          "found of the device."
+                        : "They follow from what the arm's file says of inertia and damping; the "
+                          "delay is taken to be what is set. limpid identify measures them.");
+  }
+  const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
+  read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
+           "alpha / m over the modes of the inertia at the rest pose, (18)");
+  const bool standard = !info(p.kind).observes;
+  read_out("Least passive inertia \xCE\xB7_min",
+           fmt::format("{:.3f}{}", a.eta_min,
+                       standard          ? ""
+                       : a.above_eta_min ? "  ok"
+                                         : "  broken"),
+           eta, "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
+  const std::string unstable =
+      !standard && p.eta < a.eta_min_grip
+          ? fmt::format(
+                "eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
+                "unstable while the hand holds. Raise eta or soften the grip.",
+                p.eta, a.eta_min_grip)
+          : std::string();
+  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
+           "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
+  const auto verdict = [](const std::string& broken, double margin) {
+    return broken.empty() ? fmt::format("ok  {:+.2g}", std::abs(margin) < 1e-12 ? 0.0 : margin)
+                          : fmt::format("broken  {:+.2g}", margin);
+  };
+  read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
+           ("b_d less " + device_needs(p, a) + " [N m s/rad]: not negative").c_str());
+  read_out("Condition (3), proxy", verdict(proxy, a.condition3.proxy_margin), proxy,
+           ("b_v less " + proxy_needs(p, a) + " [N m s/rad]: not negative").c_str());
+}
+
+void share(const char* label, double part, const char* cut, const char* meaning) {
+  read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
+}
+
+void draw_tanks(const CouplingReading& now) {
+  heading("Energy tanks");
+  read_out("In both", energy_text(now.reserve), {},
+           "In the device's and the proxy's tank, and on its way between them: what may still be "
+           "given");
+  share("Proxy moves freely", now.contact_governor,
+        "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
+        "Its damping by that with what its tank adds");
+  share("Torque let through", now.torque_governor,
+        "The device's tank is low: of the torque only so much is let through as it can pay for. "
+        "Moving the device fills it.",
+        "100 % while the device's tank can pay for the tick that comes");
+}
+
+// Draws the bounds on the human's energy, for a law that keeps account of it.
+void draw_ledger(const CouplingReading& now) {
+  heading("Energy ledger");
+  read_out("Reserve", energy_text(now.reserve), {},
+           "What the human may still be given; more after dissipating, 20 mJ at most");
+  share("Wall force let through", now.contact_governor,
+        "The reserve runs low: the ledger holds a part of the wall's force back, so that the "
+        "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
+        "keep it from acting.",
+        "100 % unless the reserve runs low; then the proxy leaves the device for a while");
+  share("Damping cancelled", now.damping_governor,
+        "The reserve runs low: less of the device's damping is cancelled.",
+        "Of what the damping slider asks for");
+  share(
+      "Torque let through", now.torque_governor,
+      "The hand was given nearly all that it may be given: the ledger holds all torque back until "
+      "the hand has put some in again. Force that is armed anew, and a loop that starts anew, "
+      "begin with a full ledger. A known delay (model.delay) or a lower stiffness keep it from "
+      "acting.",
+      "100 % unless the hand was given nearly 5 mJ more than it put in");
+  if (now.unsettled > 0) {
+    const char* why =
+        "Motors at their limit and contacts had no common solution in these ticks: the proxy stood "
+        "still for each of them. That is passive. Softer walls, fewer of them at a time, less "
+        "friction or stronger motors avoid it.";
+    read_out("Ticks without a solution", fmt::format("{:.0f}", now.unsettled), why, why);
+  }
+  if (now.left_out > 0) {
+    const char* why =
+        "Objects meet at more points than the loop has room for. At these they do not push, and "
+        "may "
+        "sink into each other. Fewer objects that lie on each other avoid it.";
+    read_out("Contact points left out", fmt::format("{:.0f}", now.left_out), why, why);
+  }
+}
+
+// Returns a way out of a coupling that gives energy.
+const char* way_out(const Parameters& p) {
+  if (p.linked()) return "A shorter link, a softer k_vc, more damping, or the tank, avoid it.";
+  return info(p.kind).observes
+             ? "Raise \xCE\xB7, lower the observer's gain, or take the predictive law."
+             : "A softer k_vc, more damping (condition (3)), or the predictive law, avoid it.";
+}
+
+// Draws E_c as in the plots, by its sources; only the coupling's own part is judged.
+void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
+  const EnergyAccount& energy = now.energy;
+  const bool at_fault = now.chatters || passivity(a, p).passive == false;
+  // A law with a ledger makes another promise, which the ledger shows.
+  const bool judged = now.chatters || !info(p.kind).keeps_ledger;
+  const double own = at_fault ? energy.without_limits() : energy.own();
+  const std::string broken =
+      judged && own > kGivenEnergy
+          ? fmt::format(
+                "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
+                energy_text(own), way_out(p))
+          : "";
+  read_out("Energy given E_c", energy_text(now.energy_total), {},
+           "What the coupling gave since the start, with the device's own damping, as the plots "
+           "show it. Below it stands whose it is.");
+  read_out("The coupling's own", energy_text(own), broken,
+           "Of E_c, what the coupling itself gave: it stays below zero while that is passive. What "
+           "switching and motors at their limit put in is counted apart.");
+  const auto apart = [](const char* label, double joules, const char* help) {
+    if (std::abs(joules) > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
+  };
+  apart("Put in by switching", energy.by_changes(),
+        "Of E_c: changing a law or a setting while the coupling is stretched puts energy in, as "
+        "bending a spring does. It is no fault of the coupling.");
+  apart("Before the last change", energy.forgiven(),
+        "Of E_c: what settings gave that are no longer there.");
+  apart("For the device's own forces", now.compensation,
+        "Of E_c: what the motors gave for the device's weight, springs and friction.");
+  if (at_fault) return;
+  apart("Put in at the motors' limit", energy.by_limits(),
+        "Of E_c: a motor at its limit gives another torque than the coupling asks for. It is no "
+        "fault of the coupling.");
+}
+
+void draw_limited(const std::vector<int>& joints) {
+  if (joints.empty()) return;
+  std::string text;
+  for (const int joint : joints) {
+    text += fmt::format("{}joint {}", text.empty() ? "" : ", ", joint + 1);
+  }
+  read_out("Motor at its limit", text, {},
+           "The coupling asks for more torque than the motor can give, (section 3.1). Press less, "
+           "or raise Device > Motors' largest torque.");
+}
+
+void draw_break(bool broken, const Act& act) {
+  const ImVec2 size(ImGui::GetContentRegionAvail().x, 0);
+  if (ImGui::Button(broken ? "Repair" : "Break passivity", size)) {
+    act(broken ? "coupling.end_break" : "coupling.break_passivity");
+  }
+  tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "
+                   "law, scene, arm or recording."
+                 : "Takes the proposed law, a stiff grip without damping, and so small an inertia "
+                   "\xCE\xB7 that the loop gives energy without end. A hand holds the arm: it "
+                   "begins to tremble, and E_c climbs. Repair puts everything back.");
+}
+
+}  // namespace
+
+void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
+  if (p.kind == CouplingKind::tank) {
+    draw_tanks(reading);
+  } else if (info(p.kind).keeps_ledger) {
+    draw_ledger(reading);
+  }
+  draw_energy(reading, p, analysis);
+  draw_limited(reading.limited);
+}
+
+void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
+                   const Act& act) {
+  kind_buttons(p);
+  ImGui::Spacing();
+  draw_sliders(p, now.analysis, now.arm);
+  if (!now.real) draw_break(now.broken, act);
+  if (!info(p.kind).keeps_ledger) draw_passivity(p, now.analysis, now.real);
+  draw_reading(reading, p, now.analysis);
+}
+
+void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now) {
+  kind_buttons(p);
+  ImGui::Spacing();
+  draw_sliders(p, now.analysis, now.arm);
+  if (!info(p.kind).keeps_ledger) draw_passivity(p, now.analysis, now.real);
+}
+
+}  // namespace limpid

@@ -1,0 +1,179 @@
+#include "app/desktop/coupling/timing_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+#include "core/tick/safety_limits.h"
+
+namespace limpid {
+
+namespace {
+
+// Returns a number of late ticks and its share of all.
+std::string of_all(std::int64_t count, std::int64_t ticks) {
+  if (count == 0) return "0";
+  const auto all = static_cast<double>(std::max<std::int64_t>(ticks, 1));
+  return fmt::format("{} ({:.2g} %)", count, 100.0 * static_cast<double>(count) / all);
+}
+
+void draw_late_ticks(const LoopStatus& status, bool motors) {
+  const LateTicks words = late_ticks(motors);
+  read_out("late over 0.2 ms", of_all(status.late, status.ticks), {},
+           "Ticks that began more than 0.2 ms after their deadline");
+  read_out("missed", of_all(status.missed, status.ticks),
+           status.missed > status.ticks / 100
+               ? "More than one tick in a hundred began over a tick late. Close other programs, or "
+                 "grant real-time priority (rtkit, or an rtprio limit)."
+               : "",
+           words.missed);
+  read_out("slipped", of_all(status.slipped, status.ticks),
+           status.slipped > 0 ? words.after_a_slip : "", words.slipped);
+}
+
+constexpr double kReckonAgain = 0.25;  // time between two computations [s]
+constexpr double kSlow = 1.1;  // device is slower than the loop from so many ticks a reading on
+
+std::string milliseconds(double seconds) { return fmt::format("{:.2f} ms", 1e3 * seconds); }
+
+}  // namespace
+
+void draw_time_histogram(const LatencyHistogram& histogram, double late, const char* help) {
+  const Palette& colours = palette(current_theme());
+  const float height = 32 * current_scale();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  draw->AddRectFilled(at, {at.x + width, at.y + height}, colour(colours.frame, 0.5f), 3);
+  constexpr int kBars = 50;
+  constexpr int kPerBar = LatencyHistogram::kBins / kBars;
+  std::array<double, kBars> columns{};
+  double most = 1;
+  for (int i = 0; i < LatencyHistogram::kBins; ++i) {
+    double& column = columns[static_cast<std::size_t>(i / kPerBar)];
+    column += static_cast<double>(histogram.count_in(i));
+    most = std::max(most, column);
+  }
+  const float step = width / kBars;
+  for (int i = 0; i < kBars; ++i) {
+    const double share = columns[static_cast<std::size_t>(i)];
+    if (share == 0) continue;
+    const auto tall = static_cast<float>(std::log1p(share) / std::log1p(most)) * (height - 4);
+    const float x = at.x + step * static_cast<float>(i);
+    const bool too_late = LatencyHistogram::upper_edge(i * kPerBar) > late;
+    draw->AddRectFilled({x, at.y + height - tall}, {x + step - 1, at.y + height},
+                        colour(too_late ? colours.broken : colours.muted));
+  }
+  ImGui::Dummy({width, height});
+  tooltip(help);
+}
+
+LateTicks late_ticks(bool motors) {
+  if (motors) {
+    return {"Ticks that began after the next one was due",
+            "Ticks given up because the one before began so late; with motors none is caught up",
+            "Ticks that were due while another was late were given up at once: motors never get "
+            "several ticks in a burst. The loop went on that much later."};
+  }
+  return {"Ticks that began after the next one was due; they are caught up",
+          "Ticks given up after long stalls",
+          "After a stall of over 20 ticks the loop went on later instead of catching up; simulated "
+          "time lost that much against the clock."};
+}
+
+void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time) {
+  const LoopStatus status = loop.status();
+  read_out("haptic rate", fmt::format("{:.1f} Hz", status.rate),
+           status.running ? std::string() : "The loop has stopped: " + status.failure);
+  const LatencyHistogram& wake = loop.thread().wake_latency();
+  read_out("wake-up p50 / p99",
+           fmt::format("{:.0f} / {:.0f} us", 1e6 * wake.quantile(0.5), 1e6 * wake.quantile(0.99)),
+           {}, "How long after its deadline a tick begins");
+  draw_time_histogram(
+      wake, 1e-3,
+      "Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; "
+      "red: over one tick.");
+  const LatencyHistogram& compute = loop.thread().compute_time();
+  read_out("tick takes p50 / p99", fmt::format("{:.0f} / {:.0f} us", 1e6 * compute.quantile(0.5),
+                                               1e6 * compute.quantile(0.99)));
+  draw_late_ticks(status, loop.device_in_place());
+  read_out("scheduling",
+           status.realtime.realtime() ? fmt::format("real-time {}", status.realtime.priority)
+                                      : "ordinary",
+           {}, status.realtime.explanation.c_str());
+  const std::uint64_t dropped =
+      loop.trace_dropped() + (loop.recording() ? loop.recorder()->dropped() : 0);
+  if (dropped > 0) {
+    read_out("ticks dropped", std::to_string(dropped),
+             "Ticks that found no room on their way to the plots or the recording.");
+  }
+  read_out("picture quality", quality, {},
+           "View > Picture quality. Automatic: as good as this computer draws smoothly");
+  read_out("frame", fmt::format("{:.1f} ms", 1e3 * frame_time), {},
+           "Work for one picture; the loop does not wait for it");
+}
+
+void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const Parameters& p,
+                        const Scene& scene, std::span<const double> x) {
+  if (ImGui::GetTime() >= due_) {
+    due_ = ImGui::GetTime() + kReckonAgain;
+    const Eigen::VectorXd pose =
+        Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    now_ = tip_limits(arm, pose, p, scene);
+    prompt_ = without_delay(arm, pose, p, scene);
+  }
+  heading("The device");
+  const DevicePace::Figures f = pace.figures();
+  if (f.intervals == 0) {
+    read_out("readings", "none yet");
+  } else {
+    read_out("readings", fmt::format("{:.0f} Hz, every {}", f.rate, milliseconds(f.mean)),
+             f.mean > kSlow * p.tick
+                 ? fmt::format("Slower than the loop, {}: ticks in between see nothing new.",
+                               milliseconds(p.tick))
+                 : "",
+             "How often the device says where it is");
+    read_out("jitter",
+             fmt::format("{}, 99 % within {}", milliseconds(f.jitter),
+                         milliseconds(pace.intervals().quantile(0.99))),
+             {}, "Deviation of the time between two readings, as they arrive here");
+    draw_time_histogram(pace.intervals(), SafetyLimits::kStaleReading,
+                        "Time between two readings, 1 us to 100 ms, both axes logarithmic; red: "
+                        "over 5 ms, when force is cut.");
+  }
+  draw_cost(f, arm, p);
+}
+
+void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescription& arm,
+                             const Parameters& p) const {
+  const bool assumed = !arm.delay && p.delay == 0;
+  read_out("delay",
+           arm.delay ? milliseconds(*arm.delay) + ", measured"
+           : assumed ? "not measured"
+                     : milliseconds(p.delay * p.tick) + ", as set",
+           {},
+           "From a reading to the torque that answers it, beyond the tick. limpid identify finds "
+           "it; without it the walls below are those of none.");
+  const auto law = static_cast<std::size_t>(p.kind);
+  const TipLimits::Wall& wall = now_.walls[law];
+  const auto pair = [](double now, double prompt) {
+    return fmt::format("{:.0f} of {:.0f} N/m", std::min(now, prompt), prompt);
+  };
+  read_out("stiffest wall", pair(wall.stiffness, prompt_.walls[law].stiffness), {},
+           fmt::format("With this delay, of what {} would render without any. Bounded by {}.",
+                       info(p.kind).key, wall.bound)
+               .c_str());
+  const double T = std::max(p.tick, pace.mean);
+  read_out("passive in any hand",
+           pair(every_hands_wall(now_.tip, T, now_.delay), prompt_.every_hand), {},
+           "b_d / (T/2 + delay), T the longer of tick and readings: the stiffest wall that a "
+           "linear law can render and be passive in every hand");
+}
+
+}  // namespace limpid

@@ -1,0 +1,359 @@
+#include "app/desktop/device/device_panel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/desktop/widgets/parameter_rows.h"
+#include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/run/fitted_gains.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+#include "app/style/words.h"
+#include "core/dynamics/arm_description.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr std::size_t kAxesOfACap = 6;
+
+void choice(DeviceController& devices, const char* label, const std::string& id, const char* help) {
+  if (ImGui::RadioButton(label, devices.hub().in_use() == id)) devices.use(id);
+  tooltip(help);
+}
+
+// Draws the choice of the mouse, or of a gamepad, for the virtual arm's hand; the mouse can always
+// lead it.
+void hand_choice(DeviceController& devices, const PadChoice& pads, const std::string& label,
+                 const std::string& id, const char* help) {
+  ImGui::PushID(id.c_str());
+  if (ImGui::RadioButton(label.c_str(), devices.hub().in_use().empty() && pads.chosen == id)) {
+    pads.chosen = id;
+    if (!devices.hub().in_use().empty()) devices.use("");
+  }
+  tooltip(help);
+  ImGui::PopID();
+}
+
+void hand_choices(DeviceController& devices, const PadChoice& pads) {
+  hand_choice(devices, pads, "virtual arm, by the mouse", "",
+              "A simulated arm; the mouse is the hand on it.");
+  bool known = pads.chosen.empty();
+  for (const Pad& pad : pads.pads) {
+    hand_choice(
+        devices, pads, "virtual arm, by " + pad.name, pad.id,
+        "Left stick: the hand, in the plane of the picture. Triggers or right stick: nearer "
+        "and farther. A takes hold and lets go, B cuts the force, Y is the next coupling.");
+    known = known || pad.id == pads.chosen;
+  }
+  if (known) return;
+  hand_choice(devices, pads, "virtual arm, by the gamepad of before", pads.chosen,
+              "Not plugged in; the mouse leads the hand until it is.");
+}
+
+void choices(DeviceController& devices, const PadChoice& pads) {
+  hand_choices(devices, pads);
+  bool known = devices.hub().in_use().empty();
+  for (const FoundDevice& found : devices.hub().found()) {
+    std::string help = found.missing.empty()
+                           ? fmt::format("{}, {}", found.kind->name, found.place.id)
+                           : found.missing;
+    if (!found.in_use_by.empty()) help += fmt::format("\nIn use by {}.", found.in_use_by);
+    ImGui::PushID(found.place.path.c_str());
+    choice(devices, found.place.name.c_str(), found.place.id, help.c_str());
+    ImGui::PopID();
+    known = known || found.place.id == devices.hub().in_use();
+  }
+  if (!known) choice(devices, "the one used before", devices.hub().in_use(), "Not plugged in.");
+}
+
+// Draws the guided check of a new device's axes; returns whether there is one to show.
+bool axis_check(DeviceController& devices) {
+  if (const AxisCheckProgress* check = devices.check()) {
+    ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
+    if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
+    return true;
+  }
+  if (!devices.awaits_check()) return false;
+  ImGui::TextWrapped("%s", devices.problem().c_str());
+  if (noted_button(kCheckAxes)) devices.start_check();
+  tooltip(
+      "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
+      "device stand free, the hands beside it; Esc stops it.");
+  return true;
+}
+
+void status(DeviceController& devices, const LiveLoop& loop) {
+  if (devices.hub().in_use().empty() || axis_check(devices)) return;
+  if (!devices.problem().empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
+    ImGui::TextWrapped("%s", devices.problem().c_str());
+    ImGui::PopStyleColor();
+    const FoundDevice* found = devices.hub().present();
+    const std::string missing = found != nullptr ? found->missing : std::string();
+    const std::size_t from = missing.find('\''), to = missing.rfind('\'');
+    if (devices.waits_for_choice() && ImGui::Button("Connect to it")) {
+      devices.use(devices.hub().in_use());
+    }
+    if (from < to && ImGui::SmallButton("copy the command")) {
+      ImGui::SetClipboardText(missing.substr(from + 1, to - from - 1).c_str());
+    }
+    return;
+  }
+  if (!loop.device_in_place()) return;
+  const ForceState state = loop.snapshot().force_state;
+  read_out("force", explain(state), {},
+           "Force is off until the hand has the device and F arms it; it then fades in.");
+}
+
+// Draws measured and assumed values of the device, and the delay that the law reckons with. Returns
+// true if the user wants more measured.
+bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p) {
+  if (!live.loop().device_in_place()) return false;
+  const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
+  const bool found = !notes.arm.empty();
+  read_out("inertia, friction", found ? "measured" : "assumed", {},
+           "Measured: by limpid identify, and remembered for this device. Assumed: what the arm's "
+           "file says. Condition (3), \xCE\xB7_min and the walls in the analysis rest on them.");
+  if (notes.torque_scale != 1) {
+    read_out("motors", fmt::format("give {:.3f} of what they are told", notes.torque_scale), {},
+             "Measured with a load at the tip; what they are told takes it into account.");
+  }
+  const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
+  tooltip("Moves it by itself and finds inertia, friction, weight and delay.");
+  if (notes.delay < 0) {
+    read_out("delay", "not measured", {}, "Identifying the device finds it.");
+    return wanted;
+  }
+  read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
+           "From a reading to the torque that answers it, beyond the tick.");
+  const Parameters with = reckoning_with(p, notes.delay);
+  if (with.delay == p.delay) return wanted;
+  const std::string text =
+      fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
+  if (ImGui::Button(text.c_str())) p = with;
+  tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
+  return wanted;
+}
+
+// Asks which arm the device is; returns true if a file is to be chosen.
+bool arm_question(DeviceController& devices, const LiveSession& live) {
+  const DeviceHub& hub = devices.hub();
+  if (!hub.may_say_arm()) return false;
+  const bool in_place = live.loop().device_in_place();
+  if (in_place) read_out("arm", live.stage().arm().name, {}, "That the device is taken for.");
+  if (!hub.asks_for_arm()) {
+    if (ImGui::SmallButton("Another arm...")) devices.say_arm({});
+    tooltip("Asks again which arm the device is.");
+    return false;
+  }
+  ImGui::TextWrapped("Which arm is it? Until you say so it is a built-in one, with little force.");
+  tooltip(
+      "Its ranges and levers bound the force. Of more than three joints there is no built-in one: "
+      "then there is no force.");
+  if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
+  tooltip("assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
+  ImGui::SameLine();
+  const NamedArm open = devices.open_arm();
+  if (noted_button(kOpenArmButton)) devices.say_arm(open);
+  tooltip(fmt::format("{}", open.file).c_str());
+  ImGui::SameLine();
+  return noted_button(kArmOfFileButton);
+}
+
+// Draws which part of the device's own forces the motors compensate.
+void compensation(const ArmDescription& arm, Parameters& p) {
+  if (!section("Compensation", true)) return;
+  tooltip(
+      "What the device itself pulls with, and the motors can take off the hand. It is armed, fades "
+      "and stops with all other force.");
+  const CompensationSettings wanted = suggested_compensation(arm);
+  CompensationSettings& now = p;
+  if (arm.delay && now != wanted) {
+    if (ImGui::Button("Take off what was measured")) now = wanted;
+    tooltip(fmt::format("Weight {}, springs {}, {:.0f} % of the friction.",
+                        wanted.holds_weight ? "held" : "not there",
+                        wanted.holds_springs ? "held" : "not there", 100 * wanted.friction_share)
+                .c_str());
+  }
+  double friction = 0, spring = 0;
+  for (const Joint& joint : arm.joints) {
+    friction = std::max(friction, joint.friction);
+    spring = std::max({spring, std::abs(joint.spring), std::abs(joint.offset)});
+  }
+  draw_parameters(p, arm, {"model.gravity"});
+  if (p.holds_weight) draw_parameters(p, arm, {"device.down"});
+  const auto where_there = [&](const char* key, bool there, const char* none) {
+    if (there) return draw_parameters(p, arm, {key});
+    read_out(caption(*find_parameter(key)), none, {}, "limpid identify finds what there is.");
+  };
+  where_there("model.springs", spring > 0, "none known");
+  where_there("model.friction", friction > 0, "no friction known");
+}
+
+// Draws a joint of the arm, or an axis of a cap, which has no joint: angle, direction, travel and
+// zero.
+bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* joint) {
+  bool changed = false;
+  ImGui::PushID(static_cast<int>(i));
+  if (joint == nullptr) {  // shown as part of the cap's full deflection
+    ImGui::Text("axis %zu  %+5.2f", i + 1, angle);
+    ImGui::SameLine(8.5f * ImGui::GetFontSize());
+    changed = ImGui::Checkbox("invert", &axis.inverted);
+    ImGui::PopID();
+    return changed;
+  }
+  ImGui::AlignTextToFramePadding();
+  const bool slides = joint->kind == Joint::Kind::prismatic;
+  ImGui::Text(slides ? "axis %zu  %+7.1f mm" : "axis %zu  %+7.2f\xC2\xB0", i + 1,
+              angle * (slides ? 1e3 * kSlideUnit : kDegrees));
+  ImGui::SameLine(8.5f * ImGui::GetFontSize());
+  changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
+  tooltip("Turns the axis round, its torque with it.");
+  ImGui::SameLine();
+  changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
+  tooltip(
+      "For a motor that pushes the wrong way, which the check of the axes finds by itself. The "
+      "axes "
+      "are checked again then: with the wrong sign the loop is unstable.");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("zero here")) {
+    axis.zero += angle / axis.factor();
+    changed = true;
+  }
+  tooltip("Where it is now becomes zero.");
+  auto scale = static_cast<float>(axis.scale);
+  ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());
+  if (ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    axis.scale = static_cast<double>(scale);
+  }
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip(
+      "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
+      "the hand stays the power in the loop.");
+  ImGui::PopID();
+  return changed;
+}
+
+// Returns true once the settings were changed.
+bool joystick_settings(DeviceNotes& notes) {
+  bool changed = false;
+  auto effort = static_cast<float>(notes.pid.effort);
+  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
+  if (ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+    notes.pid.effort = static_cast<double>(effort);
+    notes.torque_scale = 1;  // the old scale was found with the other effort
+  }
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip(
+      "The joystick's own torque at full force, measured or from its data sheet: USB gives "
+      "forces without a unit. Too low a value here makes it push too hard.");
+  auto range = static_cast<float>(notes.pid.range * kDegrees);
+  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
+  if (ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0",
+                         ImGuiSliderFlags_AlwaysClamp)) {
+    notes.pid.range = static_cast<double>(range) / kDegrees;
+  }
+  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  tooltip("How far the stick tilts to each side.");
+  return changed;
+}
+
+// Returns true once a limit was changed.
+bool limit_sliders(SafetyLimits& limits) {
+  if (!ImGui::TreeNode("Limits of force")) return false;
+  tooltip("They can be lowered for this device; as they are at first is the most they can be.");
+  bool changed = false;
+  const SafetyLimits most;
+  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
+    auto value = static_cast<float>(limits.*info.field);
+    ImGui::SetNextItemWidth(-9 * ImGui::GetFontSize());
+    const std::string format = fmt::format("%.3g {}", info.unit);
+    if (ImGui::SliderFloat(info.label, &value, static_cast<float>(info.least),
+                           static_cast<float>(most.*info.field), format.c_str(),
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+      limits.*info.field = static_cast<double>(value);
+      limits = allowed(limits);
+    }
+    changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
+  }
+  ImGui::TreePop();
+  return changed;
+}
+
+// Returns true once an axis was changed.
+bool axis_rows(DeviceNotes& notes, std::span<const double> angles, std::span<const Joint> joints) {
+  std::vector<AxisAdjustment> axes = notes.axes;
+  axes.resize(std::max(axes.size(), angles.size()));
+  const std::vector<AxisAdjustment> before = axes;
+  bool changed = false;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const Joint* joint = joints.empty() ? nullptr : &joints[i];
+    changed = axis_row(axes[i], i, angles[i], joint) || changed;
+  }
+  if (axes == before) return changed;
+  if (!std::ranges::equal(before, axes, {}, &AxisAdjustment::reversed, &AxisAdjustment::reversed)) {
+    notes.checked = false;
+  }
+  notes.axes = axes;
+  return changed;
+}
+
+void adjustments(DeviceController& devices, const LiveSession& live) {
+  const FoundDevice* found = devices.hub().present();
+  if (found == nullptr || !live.loop().device_plugged()) return;
+  const bool in_place = live.loop().device_in_place();
+  std::span<const Joint> joints;
+  if (in_place) joints = live.stage().arm().joints;
+  const std::size_t count = in_place ? joints.size() : kAxesOfACap;
+  DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
+  const NotesEdited edited =
+      draw_notes(notes, std::span(live.loop().snapshot().reading.x).first(count), joints,
+                 found->kind->uncalibrated, live.recording());
+  if (edited.anew) {
+    devices.connect_anew();
+  } else if (edited.limits) {
+    devices.save();
+  }
+}
+
+}  // namespace
+
+NotesEdited draw_notes(DeviceNotes& notes, std::span<const double> angles,
+                       std::span<const Joint> joints, bool uncalibrated, bool limits_fixed) {
+  NotesEdited edited;
+  edited.anew = axis_rows(notes, angles, joints);
+  if (uncalibrated) edited.anew = joystick_settings(notes) || edited.anew;
+  if (joints.empty()) return edited;
+  ImGui::BeginDisabled(limits_fixed);
+  edited.limits = limit_sliders(notes.limits);
+  ImGui::EndDisabled();
+  return edited;
+}
+
+Parameters reckoning_with(Parameters p, double delay) {
+  set_parameter_number(p, *find_parameter("model.delay"), delay / p.tick);
+  return p;
+}
+
+DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveSession& live,
+                                  const PadChoice& pads, Parameters& p) {
+  DevicePanelAsks asks;
+  choices(devices, pads);
+  status(devices, live.loop());
+  if (!devices.hub().in_use().empty()) {
+    asks.arm_file = arm_question(devices, live);
+    asks.identify = knowledge(devices, live, p);
+    if (live.loop().device_in_place()) compensation(live.stage().arm(), p);
+    adjustments(devices, live);
+  }
+  ImGui::Separator();
+  return asks;
+}
+
+}  // namespace limpid

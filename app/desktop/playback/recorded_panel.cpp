@@ -1,0 +1,82 @@
+#include "app/desktop/playback/recorded_panel.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/sliders.h"
+#include "app/style/theme.h"
+#include "app/style/words.h"
+
+namespace limpid {
+namespace {
+
+std::string value_of(const ParameterInfo& info, const Parameters& p) {
+  const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
+  if (number) return with_unit(info, parameter_number(p, info));
+  std::string text = parameter_text(p, info);
+  std::erase(text, '"');
+  return text == "true" ? "on" : text == "false" ? "off" : text;
+}
+
+bool has_slider(const Parameters& p, const std::string& key) {
+  return std::ranges::any_of(info(p.kind).sliders,
+                             [&](std::string_view each) { return each == key; });
+}
+
+// Returns whether a setting has a line: the grip, the law's sliders, and unusual values do.
+bool told(const ParameterInfo& info, const Parameters& p) {
+  const std::string key = info.key;
+  if (key == "coupling.kind" || key == "hand.stiffness" || key == "hand.damping") return true;
+  return has_slider(p, key) || parameter_text(p, info) != parameter_text(Parameters{}, info);
+}
+
+void cell(const std::string& text, Rgb ink) {
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(ink));
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void row(const RecordedSetting& setting, bool twin) {
+  const Palette& colours = current_palette();
+  ImGui::TableNextRow();
+  cell(setting.name, colours.muted);
+  if (!setting.help.empty()) tooltip(setting.help.c_str());
+  cell(setting.value, colours.text);
+  if (twin) cell(setting.of_twin, colours.text);
+}
+
+}  // namespace
+
+std::vector<RecordedSetting> recorded_settings(const Parameters& first, const Parameters* twin) {
+  std::vector<RecordedSetting> all;
+  for (const ParameterInfo& each : parameter_table()) {
+    if (!told(each, first) && !(twin != nullptr && told(each, *twin))) continue;
+    all.push_back({each.key == std::string("coupling.kind") ? "Coupling" : caption(each),
+                   value_of(each, first), twin != nullptr ? value_of(each, *twin) : "",
+                   each.meaning});
+  }
+  return all;
+}
+
+void draw_recorded(PlayedSession& session) {
+  const Parameters* twin = session.has_rerun() ? nullptr : session.twin_settings();
+  const int columns = twin != nullptr ? 3 : 2;
+  if (!ImGui::BeginTable("recorded", columns, ImGuiTableFlags_BordersInnerH)) return;
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 1.4f);
+  for (int i = 1; i < columns; ++i) {
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1);
+  }
+  for (const std::vector<Fact>& facts : {session.facts(), session.verdict()}) {
+    for (const Fact& fact : facts) row({fact.name, fact.value, fact.value}, twin != nullptr);
+  }
+  for (const RecordedSetting& setting : recorded_settings(session.settings(), twin)) {
+    row(setting, twin != nullptr);
+  }
+  ImGui::EndTable();
+}
+
+}  // namespace limpid

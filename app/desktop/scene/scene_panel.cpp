@@ -1,0 +1,394 @@
+#include "app/desktop/scene/scene_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "app/desktop/scene/body_editor.h"
+#include "app/desktop/scene/object_signs.h"
+#include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/sliders.h"
+#include "app/style/theme.h"
+#include "core/touch/triangle_mesh.h"
+#include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/scene_document.h"
+
+namespace limpid {
+
+void caption(const char* text, const char* help) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text);
+  tooltip(help);
+  ImGui::SameLine(0.45f * ImGui::GetContentRegionMax().x);
+  ImGui::SetNextItemWidth(-1);
+}
+
+bool drag3(const char* label, Vec3& values, double speed, double least, double most,
+           const char* format, const char* help) {
+  ImGui::TextUnformatted(label);
+  tooltip(help);
+  ImGui::SetNextItemWidth(-1);
+  ImGui::PushID(label);
+  const bool changed =
+      ImGui::DragScalarN("##v", ImGuiDataType_Double, values.data(), 3, static_cast<float>(speed),
+                         &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+  note_place(label);
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+namespace {
+
+using namespace scene_limits;
+constexpr double kDegree = std::numbers::pi / 180;
+
+bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
+              const char* help = "Forward, left and up from the arm's base.") {
+  Vec3 millimetres = 1e3 * pose.translation();
+  if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
+             "%.1f", help)) {
+    return false;
+  }
+  pose.translation() = 1e-3 * millimetres;
+  return true;
+}
+
+bool slider(double& value, const ParameterInfo& info, double usual, const char* help) {
+  const bool changed = value_slider(info, value, usual);
+  tooltip(help);
+  return changed;
+}
+
+ParameterInfo slider_of(const MaterialKey& each) {
+  constexpr double kAboveZero = 1e-3;  // least value if zero is not allowed
+  return {.key = each.key,
+          .label = each.label,
+          .field = &Parameters::eta,
+          .unit = *each.range.unit != '\0' ? each.range.unit : "-",
+          .minimum = each.range.exclusive_minimum ? kAboveZero : each.range.minimum,
+          .maximum = each.range.maximum,
+          .slider_minimum = each.slider_minimum,
+          .slider_maximum = each.slider_maximum,
+          .logarithmic = each.logarithmic,
+          .live = true,
+          .meaning = ""};
+}
+
+bool choose_material(Material& material) {
+  bool changed = false;
+  caption("Material", "A usual one, to begin with; what it is made of stands below.");
+  const UsualMaterial* const present = usual_material(material);
+  if (!ImGui::BeginCombo("##material", present ? present->name : "its own")) return false;
+  for (const UsualMaterial& each : kUsualMaterials) {
+    if (!ImGui::Selectable(each.name, &each == present)) continue;
+    material = each.material;
+    changed = true;
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+// Returns the name of the change, "" for none.
+std::string_view edit_material(Material& material) {
+  std::string_view what;
+  if (choose_material(material)) what = "material";
+  for (const MaterialKey& each : kMaterialKeys) {
+    const double usual = Material{}.*each.field;
+    if (slider(material.*each.field, slider_of(each), usual, each.meaning)) what = each.key;
+  }
+  return what;
+}
+
+bool joint_stiffness(double& value) {
+  const MaterialKey& of_material = kMaterialKeys.front();
+  ParameterInfo info = slider_of(of_material);
+  info.unit = "N m/rad";
+  info.slider_minimum = 0.1;
+  info.slider_maximum = 1e3;
+  return slider(value, info, JointStop::kUsualStiffness, of_material.meaning);
+}
+
+// Edits unit and axes of the model's file.
+bool choose_axes(Mesh& mesh) {
+  bool changed = false;
+  caption("Unit of the file", "What its coordinates are in. Many formats do not say.");
+  const ModelUnit* const present = model_unit(mesh.unit);
+  if (ImGui::BeginCombo("##unit", present ? present->name : "")) {
+    for (const ModelUnit& each : kModelUnits) {
+      if (!ImGui::Selectable(each.name, &each == present)) continue;
+      mesh.unit = each.metres;
+      changed = true;
+    }
+    ImGui::EndCombo();
+  }
+  caption("Axis up", "Which of the file's axes points up when nothing is turned.");
+  int axis = mesh.y_up ? 0 : 1;
+  if (ImGui::Combo("##up", &axis, "y\0z\0")) {
+    mesh.y_up = axis == 0;
+    changed = true;
+  }
+  return changed;
+}
+
+void draw_title(const SceneDocument& document) {
+  const std::string title = document.title.empty() ? "untitled" : document.title;
+  ImGui::TextUnformatted(title.c_str());
+  tooltip(document.about.c_str());
+}
+
+void draw_why_fixed(const char* why) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", why);
+  ImGui::PopTextWrapPos();
+}
+
+// Draws the list of objects. `editor`: selects them; null: none can be selected. `fresh`: the
+// selection is new.
+void draw_list(const Scene& scene, SceneEditor* editor, bool fresh, const Act& act) {
+  const std::vector<Object>& all = scene.objects;
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const auto lines = static_cast<float>(std::clamp<std::size_t>(all.size(), 1, 6));
+  const float pad = 2 * ImGui::GetStyle().WindowPadding.y - ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("objects", {0, lines * line + pad}, true, ImGuiWindowFlags_NoNav);
+  if (all.empty()) ImGui::TextDisabled("Nothing to touch. Drop a model here.");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Object& object = all[i];
+    ImGui::PushID(static_cast<int>(i));
+    const bool chosen = editor != nullptr && editor->selected() == i;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float em = ImGui::GetFontSize();
+    if (chosen && fresh) ImGui::SetScrollHereY();
+    const bool clicked =
+        ImGui::Selectable("##object", chosen, ImGuiSelectableFlags_AllowDoubleClick);
+    if (clicked && editor != nullptr) {
+      const bool twice = ImGui::IsMouseDoubleClicked(0);
+      editor->select(chosen && !twice ? std::nullopt : std::optional(i));
+      if (twice) act("scene.look");
+    }
+    tooltip(fmt::format("{}, {}{}. Double click to look at it.", object.name,
+                        shape_name(object.shape), object.body ? " that moves" : "")
+                .c_str());
+    draw_icon(object.shape, {at.x + 0.5f * em, at.y + 0.5f * em}, 0.33f * em,
+              colour(current_palette().muted));
+    ImGui::GetWindowDrawList()->AddText({at.x + 1.4f * em, at.y}, colour(current_palette().text),
+                                        object.name.c_str());
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+}
+
+void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject& add) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size((ImGui::GetContentRegionAvail().x - 3 * gap) / 4, 0);
+  if (ImGui::Button("Add", size)) ImGui::OpenPopup("add");
+  tooltip("Something more to touch.");
+  ImGui::BeginDisabled(!any_selected);
+  ImGui::SameLine();
+  if (ImGui::Button("Copy", size)) act("scene.copy");
+  tooltip("Another one beside it (Ctrl+D).");
+  ImGui::SameLine();
+  if (ImGui::Button("Remove", size)) act("scene.remove");
+  tooltip("Delete. Ctrl+Z brings it back.");
+  ImGui::SameLine();
+  if (ImGui::Button("Look", size)) act("scene.look");
+  tooltip("Turns the camera to it (double click).");
+  ImGui::EndDisabled();
+  if (ImGui::BeginPopup("add")) {
+    if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
+    for (const NewObject& each : new_objects()) {
+      if (each.first_that_moves) ImGui::Separator();
+      if (ImGui::MenuItem(each.label)) add(each.object);
+    }
+    ImGui::EndPopup();
+  }
+}
+
+}  // namespace
+
+bool drag_number(const char* label, double& value, double speed, double least, double most,
+                 const char* format, const char* help) {
+  caption(label, help);
+  ImGui::PushID(label);
+  const bool changed =
+      ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,
+                        &most, format, ImGuiSliderFlags_AlwaysClamp);
+  note_place(label);
+  ImGui::PopID();
+  tooltip(help);
+  return changed;
+}
+
+void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescription& arm) {
+  draw_name(document, place);
+  arm_ = &arm;
+  if (const auto& model = document.editor().models()[place]; model && model != measured_) {
+    measured_ = model;
+    extent_ = model->bounds().sizes().maxCoeff();
+  }
+  Object object = document.scene().objects[place];
+  std::string what(std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
+  const bool coloured =
+      !has_shape<Mesh>(object) && !has_shape<JointStop>(object) && !has_shape<Plane>(object);
+  if (coloured && edit_color(object.color, "Otherwise it has a plain one.")) what = "color";
+  if (const auto moved = edit_body(object, document.scene(), place); !moved.empty()) what = moved;
+  if (object.body) {
+    if (const auto part = parts_.edit(object); !part.empty()) what = part;
+  }
+  if (!what.empty() && document.may_edit()) document.editor().set(place, std::move(object), what);
+}
+
+void ObjectEditor::draw_name(Document& document, std::size_t place) {
+  const std::string& present = document.scene().objects[place].name;
+  if (name_of_ != present) name_ = name_of_ = present;
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputText("##name", &name_);
+  if (ImGui::IsItemDeactivated()) {
+    if (document.may_edit()) document.editor().rename(place, name_);
+    name_of_.clear();
+  }
+  tooltip("Its name");
+}
+
+std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose, "Point on it x, y, z [mm]", "The plane goes through it.")) {
+    what = "place";
+  }
+  if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f", "Out of the material.")) {
+    what = "normal";
+  }
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose, "Centre x, y, z [mm]")) {
+    what = "place";
+  }
+  if (object.body && rotation_.edit(object.pose)) what = "rotation";
+  if (const auto size = edit_size(sphere); !size.empty()) what = size;
+  return what;
+}
+
+// Edits an object's material, place and rotation.
+std::string_view ObjectEditor::edit_placed(Object& object) {
+  std::string_view what = edit_material(object.material);
+  if (position(object.pose)) what = "place";
+  if (rotation_.edit(object.pose)) what = "rotation";
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Box& box) {
+  const std::string_view what = edit_placed(object), size = edit_size(box);
+  return size.empty() ? what : size;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Cylinder& cylinder) {
+  const std::string_view what = edit_placed(object), size = edit_size(cylinder);
+  return size.empty() ? what : size;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Capsule& capsule) {
+  const std::string_view what = edit_placed(object), size = edit_size(capsule);
+  return size.empty() ? what : size;
+}
+
+std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
+  std::string_view what = edit_placed(object);
+  double millimetres = 1e3 * mesh.size() * extent_;
+  if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
+                  "1: as large as its file says.")) {
+    what = "scale";
+  }
+  if (drag_number("Largest extent", millimetres, kMillimetreSpeed, 0.1, 1e5, "%.1f mm",
+                  "Sets the scale.") &&
+      extent_ > 0) {
+    mesh.scale = 1e-3 * millimetres / (mesh.unit * extent_);
+    what = "scale";
+  }
+  if (choose_axes(mesh)) what = "axes";
+  read_out("triangles", fmt::format("{}", mesh.triangles->triangles()), {}, mesh.model.c_str());
+  const std::string health = mesh.triangles->health().text();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", health.empty() ? "A closed surface." : health.c_str());
+  ImGui::PopTextWrapPos();
+  return what;
+}
+
+std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
+  std::string_view what;
+  if (joint_stiffness(object.material.stiffness)) what = "stiffness";
+  const auto name = [this](int i) { return arm_->joints[static_cast<std::size_t>(i)].name; };
+  if (ImGui::BeginCombo("joint", name(stop.joint).c_str())) {
+    for (int i = 0; i < arm_->dof(); ++i) {
+      if (ImGui::Selectable(fmt::format("{}##{}", name(i), i).c_str(), i == stop.joint)) {
+        stop.joint = i;
+        what = "joint";
+      }
+    }
+    ImGui::EndCombo();
+  }
+  double angle = stop.angle / kDegree;
+  if (drag_number("Angle", angle, kDegreeSpeed, -360, 360, "%.1f\xC2\xB0", "Where it stops")) {
+    stop.angle = angle * kDegree;
+    what = "angle";
+  }
+  bool above = stop.direction > 0;
+  if (ImGui::Checkbox("stops what goes above", &above)) {
+    stop.direction = above ? 1 : -1;
+    what = "side";
+  }
+  tooltip("Otherwise it stops what goes below the angle.");
+  return what;
+}
+
+void ScenePanel::draw_recorded(const SceneDocument& document) {
+  draw_title(document);
+  draw_why_fixed("The recording's scene; it stays as it was.");
+  ImGui::BeginDisabled();
+  draw_list(document.scene, nullptr, false, {});
+  ImGui::EndDisabled();
+}
+
+void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed, const Act& act,
+                      const AddObject& add) {
+  SceneEditor& editor = document.editor();
+  draw_title(editor.document());
+  if (editor.dirty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("changed");
+    tooltip("There are changes that are not saved. Ctrl+S saves them.");
+  }
+  if (fixed) draw_why_fixed("Cannot be changed while recording.");
+  ImGui::BeginDisabled(fixed);
+  const bool fresh = std::exchange(selected_, editor.selected()) != selected_;
+  draw_list(editor.scene(), &editor, fresh, act);
+  draw_buttons(editor.selected().has_value(), act, add);
+  if (const auto place = editor.selected()) {
+    ImGui::Separator();
+    object_.draw(document, *place, arm);
+    ImGui::Separator();
+  }
+  draw_springs(document);
+  double tip = 1e3 * editor.scene().tip_radius;
+  if (drag_number("Tip radius", tip, 0.05, 0, 50, "%.2f mm",
+                  "The ball at the arm's tip that touches; 0 is a point.")) {
+    editor.set_tip_radius(1e-3 * tip);
+  }
+  const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  if (ImGui::Button("Save scene", {width, 0})) act("scene.save");
+  tooltip("Ctrl+S. A scene that came with Limpid is saved as your own.");
+  ImGui::SameLine();
+  if (ImGui::Button("Gallery...", {width, 0})) act("scene.gallery");
+  tooltip("Ctrl+G: scenes to open, with pictures.");
+  ImGui::EndDisabled();
+}
+
+}  // namespace limpid

@@ -1,0 +1,114 @@
+#include "app/desktop/shell/status_line.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+struct StatusPart {
+  std::string text;
+  Rgb ink;
+  std::string help;
+  int law = -1;  // law whose colour stands before the text; -1: none
+};
+
+StatusPart force_part(const Snapshot& now) {
+  const Palette& colours = current_palette();
+  const std::string why = explain(now.force_state);
+  switch (now.arming) {
+    case Arming::on: return {"force on [Esc]", colours.text, "Esc or space cut it at once"};
+    case Arming::fading: return {"force fades [Esc]", colours.text, "Force: " + why};
+    case Arming::waiting:
+      return {"force waits [Esc]", colours.text, "It fades in with the hand: " + why};
+    case Arming::tripped:
+      return {"force off [F]", colours.broken, "Force is off: " + why + ". F arms it again."};
+    case Arming::off: break;
+  }
+  return {"force off [F]", colours.text, "F arms it"};
+}
+
+// Returns rate, missed ticks and coupling, the most important last.
+std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
+                                     const StatusGoing& going) {
+  const Palette& colours = current_palette();
+  const LoopStatus status = loop.status();
+  const bool stopped = !status.running;
+  std::vector<StatusPart> parts;
+  const auto& [played, pace, led] = going;
+  if (!played.empty()) parts.push_back({"playing " + played, colours.text, played});
+  // The recording's button is in the bar below only while the loop is shown.
+  if (!played.empty() && loop.recording()) {
+    parts.push_back({"recording [R]", colours.broken, "The loop is recorded meanwhile; R ends it"});
+  }
+  if (led) {
+    parts.push_back({"led by a program", colours.accent,
+                     "A program has set law, settings or scene. Yours come back when it ends."});
+  }
+  if (!pace.empty()) {
+    parts.push_back({pace, colours.accent, "The simulation; the loop itself goes on as usual"});
+  }
+  parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", status.rate),
+                   stopped ? colours.broken : colours.muted, status.failure});
+  parts.push_back({fmt::format("{} missed", status.missed),
+                   status.missed > status.ticks / 100 ? colours.broken : colours.muted,
+                   fmt::format("{} ticks missed: they began after the next one was due.\n{} began "
+                               "more than 0.2 ms late, {} slipped: given up {}.",
+                               status.missed, status.late, status.slipped,
+                               loop.device_in_place() ? "at once" : "after a stall")});
+  std::string name = info(law.kind).label;
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
+  if (info(law.kind).takes_eta) name += fmt::format(" \xCE\xB7 {:.2f}", law.eta);
+  parts.push_back({name, colours.text, "C switches", static_cast<int>(law.kind)});
+  return parts;
+}
+
+constexpr float kBetween = 1.4f, kDot = 0.8f;  // [em]
+
+float status_width(const StatusPart& part) {
+  return ImGui::CalcTextSize(part.text.c_str()).x + kBetween * ImGui::GetFontSize() +
+         (part.law < 0 ? 0 : kDot * ImGui::GetFontSize());
+}
+
+}  // namespace
+
+float least_status_width(const LiveLoop& loop) { return status_width(force_part(loop.snapshot())); }
+
+void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& going) {
+  std::vector<StatusPart> parts = status_parts(loop, law, going);
+  parts.push_back(force_part(loop.snapshot()));
+  const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX();
+  float width = 0;
+  auto first = parts.end();
+  while (first != parts.begin()) {
+    const float more = status_width(*std::prev(first));
+    if (first != parts.end() && width + more > room) break;
+    width += more;
+    --first;
+  }
+  ImGui::SameLine(ImGui::GetWindowWidth() - width);
+  const float em = ImGui::GetFontSize();
+  for (; first != parts.end(); ++first) {
+    if (first->law >= 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kDot * em);
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(first->ink));
+    ImGui::TextUnformatted(first->text.c_str());
+    ImGui::PopStyleColor();
+    if (first->law >= 0) {
+      const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+      const float side = 0.5f * em, left = from.x - kDot * em, top = 0.5f * (from.y + to.y - side);
+      ImGui::GetWindowDrawList()->AddRectFilled({left, top}, {left + side, top + side},
+                                                colour(law_ink(current_palette(), first->law)));
+    }
+    if (!first->help.empty()) tooltip(first->help.c_str());
+    ImGui::SameLine(0, kBetween * em);
+  }
+}
+
+}  // namespace limpid

@@ -1,0 +1,52 @@
+// Signs over the picture: banners, notices, and work that goes on.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/desktop/base/notices.h"
+#include "app/desktop/base/settings.h"
+#include "app/desktop/scene/scene_loader.h"
+#include "app/desktop/playback/playback.h"
+#include "app/plot/plot_frame.h"
+
+namespace limpid {
+
+struct Banner {
+  struct Button {
+    std::string label;
+    const char* command;  // id of the command
+  };
+  const char* id;  // ImGui's id of its window
+  std::string text;
+  bool bad = false;
+  std::vector<Button> buttons = {};
+};
+
+// Draws banners below each other from the top of the view, clear of the view's own `signs`. Returns
+// the part of the view that banners and signs take.
+ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
+                        const Act& act);
+
+// Draws notices below banners and legend.
+void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend);
+
+// Draws the progress of loading at the foot of the view.
+void draw_loading(SceneLoader& loader, ScreenRect view);
+
+// Draws the progress of a video at the top right of the view.
+void draw_video_bar(Playback& playback, ScreenRect view);
+
+// Draws the list of first steps at the lower left of the view, each ticked once it is done; closing
+// it is enough of it.
+void draw_your_turn(Settings& settings, ScreenRect view);
+
+// Draws the button for the story of a first start, above its hint if `hinted`. Returns true when it
+// is pressed.
+bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
+                     bool hinted);
+// Returns true when the user reaches into the picture of a story, to take over the hand.
+bool story_taken_over(const Playback& playback, ScreenRect view);
+
+}  // namespace limpid

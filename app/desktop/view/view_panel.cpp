@@ -1,0 +1,399 @@
+#include "app/desktop/view/view_panel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "app/desktop/base/first_steps.h"
+#include "app/desktop/base/picture_signs.h"
+#include "app/desktop/scene/picking.h"
+#include "app/desktop/device/pad_hand.h"
+#include "app/desktop/scene/object_signs.h"
+#include "app/style/palette.h"
+#include "app/style/picture_legend.h"
+#include "app/style/theme.h"
+#include "render/near_surface.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kDepthStep = 0.004;  // depth of one wheel notch while dragging [m]
+constexpr double kPullReach = 40;     // reach of the mouse around the tips, at scale 1 [px]
+constexpr double kFarthestPull = 5;   // largest distance of a target from the origin [m]
+constexpr double kClickReach = 4;     // largest motion of a click [px]
+
+// Returns the least distance of a place from the arm's links, drawn as lines between joints [px].
+float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVec2 place) {
+  float nearest = 1e9f;
+  std::optional<ImVec2> last;
+  const auto reach = [&](const Vec3& joint) {
+    const auto pixel = camera.project(joint);
+    if (!pixel) return;
+    const ImVec2 end = in_window(rect, *pixel), start = last.value_or(end);
+    last = end;
+    const float x = end.x - start.x, y = end.y - start.y;
+    const float along = (place.x - start.x) * x + (place.y - start.y) * y;
+    const float part = std::clamp(along / std::max(1.0f, x * x + y * y), 0.0f, 1.0f);
+    nearest =
+        std::min(nearest, std::hypot(place.x - start.x - part * x, place.y - start.y - part * y));
+  };
+  for (const Pose& link : arm.links) reach(link.translation());
+  if (last) reach(arm.tip);
+  return nearest;
+}
+
+// Draws lengths along the far edge, unless something covers them. Words lie over the whole picture,
+// and would seem to be in front of an object that hides them.
+void draw_grid_labels(const Scene& objects, const Bounds& grid, const ViewState& view,
+                      const Camera& camera, ScreenRect rect, const std::optional<ScreenRect>& lens,
+                      ImDrawList& list) {
+  ImFont* small = font(Face::small);
+  const float em = small->FontSize;
+  const Palette& colours = current_palette();
+  const float edge = rect.max.x - 1.6f * em;  // a panel's tab may be to the right of it
+  ImVec2 last(-1e6f, -1e6f);
+  for (int cm = -30; cm <= 30; cm += 10) {
+    const Vec3 point(cm / 100.0, grid.max().y(), grid.max().z());
+    if (point.x() < grid.min().x() || point.x() > grid.max().x()) continue;
+    const auto pixel = camera.project(point);
+    if (!pixel) continue;
+    const ImVec2 place = in_window(rect, *pixel);
+    const auto hidden = [&](float along) {
+      return lens && lens->contains({place.x + along, place.y + 0.5f * em});
+    };
+    const bool crowded = std::hypot(place.x - last.x, place.y - last.y) < 4.5f * em;
+    const std::string text = fmt::format("{}{} cm", cm < 0 ? "\u2212" : "", std::abs(cm));
+    const float wide = small->CalcTextSizeA(em, 1e9f, 0, text.c_str()).x;
+    const bool cut = place.x + wide > edge || legend_box(rect).contains(place);
+    const ImVec2 middle(place.x + 0.5f * wide, place.y + 0.5f * em);
+    const bool over = std::min(apart_from(view.device, camera, rect, middle),
+                               apart_from(view.proxy, camera, rect, middle)) < 0.5f * wide + em;
+    const auto behind = [&](float along) {
+      const Ray ray = camera.ray({pixel->x() + along, pixel->y() + 0.5 * em});
+      const double far = (point - ray.origin).norm();
+      return covered(ray, 0.99 * far, objects, view.bodies);
+    };
+    if (crowded || cut || over || hidden(0) || hidden(3 * em)) continue;
+    if (behind(0) || behind(wide)) continue;
+    list.AddText(small, em, place, colour(colours.text, 0.9f), text.c_str());
+    last = place;
+  }
+}
+
+// Returns the legend with the friction cone at a contact, preferably one that slips.
+PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
+  PictureLegend legend{.beside = scene.rerun.empty() ? nullptr : "proxy of the re-run (ghost)"};
+  if (view.twin) {
+    legend.first = scene.names.first;
+    legend.second = scene.names.second;
+  }
+  if (!view.show_forces) return legend;
+  for (const ContactMark& contact : view.contacts) {
+    if (!(contact.friction > 0) || legend.slips) continue;
+    legend.slips = contact.slips;
+    legend.cone = contact.slips ? "friction cone: slips" : "friction cone: sticks";
+  }
+  return legend;
+}
+
+// Draws hints of a first start, each until its step was done once.
+void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect,
+               ImDrawList& list) {
+  const Palette& colours = current_palette();
+  ImFont* face = font(Face::semibold);
+  const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
+  const std::pair<FirstStep, const char*> all[] = {
+      {FirstStep::pull, pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table."
+                                    : of_pad.c_str()},
+      {FirstStep::push, pad.empty()
+                            ? "Wheel while dragging: nearer and farther."
+                            : "Its triggers: nearer and farther. A lets go, B cuts the force."},
+      {FirstStep::law,
+       "C switches the coupling: the standard one lets hand and world drift apart."}};
+  std::vector<const char*> lines;
+  for (const auto& [step, line] : all) {
+    if (!done(settings, step)) lines.push_back(line);
+  }
+  float size = face->FontSize * 1.15f;
+  for (const char* line : lines) {  // as large as the widest line allows
+    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
+    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
+  }
+  float line_y = rect.max.y - (0.7f + 1.5f * static_cast<float>(lines.size())) * size;
+  for (const char* line : lines) {
+    const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
+    const ImVec2 place((rect.min.x + rect.max.x - extent.x) / 2, line_y);
+    list.AddRectFilled({place.x - 8, place.y - 2}, {place.x + extent.x + 8, place.y + extent.y + 2},
+                       colour(colours.backdrop, 0.72f), 4);
+    list.AddText(face, size, place, colour(colours.text), line);
+    line_y += 1.5f * size;
+  }
+}
+
+// Returns the view of a row, of either run.
+ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
+                  const Settings& settings) {
+  const RowLayout& layout = stage.channels().layout();
+  ViewState view = stage.rows().view(layout, row);
+  memory.update(view, stage.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
+  add_surfaces(stage.document().scene, view);
+  view.show_ghost = settings.show_ghost;
+  view.show_trail = settings.show_trail;
+  view.show_forces = settings.show_forces;
+  view.show_grid = settings.show_grid;
+  view.show_joints = settings.show_joints;
+  view.theme = settings.theme;
+  return view;
+}
+
+}  // namespace
+
+ScreenRect legend_box(ScreenRect view) {
+  const ImVec2 size = picture_legend_size(view.min, view.max);
+  return {view.min, {view.min.x + size.x, view.min.y + size.y}};
+}
+
+ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
+  Stage& stage = scene.stage;
+  ViewState view = view_of(stage, scene.row, stage.memory, settings);
+  if (!scene.rerun.empty()) {
+    const RowLayout& layout = stage.channels().layout();
+    view.rerun = stage.rows().pose(layout.in(scene.rerun, Column::proxy_position));
+    view.other_bodies = stage.rows().bodies(layout, scene.rerun);
+  }
+  if (scene.overlaid && !scene.twin.empty()) lay_over(view, twin_of(scene, settings));
+  return view;
+}
+
+ViewState ViewPanel::twin_of(const ViewScene& scene, const Settings& settings) {
+  return view_of(scene.stage, scene.twin, scene.stage.twin_memory, settings);
+}
+
+ViewRequest ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls,
+                            Settings& settings, ScreenRect rect, bool taken) {
+  const bool split = scene.split();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (!ImGui::IsAnyMouseDown()) on_right_ = split && half_of(rect, true).contains(mouse);
+  const ScreenRect under = split ? half_of(rect, on_right_) : rect;
+  const ImVec2 size = under.size();
+  if (size.x < 8 || size.y < 8) return {};
+  camera.resize(size.x, size.y);
+  ViewRequest asked = handle_mouse(scene, camera, controls, settings, under, taken);
+  scene.stage.picture.set_pixel_scale(scene.pixel_scale * static_cast<double>(current_scale()));
+  scene.stage.draw_at(scene.quality);
+  drawn_ = split ? half_of(rect, false) : rect;
+  draw_halves(scene, camera, settings, rect);
+  return asked;
+}
+
+// Draws the picture, or both pictures of a twin, with one camera.
+void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                            ScreenRect rect) {
+  SceneView& picture = scene.stage.picture;
+  const double scale = scene.pixel_scale;
+  const auto pixels = [&](float points) {
+    return static_cast<int>(std::lround(static_cast<double>(points) * scale));
+  };
+  const auto paint = [&](const ViewState& view, ScreenRect half, SceneView::Sheet sheet) {
+    picture.draw(view, camera, pixels(half.min.x), scene.pixel_height - pixels(half.max.y),
+                 pixels(half.width()), pixels(half.height()), sheet);
+  };
+  const ViewState view = state_of(scene, settings);
+  paint(view, *drawn_, SceneView::Sheet::main);
+  if (settings.show_lens && !scene.split()) {
+    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words});
+  } else {
+    magnifier_.hide();
+  }
+  if (!scene.blind) draw_signs(scene, view, camera, settings, *drawn_);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  float below_names = 0;
+  if (scene.split()) {
+    const ScreenRect right = half_of(rect, true);
+    const ViewState twin = twin_of(scene, settings);
+    paint(twin, right, SceneView::Sheet::beside);
+    list.PushClipRect(right.min, right.max);
+    if (!scene.blind) draw_gap(twin, camera, {right}, list);
+    list.PopClipRect();
+    list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
+                       colour(current_palette().border));
+    draw_run_name(scene.names, false, *drawn_, list);
+    draw_run_name(scene.names, true, right, list);
+    below_names = 2.2f * font(Face::semibold)->FontSize;
+  }
+  if (scene.blind) return;
+  PictureLegend legend = legend_of(view, scene);
+  legend.compact = scene.split();  // each half is narrow: full lines would cover its arm
+  draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max, legend);
+  draw_told(scene.told, rect, list);
+}
+
+// Draws over the picture: the selected object's outline, words and numbers.
+void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
+                           const Settings& settings, ScreenRect rect) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  if (scene.selected) draw_outline(*scene.selected, camera, rect, list);
+  list.PushClipRect(rect.min, rect.max);
+  if (settings.show_grid) {
+    draw_grid_labels(scene.stage.document().scene, scene.stage.picture.grid(), view, camera, rect,
+                     magnifier_.rect(), list);
+  }
+  draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
+  draw_pull(view, camera, rect, list);
+  draw_magnet(view, camera, rect, list);
+  if (pulls_) draw_grasp(view, camera, rect, list);
+  magnifier_.draw_frame(view, camera, list);
+  if (!scene.recorded && scene.twin.empty() && !settings.your_turn && !scene.asked) {
+    draw_hint(scene.pad, settings, rect, list);
+  }
+  list.PopClipRect();
+}
+
+bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Settings& settings) {
+  if (!drawn_) return true;
+  Camera shown = camera;
+  const auto pixels = [&](float points) {
+    return std::round(static_cast<double>(points) * scene.pixel_scale);
+  };
+  shown.resize(pixels(drawn_->size().x), pixels(drawn_->size().y));
+  const SceneView& picture = scene.stage.picture;
+  return picture.differs(state_of(scene, settings), shown) ||
+         (scene.split() &&
+          picture.differs(twin_of(scene, settings), shown, SceneView::Sheet::beside));
+}
+
+bool ViewPanel::near_tip(const ViewScene& scene, const Camera& camera,
+                         const Eigen::Vector2d& pixel) const {
+  const Stage& stage = scene.stage;
+  const RowLayout& layout = stage.channels().layout();
+  const auto near = [&](Column c) {
+    const auto tip = camera.project(stage.rows().tip(layout.in(scene.row, c)));
+    return tip && (*tip - pixel).norm() < kPullReach * static_cast<double>(current_scale());
+  };
+  return near(Column::device_position) || near(Column::proxy_position);
+}
+
+// Lets the mouse hold this point from now on.
+void ViewPanel::hold(const Camera& camera, ScreenRect rect, const Vec3& point,
+                     const Eigen::Vector2d& pixel) {
+  anchor_ = point;
+  offset_ = anchor_ - camera.plane_drag(pixel, anchor_);
+  looked_ = camera.projection() * camera.view();
+  corner_ = rect.min;
+}
+
+ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
+                                    Settings& settings, ScreenRect rect, bool taken) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool over = rect.contains(io.MousePos) && !io.WantCaptureMouse && !taken;
+  const Eigen::Vector2d pixel(io.MousePos.x - rect.min.x, io.MousePos.y - rect.min.y);
+  const RowLayout& layout = scene.stage.channels().layout();
+  const bool free = !ImGui::IsAnyMouseDown() || ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  const bool on_body = pull_body(scene, camera, controls, rect, pixel, over);
+  if (free) {
+    pulls_ = over && !io.KeyAlt && !io.KeyCtrl && !scene.recorded && near_tip(scene, camera, pixel);
+  }
+  if (pulls_) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+
+  if (pulls_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    dragging_ = true;
+    hold(camera, rect,
+         controls.grab ? controls.goal
+                       : scene.stage.rows().tip(layout.in(scene.row, Column::device_position)),
+         pixel);
+    settings.hint_seen = true;
+    note_done(settings, FirstStep::pull);
+  }
+  if (std::exchange(pushed_, false)) note_done(settings, FirstStep::push);
+  const bool dragged = dragging_;
+  if (dragging_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    dragging_ = false;
+    if (!settings.hold_on_release) controls.grab = false;
+  }
+  if (dragging_) drag_hand(scene.stage.arm(), camera, controls, rect, pixel);
+
+  ViewRequest asked;
+  for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right}) {
+    const auto i = static_cast<std::size_t>(button);
+    if (over && !on_body && ImGui::IsMouseClicked(button)) {
+      pressed_[i] = pixel;
+      moved_[i] = false;
+    }
+    if (!pressed_[i]) continue;
+    moved_[i] = moved_[i] || (pixel - *pressed_[i]).norm() > kClickReach;
+    if (ImGui::IsMouseDown(button)) continue;
+    const auto at = std::exchange(pressed_[i], std::nullopt);
+    if (moved_[i] || scene.recorded) continue;
+    (button == ImGuiMouseButton_Left ? asked.clicked : asked.asked) = camera.ray(*at);
+  }
+  const bool left = pressed_[0] && moved_[0] && !dragged, right = pressed_[1] && moved_[1];
+  const bool pan = ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0) || (right && io.KeyShift);
+  const bool moved = !io.WantCaptureMouse && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0);
+  if (moved && pan) {
+    camera.pan(io.MouseDelta.x, io.MouseDelta.y);
+  } else if (moved && (left || right)) {
+    camera.orbit(io.MouseDelta.x, io.MouseDelta.y);
+  }
+  const bool zoom = over && !dragging_ && !on_body && io.MouseWheel != 0;
+  if (zoom) camera.zoom(io.MouseWheel, pixel);
+  asked.turned = zoom || (moved && (pan || left || right));
+  return asked;
+}
+
+// Moves the target in the plane through it that is parallel to the picture; the wheel moves that
+// plane. If the camera has moved since the last frame, the target stays in the world.
+void ViewPanel::drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
+                          ScreenRect rect, const Eigen::Vector2d& pixel) {
+  stay(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
+  if (ImGui::GetIO().MouseWheel != 0) pushed_ = true;
+  controls.goal = within_reach(arm, dragged_to(camera, pixel));
+  controls.grab = true;
+}
+
+void ViewPanel::stay(const Camera& camera, ScreenRect rect, const Vec3& point,
+                     const Eigen::Vector2d& pixel) {
+  const Eigen::Matrix4d looks = camera.projection() * camera.view();
+  if (looks != looked_ || rect.min.x != corner_.x || rect.min.y != corner_.y) {
+    hold(camera, rect, point, pixel);
+  }
+}
+
+Vec3 ViewPanel::dragged_to(const Camera& camera, const Eigen::Vector2d& pixel) {
+  anchor_ += kDepthStep * static_cast<double>(ImGui::GetIO().MouseWheel) * camera.forward();
+  return camera.plane_drag(pixel, anchor_ - offset_) + offset_;
+}
+
+// Pulls the body under the mouse with Ctrl and the left button. Returns whether the mouse is used
+// for that.
+bool ViewPanel::pull_body(const ViewScene& scene, const Camera& camera, Controls& controls,
+                          ScreenRect rect, const Eigen::Vector2d& pixel, bool over) {
+  if (pulling_) {
+    pulling_ =
+        !scene.recorded && controls.pull.body >= 0 && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+    if (!pulling_) controls.pull = {};
+  } else if (over && ImGui::GetIO().KeyCtrl && !scene.recorded && scene.grasp) {
+    const bool clicked = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+    if (ImGui::IsAnyMouseDown() && !clicked) return false;
+    const auto pull = scene.grasp(camera.ray(pixel));
+    if (!pull) return false;
+    if (clicked) {
+      controls.pull = *pull;
+      pulling_ = true;
+      hold(camera, rect, pull->target, pixel);
+    } else {
+      ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    }
+  }
+  if (!pulling_) return false;
+  ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+  stay(camera, rect, controls.pull.target, pixel);
+  const Vec3 target = dragged_to(camera, pixel);
+  if (target.norm() < kFarthestPull) controls.pull.target = target;
+  return true;
+}
+
+}  // namespace limpid

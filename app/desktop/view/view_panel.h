@@ -1,0 +1,99 @@
+// Panel of the 3D view: the picture under ImGui, and the mouse in it.
+#pragma once
+
+#include <imgui.h>
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "app/desktop/base/settings.h"
+#include "app/desktop/base/stage.h"
+#include "app/desktop/scene/scene_editor.h"
+#include "app/desktop/view/magnifier.h"
+#include "app/live/live_loop.h"
+#include "app/plot/plot_frame.h"
+#include "render/camera.h"
+
+namespace limpid {
+
+// Contents of the view in one frame.
+struct ViewScene {
+  Stage& stage;
+  std::span<const double> row;
+  bool recorded = false;               // the row is a recording's
+  std::span<const double> rerun = {};  // row of a re-run; or none
+  std::span<const double> twin = {};   // row of a second run at the same time; or none
+  RunNames names = {};                 // of the two runs
+  bool overlaid = false;               // both runs in one picture
+  std::string told = {};               // sentence of a story
+  std::string pad = {};                // name of the gamepad that leads the hand; or none
+  std::optional<Object> selected = {};
+  // Returns the body under the mouse, with the point to pull at; null: no body may be pulled.
+  std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
+  bool asked = false;      // a question covers its lower edge, where hints are
+  bool blind = false;      // picture only: no words, no numbers
+  int quality = 0;         // a level of Quality
+  double pixel_scale = 1;  // pixels per point
+  int pixel_height = 0;    // height of the window [px]
+  float words = 0;         // height of words at the top, over all of its width [points]
+
+  bool split() const { return !twin.empty() && !overlaid; }
+};
+
+// Returns the part of a view's upper left corner that its legend takes.
+ScreenRect legend_box(ScreenRect view);
+
+// Actions of the mouse in the picture besides leading the hand.
+struct ViewRequest {
+  bool turned = false;           // the camera turned
+  std::optional<Ray> clicked{};  // with the left button
+  std::optional<Ray> asked{};    // with the right button
+};
+
+class ViewPanel {
+ public:
+  // Draws the view. The mouse near the tips leads the hand, in the controls; with Ctrl it pulls a
+  // body; elsewhere it turns the camera. `taken`: the mouse belongs to another tool.
+  ViewRequest draw(const ViewScene& scene, Camera& camera, Controls& controls, Settings& settings,
+                   ScreenRect rect, bool taken);
+  // Returns whether the picture has changed since it was drawn. To be called once a turn, before
+  // draw().
+  bool differs(const ViewScene& scene, const Camera& camera, const Settings& settings);
+
+ private:
+  void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
+                  const Settings& settings, ScreenRect rect) const;
+  void draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                   ScreenRect rect);
+  static ViewState state_of(const ViewScene& scene, const Settings& settings);
+  static ViewState twin_of(const ViewScene& scene, const Settings& settings);
+  ViewRequest handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
+                           Settings& settings, ScreenRect rect, bool taken);
+  bool pull_body(const ViewScene& scene, const Camera& camera, Controls& controls, ScreenRect rect,
+                 const Eigen::Vector2d& pixel, bool over);
+  void stay(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
+  Vec3 dragged_to(const Camera& camera, const Eigen::Vector2d& pixel);
+  bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) const;
+  void hold(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
+  void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
+                 ScreenRect rect, const Eigen::Vector2d& pixel);
+
+  Magnifier magnifier_;
+  std::optional<ScreenRect> drawn_;  // place of the view
+  bool dragging_ = false;            // drags the hand
+  bool pulls_ = false;               // the left button would take the hand here
+  bool pulling_ = false;             // pulls a body
+  std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // places: left, right
+  std::array<bool, 2> moved_{};                              // since pressed
+  bool pushed_ = false;                                      // the wheel pushed the hand
+  bool on_right_ = false;                                    // the mouse began in the right half
+  Vec3 anchor_ = Vec3::Zero();  // point that is dragged, without depth [m]
+  Vec3 offset_ = Vec3::Zero();  // from the mouse's point to anchor_ [m]
+  // Camera when the hand was dragged last.
+  Eigen::Matrix4d looked_ = Eigen::Matrix4d::Identity();
+  ImVec2 corner_{};
+};
+
+}  // namespace limpid

@@ -1,0 +1,150 @@
+// A body that falls on the tip: its energy in the ledger, and the force on the hand.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/experiments/moving.h"
+#include "app/experiments/staggered.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kDropMass = 0.05, kDropHeight = 0.1, kDropEdge = 0.03;  // [kg, m, m]
+constexpr double kDropTip = 0.004, kDropGravity = 9.81;                  // [m, m/s^2]
+constexpr double kDropTick = 0.001, kDropSeconds = 0.6;                  // [s]
+constexpr double kDropHard[] = {600, 2000, 5000};                        // [N/m]
+constexpr double kDropUsual = 2000, kDropDamping = 2;                    // [N/m, N s/m]
+const Vec3 kDropUnder(0.18, 0, 0);  // where the hand holds the tip [m]
+
+std::string falling(double stiffness) {
+  return scene_of({{.size = Vec3::Constant(kDropEdge),
+                    .mass = kDropMass,
+                    .at = kDropUnder + (kDropTip + kDropHeight + kDropEdge / 2) * Vec3::UnitZ(),
+                    .stiffness = stiffness,
+                    .friction = 0.5}},
+                  fmt::format("gravity = [0, 0, {}]\ntip_radius = {}\n", -kDropGravity, kDropTip));
+}
+
+HandPath holding() {
+  return hand_path("holds the tip", kDropTick, kDropSeconds, [](double) { return kDropUnder; });
+}
+
+Trial dropped(CouplingKind kind, double stiffness) {
+  Parameters p;
+  p.kind = kind;
+  Trial trial{fmt::format("{}-{}", name(kind), stiffness),
+              plan_in(falling(stiffness), holding(), p)};
+  trial.may_diverge = kind != CouplingKind::predictive;
+  return trial;
+}
+
+StaggeredRun drop_staggered(const ArmDescription& arm, double damping) {
+  return run_staggered(arm, Parameters{}, holding(),
+                       {.mass = kDropMass,
+                        .stiffness = kDropUsual,
+                        .damping = damping,
+                        .normal = Vec3(-Vec3::UnitZ()),
+                        .gap = kDropHeight,
+                        .own = [](double) { return kDropMass * kDropGravity; }});
+}
+
+FigurePanel drop_panel(const std::string& title, const std::string& y) {
+  return {
+      .title = title, .x_label = "time [s]", .y_label = y, .x_range = std::pair(0.0, kDropSeconds)};
+}
+
+Series of_run(const StaggeredRun& run, const std::string& label, const char* ink, double unit,
+              const std::vector<double>& values) {
+  Series line{label, ink, Series::Style::line, {}};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    line.points.push_back({static_cast<double>(k) * run.record.tick, unit * values[k]});
+  }
+  return line;
+}
+
+double force_on_tip(const Session& s, std::size_t k) {
+  const auto force = s.at(k, Column::contact_force);
+  return Vec3(force[0], force[1], force[2]).norm();
+}
+
+}  // namespace
+
+Outcome drop(TrialRunner& lab) {
+  using enum CouplingKind;
+  std::vector<Trial> trials;
+  for (const double K : kDropHard) trials.push_back(dropped(predictive, K));
+  for (const CouplingKind kind : {proposed, standard}) trials.push_back(dropped(kind, kDropUsual));
+  const std::vector<TrialResult> results = lab.run(trials);
+  const ArmDescription& arm = trials.front().plan.arm;
+
+  FigurePanel height = drop_panel("The block's lower face above the tip's rest", "height [mm]");
+  FigurePanel reserve = drop_panel("The ledger's reserve, predictive", "reserve [mJ]");
+  FigurePanel force = drop_panel(fmt::format("Force on the tip, {} N/m", kDropUsual), "force [N]");
+  FigurePanel beyond =
+      drop_panel(fmt::format("Given to the human beyond what the block gave, {} N/m", kDropUsual),
+                 "energy [mJ]");
+  Outcome outcome;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const Session& s = results[i].session;
+    const CouplingKind kind = trials[i].plan.parameters.kind;
+    const bool ours = kind == predictive;
+    const std::string label =
+        ours ? fmt::format("{} N/m", kDropHard[i]) : fmt::format("{}", name(kind));
+    const char* ink = ours ? kFamilyInk[i] : kind == proposed ? kProposedInk : kStandardInk;
+    if (ours) {
+      height.series.push_back(over_time(s, label, ink, Series::Style::line, [&](auto k) {
+        return 1e3 * (s.at(k, Column::body_pose)[2] - kDropEdge / 2 - kDropTip - kDropUnder.z());
+      }));
+      reserve.series.push_back(over_time(s, label, ink, Series::Style::line, [&](auto k) {
+        return 1e3 * s.at(k, Column::energy_ledger)[0];
+      }));
+    }
+    if (ours && kDropHard[i] != kDropUsual) continue;
+    const char* law = ours ? kPredictiveInk : ink;
+    force.series.push_back(over_time(s, name(kind), law, Series::Style::line,
+                                     [&](auto k) { return force_on_tip(s, k); }));
+    beyond.series.push_back(over_time(s, name(kind), law, Series::Style::line,
+                                      [&](auto k) { return 1e3 * beyond_at(s, k); }));
+  }
+  for (const auto& [damping, ink] : {std::pair(0.0, kDeviceInk), {kDropDamping, kContactInk}}) {
+    const StaggeredRun run = drop_staggered(arm, damping);
+    const std::string label = fmt::format("staggered, {} N s/m", damping);
+    force.series.push_back(of_run(run, label, ink, 1, run.contact));
+    beyond.series.push_back(of_run(run, label, ink, 1e3, run.beyond));
+  }
+  height.y_range = {-100, 110};
+  reserve.y_range = {0, 22};
+  outcome.figure.title = "A block falls on the tip";
+  outcome.figure.columns = 2;
+  outcome.figure.panels = {height, reserve, force, beyond};
+  outcome.figure.caption = fmt::format(
+      "A block of {} g, {} cm above a tip that a hand holds still; friction 0.5, contacts of {}, "
+      "{} "
+      "and {} N/m. It brings {:.0f} mJ; the ledger books what it gives as what bodies gave, so "
+      "that "
+      "the reserve does not fall. Staggered: no coupling; the force of a tick follows from where "
+      "tip and block last were, and the block cannot slip off.",
+      1e3 * kDropMass, 100 * kDropHeight, kDropHard[0], kDropHard[1], kDropHard[2],
+      1e3 * kDropMass * kDropGravity * kDropHeight);
+  for (std::size_t i = 0; i < std::size(kDropHard); ++i) {
+    const MovingVerdict v = judge_moving(results[i]);
+    const std::string which = fmt::format("predictive, {} N/m: ", kDropHard[i]);
+    double hardest = 0;
+    for (std::size_t k = 0; k < results[i].session.size(); ++k) {
+      hardest = worse(hardest, force_on_tip(results[i].session, k));
+    }
+    outcome.checks.push_back(at_least(which + "hardest force on the tip [N]", hardest, 1));
+    outcome.checks.push_back(
+        at_least(which + "the ledger's lowest less its start [J]", v.reserve, -1e-4));
+    outcome.checks.push_back(
+        at_least(which + "least share of the contact's force let through", v.governor, 1));
+    outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-4));
+    outcome.checks.push_back(
+        at_most(which + "given to the human beyond what the block gave [J]", v.beyond, 5e-5));
+    outcome.checks.push_back(at_most(which + "gained by the block [J]", v.gain, 1e-6));
+  }
+  return outcome;
+}
+
+}  // namespace limpid

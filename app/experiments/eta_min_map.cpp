@@ -1,0 +1,70 @@
+// Section 4.2, (22)-(25): stability of the loop over eta and the stiffness of the grip.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/folders.h"
+#include "app/experiments/experiment.h"
+#include "app/sweep/sweep_figure.h"
+#include "app/sweep/sweep_map.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kUsualGrip = 3000;  // no hand is stiffer [N/m]
+constexpr double kEtaStep = 0.05;    // of the plan's axis
+enum Axis : std::size_t { kTicks, kGrip, kEta };
+enum Ticks : std::size_t { kFine, kPaper };
+
+// Largest distance of a map's point from a line of theory on its wrong side, in eta; infinite if
+// none was compared.
+double misplaced(const SweepPlan& plan, const SweepTable& table, Ticks ticks, double stiffest,
+                 const std::string& line) {
+  double worst = 0;
+  int compared = 0;
+  for (std::uint64_t i = 0; i < table.points(); ++i) {
+    const SweepPoint point = point_of(plan, i);
+    if (point.place[kTicks] != ticks || point.values[kGrip] > stiffest) continue;
+    const double beyond = point.values[kEta] - eta_limit(line, run_of(plan, i));
+    worst = worse(worst, table.at(i, 0) == 1 ? -beyond : beyond);
+    ++compared;
+  }
+  return compared > 0 ? worst : HUGE_VAL;
+}
+
+std::string caption(const SweepPlan& plan) {
+  RunPlan without_proxy = run_of(plan, 0);
+  without_proxy.parameters.b_v = 0;
+  return fmt::format(
+      "Built-in arm, full nonlinear loop at the paper's gains, tip {} m ahead; the hand jumps by "
+      "{:.0f} um along each axis and holds without damping; stable: the motion dies away within "
+      "{} s. Above k_vc / b_v = {:.0f} rad/s, in stiff grips, the proxy's damper is no longer felt "
+      "through the coupling's spring, and the limit rises from (25) towards (25) with b_d alone, "
+      "{:.2f}. There, ticks of 1 ms differ from the continuous theory.",
+      plan.jump->at.x(), 1e6 * plan.jump->by.x(), plan.seconds,
+      Parameters{}.k_vc / Parameters{}.b_v, eta_limit("pr", without_proxy));
+}
+
+}  // namespace
+
+Outcome eta_min_map(TrialRunner& lab) {
+  const SweepPlan plan = read_sweep_plan(data_dir() / "assets/sweeps/eta_min.toml");
+  const SweepTable table = lab.sweep(plan);
+  Outcome outcome;
+  outcome.figure = sweep_figure(plan, table);
+  outcome.figure.caption = caption(plan);
+  const std::string locked_text =
+      fmt::format("Routh's limit of the locked system, grips to {} N/m, in eta", kUsualGrip);
+  outcome.checks = {
+      at_most("ticks of 0.1 ms: furthest point on the wrong side of Routh's limit with the proxy "
+              "on its spring, all grips, in eta",
+              misplaced(plan, table, kFine, HUGE_VAL, "routh_compliant"), kEtaStep),
+      at_most("ticks of 0.1 ms: furthest point on the wrong side of " + locked_text,
+              misplaced(plan, table, kFine, kUsualGrip, "routh"), kEtaStep),
+      at_most("ticks of 1 ms: furthest point on the wrong side of " + locked_text,
+              misplaced(plan, table, kPaper, kUsualGrip, "routh"), kEtaStep)};
+  return outcome;
+}
+
+}  // namespace limpid

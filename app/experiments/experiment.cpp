@@ -1,0 +1,407 @@
+#include "app/experiments/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include "app/base/in_parallel.h"
+#include "app/base/markup.h"
+#include "app/run/provenance.h"
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "app/run/run_key.h"
+#include "app/plot/figure.h"
+#include "app/experiments/live.h"
+#include "app/sweep/sweep_table.h"
+#include "devices/files/atomic_file.h"
+#include "devices/files/config_file.h"
+
+namespace limpid {
+
+namespace {
+
+constexpr std::size_t kListed = 4;  // more values are told by the first and the last
+
+std::string values(const std::set<double>& set, const std::string& unit) {
+  std::vector<std::string> words;
+  words.reserve(set.size());
+  for (const double value : set) words.push_back(fmt::format("{:.4g}", value));
+  if (words.size() > kListed) return fmt::format("{} to {} {}", words.front(), words.back(), unit);
+  if (words.size() < 2) return fmt::format("{} {}", words.front(), unit);
+  const std::string last = words.back();
+  words.pop_back();
+  return fmt::format("{} and {} {}", fmt::join(words, ", "), last, unit);
+}
+
+// "none", or the values; zero among others is said in words, too.
+std::string or_none(std::set<double> set, const std::string& unit, const std::string& none) {
+  const bool zero = set.erase(0) > 0;
+  if (set.empty()) return none;
+  return (zero ? none + " and " : "") + values(set, unit);
+}
+
+}  // namespace
+
+void Conditions::add(const ArmDescription& arm, const Parameters& p) {
+  configs_.insert(config_text(p));
+  arms_.insert(arm.name);
+  joints_.insert(arm.dof());
+  if (std::isnan(p.torque_limit)) {
+    for (const Joint& joint : arm.joints) own_limits_.insert(joint.effort);
+  } else {
+    limits_.insert(p.torque_limit);
+  }
+  grips_.insert(p.hand_stiffness);
+  dampers_.insert(p.hand_damping);
+  masses_.insert(p.hand_mass_at_tip);
+  encoders_.insert(p.encoder_step);
+  delays_.insert(1e3 * p.tick * p.device_delay);
+  ticks_.insert(1e3 * p.tick);
+}
+
+std::string Conditions::arms() const {
+  std::string names;
+  for (const std::string& name : arms_) names += (names.empty() ? "" : ", ") + name;
+  if (joints_.size() > 1) {
+    return fmt::format("{} of {} to {} joints", names, *joints_.begin(), *joints_.rbegin());
+  }
+  return fmt::format("{} of {} joint{}", names, *joints_.begin(), *joints_.begin() > 1 ? "s" : "");
+}
+
+std::string Conditions::motors() const {
+  std::string own = own_limits_.empty() ? "" : "the arm's own, " + values(own_limits_, "N m");
+  if (limits_.empty()) return own;
+  return (own.empty() ? "" : own + "; and ") + values(limits_, "N m");
+}
+
+std::string Conditions::text() const {
+  if (arms_.empty()) return "";
+  return fmt::format(
+      "Conditions: arm {}; limit of every motor: {}; grip {}, {}; {}; {}; {}; tick {}.", arms(),
+      motors(), values(grips_, "N/m"), or_none(dampers_, "N s/m", "undamped"),
+      or_none(masses_, "kg in the hand", "no mass in the hand"),
+      or_none(encoders_, "rad a step of the encoders", "exact encoders"),
+      or_none(delays_, "ms of delay", "no delay"), values(ticks_, "ms"));
+}
+
+std::string Conditions::settings() const {
+  return configs_.empty() ? "" : settings_digest(configs_);
+}
+
+std::string Conditions::of_the_device() const {
+  return fmt::format("Conditions: arm {}; limit of every motor: {}; tick {}.", arms(), motors(),
+                     values(ticks_, "ms"));
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path stamp_of(const fs::path& session) { return fs::path(session).replace_extension(".key"); }
+
+std::string stamp_text(std::uint64_t key, std::uint64_t bytes) {
+  return fmt::format("trial {:016x}\nsession {:016x}\n", key, bytes);
+}
+
+}  // namespace
+
+void stamp(const fs::path& session, std::uint64_t key) {
+  const auto bytes = file_digest(session);
+  if (!bytes) throw FileError(session.string() + ": cannot be read");
+  const std::string text = stamp_text(key, *bytes);
+  write_atomically(stamp_of(session),
+                   {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+std::optional<Session> stamped_session(const fs::path& file, std::uint64_t key) {
+  std::ifstream in(stamp_of(file));
+  std::ostringstream said;
+  said << in.rdbuf();
+  const auto bytes = file_digest(file);
+  if (!bytes || said.str() != stamp_text(key, *bytes)) return std::nullopt;
+  try {
+    return read_session(file);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
+}
+
+namespace fs = std::filesystem;
+
+TrialRunner::TrialRunner(std::string experiment, Options options)
+    : experiment_(std::move(experiment)), options_(std::move(options)) {
+  options_.threads = threads_for(options_.threads);
+  if (options_.program == 0) options_.program = program_digest();
+}
+
+TrialResult TrialRunner::run_one(const Trial& trial) const {
+  TrialResult result;
+  result.session.info = session_info(trial.plan);
+  result.session.layout = trial.plan.layout();
+  const std::string& folder = trial.folder.empty() ? experiment_ : trial.folder;
+  const fs::path file = options_.dir / folder / (trial.name + ".h5");
+  const std::uint64_t key = trial.keep ? trial_key(trial.plan, options_.program) : 0;
+  if (auto found = trial.keep ? stamped_session(file, key) : std::nullopt) {
+    const RunEnd end = end_of(*found);
+    return {std::move(*found), end};
+  }
+  if (stopped()) throw Cancelled();
+  std::optional<Recorder> recorder;
+  if (trial.keep) {
+    fs::create_directories(file.parent_path());
+    recorder.emplace(file, result.session.info, trial.plan.parameters, true,
+                     Recorder::kWaitingRoom);
+    tell_start(*recorder, trial.plan);
+  }
+  LargeVector<double>& rows = result.session.rows;
+  rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));
+  result.end = simulate(trial.plan, {.realtime = false, .stop = options_.stop},
+                        [&](std::span<const double> row, LaneChanges changed) {
+                          rows.insert(rows.end(), row.begin(), row.end());
+                          if (recorder && changed[0] != nullptr) recorder->changed(*changed[0]);
+                          return !recorder || recorder->push_waiting(row);
+                        });
+  // What was cut short stays a .part and is run again another time.
+  if (stopped()) throw Cancelled();
+  if (recorder) {
+    recorder->finish();
+    stamp(file, key);
+  }
+  return result;
+}
+
+void TrialRunner::each(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::size_t done = 0;
+  std::mutex mutex;
+  in_parallel(count, options_.threads, [&](std::size_t i, const std::atomic<bool>&) {
+    work(i);
+    const std::lock_guard lock(mutex);
+    ++done;
+    const double part = static_cast<double>(done) / static_cast<double>(count);
+    if (options_.progress) options_.progress(part);
+    return true;
+  });
+}
+
+void TrialRunner::run(const std::vector<Trial>& trials,
+                      const std::function<void(std::size_t, const TrialResult&)>& take) {
+  for (const Trial& trial : trials) conditions_.add(trial.plan.arm, trial.plan.parameters);
+  each(trials.size(), [&](std::size_t i) {
+    const TrialResult result = run_one(trials[i]);
+    if (result.end.diverged && !trials[i].may_diverge) ++diverged_;
+    take(i, result);
+  });
+}
+
+SweepTable TrialRunner::sweep(const SweepPlan& plan) {
+  SweepTable table(plan);
+  for (std::uint64_t i = 0; i < table.points(); ++i) {
+    const RunPlan run = run_of(plan, i);
+    conditions_.add(run.arm, run.parameters);
+  }
+  static const std::atomic<bool> kNever{false};
+  const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
+  each(table.points(), [&](std::size_t i) {
+    const auto values = measure_point(plan, i, stop);
+    if (!values) throw Cancelled();
+    table.take(i, *values);
+  });
+  return table;
+}
+
+std::vector<TrialResult> TrialRunner::run(const std::vector<Trial>& trials) {
+  std::vector<TrialResult> results(trials.size());
+  run(trials, [&](std::size_t i, const TrialResult& result) { results[i] = result; });
+  return results;
+}
+
+// Each in its own file, NAME.cpp.
+Outcome coordination(TrialRunner& lab);
+Outcome inertia(TrialRunner& lab);
+Outcome passivity(TrialRunner& lab);
+Outcome spectrum(TrialRunner& lab);
+Outcome saturation(TrialRunner& lab);
+Outcome observer(TrialRunner& lab);
+Outcome transparency(TrialRunner& lab);
+Outcome eta_min_map(TrialRunner& lab);
+Outcome lightness(TrialRunner& lab);
+Outcome zwidth(TrialRunner& lab);
+Outcome switching(TrialRunner& lab);
+Outcome friction(TrialRunner& lab);
+Outcome delay(TrialRunner& lab);
+Outcome link(TrialRunner& lab);
+Outcome walls(TrialRunner& lab);
+Outcome mass(TrialRunner& lab);
+Outcome click(TrialRunner& lab);
+Outcome drop(TrialRunner& lab);
+Outcome stack(TrialRunner& lab);
+
+namespace {
+
+constexpr std::array kExperiments{
+    Experiment{"coordination", "device-proxy coordination in contact (Figs. 3 and 4)",
+               coordination},
+    Experiment{"inertia", "human torque for the same free motion at three etas (Fig. 5)", inertia},
+    Experiment{"passivity", "controller energy over many trials (Fig. 6)", passivity},
+    Experiment{"spectrum", "frequency content of the hand's motion (Fig. 7)", spectrum},
+    Experiment{"saturation",
+               "contact beyond the torque limit, with and without anti-windup "
+               "(section 3.1), and between walls",
+               saturation},
+    Experiment{"observer", "bandwidth of the human force estimate (section 3.1)", observer},
+    Experiment{"transparency", "impedance felt at the handle", transparency},
+    Experiment{"eta_min", "stability over eta and grip against theory (section 4.2)", eta_min_map},
+    Experiment{"lightness", "inertia and damping felt, and what a passive law pays for lightness",
+               lightness},
+    Experiment{"zwidth", "the stiffest wall that is rendered well", zwidth},
+    Experiment{"switching", "contacts made and broken, couplings switched while pressing",
+               switching},
+    Experiment{"friction", "sticking, slipping, and the energy that friction takes", friction},
+    Experiment{"delay", "what is given and felt where the device's torque comes late", delay},
+    Experiment{"link", "the stiffest wall through a delay between device and proxy, each law",
+               link},
+    Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls},
+    Experiment{"mass", "the mass felt of a body that is held, and the least that can be held",
+               mass},
+    Experiment{"click", "force of a button felt over its travel", click},
+    Experiment{"drop", "a body that falls on the tip, and the energy ledger", drop},
+    Experiment{"stack", "stacks of bodies: how far they sink, sweeps, energy", stack},
+};
+
+void write_verdict(const std::string& name, const Outcome& outcome,
+                   const std::filesystem::path& file) {
+  nlohmann::ordered_json checks = nlohmann::ordered_json::array();
+  for (const Check& c : outcome.checks) {
+    checks.push_back(
+        {{"what", c.what}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}});
+  }
+  const nlohmann::ordered_json verdict{{"name", name},
+                                       {"passed", outcome.passed()},
+                                       {"title", outcome.figure.title},
+                                       {"caption", outcome.figure.caption},
+                                       {"provenance", outcome.figure.made_by},
+                                       {"checks", checks}};
+  std::ofstream out(file);
+  out << verdict.dump(2) << '\n';
+  if (!out.flush()) throw FileError(file.string() + ": could not be written");
+}
+
+}  // namespace
+
+std::span<const Experiment> experiments() { return kExperiments; }
+
+void write_outcome(const std::string& name, const Outcome& outcome,
+                   const std::filesystem::path& dir) {
+  std::filesystem::create_directories(dir);
+  write_figure_data(outcome.figure, dir / (name + ".csv"));
+  draw_figure(outcome.figure, dir, name);
+  // Last, so that a verdict says that everything else is there.
+  write_verdict(name, outcome, dir / (name + ".json"));
+}
+
+Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options) {
+  std::filesystem::create_directories(options.dir);
+  TrialRunner lab(experiment.name, options);
+  Outcome outcome = experiment.run(lab);
+  const std::string conditions = lab.conditions().text();
+  if (!conditions.empty()) {
+    outcome.figure.caption += " " + conditions;
+    outcome.checks.push_back(at_most("trials that diverged, of those that may not",
+                                     static_cast<double>(lab.diverged()), 0));
+  }
+  outcome.figure.made_by = provenance(lab.conditions().settings(), lab.seed());
+  write_outcome(experiment.name, outcome, options.dir);
+  return outcome;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// JSON has no infinite numbers: they are null there.
+std::string number(const json& value) {
+  return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "not finite";
+}
+
+std::string verdict(bool passed) {
+  return passed ? R"(<span class="passed">✓ passed</span>)"
+                : R"(<span class="failed">✗ failed</span>)";
+}
+
+struct Page {
+  std::string name, about;
+  json verdict;
+};
+
+std::vector<Page> pages_in(const fs::path& dir) {
+  std::vector<Page> pages;
+  const auto add = [&](const std::string& name, const char* about) {
+    std::ifstream file(dir / (name + ".json"));
+    if (!file) return;
+    json found = json::parse(file, nullptr, false);
+    if (found.is_object() && found.contains("checks")) pages.push_back({name, about, found});
+  };
+  for (const Experiment& e : experiments()) add(e.name, e.about);
+  for (const LiveExperiment& e : live_experiments()) add(live_name(e), e.about);
+  return pages;
+}
+
+std::string section(const Page& page) {
+  const json& v = page.verdict;
+  std::string rows;
+  for (const json& check : v.at("checks")) {
+    rows += fmt::format(
+        "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
+        "<td class=\"verdict\">{}</td></tr>\n",
+        escaped(typeset(check.at("what").get<std::string>())), number(check.at("value")),
+        number(check.at("bound")), verdict(check.at("passed").get<bool>()));
+  }
+  return fmt::format(
+      R"(<section id="{0}">
+<header><h2>{1}</h2>{2}</header>
+<p class="soft">{0}: {3}</p>
+<figure><img src="{0}.svg" alt="{1}">
+<figcaption>{4} <a href="{0}.csv">data</a>, <a href="{0}.png">picture</a></figcaption></figure>
+<p class="soft">{6}</p>
+<table><thead><tr><th>Check</th><th class="number">Value</th><th class="number">Bound</th>
+<th class="verdict">Verdict</th></tr></thead><tbody>
+{5}</tbody></table>
+</section>
+)",
+      page.name, escaped(typeset(v.value("title", page.name))), verdict(v.value("passed", false)),
+      escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), rows,
+      escaped(v.value("provenance", "")));
+}
+
+}  // namespace
+
+void write_report(const fs::path& dir) {
+  const std::vector<Page> pages = pages_in(dir);
+  std::size_t passed = 0;
+  std::string contents, sections;
+  for (const Page& page : pages) {
+    const bool good = page.verdict.value("passed", false);
+    passed += good ? 1 : 0;
+    contents += fmt::format(
+        "<tr><td><a href=\"#{0}\">{1}</a></td><td class=\"soft\">{2}</td>"
+        "<td class=\"number\">{3} checks</td><td class=\"verdict\">{4}</td></tr>\n",
+        page.name, escaped(typeset(page.verdict.value("title", page.name))),
+        escaped(typeset(page.about)), page.verdict.at("checks").size(), verdict(good));
+    sections += section(page);
+  }
+  write_page(
+      dir / "report.html", "Transparent virtual coupling: experiments",
+      fmt::format("{} of {} experiments passed.", passed, pages.size()),
+      fmt::format("<section><table><tbody>\n{}</tbody></table></section>\n{}", contents, sections));
+}
+
+}  // namespace limpid

@@ -1,0 +1,85 @@
+// Fig. 5: human torque for the same free motion with eta 0.6, 1 and 5.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/experiments/signals.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kInertiaEtas[] = {0.6, 1, 5};
+// A grip stiff enough that the three motions are the same.
+constexpr double kGripStiffness = 6000;  // [N/m]
+constexpr double kGripDamping = 20;      // [N s/m]
+
+double largest_difference(const Session& a, const Session& b) {
+  double difference = 0, range = 0;
+  const Eigen::VectorXd start = vector_at(a, 0, Column::device_position);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const Eigen::VectorXd x = vector_at(a, k, Column::device_position);
+    difference = worse(difference, (x - vector_at(b, k, Column::device_position)).norm());
+    range = worse(range, (x - start).norm());
+  }
+  return difference / range;
+}
+
+}  // namespace
+
+Outcome inertia(TrialRunner& lab) {
+  std::vector<Trial> trials;
+  for (const double eta : kInertiaEtas) {
+    Parameters p;
+    p.eta = eta;
+    p.hand_stiffness = kGripStiffness;
+    p.hand_damping = kGripDamping;
+    trials.push_back({fmt::format("eta-{}", eta), plan_of("free", "free", p)});
+  }
+  const std::vector<TrialResult> results = lab.run(trials);
+  const Session& reference = results[1].session;  // eta = 1
+  const double rms_at_one = rms_norm(reference, Column::hand_torque, 0, reference.size());
+
+  Outcome outcome;
+  outcome.figure.title = "The same free motion at three etas";
+  outcome.figure.caption = fmt::format(
+      "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact. So slow a "
+      "motion takes mostly damping, which eta scales; what inertia is felt of faster ones is "
+      "measured by the experiment lightness.",
+      kGripStiffness, kGripDamping);
+  outcome.figure.columns = 2;
+  FigurePanel torque{.title = "Human torque |f1| and its estimate",
+                     .x_label = "time [s]",
+                     .y_label = "torque [N m]"};
+  FigurePanel motion{.title = "Shoulder angle: the motion is the same",
+                     .x_label = "time [s]",
+                     .y_label = "x1 [rad]"};
+  std::vector<Series> estimates;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Session& s = results[i].session;
+    const double eta = kInertiaEtas[i];
+    const std::string label = fmt::format("eta = {}", eta);
+    torque.series.push_back(over_time(s, label, kFamilyInk[i], Series::Style::line, [&](auto k) {
+      return vector_at(s, k, Column::hand_torque).norm();
+    }));
+    estimates.push_back(
+        over_time(s, i == 0 ? "estimates" : "", kNeutralInk, Series::Style::dashed,
+                  [&](auto k) { return vector_at(s, k, Column::hand_torque_estimate).norm(); }));
+    const auto style = i == 0 ? Series::Style::line : Series::Style::dashed;
+    motion.series.push_back(over_time(s, label, kFamilyInk[i], style,
+                                      [&](auto k) { return s.at(k, Column::device_position)[1]; }));
+    if (eta == 1) continue;
+    const double rms = rms_norm(s, Column::hand_torque, 0, s.size());
+    outcome.checks.push_back(at_most(
+        fmt::format("rms human torque at eta = {} over eta times that at eta = 1, off 1 by at most",
+                    eta),
+        std::abs(rms / (eta * rms_at_one) - 1), 0.10));
+    outcome.checks.push_back(
+        at_most(fmt::format("motion at eta = {} differs from that at eta = 1, of its range", eta),
+                largest_difference(reference, s), 0.02));
+  }
+  torque.series.insert(torque.series.end(), estimates.begin(), estimates.end());
+  outcome.figure.panels = {torque, motion};
+  return outcome;
+}
+
+}  // namespace limpid

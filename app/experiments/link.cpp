@@ -1,0 +1,354 @@
+// Delay between device and proxy: the stiffest wall on which a tap comes to rest, its felt
+// stiffness, and the energy given to the hand, under each coupling.
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "app/base/folders.h"
+#include "app/run/analysis.h"
+#include "app/experiments/tap_bench.h"
+#include "core/dynamics/random.h"
+#include "devices/files/urdf_file.h"
+
+namespace limpid {
+namespace {
+
+struct LinkStudy {
+  static constexpr int kDelays[] = {0, 1, 2, 3, 4, 5, 7, 10, 20, 50, 100};  // each way [ticks]
+  static constexpr double kGrip[] = {300};                                  // [N/m]
+  static constexpr double kHold = 6;                                        // [s]
+  static constexpr double kGiven = 5e-3;                                    // [J]
+  static constexpr double kAtRest = 5e-3;                                   // [m/s]
+  static constexpr double kWalls[] = {600, 5000};                           // for the energy [N/m]
+  static constexpr unsigned kRandom = 60;        // random links for the tanks
+  static constexpr std::pair kDrawn{1e-3, 1e5};  // energies [mJ]
+  static constexpr const char* kStandardTint = "#B4B9C3";
+};
+
+bool comes_to_rest(const Touch& touch, bool) {
+  return touch.energy <= LinkStudy::kGiven && touch.moving <= LinkStudy::kAtRest;
+}
+
+// Walls of a law over the delays.
+struct LinkCurve {
+  std::string label;
+  const char* ink;
+  TapSetting base;
+  double width = 1.8;  // of its line; differs for curves that lie on one another [px]
+  std::vector<double> walls = {}, felt = {}, energy = {};  // [N/m, N/m, J]
+
+  // Whether the whole trip is put into the motors' delay: the predictive law knows no link.
+  bool in_motors() const { return base.kind == CouplingKind::predictive; }
+  std::vector<int> delays() const {
+    std::vector<int> all;
+    for (const int delay : LinkStudy::kDelays) {
+      if (!in_motors() || 2 * delay <= kMostDelay) all.push_back(delay);
+    }
+    return all;
+  }
+  TapSetting at(int delay) const {
+    TapSetting s = base;
+    s.hold = LinkStudy::kHold;
+    if (in_motors()) {
+      s.delay = 2.0 * delay;
+    } else {
+      s.link = delay;
+    }
+    return s;
+  }
+};
+
+enum : std::size_t { kFitted, kStandard, kProposed, kTank, kPredictive };
+
+std::vector<LinkCurve> linked_laws() {
+  using enum CouplingKind;
+  return {{"standard, gains by (3)",
+           LinkStudy::kStandardTint,
+           {.kind = standard, .fits_link = true},
+           7},
+          {"standard", kStandardInk, {.kind = standard}, 4},
+          {"proposed", kProposedInk, {.kind = proposed}},
+          {"tank", kTankInk, {.kind = tank}},
+          {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
+}
+
+// Walls by theory at the table, in the grip of the taps.
+class LinkTheory {
+ public:
+  double standard(int delay) const {
+    if (!stable(kSoftest, delay)) return kSoftest;
+    if (stable(kStiffest, delay)) return kStiffest;
+    double low = kSoftest, high = kStiffest;
+    for (int i = 0; i < 8; ++i) {
+      const double middle = std::sqrt(low * high);
+      (stable(middle, delay) ? low : high) = middle;
+    }
+    return low;
+  }
+  // The proposed law's wall: its spring is the standard coupling's, its contact late by the whole
+  // trip.
+  double proposed(int delay) const {
+    if (!stable(kSoftest, delay)) return kSoftest;
+    const double wall = proposed_wall(tip_at_table(), {.T = p_.tick,
+                                                       .k_vc = p_.k_vc,
+                                                       .b_v = p_.b_v,
+                                                       .hand_damping = TapBench::kGripDamping,
+                                                       .delay = 2 * delay * p_.tick});
+    return std::clamp(wall, kSoftest, kStiffest);
+  }
+
+ private:
+  using Complex = Eigen::Matrix3cd;
+
+  // Stability of the standard coupling in that grip, with a massless proxy: s times the impedance
+  // at the joints of arm, grip, spring and wall. Stable if the angle of its determinant grows along
+  // the imaginary axis by two right angles a joint, as for a mass on a spring and a damper.
+  bool stable(double wall, int delay) const {
+    constexpr double kStep = 0.5, kTo = 4000;  // [rad/s]
+    const Eigen::Matrix3d M = at_.M, JJ = at_.J.transpose() * at_.J,
+                          normal = at_.J.row(2).transpose() * at_.J.row(2);
+    const double K_h = LinkStudy::kGrip[0], trip = 2 * delay * p_.tick;
+    double turned = 0;
+    std::complex<double> before = 0;
+    for (double w = kStep; w <= kTo; w += kStep) {
+      const std::complex<double> s(0, w), spring = p_.k_vc + s * p_.b_vc;
+      const Complex I = Complex::Identity();
+      const Complex proxy = s * (p_.b_v + p_.k_vc * p_.tick / 2) * I + wall * normal;
+      const Complex apart = (spring * I + proxy).inverse();
+      const Complex all = s * s * M + s * Eigen::Matrix3d(b_d_.asDiagonal()) +
+                          (K_h + s * TapBench::kGripDamping) * JJ + spring * I -
+                          spring * spring * std::exp(-s * (trip + p_.tick)) * apart;
+      const std::complex<double> now = all.determinant();
+      turned += before == 0.0 ? std::arg(now) : std::arg(now / before);
+      before = now;
+    }
+    return std::abs(turned - 3 * std::numbers::pi) < 1;
+  }
+
+  Parameters p_{};
+  ArmDescription arm_ = read_urdf(default_device());
+  ArmAt at_ = arm_at(arm_, rest_at(arm_, Vec3(0.2, 0, TapBench::kSurface)).x1);
+  Eigen::Vector3d b_d_ = device_damping(arm_, p_);
+};
+
+void find_walls(TrialRunner& lab, std::vector<LinkCurve>& laws) {
+  std::vector<TapSetting> settings;
+  for (const LinkCurve& law : laws) {
+    for (const int delay : law.delays()) settings.push_back(law.at(delay));
+  }
+  const std::vector<double> walls =
+      stiffest_walls(lab, settings, {LinkStudy::kGrip, comes_to_rest});
+  std::size_t i = 0;
+  for (LinkCurve& law : laws) {
+    for (std::size_t k = 0; k < law.delays().size(); ++k) law.walls.push_back(walls[i++]);
+  }
+}
+
+// Taps each wall under each law and delay.
+template <class WallOf, class Take>
+void tap_each_law(TrialRunner& lab, std::vector<LinkCurve>& laws, const WallOf& wall_of,
+                  const Take& take) {
+  std::vector<TapBench> benches;
+  std::vector<std::pair<LinkCurve*, std::size_t>> places;
+  std::vector<Trial> trials;
+  for (LinkCurve& law : laws) {
+    const std::vector<int> delays = law.delays();
+    for (std::size_t k = 0; k < delays.size(); ++k) {
+      benches.emplace_back(law.at(delays[k]), wall_of(law, k), LinkStudy::kGrip[0], 1);
+      places.emplace_back(&law, k);
+      trials.push_back(benches.back().trial());
+      trials.back().may_diverge = true;
+    }
+  }
+  std::vector<Touch> touches(trials.size());
+  lab.run(trials, [&](std::size_t i, const TrialResult& r) { touches[i] = benches[i].touch(r); });
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    take(*places[i].first, places[i].second, touches[i]);
+  }
+}
+
+void measure_laws(TrialRunner& lab, std::vector<LinkCurve>& laws) {
+  tap_each_law(
+      lab, laws, [](const LinkCurve& law, std::size_t k) { return law.walls[k]; },
+      [](LinkCurve& law, std::size_t k, const Touch& t) {
+        law.felt.push_back(law.walls[k] > kSoftest ? t.felt * law.walls[k] : std::nan(""));
+      });
+  for (LinkCurve& law : laws) law.energy.assign(law.walls.size(), -HUGE_VAL);
+  for (const double wall : LinkStudy::kWalls) {
+    tap_each_law(
+        lab, laws, [&](const LinkCurve&, std::size_t) { return wall; },
+        [](LinkCurve& law, std::size_t k, const Touch& t) {
+          law.energy[k] = worse(law.energy[k], t.energy);
+        });
+  }
+}
+
+// Highest E_c of the tanks' taps through links with jitter and loss [J].
+double through_random_links(TrialRunner& lab) {
+  std::vector<TapBench> benches;
+  std::vector<Trial> trials;
+  Random random(static_cast<unsigned>(lab.seed()) + 1);
+  for (unsigned i = 0; i < LinkStudy::kRandom; ++i) {
+    TapSetting s{.kind = CouplingKind::tank};
+    s.link = static_cast<int>(random.between(0, 100.9));
+    s.hold = LinkStudy::kHold / 2;
+    benches.emplace_back(s, random.log_between(kSoftest, kStiffest), random.log_between(100, 3000),
+                         2);
+    trials.push_back(benches.back().trial());
+    Parameters& p = trials.back().plan.parameters;
+    p.link_jitter = static_cast<int>(random.between(0, 50.9));
+    p.link_loss = random.between(0, 0.9);
+    p.link_seed = static_cast<int>(i);
+  }
+  std::vector<double> most(trials.size());
+  lab.run(trials,
+          [&](std::size_t i, const TrialResult& r) { most[i] = benches[i].touch(r).energy; });
+  double worst = 0;
+  for (const double m : most) worst = worse(worst, m);
+  return worst;
+}
+
+// Position of a delay on a logarithmic axis that begins with no delay.
+double on_axis(int delay) { return delay > 0 ? delay : 0.5; }
+
+FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& title,
+                        const std::string& y, std::pair<double, double> range,
+                        const std::vector<double> LinkCurve::*values, double scale) {
+  FigurePanel panel{
+      .title = title, .x_label = "delay each way [ms]", .y_label = y, .log_x = true, .log_y = true};
+  panel.x_range = {0.45, 112};
+  panel.y_range = {0.5 * range.first, 2 * range.second};  // values at an end stay visible
+  panel.x_ticks = {{0.5, "none"}, {1, "1"},   {2, "2"},   {5, "5"},
+                   {10, "10"},    {20, "20"}, {50, "50"}, {100, "100"}};
+  for (const LinkCurve& law : laws) {
+    Series line{law.label, law.ink, Series::Style::line, {}};
+    line.width = law.width;
+    const std::vector<int> delays = law.delays();
+    for (std::size_t k = 0; k < delays.size(); ++k) {
+      const double value = scale * (law.*values)[k];
+      if (std::isnan(value)) continue;  // nothing was felt
+      line.points.push_back({on_axis(delays[k]), std::clamp(value, range.first, range.second)});
+    }
+    panel.series.push_back(line);
+    panel.series.push_back({"", law.ink, Series::Style::points, line.points});
+  }
+  return panel;
+}
+
+std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheory& theory) {
+  FigurePanel walls = over_delays(laws, "The stiffest wall on which a tap comes to rest",
+                                  "stiffness [N/m]", {kSoftest, kStiffest}, &LinkCurve::walls, 1);
+  Series standard{"standard, theory", kStandardInk, Series::Style::dashed, {}};
+  Series proposed{"proposed, theory", kProposedInk, Series::Style::dashed, {}};
+  Series named{"predictive, as analyze names it", kPredictiveInk, Series::Style::dashed, {}};
+  for (const int delay : LinkStudy::kDelays) {
+    standard.points.push_back({on_axis(delay), theory.standard(delay)});
+    proposed.points.push_back({on_axis(delay), theory.proposed(delay)});
+  }
+  const LinkCurve& predictive = laws[kPredictive];
+  for (const int delay : predictive.delays()) {
+    named.points.push_back(
+        {on_axis(delay), std::clamp(named_wall(predictive.at(delay)), kSoftest, kStiffest)});
+  }
+  for (const Series& line : {standard, proposed, named}) walls.series.push_back(line);
+  FigurePanel felt = over_delays(laws, "Stiffness felt of that wall, at the device",
+                                 "stiffness [N/m]", {1, 25000}, &LinkCurve::felt, 1);
+  FigurePanel energy = over_delays(laws,
+                                   fmt::format("Highest E_c on walls of {} and {} N/m",
+                                               LinkStudy::kWalls[0], LinkStudy::kWalls[1]),
+                                   "energy [mJ]", LinkStudy::kDrawn, &LinkCurve::energy, 1e3);
+  const double bound = 1e3 * LinkStudy::kGiven;
+  energy.series.push_back({"what the tanks hold at the start",
+                           kHandInk,
+                           Series::Style::dashed,
+                           {{0.45, bound}, {112, bound}}});
+  return {walls, felt, energy};
+}
+
+double highest_of(const std::vector<double>& values) {
+  double worst = -HUGE_VAL;
+  for (const double v : values) worst = worse(worst, v);
+  return worst;
+}
+
+// The longest delay at which any wall lets a tap come to rest [ticks].
+template <class WallAt>
+double longest(const LinkCurve& law, const WallAt& wall_at) {
+  double longest = 0;
+  const std::vector<int> delays = law.delays();
+  for (std::size_t k = 0; k < delays.size(); ++k) {
+    if (wall_at(k) > kSoftest) longest = delays[k];
+  }
+  return longest;
+}
+
+// Least ratio of a wall to the expected one, for delays up to `most` [ticks].
+template <class Expected>
+double least_of(const LinkCurve& law, int most, const Expected& expected) {
+  double least = HUGE_VAL;
+  const std::vector<int> delays = law.delays();
+  for (std::size_t k = 0; k < delays.size() && delays[k] <= most; ++k) {
+    least = worse_low(least, law.walls[k] / expected(delays[k]));
+  }
+  return least;
+}
+
+std::vector<Check> judge(TrialRunner& lab, const std::vector<LinkCurve>& laws,
+                         const LinkTheory& theory) {
+  using S = LinkStudy;
+  const LinkCurve& standard = laws[kStandard];
+  const double found = longest(standard, [&](std::size_t k) { return standard.walls[k]; });
+  const double foretold =
+      longest(standard, [&](std::size_t k) { return theory.standard(standard.delays()[k]); });
+  return {
+      at_most("tank, delays to 100 ms: highest E_c [J]", highest_of(laws[kTank].energy), S::kGiven),
+      at_most(
+          fmt::format("tank, {} links with delay, jitter and loss: highest E_c [J]", S::kRandom),
+          through_random_links(lab), S::kGiven),
+      at_most("standard, gains by condition (3): highest E_c [J]", highest_of(laws[kFitted].energy),
+              WellRendered::kEnergy),
+      at_least("standard, gains by condition (3): stiffest wall [N/m]",
+               least_of(laws[kFitted], 100, [](int) { return 1.0; }), kStiffest),
+      at_least("tank, delays to 50 ms: stiffest wall [N/m]",
+               least_of(laws[kTank], 50, [](int) { return 1.0; }), kStiffest),
+      at_least("standard: longest delay at which a tap rests, by that of theory", found / foretold,
+               0.75),
+      at_most("the same, at most", found / foretold, 1.25),
+      at_least("proposed, delays to 2 ms: stiffest wall by that of theory",
+               least_of(laws[kProposed], 2, [&](int d) { return theory.proposed(d); }), 1),
+  };
+}
+
+}  // namespace
+
+Outcome link(TrialRunner& lab) {
+  std::vector<LinkCurve> laws = linked_laws();
+  find_walls(lab, laws);
+  measure_laws(lab, laws);
+  const LinkTheory theory;
+  Outcome outcome;
+  outcome.figure.title = "Walls through a delay between device and proxy";
+  outcome.figure.caption = fmt::format(
+      "Taps at {} m/s, {} N, held for {} s, eta 1. At rest: E_c at most {} mJ, and the tip at most "
+      "{} mm/s at the end. Walls of {} to {} N/m were tried: a curve at the top has no limit in "
+      "them, one at the bottom has none that rests. Energies are drawn from {} mJ to {} J, what is "
+      "beyond at these ends. The link delays each packet alike and loses "
+      "none; the random links of the checks do. Gains by (3): k_vc, b_vc and b_v as condition (3) "
+      "has them for the link and the arm's damping. The predictive coupling knows no link; in its "
+      "place the torque of the motors comes the whole trip later, which it knows, as far as 20 ms. "
+      "Theory: of the standard coupling the poles of hand, device, spring and wall; of the "
+      "proposed one the damping against the lag of the contact.",
+      TapBench::kSpeed, TapSetting{}.press, LinkStudy::kHold, 1e3 * LinkStudy::kGiven,
+      1e3 * LinkStudy::kAtRest, kSoftest, kStiffest, LinkStudy::kDrawn.first,
+      1e-3 * LinkStudy::kDrawn.second);
+  outcome.figure.columns = 2;
+  outcome.figure.panels = draw(laws, theory);
+  outcome.checks = judge(lab, laws, theory);
+  return outcome;
+}
+
+}  // namespace limpid

@@ -1,0 +1,388 @@
+#include "app/sweep/read_axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/sobol.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "app/sweep/body_axis.h"
+#include "core/math/elementary.h"
+#include "devices/files/config_file.h"
+
+namespace limpid {
+
+namespace {
+
+// Boost's distributions are the same everywhere, unlike the standard library's.
+using Twister = boost::random::mt19937_64;
+
+double unit(Twister& random) { return boost::random::uniform_01<double>()(random); }
+
+constexpr std::size_t kLongestName = 40;
+constexpr std::uint64_t kMostValues = 1'000'000;
+constexpr Range kAnything{-1e300, 1e300};
+
+// A key that names neither a parameter nor a file.
+struct OwnKey {
+  const char* key;
+  const char* unit;
+  double low, high;
+  bool whole;
+  const char* allowed;
+};
+constexpr OwnKey kOwnKeys[] = {{kStiffnessKey, "N/m", std::numeric_limits<double>::min(), 1e9,
+                                false, "numbers above 0 up to 1e9 N/m"},
+                               {kArmJointsKey, "-", 1, kMaxDof, true, "whole numbers from 1 to 32"},
+                               {kArmMassKey, "kg", 1e-3, 1e3, false, "numbers from 1e-3 to 1e3 kg"},
+                               {kArmSeedKey, "-", 0, 1e6, true, "whole numbers from 0 to 1e6"}};
+
+const OwnKey* own_key(const std::string& key) {
+  const auto* found = std::ranges::find(kOwnKeys, key, &OwnKey::key);
+  return found == std::end(kOwnKeys) ? nullptr : found;
+}
+
+// The property of a body that a key names, or null.
+const BodyProperty* body_property(const std::string& key) {
+  const auto axis = body_axis(key);
+  return axis ? axis->property : nullptr;
+}
+
+const char* unit_of(const BodyProperty& property) {
+  return *property.range.unit != 0 ? property.range.unit : "-";
+}
+
+constexpr const char* kScales[] = {"linear", "log"};
+
+std::size_t choice_in(const TomlTable& table, const char* key, std::span<const char* const> words) {
+  const std::string word = table.text(key).value_or(words.front());
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end()) table.refuse(key, fmt::format("{}", fmt::join(words, ", ")));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }
+
+// Reads an axis of files: a case for each.
+void read_files(const TomlTable& table, std::string SweepWorld::*part, SweepAxis& axis) {
+  for (const std::string& file : table.texts("values")) {
+    SweepCase& one = axis.cases.emplace_back();
+    one.name = stem(file);
+    one.world.*part = file;
+  }
+  if (axis.cases.empty()) table.refuse_missing("values");
+}
+
+void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis) {
+  for (const TomlTable& each : table.tables("cases")) {
+    each.allow_only({"name", "set", "device", "scene", "hand"});
+    SweepCase& one = axis.cases.emplace_back();
+    one.name = each.need(each.text("name"), "name");
+    one.settings = each.texts("set");
+    one.world = {each.text("device").value_or(""), each.text("scene").value_or(""),
+                 each.text("hand").value_or("")};
+    Parameters tried = base;
+    try {
+      for (const std::string& setting : one.settings) apply_setting(tried, setting);
+    } catch (const ParameterError& error) {
+      each.refuse("set", error.what());
+    }
+  }
+}
+
+// Refuses numbers that the axis' parameter does not allow.
+double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
+  if (const OwnKey* own = own_key(axis.key)) {
+    const bool allowed = x >= own->low && x <= own->high && !(own->whole && x != std::floor(x));
+    if (!allowed) table.refuse(key, own->allowed);
+    return x;
+  }
+  if (const BodyProperty* property = body_property(axis.key)) {
+    const Range& range = property->range;
+    if (!(x >= range.minimum && x <= range.maximum &&
+          !(range.exclusive_minimum && x == range.minimum))) {
+      table.refuse(key,
+                   fmt::format("numbers {} {} to {} {}", range.exclusive_minimum ? "above" : "from",
+                               range.minimum, range.maximum, range.unit));
+    }
+    return x;
+  }
+  Parameters p;
+  try {
+    set_parameter(p, axis.key, x);
+  } catch (const ParameterError& error) {
+    table.refuse(key, error.what());
+  }
+  return x;
+}
+
+std::vector<const char*> words_of(const ParameterInfo& info) {
+  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
+    return {choice->words.begin(), choice->words.end()};
+  }
+  if (std::holds_alternative<bool Parameters::*>(info.field)) return {"false", "true"};
+  return {};
+}
+
+void read_words(const TomlTable& table, SweepAxis& axis) {
+  const std::string allowed = fmt::format("a list of words among {}", fmt::join(axis.words, ", "));
+  const toml::node* node = table.find("values");
+  if (node == nullptr) table.refuse_missing("values");
+  if (!node->is_array()) table.refuse("values", allowed);
+  for (const toml::node& each : *node->as_array()) {
+    const auto text = each.value_exact<std::string>();
+    const std::string word = text ? *text : found_text(each);
+    const auto found = std::ranges::find(axis.words, word);
+    if (found == axis.words.end()) table.refuse("values", allowed);
+    axis.values.push_back(static_cast<double>(found - axis.words.begin()));
+  }
+}
+
+void read_list(const TomlTable& table, SweepAxis& axis) {
+  const toml::array* list = table.find("values")->as_array();
+  if (list == nullptr || list->empty()) table.refuse("values", "a list of numbers");
+  for (const toml::node& each : *list) {
+    if (!each.is_number()) table.refuse("values", "a list of numbers");
+    axis.values.push_back(allowed_number(table, "values", axis, *each.value<double>()));
+  }
+}
+
+AxisRange read_range(const TomlTable& table, const SweepAxis& axis) {
+  const AxisRange range{table.need(table.number("from", kAnything), "from"),
+                        table.need(table.number("to", kAnything), "to")};
+  allowed_number(table, "from", axis, range.from);
+  allowed_number(table, "to", axis, range.to);
+  if (!(range.to > range.from)) table.refuse("to", fmt::format("more than {}", range.from));
+  if (axis.logarithmic && !(range.from > 0)) table.refuse("from", "above 0 on a log scale");
+  return range;
+}
+
+double scaled(const AxisRange& range, double part, bool logarithmic) {
+  if (part == 0) return range.from;
+  if (part == 1) return range.to;
+  return logarithmic ? range.from * power(range.to / range.from, part)
+                     : range.from + (range.to - range.from) * part;
+}
+
+void refuse_key(const TomlTable& table, const std::string& key) {
+  if (key.starts_with(kBodyKey)) table.refuse("key", body_properties());
+  std::vector<std::string> keys{"device", "scene", "hand"};
+  for (const OwnKey& own : kOwnKeys) keys.emplace_back(own.key);
+  for (const ParameterInfo& info : parameter_table()) keys.emplace_back(info.key);
+  const auto meant = nearest(key, keys);
+  table.refuse(
+      "key",
+      "device, scene, hand, scene.stiffness, scene.body.NAME.PROPERTY, arm.joints, arm.mass, "
+      "arm.seed, or a parameter of limpid run --help" +
+          (meant ? "; did you mean " + *meant + "?" : std::string()));
+}
+
+void read_numbers(const TomlTable& table, ReadAxis& read) {
+  SweepAxis& axis = read.axis;
+  axis.spread = static_cast<Spread>(choice_in(table, "sample", kSpreads));
+  axis.logarithmic = choice_in(table, "scale", kScales) == 1;
+  if (table.find("values") != nullptr) return read_list(table, axis);
+  read.range = read_range(table, axis);
+  if (axis.spread != Spread::grid) return;
+  const std::uint64_t count = table.need(table.count("count", 2, kMostValues), "count");
+  for (const double x : spread(read.range, count, axis.logarithmic)) {
+    axis.values.push_back(allowed_number(table, "count", axis, x));
+  }
+}
+
+// Refuses names unfit for columns and figures.
+void check_name(const TomlTable& table, const std::string& name) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == ' ';
+  };
+  if (!name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, plain)) return;
+  table.refuse("name", fmt::format("up to {} letters, digits, _, - and spaces", kLongestName));
+}
+
+constexpr std::uint64_t kMostDepth = 10;
+constexpr std::size_t kMostAxes = 4;
+constexpr double kMostNumbers = 9e15;  // largest whole numbers that a double tells apart
+constexpr Range kAnyBound{-1e300, 1e300};
+
+// Whether other values are possible between the axis' values.
+bool may_be_finer(const SweepAxis& axis) {
+  const ParameterInfo* info = find_parameter(axis.key);
+  const bool whole = info && std::holds_alternative<int Parameters::*>(info->field);
+  return axis.spread == Spread::grid && axis.words.empty() && !whole && axis.values.size() > 1 &&
+         std::ranges::adjacent_find(axis.values, std::greater_equal{}) == axis.values.end();
+}
+
+std::vector<std::size_t> read_axes(const TomlTable& table, const SweepPlan& plan) {
+  std::vector<std::size_t> axes;
+  const std::vector<std::string> names = table.texts("axes");
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
+    const bool named = std::ranges::find(names, plan.axes[a].name) != names.end();
+    if (names.empty() ? may_be_finer(plan.axes[a]) : named) axes.push_back(a);
+    if (named && !may_be_finer(plan.axes[a])) {
+      table.refuse("axes", plan.axes[a].name + " has no values in between; a grid's axes of " +
+                               "numbers that are not whole, increasing");
+    }
+  }
+  const bool all = names.empty() || axes.size() == names.size();
+  if (!all || axes.empty() || axes.size() > kMostAxes) {
+    table.refuse("axes", fmt::format("the names of 1 to {} axes", kMostAxes));
+  }
+  return axes;
+}
+
+void read_condition(const TomlTable& table, const SweepPlan& plan, SweepRefine& refine) {
+  const std::vector<SweepColumn> columns = measured_columns(plan);
+  const std::string name = table.text("measure").value_or(columns.front().name);
+  const auto column = std::ranges::find(columns, name, &SweepColumn::name);
+  if (column == columns.end()) table.refuse("measure", "one that is measured");
+  refine.column = static_cast<std::size_t>(column - columns.begin());
+  refine.above = table.number("above", kAnyBound);
+  refine.below = table.number("below", kAnyBound);
+  refine.tolerance = table.number("tolerance", {0, 1e300, true});
+  const bool limit = refine.above || refine.below;
+  if (limit && refine.tolerance) table.refuse("tolerance", "nothing beside above or below");
+  if (column->unit != "yes/no" && !limit && !refine.tolerance) table.refuse_missing("tolerance");
+}
+
+// Halves the steps of the axis `depth` times.
+void make_finer(SweepAxis& axis, std::uint64_t depth) {
+  for (std::uint64_t i = 0; i < depth; ++i) {
+    std::vector<double> finer{axis.values.front()};
+    for (std::size_t k = 1; k < axis.values.size(); ++k) {
+      const double low = axis.values[k - 1], high = axis.values[k];
+      finer.push_back(axis.logarithmic ? std::sqrt(low * high) : (low + high) / 2);
+      finer.push_back(high);
+    }
+    axis.values = std::move(finer);
+  }
+}
+
+}  // namespace
+
+UnitSamples random_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
+  Twister random(seed);
+  UnitSamples samples(dimensions, std::vector<double>(count));
+  for (auto& dimension : samples) {
+    for (double& x : dimension) x = unit(random);
+  }
+  return samples;
+}
+
+UnitSamples latin_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
+  Twister random(seed);
+  UnitSamples samples(dimensions, std::vector<double>(count));
+  std::vector<std::size_t> cell(count);
+  for (auto& dimension : samples) {
+    std::iota(cell.begin(), cell.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1; --i) {  // Fisher and Yates
+      std::swap(cell[i - 1],
+                cell[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      dimension[i] = (static_cast<double>(cell[i]) + unit(random)) / static_cast<double>(count);
+    }
+  }
+  return samples;
+}
+
+UnitSamples sobol_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
+  Twister random(seed);
+  std::vector<double> shift(dimensions);
+  for (double& s : shift) s = unit(random);
+  boost::random::sobol sequence(dimensions);
+  UnitSamples samples(dimensions, std::vector<double>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const double x = static_cast<double>(sequence() >> 11) * 0x1p-53 + shift[d];
+      samples[d][i] = x - std::floor(x);
+    }
+  }
+  return samples;
+}
+
+std::vector<double> spread(const AxisRange& range, std::uint64_t count, bool logarithmic) {
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(count - 1);
+    values.push_back(scaled(range, part, logarithmic));
+  }
+  return values;
+}
+
+ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
+  table.allow_only({"key", "name", "values", "from", "to", "count", "scale", "sample", "cases"});
+  ReadAxis read;
+  SweepAxis& axis = read.axis;
+  if (table.find("cases") != nullptr) {
+    axis.name = table.need(table.text("name"), "name");
+    read_cases(table, base, axis);
+  } else {
+    const std::string key = table.need(table.text("key"), "key");
+    const std::string last = key == kStiffnessKey ? "wall" : key.substr(key.rfind('.') + 1);
+    axis.name = table.text("name").value_or(last);
+    const ParameterInfo* info = find_parameter(key);
+    if (key == "device") {
+      read_files(table, &SweepWorld::device, axis);
+    } else if (key == "scene") {
+      read_files(table, &SweepWorld::scene, axis);
+    } else if (key == "hand") {
+      read_files(table, &SweepWorld::hand, axis);
+    } else if (info == nullptr && own_key(key) == nullptr && body_property(key) == nullptr) {
+      refuse_key(table, key);
+    } else {
+      axis.key = key;
+      axis.unit = info                 ? info->unit
+                  : body_property(key) ? unit_of(*body_property(key))
+                                       : own_key(key)->unit;
+      if (info) std::ranges::copy(words_of(*info), std::back_inserter(axis.words));
+      axis.words.empty() ? read_numbers(table, read) : read_words(table, axis);
+    }
+  }
+  check_name(table, axis.name);
+  for (const SweepCase& one : axis.cases) {
+    axis.values.push_back(static_cast<double>(axis.words.size()));
+    axis.words.push_back(one.name);
+  }
+  return read;
+}
+
+void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t seed) {
+  for (const auto& [way, draw] : {std::pair{Spread::random, &random_samples},
+                                  {Spread::latin, &latin_samples},
+                                  {Spread::sobol, &sobol_samples}}) {
+    std::vector<ReadAxis*> these;
+    for (ReadAxis& read : axes) {
+      if (read.axis.spread == way) these.push_back(&read);
+    }
+    if (these.empty()) continue;
+    const UnitSamples drawn = draw(these.size(), samples, seed);
+    for (std::size_t d = 0; d < these.size(); ++d) {
+      SweepAxis& axis = these[d]->axis;
+      const ParameterInfo* info = find_parameter(axis.key);
+      const bool whole = info && std::holds_alternative<int Parameters::*>(info->field);
+      for (const double part : drawn[d]) {
+        const double x = scaled(these[d]->range, part, axis.logarithmic);
+        axis.values.push_back(whole ? std::round(x) : x);
+      }
+    }
+  }
+}
+
+SweepLimit read_limit(const TomlTable& table) {
+  const std::string name = table.need(table.text("measure"), "measure");
+  SweepLimit limit{find_measure(name), table.number("above", kAnything),
+                   table.number("below", kAnything)};
+  if (limit.measure == nullptr) table.refuse("measure", "a measure of limpid sweep --help");
+  if (!limit.measure->yes_no() && !limit.above && !limit.below) {
+    table.refuse("measure", "a yes/no measure, or any with above or below");
+  }
+  return limit;
+}
+
+}  // namespace limpid

@@ -1,0 +1,43 @@
+// The axes of a sweep's plan.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "app/sweep/sweep_plan.h"
+#include "devices/files/toml_reader.h"
+
+namespace limpid {
+
+// Points in the unit cube: `count` values in [0, 1) for each of `dimensions`, [dimension][sample].
+// The same seed gives the same points everywhere.
+using UnitSamples = std::vector<std::vector<double>>;
+
+UnitSamples random_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
+// Latin hypercube: each dimension has one value in every interval of 1 / count.
+UnitSamples latin_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
+// Sobol's sequence from its second point on, shifted by the seed round the cube (Cranley and
+// Patterson).
+UnitSamples sobol_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed);
+
+// Interval of a sampled axis.
+struct AxisRange {
+  double from = 0, to = 0;
+};
+struct ReadAxis {
+  SweepAxis axis;
+  AxisRange range;  // of a sampled axis
+};
+// Reads [[axis]]; sampled axes get their values from sample(). Errors: FileError.
+ReadAxis read_axis(const TomlTable& table, const Parameters& base);
+
+// Gives the sampled axes their values.
+void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t seed);
+
+// `count` values from one end to the other, both included.
+std::vector<double> spread(const AxisRange& range, std::uint64_t count, bool logarithmic);
+
+// Reads measure, above, below. Errors: FileError.
+SweepLimit read_limit(const TomlTable& table);
+
+}  // namespace limpid

@@ -1,0 +1,50 @@
+#include "app/desktop/playback/recorded_panel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace limpid {
+namespace {
+
+const RecordedSetting* find(const std::vector<RecordedSetting>& all, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      all, [&](const RecordedSetting& each) { return each.name.starts_with(name); });
+  return found == all.end() ? nullptr : &*found;
+}
+
+TEST(RecordedSettings, TellLawGripAndWhatIsNotAsUsual) {
+  Parameters p;
+  p.kind = CouplingKind::proposed;
+  p.eta = 0.25;
+  p.hand_stiffness = 450;
+  const auto plain = recorded_settings(p, nullptr);
+  ASSERT_NE(find(plain, "Coupling"), nullptr);
+  EXPECT_EQ(find(plain, "Coupling")->value, "proposed");
+  ASSERT_NE(find(plain, "Impedance scaling"), nullptr);
+  EXPECT_NE(find(plain, "Impedance scaling")->value.find("0.25"), std::string::npos);
+  EXPECT_TRUE(std::ranges::any_of(plain, [](const RecordedSetting& each) {
+    return each.value.find("450") != std::string::npos;
+  }));
+  p.encoder_step = 1e-4;  // listed only if it is not the default
+  EXPECT_EQ(recorded_settings(p, nullptr).size(), plain.size() + 1);
+}
+
+TEST(RecordedSettings, OfTwoRunsStandSideBySide) {
+  Parameters p, twin;
+  p.kind = CouplingKind::standard;
+  twin.kind = CouplingKind::predictive;
+  const auto both = recorded_settings(p, &twin);
+  ASSERT_NE(find(both, "Coupling"), nullptr);
+  EXPECT_EQ(find(both, "Coupling")->value, "standard");
+  EXPECT_EQ(find(both, "Coupling")->of_twin, "predictive");
+  for (const std::string_view key : info(CouplingKind::predictive).sliders) {
+    const ParameterInfo& slider = *find_parameter(std::string(key));
+    const auto there = std::ranges::any_of(
+        both, [&](const RecordedSetting& each) { return each.help == slider.meaning; });
+    EXPECT_TRUE(there) << key;
+  }
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,65 @@
+#include "app/desktop/view/magnifier.h"
+
+#include <gtest/gtest.h>
+
+#include "app/desktop/base/picture_signs.h"
+#include "tests/app/plot/imgui_frames.h"
+
+namespace limpid {
+namespace {
+
+ViewState apart_by(double gap) {
+  ViewState state;
+  state.device.links = state.proxy.links = {Pose::Identity()};
+  state.device.tip = Vec3(0, 0, gap);
+  return state;
+}
+
+TEST(Magnifier, SaysTheGapInMillimetres) {
+  EXPECT_EQ(gap_text(0.000423), "gap 0.42 mm");
+  EXPECT_EQ(gap_text(0.0158), "gap 15.8 mm");
+  EXPECT_EQ(gap_text(0), "");
+  EXPECT_EQ(gap_text(std::numeric_limits<double>::quiet_NaN()), "");
+}
+
+TEST(Magnifier, IsShownWhileGapOrContactIsSmallInThePicture) {
+  const Camera camera;
+  const double pixel = camera.meters_per_pixel(Vec3::Zero());
+  EXPECT_FALSE(worth_magnifying(apart_by(0), camera));
+  EXPECT_TRUE(worth_magnifying(apart_by(5 * pixel), camera));
+  EXPECT_FALSE(worth_magnifying(apart_by(200 * pixel), camera));
+  ViewState touching = apart_by(0);
+  touching.contacts.push_back({Vec3::Zero(), Vec3::UnitZ()});
+  EXPECT_TRUE(worth_magnifying(touching, camera));
+  EXPECT_FALSE(worth_magnifying(ViewState{}, camera));
+}
+
+using Lens = ImGuiFrames;
+
+bool overlap(ScreenRect a, ScreenRect b) {
+  return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
+}
+
+// Holds for all places of the tips, and any height of the words at the view's top.
+TEST_F(Lens, HidesNeitherTheTipsNorWordsAndStaysInTheView) {
+  frame([&] {
+    for (const ScreenRect view : {ScreenRect{{300, 24}, {990, 482}}, {{300, 24}, {900, 365}}}) {
+      for (const float words : {0.0f, 60.0f, 90.0f, 150.0f}) {
+        const ScreenRect said{view.min, {view.max.x, view.min.y + words}};
+        for (float x = view.min.x; x < view.max.x; x += 15) {
+          for (float y = view.min.y + words; y < view.max.y; y += 15) {
+            const auto lens = lens_corner(view, words, {x, y});
+            ASSERT_TRUE(lens);
+            EXPECT_FALSE(lens->contains({x, y})) << x << ", " << y << " below " << words;
+            EXPECT_FALSE(overlap(*lens, said));
+            EXPECT_TRUE(view.contains(lens->min) && view.contains(lens->max));
+          }
+        }
+      }
+    }
+    EXPECT_FALSE(lens_corner({{0, 0}, {120, 90}}, 0, {20, 20})) << "too small to show anything";
+  });
+}
+
+}  // namespace
+}  // namespace limpid

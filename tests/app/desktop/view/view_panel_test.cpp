@@ -1,0 +1,220 @@
+// The 3D view, drawn frame by frame. Skipped where EGL gives no context.
+#include "app/desktop/view/view_panel.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/dynamics/arm.h"
+#include "render/gl/offscreen.h"
+#include "tests/app/plot/imgui_frames.h"
+#include "tests/support/built_in.h"
+#include "tests/support/computer.h"
+
+namespace limpid {
+namespace {
+
+class AView : public ImGuiFrames {
+ protected:
+  void SetUp() override {
+    if (!test::has_offscreen_pictures()) GTEST_SKIP() << "no EGL here";
+    context_.emplace(400, 300);
+    History history({.channels = TraceChannels(layout_).count(), .seconds = 1, .tick = 0.01});
+    stage_ =
+        std::make_unique<Stage>(test::omni(), SceneDocument{}, MeshModels{}, std::move(history), 1);
+    const Eigen::VectorXd rest = rest_pose(test::omni());
+    for (const Column c : {Column::device_position, Column::proxy_position}) {
+      std::ranges::copy(rest, layout_.in(std::span(row_), c).begin());
+    }
+    camera_.reset(stage_->picture.bounds());
+    camera_.finish();
+  }
+  ViewScene scene() {
+    ViewScene all{.stage = *stage_, .row = row_, .pixel_height = 600};
+    all.grasp = [this](const Ray&) { return under_; };
+    return all;
+  }
+  void draw() {
+    frame([&] { asked_ = panel_.draw(scene(), camera_, controls_, settings_, rect_, taken_); });
+  }
+  // Draws a frame with the mouse at `at` in the window.
+  void point(const Eigen::Vector2d& at) {
+    show_mouse({static_cast<float>(at.x()), static_cast<float>(at.y())});
+    draw();
+  }
+  void press(int button, bool down) {
+    show_mouse_button(button, down);
+    draw();
+  }
+  // Presses Ctrl and the left button at `at`.
+  void point_at_body(const Eigen::Vector2d& at) {
+    show_modifiers(true, false, false);
+    point(at);
+    press(0, true);
+  }
+  Eigen::Vector2d seen(const Vec3& point) const {
+    const auto pixel = *camera_.project(point);
+    return {pixel.x() + static_cast<double>(rect_.min.x),
+            pixel.y() + static_cast<double>(rect_.min.y)};
+  }
+  Vec3 tip() const {
+    return stage_->rows().tip(layout_.in(std::span<const double>(row_), Column::device_position));
+  }
+  bool differs(const Settings& settings) { return panel_.differs(scene(), camera_, settings); }
+
+  const RowLayout layout_{3};
+  std::vector<double> row_ = std::vector<double>(static_cast<std::size_t>(layout_.stride()), 0.0);
+  std::optional<OffscreenContext> context_;
+  std::unique_ptr<Stage> stage_;
+  ViewPanel panel_;
+  Camera camera_;
+  Controls controls_;
+  ScreenRect rect_{{0, 0}, {400, 300}};
+  bool taken_ = false;
+  std::optional<BodyPull> under_;
+  ViewRequest asked_;
+  Settings settings_;
+};
+
+// The row is the same in every frame, as in paused playback, after a motion.
+TEST_F(AView, IsNotDrawnAgainWhileARowStandsStill) {
+  for (const double time : {0.0, 0.1, 0.2}) {
+    layout_.in(std::span(row_), Column::time)[0] = time;
+    layout_.in(std::span(row_), Column::device_position)[0] = time;
+    draw();
+    EXPECT_FALSE(differs(settings_)) << time;
+  }
+}
+
+TEST_F(AView, IsDrawnAgainForEachOfItsSwitches) {
+  draw();
+  EXPECT_FALSE(differs(settings_)) << "nothing has moved";
+  using Switch = bool Settings::*;
+  for (const Switch one : {&Settings::show_ghost, &Settings::show_trail, &Settings::show_forces,
+                           &Settings::show_grid, &Settings::show_joints}) {
+    Settings other = settings_;
+    other.*one = !(other.*one);
+    EXPECT_TRUE(differs(other));
+  }
+  Settings other = settings_;
+  other.theme = other.theme == Theme::dark ? Theme::light : Theme::dark;
+  EXPECT_TRUE(differs(other));
+}
+
+TEST_F(AView, PullsTheArmFromNearItsTipAndTurnsElsewhere) {
+  draw();
+  const Eigen::Vector2d at_tip = seen(tip()), aside = at_tip + Eigen::Vector2d(0, -60);
+  const Vec3 eye = camera_.eye();
+  point(at_tip + Eigen::Vector2d(20, 10));
+  press(0, true);
+  EXPECT_TRUE(controls_.grab);
+  EXPECT_TRUE(controls_.goal.isApprox(tip(), 1e-6)) << "nothing has moved yet";
+  point(at_tip + Eigen::Vector2d(30, 10));
+  EXPECT_NEAR((seen(controls_.goal) - at_tip).x(), 10, 1e-3);
+  EXPECT_EQ(camera_.eye(), eye);
+  press(0, false);
+  EXPECT_FALSE(controls_.grab);
+
+  point(aside);
+  press(0, true);
+  EXPECT_FALSE(controls_.grab);
+  point(aside + Eigen::Vector2d(30, 0));
+  EXPECT_TRUE(asked_.turned);
+  EXPECT_NE(camera_.eye(), eye);
+  press(0, false);
+  EXPECT_FALSE(asked_.clicked) << "it has turned the camera";
+}
+
+TEST_F(AView, PullsABodyWithCtrl) {
+  draw();
+  const Vec3 point = tip() + Vec3(0, 0.03, 0.02);
+  const Eigen::Vector2d at = seen(point);
+  const Vec3 eye = camera_.eye();
+  under_ = BodyPull{2, {0.01, 0, 0}, point};
+  point_at_body(at);
+  EXPECT_EQ(controls_.pull.body, 2);
+  EXPECT_FALSE(controls_.grab);
+  EXPECT_LT((controls_.pull.target - point).norm(), 1e-6) << "nothing has moved yet";
+  this->point(at + Eigen::Vector2d(15, -10));
+  EXPECT_LT((seen(controls_.pull.target) - at - Eigen::Vector2d(15, -10)).norm(), 1e-3);
+  EXPECT_EQ(controls_.pull.point, Vec3(0.01, 0, 0));
+  EXPECT_EQ(camera_.eye(), eye);
+  show_modifiers(false, false, false);
+  draw();
+  EXPECT_EQ(controls_.pull.body, 2) << "as long as the button is down";
+  press(0, false);
+  EXPECT_EQ(controls_.pull, BodyPull{});
+  EXPECT_FALSE(asked_.clicked);
+}
+
+TEST_F(AView, StopsPullingWhenTheSceneHasChanged) {
+  draw();
+  under_ = BodyPull{0, Vec3::Zero(), tip()};
+  point_at_body(seen(tip()));
+  ASSERT_EQ(controls_.pull.body, 0);
+  controls_.pull = {};
+  point(seen(tip()) + Eigen::Vector2d(20, 0));
+  EXPECT_EQ(controls_.pull, BodyPull{});
+  press(0, false);
+  show_modifiers(false, false, false);
+}
+
+TEST_F(AView, TurnsWithCtrlWhereNoBodyIs) {
+  draw();
+  const Eigen::Vector2d aside = seen(tip()) + Eigen::Vector2d(0, -60);
+  const Vec3 eye = camera_.eye();
+  point_at_body(aside);
+  point(aside + Eigen::Vector2d(30, 0));
+  EXPECT_EQ(controls_.pull, BodyPull{});
+  EXPECT_NE(camera_.eye(), eye);
+  press(0, false);
+  show_modifiers(false, false, false);
+}
+
+TEST_F(AView, SaysWhereSomebodyClicked) {
+  draw();
+  const Eigen::Vector2d aside = (seen(tip()) + Eigen::Vector2d(3, -60)).array().round();
+  for (const int button : {0, 1}) {
+    point(aside);
+    press(button, true);
+    EXPECT_FALSE(asked_.clicked || asked_.asked) << "a drag may come of it";
+    point(aside + Eigen::Vector2d(2, 0));
+    press(button, false);
+    const auto& ray = button == 0 ? asked_.clicked : asked_.asked;
+    ASSERT_TRUE(ray) << button;
+    EXPECT_TRUE(ray->direction.isApprox(camera_.ray(aside).direction, 1e-5));
+    draw();
+    EXPECT_FALSE(asked_.clicked || asked_.asked) << "once";
+  }
+  EXPECT_FALSE(controls_.grab);
+}
+
+TEST_F(AView, LeavesTheHandWhereItIsWhenItIsLookedAtOtherwise) {
+  draw();
+  const Eigen::Vector2d at = seen(tip());
+  point(at);
+  press(0, true);
+  point(at + Eigen::Vector2d(15, 10));
+  const Vec3 goal = controls_.goal;
+  rect_ = {{60, 20}, {400, 300}};  // a panel has appeared
+  draw();
+  EXPECT_TRUE(controls_.goal.isApprox(goal, 1e-9));
+  camera_.look(Camera::View::side);
+  camera_.finish();
+  draw();
+  EXPECT_TRUE(controls_.goal.isApprox(goal, 1e-9));
+  point(at + Eigen::Vector2d(25, 10));
+  EXPECT_FALSE(controls_.goal.isApprox(goal, 1e-6)) << "it goes on from there";
+}
+
+TEST_F(AView, LeavesTheMouseToWhoHasTakenIt) {
+  taken_ = true;
+  point(seen(tip()));
+  press(0, true);
+  point(seen(tip()) + Eigen::Vector2d(30, 0));
+  press(0, false);
+  EXPECT_FALSE(controls_.grab);
+  EXPECT_FALSE(asked_.turned || asked_.clicked);
+}
+
+}  // namespace
+}  // namespace limpid

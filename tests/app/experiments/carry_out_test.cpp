@@ -1,0 +1,133 @@
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "app/experiments/signals.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+Outcome sound(TrialRunner&) {
+  Outcome outcome;
+  outcome.figure.title = "Sound";
+  outcome.figure.panels = {
+      {.title = "P", .series = {{"s", kHandInk, Series::Style::line, {{0, 0}, {1, 1}}}}}};
+  outcome.checks = {at_most("three at most four", 3, 4), at_least("three at least three", 3, 3)};
+  return outcome;
+}
+
+Outcome broken(TrialRunner& lab) {
+  Outcome outcome = sound(lab);
+  outcome.figure.title = "Broken <script>";
+  outcome.checks.push_back(at_most("not finite", std::numeric_limits<double>::quiet_NaN(), 1));
+  return outcome;
+}
+
+TrialRunner::Options in(const fs::path& dir) {
+  TrialRunner::Options options;
+  options.dir = dir;
+  return options;
+}
+
+class CarryOut : public testing::Test {
+ protected:
+  test::TempDir temp_;
+  const fs::path dir_ = temp_ / ".";
+};
+
+TEST_F(CarryOut, LeavesTableFigureAndVerdict) {
+  EXPECT_TRUE(carry_out({"sound", "about", sound}, in(dir_ / "new")).passed());
+  for (const char* end : {".csv", ".png", ".svg", ".json"}) {
+    EXPECT_TRUE(fs::exists(dir_ / "new" / (std::string("sound") + end))) << end;
+  }
+  const auto verdict = nlohmann::json::parse(read(dir_ / "new/sound.json"));
+  EXPECT_EQ(verdict.at("name"), "sound");
+  EXPECT_EQ(verdict.at("passed"), true);
+  ASSERT_EQ(verdict.at("checks").size(), 2u);
+  EXPECT_EQ(verdict.at("checks")[0],
+            (nlohmann::json{
+                {"what", "three at most four"}, {"value", 3.0}, {"bound", 4.0}, {"passed", true}}));
+}
+
+TEST_F(CarryOut, CallsAValueThatIsNotFiniteAFailure) {
+  EXPECT_FALSE(carry_out({"broken", "about", broken}, in(dir_)).passed());
+  EXPECT_EQ(nlohmann::json::parse(read(dir_ / "broken.json")).at("passed"), false);
+}
+
+Outcome runs_away(TrialRunner& lab) {
+  Parameters p;
+  p.eta = 0.05;
+  p.hand_stiffness = 3000;
+  p.hand_damping = 0;
+  p.torque_limit = 1000;
+  lab.run({Trial{"away", plan_of("free", "free", p), false}});
+  return sound(lab);
+}
+
+// Holds for any other result of the experiment.
+TEST_F(CarryOut, CallsATrialThatDivergedAFailureAndSaysTheConditions) {
+  const Outcome outcome = carry_out({"away", "about", runs_away}, in(dir_));
+  EXPECT_FALSE(outcome.passed());
+  EXPECT_EQ(outcome.checks.back().what, "trials that diverged, of those that may not");
+  EXPECT_EQ(outcome.checks.back().value, 1);
+  EXPECT_THAT(outcome.figure.caption, HasSubstr("Conditions: arm omni"));
+}
+
+TEST(Worse, KeepsWhatIsNoNumberWhereMaximumWouldDropIt) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(worse(1, 2), 2);
+  EXPECT_EQ(worse_low(1, 2), 1);
+  EXPECT_TRUE(std::isnan(worse(1, none)));
+  EXPECT_TRUE(std::isnan(worse(none, 1)));
+  EXPECT_TRUE(std::isnan(worse_low(1, none)));
+  EXPECT_FALSE(at_most("", worse(0, none), 1).passed);
+}
+
+TEST_F(CarryOut, PromisesNothingWithoutChecks) { EXPECT_FALSE(Outcome{}.passed()); }
+
+TEST_F(CarryOut, ReportsOnEveryVerdictThereIs) {
+  // The report knows the experiments by name; made up ones take their places here.
+  carry_out({"inertia", "about", sound}, in(dir_));
+  carry_out({"passivity", "about", broken}, in(dir_));
+  write_report(dir_);
+  const std::string html = read(dir_ / "report.html");
+  EXPECT_THAT(html, HasSubstr("1 of 2 experiments passed"));
+  EXPECT_THAT(html, HasSubstr("inertia.svg"));
+  EXPECT_THAT(html, HasSubstr("passivity.svg"));
+  EXPECT_THAT(html, HasSubstr("three at most four"));
+  EXPECT_THAT(html, HasSubstr("Broken &lt;script&gt;"));
+  EXPECT_THAT(html, Not(HasSubstr("coordination.svg")));
+}
+
+TEST_F(CarryOut, ReportsPastAVerdictThatIsDamaged) {
+  carry_out({"inertia", "about", sound}, in(dir_));
+  std::ofstream(dir_ / "passivity.json") << "{\"checks\": [";
+  write_report(dir_);
+  EXPECT_THAT(read(dir_ / "report.html"), HasSubstr("1 of 1 experiments passed"));
+}
+
+TEST(Experiments, HaveNamesOfTheirOwn) {
+  std::set<std::string> names;
+  for (const Experiment& e : experiments()) EXPECT_TRUE(names.insert(e.name).second) << e.name;
+}
+
+}  // namespace
+}  // namespace limpid

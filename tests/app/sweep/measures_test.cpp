@@ -1,0 +1,195 @@
+#include "app/sweep/measures.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "app/run/analysis.h"
+#include "app/sweep/measure_point.h"
+#include "tests/app/sweep/plans.h"
+#include "tests/support/built_in.h"
+#include "tests/support/objects.h"
+
+namespace limpid {
+namespace {
+
+// Values that a plan measures at a point, by name.
+class Measures : public testing::Test {
+ protected:
+  void read(const std::string& text) { plan_ = test::sweep_plan(dir_, text); }
+  double measured(std::uint64_t point, const std::string& name) {
+    const auto values = measure_point(plan_, point, stop_);
+    const auto columns = measured_columns(plan_);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (columns[c].name == name) return (*values)[c];
+    }
+    ADD_FAILURE() << name;
+    return 0;
+  }
+  test::TempDir dir_;
+  SweepPlan plan_;
+  std::atomic<bool> stop_{false};
+};
+
+// (1) at rest: k_vc x_E = f2.
+TEST_F(Measures, ErrorOverContactOfTheStandardCouplingIsItsCompliance) {
+  read(R"(hand = "touch.csv"
+seconds = 4
+measure = ["error_slope"]
+set = ["coupling.kind = standard"]
+axis = [{ key = "coupling.k_vc", values = [5, 10, 20] }]
+)");
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const double compliance = 1 / plan_.axes[0].values[i];
+    EXPECT_NEAR(measured(i, "error_slope"), compliance, 0.02 * compliance);
+  }
+}
+
+// A wall behind the spring of the standard coupling: the stiffness is 1 / (1 + K lever^2 / k_vc) of
+// its own.
+TEST_F(Measures, WallThatIsTappedIsFeltThroughTheCouplingsSpring) {
+  read(R"(hand = { tap = 1 }
+seconds = 2
+measure = ["wall", "wall_felt", "wall_rattle"]
+set = ["coupling.kind = standard"]
+axis = [{ key = "scene.stiffness", values = [100, 400] }]
+)");
+  const RunPlan run = run_of(plan_, 0);
+  const Vec3 n = test::shape<Plane>(run.document.scene).normal;
+  const Eigen::MatrixXd J = arm_at(run.arm, rest_pose(run.arm)).J;
+  const double lever2 = (J.transpose() * n).squaredNorm();
+  for (std::uint64_t i = 0; i < 2; ++i) {
+    const double wall = plan_.axes[0].values[i];
+    EXPECT_EQ(measured(i, "wall"), wall);
+    EXPECT_NEAR(measured(i, "wall_felt"), 1 / (1 + wall * lever2 / Parameters{}.k_vc), 0.02);
+    EXPECT_LT(measured(i, "wall_rattle"), 0.05);
+  }
+}
+
+TEST_F(Measures, OfAWallAreNoneWhereThereIsNoneOrMoreThanOne) {
+  read(R"(scene = "free.toml"
+hand = "free.csv"
+seconds = 0.1
+measure = ["wall", "wall_felt", "wall_rattle"]
+axis = [{ key = "coupling.eta", values = [1] }]
+)");
+  for (const char* name : {"wall", "wall_felt", "wall_rattle"}) {
+    EXPECT_TRUE(std::isnan(measured(0, name))) << name;
+  }
+}
+
+// Within its band the predictive law shows eta times the arm's own inertia.
+TEST_F(Measures, InertiaFeltInFreeMotionIsEta) {
+  read(R"(scene = "free.toml"
+hand = "free.csv"
+measure = ["felt_inertia", "felt_stiffness"]
+set = ["coupling.kind = predictive"]
+axis = [{ key = "coupling.eta", values = [0.5, 1, 3] }]
+)");
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const double eta = plan_.axes[0].values[i];
+    EXPECT_NEAR(measured(i, "felt_inertia"), eta, 0.02 * eta);
+    EXPECT_TRUE(std::isnan(measured(i, "felt_stiffness"))) << "nothing was touched";
+  }
+}
+
+// Damping under the proposed law: eta (b_d + b_v), plus k_vc T/2 for the lag of (1) behind (2).
+TEST_F(Measures, DampingFeltInFreeMotionIsThatOfDeviceAndProxy) {
+  read(R"(scene = "free.toml"
+hand = "free.csv"
+measure = ["felt_damping"]
+axis = [{ key = "coupling.eta", values = [0.7, 1, 2] }]
+)");
+  const Parameters p;
+  const double b = test::omni().joints[0].damping + p.b_v + p.k_vc * p.tick / 2;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const double eta = plan_.axes[0].values[i];
+    EXPECT_NEAR(measured(i, "felt_damping"), eta * b, 0.02 * eta * b);
+  }
+}
+
+// The wall behind the coupling's spring, from the tip: 1/K = 1/K_wall + n'JJ'n / k_vc. A rough wall
+// would hold the tip across n as well.
+TEST_F(Measures, StiffnessFeltIsTheWallBehindTheSpring) {
+  std::ofstream(dir_ / "smooth.toml")
+      << "[[plane]]\nname = \"table top\"\npoint = [0.2, 0.0, -0.04]\nnormal = [0.0, 0.0, 1.0]\n"
+         "stiffness = 600\n";
+  std::ofstream(dir_ / "press.csv")
+      << "time_s,x_m,y_m,z_m\n0,0.19,0,-0.0395\n3,0.19,0,-0.0435\n6,0.19,0,-0.0395\n";
+  read(R"(scene = "smooth.toml"
+hand = "press.csv"
+measure = ["felt_stiffness"]
+set = ["hand.stiffness = 1000"]
+axis = [{ key = "coupling.kind", values = ["standard", "predictive"] },
+        { key = "scene.stiffness", values = [300, 600] }]
+)");
+  const RunPlan run = run_of(plan_, 0);
+  const Vec3 pressed(0.19, 0, -0.041);
+  const ArmAt arm = arm_at(run.arm, rest_at(run.arm, pressed).x1);
+  const double spring = (arm.J * arm.J.transpose())(2, 2) / run.parameters.k_vc;
+  for (const std::uint64_t wall : {0, 1}) {
+    const double K = plan_.axes[1].values[wall], in_series = 1 / (1 / K + spring);
+    EXPECT_NEAR(measured(wall, "felt_stiffness"), in_series, 0.05 * in_series);
+    EXPECT_NEAR(measured(2 + wall, "felt_stiffness"), K, 0.05 * K);
+  }
+}
+
+// A tip that trembles at 80 Hz about a joint has an rms speed of r A w / sqrt 2. At 2 Hz it does
+// not count.
+TEST_F(Measures, ChatterIsTheFastPartOfTheTipsSpeed) {
+  const ArmDescription omni = test::omni();
+  const RowLayout layout(omni.dof());
+  const Arm<kAnyDof> arm(omni);
+  constexpr double T = 0.001, A = 1e-4;
+  constexpr std::uint64_t rows = 4000;
+  const Eigen::VectorXd x0 = rest_pose(omni);
+  const double r = std::hypot(arm.tip_at(x0).x(), arm.tip_at(x0).y());
+  for (const double f : {80.0, 2.0}) {
+    const double w = 2 * std::numbers::pi * f;
+    RunMeter meter(omni, T, rows, true);
+    std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+    for (std::uint64_t k = 0; k < rows; ++k) {
+      Eigen::VectorXd x = x0;
+      x[0] += A * std::sin(w * T * static_cast<double>(k));
+      std::ranges::copy(x, layout.in(std::span(row), Column::device_position).begin());
+      std::ranges::copy(x, layout.in(std::span(row), Column::proxy_position).begin());
+      meter.add(row);
+    }
+    // Speed by differences falls short of the true one by sin(wT/2) / (wT/2).
+    const double expected = r * A * w / std::sqrt(2) * std::sin(w * T / 2) / (w * T / 2);
+    EXPECT_NEAR(meter.chatter(), f > 20 ? expected : 0, 0.01 * expected) << f;
+  }
+}
+
+TEST_F(Measures, OfALoopThatDivergedSayWhen) {
+  read(R"(scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 1e-4, 1e-4] }
+seconds = 3
+set = ["hand.damping = 0", "hand.stiffness = 3000", "device.torque_limit = 1000"]
+measure = ["diverged", "diverged_at", "seconds", "stable", "passive", "energy_highest"]
+axis = [{ key = "coupling.eta", values = [0.1, 1] }]
+)");
+  EXPECT_EQ(measured(0, "diverged"), 1);
+  EXPECT_LT(measured(0, "diverged_at"), measured(0, "seconds"));
+  EXPECT_LT(measured(0, "seconds"), 3);
+  EXPECT_EQ(measured(0, "stable") + measured(0, "passive"), 0);
+  EXPECT_EQ(measured(1, "diverged"), 0);
+  EXPECT_TRUE(std::isnan(measured(1, "diverged_at")));
+  EXPECT_NEAR(measured(1, "seconds"), 3, 1e-9);
+  EXPECT_EQ(measured(1, "stable"), 1);
+}
+
+TEST_F(Measures, StopRulesEndARunEarly) {
+  read(R"(hand = "touch.csv"
+seconds = 4
+measure = ["contact_largest", "seconds"]
+stop = [{ measure = "contact_largest", above = 0.05, after = 1.5 }]
+)");
+  EXPECT_GE(measured(0, "seconds"), 1.5);
+  EXPECT_LT(measured(0, "seconds"), 4);
+  EXPECT_GT(measured(0, "contact_largest"), 0.05);
+}
+
+}  // namespace
+}  // namespace limpid

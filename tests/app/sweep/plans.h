@@ -1,0 +1,49 @@
+// Plans for tests, and the files they make.
+#pragma once
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "app/sweep/sweep_plan.h"
+#include "app/sweep/sweep_work.h"
+#include "tests/support/temp_dir.h"
+
+namespace limpid::test {
+
+inline SweepPlan sweep_plan(const TempDir& dir, const std::string& text) {
+  const std::filesystem::path file = dir / "plan.toml";
+  std::ofstream(file) << text;
+  return read_sweep_plan(file);
+}
+
+inline std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Bytes of the table from all existing blocks; `complete` tells whether these are all.
+inline std::string gathered(const SweepPlan& plan, const std::filesystem::path& out,
+                            bool& complete) {
+  const SweepFolder folder(plan, out);
+  SweepBook book(plan, folder, false);
+  book.gather();
+  book.write();
+  complete = book.complete();
+  return bytes_of(folder.table());
+}
+
+// A fast plan: a few ticks a point.
+inline const std::string kShort = R"(title = "Short"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
+seconds = 0.02
+measure = ["human_rms", "energy", "stable"]
+block = 4
+axis = [
+  { key = "coupling.kind", values = ["standard", "proposed", "predictive"] },
+  { key = "coupling.eta", from = 0.4, to = 1, count = 7 },
+]
+)";
+
+}  // namespace limpid::test

@@ -1,0 +1,146 @@
+#include "app/sweep/sweep_work.h"
+
+#include <gmock/gmock.h>
+#include <hdf5.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "devices/files/text_file.h"
+#include "tests/app/sweep/plans.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class SweepWork : public testing::Test {
+ protected:
+  bool work(const fs::path& out, SweepShare share, const TakeBlock& take = {}) {
+    const SweepFolder folder(plan_, out);
+    return work_off(plan_, folder, share, stop_, done_, take);
+  }
+  // Bytes of the table.
+  std::string gathered(const fs::path& out) { return test::gathered(plan_, out, complete_); }
+  std::string reference() {
+    work(dir_ / "reference", {.threads = 1});
+    return gathered(dir_ / "reference");
+  }
+
+  test::TempDir dir_;
+  SweepPlan plan_ = test::sweep_plan(dir_, test::kShort);
+  std::atomic<bool> stop_{false};
+  std::atomic<std::uint64_t> done_{0};
+  bool complete_ = false;
+};
+
+TEST_F(SweepWork, GivesTheSameTableWhoeverDoesIt) {
+  const std::string table = reference();
+  EXPECT_TRUE(complete_);
+  EXPECT_EQ(done_, plan_.points());
+  ASSERT_TRUE(work(dir_ / "threads", {.threads = 3}));
+  EXPECT_EQ(gathered(dir_ / "threads"), table);
+  for (const std::uint64_t shard : {2, 0, 1}) {
+    ASSERT_TRUE(work(dir_ / "shards", {.shard = shard, .shards = 3, .threads = 1}));
+    gathered(dir_ / "shards");
+    EXPECT_EQ(complete_, shard == 1);
+  }
+  EXPECT_EQ(gathered(dir_ / "shards"), table);
+  ASSERT_TRUE(work(dir_ / "helped", {.shard = 4, .shards = 5, .helps = true, .threads = 2}));
+  EXPECT_EQ(gathered(dir_ / "helped"), table);
+}
+
+TEST_F(SweepWork, GoesOnWhereItWasStopped) {
+  const std::string table = reference();
+  int taken = 0;
+  EXPECT_FALSE(work(dir_ / "stopped", {.threads = 1}, [&](std::uint64_t, const auto&) {
+    if (++taken == 3) stop_ = true;
+  }));
+  EXPECT_EQ(taken, 3);
+  EXPECT_NE(gathered(dir_ / "stopped"), table);
+  EXPECT_FALSE(complete_);
+  stop_ = false;
+  std::vector<std::uint64_t> left;
+  const SweepFolder folder(plan_, dir_ / "stopped");
+  for (std::uint64_t b = 0; b < blocks_of(plan_); ++b) {
+    if (!folder.there(block_of(plan_, b))) left.push_back(b);
+  }
+  EXPECT_EQ(left.size(), blocks_of(plan_) - 3);
+  ASSERT_TRUE(work(dir_ / "stopped", {.threads = 2}));
+  EXPECT_EQ(gathered(dir_ / "stopped"), table);
+}
+
+TEST_F(SweepWork, DoesDamagedAndCutBlocksAgain) {
+  const std::string table = reference();
+  const SweepFolder folder(plan_, dir_ / "reference");
+  for (const std::uint64_t block : {1u, 2u}) {
+    std::string bytes = test::bytes_of(folder.file(block_of(plan_, block)));
+    // A value of the block, found by its bits.
+    double value = folder.read(block_of(plan_, block))->front();
+    const auto at = bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value));
+    ASSERT_NE(at, std::string::npos);
+    if (block == 1) bytes[at + 2] = static_cast<char>(bytes[at + 2] ^ 1);
+    if (block == 2) bytes.resize(bytes.size() / 2);
+    std::ofstream(folder.file(block_of(plan_, block)), std::ios::binary) << bytes;
+    EXPECT_FALSE(folder.read(block_of(plan_, block))) << block;
+  }
+  gathered(dir_ / "reference");
+  EXPECT_FALSE(complete_);
+  ASSERT_TRUE(work(dir_ / "reference", {}));
+  EXPECT_EQ(gathered(dir_ / "reference"), table);
+}
+
+TEST_F(SweepWork, RefusesBlocksOfAnotherBuild) {
+  reference();
+  const SweepFolder folder(plan_, dir_ / "reference");
+  const std::uint64_t other = 0x1234;
+  const hid_t file = H5Fopen(folder.file(block_of(plan_, 3)).c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t attribute = H5Aopen(file, "build", H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_UINT64, &other);
+  H5Aclose(attribute);
+  H5Fclose(file);
+  try {
+    gathered(dir_ / "reference");
+    FAIL() << "taken";
+  } catch (const FileError& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("000003.h5"), HasSubstr("another build"),
+                                HasSubstr("0000000000001234")));
+  }
+}
+
+TEST_F(SweepWork, RefusesAFolderOfAnotherPlan) {
+  reference();
+  const SweepPlan other = test::sweep_plan(dir_, test::kShort + "# and more\n");
+  try {
+    const SweepFolder folder(other, dir_ / "reference");
+    FAIL() << "taken";
+  } catch (const FileError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("another plan"));
+  }
+}
+
+TEST_F(SweepWork, LeavesATableOfWhatIsDone) {
+  work(dir_ / "part", {.shard = 1, .shards = 2, .threads = 1});
+  gathered(dir_ / "part");
+  const hid_t file = H5Fopen((dir_ / "part/table.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const auto column = [&](const char* path) {
+    std::vector<double> values(plan_.points());
+    const hid_t dataset = H5Dopen2(file, path, H5P_DEFAULT);
+    EXPECT_GE(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    H5Dclose(dataset);
+    return values;
+  };
+  const auto eta = column("/axis/eta"), done = column("/done"), rms = column("/measure/human_rms");
+  H5Fclose(file);
+  for (std::uint64_t i = 0; i < plan_.points(); ++i) {
+    EXPECT_NEAR(eta[i], 0.4 + 0.1 * static_cast<double>(i % 7), 1e-12);
+    EXPECT_EQ(done[i], i / 4 % 2);  // every other block of 4
+    EXPECT_EQ(std::isnan(rms[i]), done[i] == 0);
+  }
+}
+
+}  // namespace
+}  // namespace limpid
