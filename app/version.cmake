@@ -1,6 +1,6 @@
 # The version as git describes the tree: as version.cpp, and as version.cmake with the time of the
 # last commit, for packages. Both are written only when they change.
-#   cmake -DSOURCE=DIR -DINTO=DIR -DVERSION=0.1.0 -P version.cmake
+#   cmake -DSOURCE=DIR -DINTO=DIR -DVERSION=0.2.0 -P version.cmake
 cmake_minimum_required(VERSION 3.25)
 cmake_path(GET SOURCE PARENT_PATH above)
 set(ENV{GIT_CEILING_DIRECTORIES} ${above})  # a repository around an unpacked archive is another one
@@ -36,7 +36,7 @@ endif()
 
 file(CONFIGURE OUTPUT ${INTO}/version.cpp CONTENT
 "#include \"app/base/version.h\"\n
-const char* limpid::program_version() { return LIMPID_VERSION \"${more}\"; }
+const char* limpid::program_version() { return \"${VERSION}${more}\"; }
 ")
 file(CONFIGURE OUTPUT ${INTO}/version.cmake CONTENT
 "set(limpid_version ${VERSION}${more})\nset(limpid_epoch ${epoch})\n")

@@ -20,7 +20,7 @@ std::string settings_digest(const std::set<std::string>& configs);
 // be the same again.
 std::string today();
 
-// Returns "limpid 0.1.0, settings 3f2a94d1, seed 1, 2026-11-26", without empty parts. `date`: empty
+// Returns "limpid 0.2.0, settings 3f2a94d1, seed 1, 2026-11-26", without empty parts. `date`: empty
 // for files that are the same however, and whenever, they are made.
 std::string provenance(const std::string& settings, std::optional<std::uint64_t> seed,
                        const std::string& date = today());
