@@ -7,7 +7,9 @@
 
 #include "render/theme.h"
 
-namespace limpid::palette {
+namespace limpid {
+
+namespace palette {
 
 using Rgb = std::array<float, 3>;
 
@@ -34,9 +36,7 @@ constexpr Rgb of_twin(const Rgb& color, Theme theme) {
   return mix(color, from_hex(theme == Theme::dark ? 0xDFE4EA : 0x1D2329), 0.55f);
 }
 
-}  // namespace limpid::palette
-
-namespace limpid {
+}  // namespace palette
 
 // Light and background of a theme. Linear light; the backdrop's two colours are sRGB.
 struct Lighting {

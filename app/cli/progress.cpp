@@ -25,19 +25,52 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Tries a file there, so that what forbids it is known. 0, or errno.
+// Tries to write a file in `dir`; returns 0 or errno.
 int try_to_write(const fs::path& dir) {
   const std::string probe = (dir / fmt::format(".{}.probe", getpid())).string();
   const int descriptor = open(probe.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (descriptor < 0) return errno;
   const std::vector<char> some(1 << 16);
-  errno = ENOSPC;  // what a short write means
+  errno = ENOSPC;  // the meaning of a short write
   const bool written =
       ::write(descriptor, some.data(), some.size()) == std::ssize(some) && fsync(descriptor) == 0;
   const int code = written ? 0 : errno;
   close(descriptor);
   unlink(probe.c_str());
   return code;
+}
+
+bool line_typed() {
+  pollfd in{STDIN_FILENO, POLLIN, 0};
+  if (poll(&in, 1, 0) <= 0) return false;
+  std::string line;
+  if (!std::getline(std::cin, line)) throw UsageError("not begun");
+  return true;
+}
+
+using Seconds = std::chrono::duration<double>;
+
+// Columns that a line may fill on standard error; 79 if it is no terminal. Leaves one column free:
+// a full line would wrap and leave something behind.
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col - 1u : 79u;
+}
+
+std::string duration(double seconds) {
+  const auto s = static_cast<long>(std::min(std::ceil(seconds), 1e9));
+  if (s < 120) return fmt::format("{} s", s);
+  if (s < 7200) return fmt::format("{} min {} s", s / 60, s % 60);
+  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
+}
+
+// Writes a line over the last one, `before` letters long; returns its own length.
+std::size_t write_over(std::size_t before, std::string line) {
+  line.resize(std::min(line.size(), terminal_width()));
+  fmt::print(stderr, "\r{:{}}\r{}", "", std::min(before, terminal_width()), line);
+  std::fflush(stderr);
+  return line.size();
 }
 
 }  // namespace
@@ -53,18 +86,6 @@ void prepare_out(const fs::path& dir) {
   throw UsageError(fmt::format("--out {}: {}", dir.string(), error.message()));
 }
 
-namespace {
-
-bool line_typed() {
-  pollfd in{STDIN_FILENO, POLLIN, 0};
-  if (poll(&in, 1, 0) <= 0) return false;
-  std::string line;
-  if (!std::getline(std::cin, line)) throw UsageError("not begun");
-  return true;
-}
-
-}  // namespace
-
 bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhile) {
   tcflush(STDIN_FILENO, TCIFLUSH);
   fmt::print("{}", prompt);
@@ -74,35 +95,6 @@ bool await_enter(const std::string& prompt, const std::function<bool()>& meanwhi
   }
   return true;
 }
-
-namespace {
-
-using Seconds = std::chrono::duration<double>;
-
-// Columns of the terminal on standard error that a line may fill; 79 where it is none. A line as
-// wide as the terminal would wrap, and leave something behind.
-std::size_t terminal_width() {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  return known ? size.ws_col - 1u : 79u;
-}
-
-std::string duration(double seconds) {
-  const auto s = static_cast<long>(std::min(std::ceil(seconds), 1e9));
-  if (s < 120) return fmt::format("{} s", s);
-  if (s < 7200) return fmt::format("{} min {} s", s / 60, s % 60);
-  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
-}
-
-// In place of what stood there, whose length it is given; returns its own.
-std::size_t write_over(std::size_t before, std::string line) {
-  line.resize(std::min(line.size(), terminal_width()));
-  fmt::print(stderr, "\r{:{}}\r{}", "", std::min(before, terminal_width()), line);
-  std::fflush(stderr);
-  return line.size();
-}
-
-}  // namespace
 
 std::string progress_line(const Progress::Words& words, double done, double seconds) {
   const double part = std::clamp(done / words.whole, 0.0, 1.0);

@@ -14,216 +14,19 @@
 
 #include "app/base/in_parallel.h"
 #include "app/base/markup.h"
+#include "app/experiments/live.h"
+#include "app/plot/figure.h"
 #include "app/run/provenance.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/run_key.h"
-#include "app/plot/figure.h"
-#include "app/experiments/live.h"
 #include "app/sweep/sweep_table.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
 
-namespace {
-
-constexpr std::size_t kListed = 4;  // more values are told by the first and the last
-
-std::string values(const std::set<double>& set, const std::string& unit) {
-  std::vector<std::string> words;
-  words.reserve(set.size());
-  for (const double value : set) words.push_back(fmt::format("{:.4g}", value));
-  if (words.size() > kListed) return fmt::format("{} to {} {}", words.front(), words.back(), unit);
-  if (words.size() < 2) return fmt::format("{} {}", words.front(), unit);
-  const std::string last = words.back();
-  words.pop_back();
-  return fmt::format("{} and {} {}", fmt::join(words, ", "), last, unit);
-}
-
-// "none", or the values; zero among others is said in words, too.
-std::string or_none(std::set<double> set, const std::string& unit, const std::string& none) {
-  const bool zero = set.erase(0) > 0;
-  if (set.empty()) return none;
-  return (zero ? none + " and " : "") + values(set, unit);
-}
-
-}  // namespace
-
-void Conditions::add(const ArmDescription& arm, const Parameters& p) {
-  configs_.insert(config_text(p));
-  arms_.insert(arm.name);
-  joints_.insert(arm.dof());
-  if (std::isnan(p.torque_limit)) {
-    for (const Joint& joint : arm.joints) own_limits_.insert(joint.effort);
-  } else {
-    limits_.insert(p.torque_limit);
-  }
-  grips_.insert(p.hand_stiffness);
-  dampers_.insert(p.hand_damping);
-  masses_.insert(p.hand_mass_at_tip);
-  encoders_.insert(p.encoder_step);
-  delays_.insert(1e3 * p.tick * p.device_delay);
-  ticks_.insert(1e3 * p.tick);
-}
-
-std::string Conditions::arms() const {
-  std::string names;
-  for (const std::string& name : arms_) names += (names.empty() ? "" : ", ") + name;
-  if (joints_.size() > 1) {
-    return fmt::format("{} of {} to {} joints", names, *joints_.begin(), *joints_.rbegin());
-  }
-  return fmt::format("{} of {} joint{}", names, *joints_.begin(), *joints_.begin() > 1 ? "s" : "");
-}
-
-std::string Conditions::motors() const {
-  std::string own = own_limits_.empty() ? "" : "the arm's own, " + values(own_limits_, "N m");
-  if (limits_.empty()) return own;
-  return (own.empty() ? "" : own + "; and ") + values(limits_, "N m");
-}
-
-std::string Conditions::text() const {
-  if (arms_.empty()) return "";
-  return fmt::format(
-      "Conditions: arm {}; limit of every motor: {}; grip {}, {}; {}; {}; {}; tick {}.", arms(),
-      motors(), values(grips_, "N/m"), or_none(dampers_, "N s/m", "undamped"),
-      or_none(masses_, "kg in the hand", "no mass in the hand"),
-      or_none(encoders_, "rad a step of the encoders", "exact encoders"),
-      or_none(delays_, "ms of delay", "no delay"), values(ticks_, "ms"));
-}
-
-std::string Conditions::settings() const {
-  return configs_.empty() ? "" : settings_digest(configs_);
-}
-
-std::string Conditions::of_the_device() const {
-  return fmt::format("Conditions: arm {}; limit of every motor: {}; tick {}.", arms(), motors(),
-                     values(ticks_, "ms"));
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
-fs::path stamp_of(const fs::path& session) { return fs::path(session).replace_extension(".key"); }
-
-std::string stamp_text(std::uint64_t key, std::uint64_t bytes) {
-  return fmt::format("trial {:016x}\nsession {:016x}\n", key, bytes);
-}
-
-}  // namespace
-
-void stamp(const fs::path& session, std::uint64_t key) {
-  const auto bytes = file_digest(session);
-  if (!bytes) throw FileError(session.string() + ": cannot be read");
-  const std::string text = stamp_text(key, *bytes);
-  write_atomically(stamp_of(session),
-                   {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-}
-
-std::optional<Session> stamped_session(const fs::path& file, std::uint64_t key) {
-  std::ifstream in(stamp_of(file));
-  std::ostringstream said;
-  said << in.rdbuf();
-  const auto bytes = file_digest(file);
-  if (!bytes || said.str() != stamp_text(key, *bytes)) return std::nullopt;
-  try {
-    return read_session(file);
-  } catch (const FileError&) {
-    return std::nullopt;
-  }
-}
-
-namespace fs = std::filesystem;
-
-TrialRunner::TrialRunner(std::string experiment, Options options)
-    : experiment_(std::move(experiment)), options_(std::move(options)) {
-  options_.threads = threads_for(options_.threads);
-  if (options_.program == 0) options_.program = program_digest();
-}
-
-TrialResult TrialRunner::run_one(const Trial& trial) const {
-  TrialResult result;
-  result.session.info = session_info(trial.plan);
-  result.session.layout = trial.plan.layout();
-  const std::string& folder = trial.folder.empty() ? experiment_ : trial.folder;
-  const fs::path file = options_.dir / folder / (trial.name + ".h5");
-  const std::uint64_t key = trial.keep ? trial_key(trial.plan, options_.program) : 0;
-  if (auto found = trial.keep ? stamped_session(file, key) : std::nullopt) {
-    const RunEnd end = end_of(*found);
-    return {std::move(*found), end};
-  }
-  if (stopped()) throw Cancelled();
-  std::optional<Recorder> recorder;
-  if (trial.keep) {
-    fs::create_directories(file.parent_path());
-    recorder.emplace(file, result.session.info, trial.plan.parameters, true,
-                     Recorder::kWaitingRoom);
-    tell_start(*recorder, trial.plan);
-  }
-  LargeVector<double>& rows = result.session.rows;
-  rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));
-  result.end = simulate(trial.plan, {.realtime = false, .stop = options_.stop},
-                        [&](std::span<const double> row, LaneChanges changed) {
-                          rows.insert(rows.end(), row.begin(), row.end());
-                          if (recorder && changed[0] != nullptr) recorder->changed(*changed[0]);
-                          return !recorder || recorder->push_waiting(row);
-                        });
-  // What was cut short stays a .part and is run again another time.
-  if (stopped()) throw Cancelled();
-  if (recorder) {
-    recorder->finish();
-    stamp(file, key);
-  }
-  return result;
-}
-
-void TrialRunner::each(std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::size_t done = 0;
-  std::mutex mutex;
-  in_parallel(count, options_.threads, [&](std::size_t i, const std::atomic<bool>&) {
-    work(i);
-    const std::lock_guard lock(mutex);
-    ++done;
-    const double part = static_cast<double>(done) / static_cast<double>(count);
-    if (options_.progress) options_.progress(part);
-    return true;
-  });
-}
-
-void TrialRunner::run(const std::vector<Trial>& trials,
-                      const std::function<void(std::size_t, const TrialResult&)>& take) {
-  for (const Trial& trial : trials) conditions_.add(trial.plan.arm, trial.plan.parameters);
-  each(trials.size(), [&](std::size_t i) {
-    const TrialResult result = run_one(trials[i]);
-    if (result.end.diverged && !trials[i].may_diverge) ++diverged_;
-    take(i, result);
-  });
-}
-
-SweepTable TrialRunner::sweep(const SweepPlan& plan) {
-  SweepTable table(plan);
-  for (std::uint64_t i = 0; i < table.points(); ++i) {
-    const RunPlan run = run_of(plan, i);
-    conditions_.add(run.arm, run.parameters);
-  }
-  static const std::atomic<bool> kNever{false};
-  const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
-  each(table.points(), [&](std::size_t i) {
-    const auto values = measure_point(plan, i, stop);
-    if (!values) throw Cancelled();
-    table.take(i, *values);
-  });
-  return table;
-}
-
-std::vector<TrialResult> TrialRunner::run(const std::vector<Trial>& trials) {
-  std::vector<TrialResult> results(trials.size());
-  run(trials, [&](std::size_t i, const TrialResult& result) { results[i] = result; });
-  return results;
-}
-
-// Each in its own file, NAME.cpp.
+// Each is defined in NAME.cpp.
 Outcome coordination(TrialRunner& lab);
 Outcome inertia(TrialRunner& lab);
 Outcome passivity(TrialRunner& lab);
@@ -245,6 +48,35 @@ Outcome drop(TrialRunner& lab);
 Outcome stack(TrialRunner& lab);
 
 namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t kListed = 4;  // longer lists are given by first and last value
+
+std::string values(const std::set<double>& set, const std::string& unit) {
+  std::vector<std::string> words;
+  words.reserve(set.size());
+  for (const double value : set) words.push_back(fmt::format("{:.4g}", value));
+  if (words.size() > kListed) return fmt::format("{} to {} {}", words.front(), words.back(), unit);
+  if (words.size() < 2) return fmt::format("{} {}", words.front(), unit);
+  const std::string last = words.back();
+  words.pop_back();
+  return fmt::format("{} and {} {}", fmt::join(words, ", "), last, unit);
+}
+
+// "none", or the values; a zero among them is named, too.
+std::string or_none(std::set<double> set, const std::string& unit, const std::string& none) {
+  const bool zero = set.erase(0) > 0;
+  if (set.empty()) return none;
+  return (zero ? none + " and " : "") + values(set, unit);
+}
+
+fs::path stamp_of(const fs::path& session) { return fs::path(session).replace_extension(".key"); }
+
+std::string stamp_text(std::uint64_t key, std::uint64_t bytes) {
+  return fmt::format("trial {:016x}\nsession {:016x}\n", key, bytes);
+}
 
 constexpr std::array kExperiments{
     Experiment{"coordination", "device-proxy coordination in contact (Figs. 3 and 4)",
@@ -294,40 +126,7 @@ void write_verdict(const std::string& name, const Outcome& outcome,
   if (!out.flush()) throw FileError(file.string() + ": could not be written");
 }
 
-}  // namespace
-
-std::span<const Experiment> experiments() { return kExperiments; }
-
-void write_outcome(const std::string& name, const Outcome& outcome,
-                   const std::filesystem::path& dir) {
-  std::filesystem::create_directories(dir);
-  write_figure_data(outcome.figure, dir / (name + ".csv"));
-  draw_figure(outcome.figure, dir, name);
-  // Last, so that a verdict says that everything else is there.
-  write_verdict(name, outcome, dir / (name + ".json"));
-}
-
-Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options) {
-  std::filesystem::create_directories(options.dir);
-  TrialRunner lab(experiment.name, options);
-  Outcome outcome = experiment.run(lab);
-  const std::string conditions = lab.conditions().text();
-  if (!conditions.empty()) {
-    outcome.figure.caption += " " + conditions;
-    outcome.checks.push_back(at_most("trials that diverged, of those that may not",
-                                     static_cast<double>(lab.diverged()), 0));
-  }
-  outcome.figure.made_by = provenance(lab.conditions().settings(), lab.seed());
-  write_outcome(experiment.name, outcome, options.dir);
-  return outcome;
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-
-// JSON has no infinite numbers: they are null there.
+// Infinite numbers are null in JSON.
 std::string number(const json& value) {
   return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "not finite";
 }
@@ -383,6 +182,191 @@ std::string section(const Page& page) {
 }
 
 }  // namespace
+
+void Conditions::add(const ArmDescription& arm, const Parameters& p) {
+  configs_.insert(config_text(p));
+  arms_.insert(arm.name);
+  joints_.insert(arm.dof());
+  if (std::isnan(p.torque_limit)) {
+    for (const Joint& joint : arm.joints) own_limits_.insert(joint.effort);
+  } else {
+    limits_.insert(p.torque_limit);
+  }
+  grips_.insert(p.hand_stiffness);
+  dampers_.insert(p.hand_damping);
+  masses_.insert(p.hand_mass_at_tip);
+  encoders_.insert(p.encoder_step);
+  delays_.insert(1e3 * p.tick * p.device_delay);
+  ticks_.insert(1e3 * p.tick);
+}
+
+std::string Conditions::arms() const {
+  std::string names;
+  for (const std::string& name : arms_) names += (names.empty() ? "" : ", ") + name;
+  if (joints_.size() > 1) {
+    return fmt::format("{} of {} to {} joints", names, *joints_.begin(), *joints_.rbegin());
+  }
+  return fmt::format("{} of {} joint{}", names, *joints_.begin(), *joints_.begin() > 1 ? "s" : "");
+}
+
+std::string Conditions::motors() const {
+  std::string own = own_limits_.empty() ? "" : "the arm's own, " + values(own_limits_, "N m");
+  if (limits_.empty()) return own;
+  return (own.empty() ? "" : own + "; and ") + values(limits_, "N m");
+}
+
+std::string Conditions::text() const {
+  if (arms_.empty()) return "";
+  return fmt::format(
+      "Conditions: arm {}; limit of every motor: {}; grip {}, {}; {}; {}; {}; tick {}.", arms(),
+      motors(), values(grips_, "N/m"), or_none(dampers_, "N s/m", "undamped"),
+      or_none(masses_, "kg in the hand", "no mass in the hand"),
+      or_none(encoders_, "rad a step of the encoders", "exact encoders"),
+      or_none(delays_, "ms of delay", "no delay"), values(ticks_, "ms"));
+}
+
+std::string Conditions::settings() const {
+  return configs_.empty() ? "" : settings_digest(configs_);
+}
+
+std::string Conditions::of_the_device() const {
+  return fmt::format("Conditions: arm {}; limit of every motor: {}; tick {}.", arms(), motors(),
+                     values(ticks_, "ms"));
+}
+
+void stamp(const fs::path& session, std::uint64_t key) {
+  const auto bytes = file_digest(session);
+  if (!bytes) throw FileError(session.string() + ": cannot be read");
+  const std::string text = stamp_text(key, *bytes);
+  write_atomically(stamp_of(session),
+                   {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+std::optional<Session> stamped_session(const fs::path& file, std::uint64_t key) {
+  std::ifstream in(stamp_of(file));
+  std::ostringstream said;
+  said << in.rdbuf();
+  const auto bytes = file_digest(file);
+  if (!bytes || said.str() != stamp_text(key, *bytes)) return std::nullopt;
+  try {
+    return read_session(file);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
+}
+
+TrialRunner::TrialRunner(std::string experiment, Options options)
+    : experiment_(std::move(experiment)), options_(std::move(options)) {
+  options_.threads = threads_for(options_.threads);
+  if (options_.program == 0) options_.program = program_digest();
+}
+
+TrialResult TrialRunner::run_one(const Trial& trial) const {
+  TrialResult result;
+  result.session.info = session_info(trial.plan);
+  result.session.layout = trial.plan.layout();
+  const std::string& folder = trial.folder.empty() ? experiment_ : trial.folder;
+  const fs::path file = options_.dir / folder / (trial.name + ".h5");
+  const std::uint64_t key = trial.keep ? trial_key(trial.plan, options_.program) : 0;
+  if (auto found = trial.keep ? stamped_session(file, key) : std::nullopt) {
+    const RunEnd end = end_of(*found);
+    return {std::move(*found), end};
+  }
+  if (stopped()) throw Cancelled();
+  std::optional<Recorder> recorder;
+  if (trial.keep) {
+    fs::create_directories(file.parent_path());
+    recorder.emplace(file, result.session.info, trial.plan.parameters, true,
+                     Recorder::kWaitingRoom);
+    tell_start(*recorder, trial.plan);
+  }
+  LargeVector<double>& rows = result.session.rows;
+  rows.reserve(trial.plan.rows * static_cast<std::size_t>(result.session.layout.stride()));
+  result.end = simulate(trial.plan, {.realtime = false, .stop = options_.stop},
+                        [&](std::span<const double> row, LaneChanges changed) {
+                          rows.insert(rows.end(), row.begin(), row.end());
+                          if (recorder && changed[0] != nullptr) recorder->changed(*changed[0]);
+                          return !recorder || recorder->push_waiting(row);
+                        });
+  // A trial that was cut short stays a .part and is run again another time.
+  if (stopped()) throw Cancelled();
+  if (recorder) {
+    recorder->finish();
+    stamp(file, key);
+  }
+  return result;
+}
+
+void TrialRunner::each(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::size_t done = 0;
+  std::mutex mutex;
+  in_parallel(count, options_.threads, [&](std::size_t i, const std::atomic<bool>&) {
+    work(i);
+    const std::lock_guard lock(mutex);
+    ++done;
+    const double part = static_cast<double>(done) / static_cast<double>(count);
+    if (options_.progress) options_.progress(part);
+    return true;
+  });
+}
+
+void TrialRunner::run(const std::vector<Trial>& trials,
+                      const std::function<void(std::size_t, const TrialResult&)>& take) {
+  for (const Trial& trial : trials) conditions_.add(trial.plan.arm, trial.plan.parameters);
+  each(trials.size(), [&](std::size_t i) {
+    const TrialResult result = run_one(trials[i]);
+    if (result.end.diverged && !trials[i].may_diverge) ++diverged_;
+    take(i, result);
+  });
+}
+
+SweepTable TrialRunner::sweep(const SweepPlan& plan) {
+  SweepTable table(plan);
+  for (std::uint64_t i = 0; i < table.points(); ++i) {
+    const RunPlan run = run_of(plan, i);
+    conditions_.add(run.arm, run.parameters);
+  }
+  static const std::atomic<bool> kNever{false};
+  const std::atomic<bool>& stop = options_.stop != nullptr ? *options_.stop : kNever;
+  each(table.points(), [&](std::size_t i) {
+    const auto values = measure_point(plan, i, stop);
+    if (!values) throw Cancelled();
+    table.take(i, *values);
+  });
+  return table;
+}
+
+std::vector<TrialResult> TrialRunner::run(const std::vector<Trial>& trials) {
+  std::vector<TrialResult> results(trials.size());
+  run(trials, [&](std::size_t i, const TrialResult& result) { results[i] = result; });
+  return results;
+}
+
+std::span<const Experiment> experiments() { return kExperiments; }
+
+void write_outcome(const std::string& name, const Outcome& outcome,
+                   const std::filesystem::path& dir) {
+  std::filesystem::create_directories(dir);
+  write_figure_data(outcome.figure, dir / (name + ".csv"));
+  draw_figure(outcome.figure, dir, name);
+  // Written last: a verdict means that everything else is there.
+  write_verdict(name, outcome, dir / (name + ".json"));
+}
+
+Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options) {
+  std::filesystem::create_directories(options.dir);
+  TrialRunner lab(experiment.name, options);
+  Outcome outcome = experiment.run(lab);
+  const std::string conditions = lab.conditions().text();
+  if (!conditions.empty()) {
+    outcome.figure.caption += " " + conditions;
+    outcome.checks.push_back(at_most("trials that diverged, of those that may not",
+                                     static_cast<double>(lab.diverged()), 0));
+  }
+  outcome.figure.made_by = provenance(lab.conditions().settings(), lab.seed());
+  write_outcome(experiment.name, outcome, options.dir);
+  return outcome;
+}
 
 void write_report(const fs::path& dir) {
   const std::vector<Page> pages = pages_in(dir);

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "app/run/simulate.h"
 #include "app/plot/figure.h"
+#include "app/run/simulate.h"
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
 

@@ -27,7 +27,7 @@ std::string processor() {
   uname(&system);
   std::string kind = system.machine;
 #ifdef __x86_64__
-  // Those that the C library may use: it chooses its sine by them, Embree its loops.
+  // Names what the C library chooses its sine by, and Embree its loops.
   if (CPU_FEATURE_ACTIVE(AVX)) kind += " AVX";
   if (CPU_FEATURE_ACTIVE(AVX2)) kind += " AVX2";
   if (CPU_FEATURE_ACTIVE(FMA)) kind += " FMA";

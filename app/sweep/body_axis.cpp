@@ -12,7 +12,7 @@ namespace {
 using namespace scene_limits;
 using Of = BodyProperty::Of;
 
-// Changes a body's density: its moments, where they are given, scale with the mass.
+// Sets the mass by the density: moments, if given, scale with it.
 void set_mass(Object& object, double mass) {
   Body& body = *object.body;
   if (body.inertia) *body.inertia *= mass / body.mass;
@@ -58,7 +58,7 @@ std::optional<BodyAxis> body_axis(std::string_view key) {
   for (const BodyProperty& each : kProperties) {
     const std::string end = std::string(".") + each.name;
     if (!key.ends_with(end) || key.size() == end.size()) continue;
-    // joint.friction rather than friction of a body called "lid.joint".
+    // Prefers joint.friction to friction of a body called "lid.joint".
     if (axis.property != nullptr && std::string_view(axis.property->name).size() > end.size() - 1) {
       continue;
     }

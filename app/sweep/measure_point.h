@@ -20,9 +20,10 @@ struct SweepColumn {
 // upper end. changes, runs: their numbers.
 std::vector<SweepColumn> measured_columns(const SweepPlan& plan);
 
-// Runs `run` as a point of the plan, to its end or until a rule stops it, and passes each row on.
-// Nothing if `stop` was set meanwhile or the sink returned false.
+// Receives each row of a run; returns false to give it up.
 using PointSink = std::function<bool(std::span<const double> row)>;
+// Runs `run` as a point of the plan, to its end or until a rule stops it. Nothing if `stop` was set
+// meanwhile or the sink returned false.
 std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,
                                   const std::atomic<bool>& stop, const PointSink& also = {});
 // Values of the plan's measures for a run; with a boundary only that of its condition.

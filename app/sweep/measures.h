@@ -35,8 +35,8 @@ inline constexpr double kNoEnergy = 1e-6;
 // where there is nothing to measure.
 class RunMeter {
  public:
-  // For a run of `rows` ticks of T [s] with `bodies` bodies; `wall`: the plane, if any. `felt`:
-  // compute measures that need the arm's inertia and tip, which costs as much as a tick.
+  // Measures a run of `rows` ticks of T [s] with `bodies` bodies; `wall`: the plane, if any.
+  // `felt`: also those that need the arm's inertia and tip, which costs as much as a tick.
   RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
            const Object* wall = nullptr, int bodies = 0);
 
@@ -52,8 +52,8 @@ class RunMeter {
   double highest_beyond() const { return highest_beyond_; }
   double bodies_gain() const { return bodies_gain_; }
   double bodies_moved() const { return bodies_moved_; }
-  // The wall's stiffness [N/m]; the felt one over that; rms of the wall's force above 20 Hz in the
-  // second half [N].
+  // Stiffness of the wall [N/m]; felt stiffness over it [-]; rms of the wall's force above 20 Hz in
+  // the second half [N].
   double wall() const { return wall_stiffness_; }
   double wall_felt() const;
   double wall_rattle() const;

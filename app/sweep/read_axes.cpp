@@ -96,7 +96,7 @@ void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis)
   }
 }
 
-// Refuses numbers that the axis' parameter does not allow.
+// Returns x. Refuses numbers that the axis' parameter does not allow.
 double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
   if (const OwnKey* own = own_key(axis.key)) {
     const bool allowed = x >= own->low && x <= own->high && !(own->whole && x != std::floor(x));
@@ -203,64 +203,6 @@ void check_name(const TomlTable& table, const std::string& name) {
   };
   if (!name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, plain)) return;
   table.refuse("name", fmt::format("up to {} letters, digits, _, - and spaces", kLongestName));
-}
-
-constexpr std::uint64_t kMostDepth = 10;
-constexpr std::size_t kMostAxes = 4;
-constexpr double kMostNumbers = 9e15;  // largest whole numbers that a double tells apart
-constexpr Range kAnyBound{-1e300, 1e300};
-
-// Whether other values are possible between the axis' values.
-bool may_be_finer(const SweepAxis& axis) {
-  const ParameterInfo* info = find_parameter(axis.key);
-  const bool whole = info && std::holds_alternative<int Parameters::*>(info->field);
-  return axis.spread == Spread::grid && axis.words.empty() && !whole && axis.values.size() > 1 &&
-         std::ranges::adjacent_find(axis.values, std::greater_equal{}) == axis.values.end();
-}
-
-std::vector<std::size_t> read_axes(const TomlTable& table, const SweepPlan& plan) {
-  std::vector<std::size_t> axes;
-  const std::vector<std::string> names = table.texts("axes");
-  for (std::size_t a = 0; a < plan.axes.size(); ++a) {
-    const bool named = std::ranges::find(names, plan.axes[a].name) != names.end();
-    if (names.empty() ? may_be_finer(plan.axes[a]) : named) axes.push_back(a);
-    if (named && !may_be_finer(plan.axes[a])) {
-      table.refuse("axes", plan.axes[a].name + " has no values in between; a grid's axes of " +
-                               "numbers that are not whole, increasing");
-    }
-  }
-  const bool all = names.empty() || axes.size() == names.size();
-  if (!all || axes.empty() || axes.size() > kMostAxes) {
-    table.refuse("axes", fmt::format("the names of 1 to {} axes", kMostAxes));
-  }
-  return axes;
-}
-
-void read_condition(const TomlTable& table, const SweepPlan& plan, SweepRefine& refine) {
-  const std::vector<SweepColumn> columns = measured_columns(plan);
-  const std::string name = table.text("measure").value_or(columns.front().name);
-  const auto column = std::ranges::find(columns, name, &SweepColumn::name);
-  if (column == columns.end()) table.refuse("measure", "one that is measured");
-  refine.column = static_cast<std::size_t>(column - columns.begin());
-  refine.above = table.number("above", kAnyBound);
-  refine.below = table.number("below", kAnyBound);
-  refine.tolerance = table.number("tolerance", {0, 1e300, true});
-  const bool limit = refine.above || refine.below;
-  if (limit && refine.tolerance) table.refuse("tolerance", "nothing beside above or below");
-  if (column->unit != "yes/no" && !limit && !refine.tolerance) table.refuse_missing("tolerance");
-}
-
-// Halves the steps of the axis `depth` times.
-void make_finer(SweepAxis& axis, std::uint64_t depth) {
-  for (std::uint64_t i = 0; i < depth; ++i) {
-    std::vector<double> finer{axis.values.front()};
-    for (std::size_t k = 1; k < axis.values.size(); ++k) {
-      const double low = axis.values[k - 1], high = axis.values[k];
-      finer.push_back(axis.logarithmic ? std::sqrt(low * high) : (low + high) / 2);
-      finer.push_back(high);
-    }
-    axis.values = std::move(finer);
-  }
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ class Reader {
         where_, refine->source().begin.line));
   }
 
-  // An inner table; nothing if it is not there.
+  // An inner table; nothing if there is none.
   std::optional<TomlTable> table(const TomlTable& in, const char* key, const char* path) const {
     const toml::node* node = in.find(key);
     if (node == nullptr) return std::nullopt;
@@ -99,7 +99,7 @@ class Reader {
     if (plan_.repeats > 1) file_.refuse("repeats", "1 for a hand that jumps: all would be alike");
   }
 
-  // A tap makes its own wall and path.
+  // Refuses other keys beside a tap, which makes its own wall and path.
   void read_tap(const TomlTable& hand) const {
     for (const char* key : {"at", "jump"}) {
       if (hand.find(key) != nullptr) hand.refuse(key, "nothing: a hand that taps finds its way");

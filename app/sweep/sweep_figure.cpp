@@ -21,10 +21,10 @@ std::string with_name(const SweepAxis& axis, std::size_t place) {
 
 struct Mean {
   double sum = 0, count = 0;
-  std::uint64_t point = 0;  // one of them
+  std::uint64_t point = 0;  // the last of its points
   double value() const { return sum / count; }
 };
-// Over repeats and samples: [panel][x][y], the places of axes.
+// Means over repeats and samples: [panel][x][y], by places on axes.
 using Panels = std::map<std::vector<std::size_t>, std::map<std::array<std::size_t, 2>, Mean>>;
 
 // A grid's axis of numbers, if there is one; else the first that has several values.
@@ -166,7 +166,7 @@ class Drawing {
     if (axis.key == "coupling.eta") add_theory(panel, values.begin()->second.point);
   }
 
-  // Along x, everything else as it is at a point of the panel.
+  // Adds lines of theory along x, with everything else as at a point of the panel.
   void add_theory(FigurePanel& panel, std::uint64_t point) const {
     const SweepAxis& x = plan_.axes[x_];
     if (!x.words.empty()) return;

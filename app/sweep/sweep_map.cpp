@@ -64,12 +64,12 @@ std::string value_text(const SweepAxis& axis, std::size_t place) {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDecades = 1000;  // over so much colours go by the logarithm
-constexpr double kRoom = 0.05;     // above and below a curve, of its height
+constexpr double kDecades = 1000;  // larger ratios are coloured on a logarithmic scale
+constexpr double kRoom = 0.05;     // above and below a curve, as a share of its height
 
 bool sampled(const SweepAxis& axis) { return axis.spread != Spread::grid; }
 
-// Of a boundary's columns those that are values of its axis.
+// Whether a column has values of the boundary's axis.
 bool along_boundary(const SweepPlan& plan, std::size_t column) {
   return plan.boundary && column < 2;
 }
@@ -109,7 +109,7 @@ class Making {
   }
 
  private:
-  // The places of a grid's axis from its lowest value up; of a sampled one any.
+  // Places on a grid's axis from its lowest value up; a single one on a sampled axis.
   static std::vector<std::size_t> upwards(const SweepAxis* axis) {
     if (axis == nullptr || sampled(*axis)) return {0};
     std::vector<std::size_t> places(axis->values.size());
@@ -134,7 +134,7 @@ class Making {
     }
   }
 
-  // Over all repeats of these samples.
+  // Adds the mean over all repeats of samples `from` to `to`.
   void add_spot(const std::vector<std::size_t>& place, std::uint64_t from, std::uint64_t to) {
     MapSpot spot;
     spot.point = number_of(plan_, place, from, 0);
@@ -186,7 +186,7 @@ class Making {
     return map_.spots[ix * rows + iy];
   }
 
-  // Between cells that are there and differ.
+  // Draws edges between cells that differ.
   void add_changes() {
     const std::size_t rows = y_->values.size(), columns = x_.values.size();
     Series line{"changes", kNeutralInk, Series::Style::line, {}};
@@ -211,7 +211,7 @@ class Making {
     if (!line.points.empty()) map_.lines.push_back(std::move(line));
   }
 
-  // Where a boundary is crossed more than once.
+  // Draws the highest change if a boundary is crossed more than once.
   void add_last_change() {
     Series line{"highest change", kProxyInk, Series::Style::dashed, {}};
     bool other = false;
@@ -233,6 +233,9 @@ class Making {
   bool over_samples_ = false;
   SweepMap map_;
 };
+
+constexpr int kTheoryPoints = 80;
+constexpr const char* kTheoryInk[] = {kNeutralInk, kHandInk, kEnergyInk};
 
 }  // namespace
 
@@ -266,13 +269,6 @@ MapChoice mended(const SweepPlan& plan, MapChoice choice) {
 SweepMap make_map(const OpenedSweep& sweep, const MapChoice& choice) {
   return Making(sweep, mended(*sweep.plan, choice)).make();
 }
-
-namespace {
-
-constexpr int kTheoryPoints = 80;
-constexpr const char* kTheoryInk[] = {kNeutralInk, kHandInk, kEnergyInk};
-
-}  // namespace
 
 std::string theory_label(const std::string& line) {
   if (line == "pr") return "PR (25)";

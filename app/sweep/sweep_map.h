@@ -1,5 +1,4 @@
-// Maps of a sweep's table: for the window, in letters for the terminal, and lines of theory over
-// eta.
+// Maps of a sweep's table for the window, and lines of theory over eta.
 #pragma once
 
 #include <string>
@@ -56,7 +55,7 @@ MapChoice first_choice(const SweepPlan& plan, const SweepTable& table);
 // `choice` with whatever the plan lacks replaced: x and y are two different axes.
 MapChoice mended(const SweepPlan& plan, MapChoice choice);
 
-// A point, or all that differ only in repeat and sample.
+// Spot of a map: a point, or all points that differ only in repeat and sample.
 struct MapSpot {
   FigureCell cell;  // around x and y; its value is the mean, NaN if no point is done
   double x = 0, y = 0;

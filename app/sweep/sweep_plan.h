@@ -64,7 +64,7 @@ struct StopRule {
   double after = 0;  // [s]
 };
 
-// In place of one run a point: a search for where a condition changes along an axis.
+// Search for where a condition changes along an axis, in place of one run a point.
 struct SweepBoundary {
   SweepAxis axis;  // its values are tried in order; a change lies between two that differ
   SweepLimit condition;

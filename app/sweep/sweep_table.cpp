@@ -21,8 +21,155 @@ using hdf5::check;
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kGrowth = 1 << 18;  // [bytes]
 constexpr hsize_t kChunk = 1 << 14;       // values
+
+// Column of an axis: its value for each point.
+std::vector<double> column_of(const SweepPlan& plan, std::size_t axis) {
+  std::vector<double> values(plan.points());
+  for (std::uint64_t i = 0; i < values.size(); ++i) {
+    values[i] = point_of(plan, i).values[axis];
+  }
+  return values;
+}
+
+void add_axis(const SweepPlan& plan, std::size_t a, FileImage& image) {
+  const SweepAxis& axis = plan.axes[a];
+  const std::vector<double> values = column_of(plan, a);
+  const hdf5::Dataset dataset = image.add("/axis/" + axis.name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                                          values.size(), 1, values.data());
+  image.text(dataset.get(), "unit", axis.unit);
+  image.text(dataset.get(), "key", axis.key);
+  image.text(dataset.get(), "spread", kSpreads[static_cast<std::size_t>(axis.spread)]);
+  image.text(dataset.get(), "scale", axis.logarithmic ? "log" : "linear");
+  if (!axis.words.empty()) {
+    image.text(dataset.get(), "words", fmt::format("{}", fmt::join(axis.words, "\n")));
+  }
+}
+
+// Writes enough digits to read the same number again.
+std::string csv_number(double x) { return std::isnan(x) ? "" : fmt::format("{}", x); }
+
+std::string csv_word(const std::string& word) {
+  if (word.find_first_of(",\"\n") == std::string::npos) return word;
+  std::string quoted = "\"";
+  for (const char c : word) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_header(const std::string& name, const std::string& unit) {
+  return csv_word(unit == "-" ? name : fmt::format("{} [{}]", name, unit));
+}
+
+// Text of an attribute; empty if there is none.
+std::string text_in(const wire::Table& table, const std::string& name) {
+  const auto found = table.texts.find(name);
+  return found == table.texts.end() ? "" : found->second;
+}
+
+bool says_it_is(const fs::path& path) {
+  try {
+    return text_in(read_table(path), "format") == kSweepFormat;
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
+class TableFile {
+ public:
+  explicit TableFile(const fs::path& path) : path_(path), table_(read_table(path)) {
+    const std::string format = text_if_any("format");
+    if (format != kSweepFormat) {
+      throw FileError(fmt::format("{}: format \"{:.40}\"; needed: \"{}\"", path_.string(), format,
+                                  kSweepFormat));
+    }
+    const auto version = count("version");
+    if (version != kSweepVersion) {
+      throw FileError(fmt::format("{}: version {}; this program reads {}", path_.string(), version,
+                                  kSweepVersion));
+    }
+  }
+
+  std::string text_if_any(const std::string& name) const { return text_in(table_, name); }
+  std::uint64_t count(const std::string& name) const {
+    const auto found = table_.counts.find(name);
+    if (found != table_.counts.end()) return found->second;
+    throw FileError(
+        fmt::format("{}: attribute {}: missing; needed: a whole number", path_.string(), name));
+  }
+  const std::vector<double>& column(const std::string& name, std::uint64_t rows) const {
+    const auto found = table_.columns.find(name);
+    if (found == table_.columns.end()) {
+      throw FileError(fmt::format("{}: damaged: {}: missing", path_.string(), name));
+    }
+    if (found->second.size() != rows) {
+      throw FileError(fmt::format("{}: damaged: {}: {} values; needed: {}, as it says",
+                                  path_.string(), name, found->second.size(), rows));
+    }
+    return found->second;
+  }
+
+  [[noreturn]] void refuse_rows(std::uint64_t found, std::uint64_t needed) const {
+    throw FileError(fmt::format("{}: damaged: {} points; needed: {}, as its plan has",
+                                path_.string(), found, needed));
+  }
+
+ private:
+  const fs::path& path_;
+  wire::Table table_;
+};
+
+// The plan of a table, with its runs' worlds, or `why_no_run`.
+std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& path,
+                                         std::string& why_no_run) {
+  const std::string text = file.text_if_any("plan");
+  if (text.empty()) {
+    throw FileError(
+        fmt::format("{}: holds no plan, so that nobody knows what its points are", path.string()));
+  }
+  auto plan = std::make_shared<SweepPlan>(plan_of_text(text, plan_behind(path.parent_path())));
+  try {
+    read_worlds(*plan);
+  } catch (const std::exception& e) {
+    plan->worlds.clear();
+    why_no_run = fmt::format("files that the plan names are not there: {}", e.what());
+    return plan;
+  }
+  const std::string key = file.text_if_any("key");
+  if (!key.empty() && key != hex(plan->key)) {
+    why_no_run = fmt::format(
+        "files that the plan names have changed since: they are looked for beside {} and among "
+        "the program's own",
+        plan->file.string());
+  }
+  return plan;
+}
+
+void fill(const TableFile& file, SweepTable& table) {
+  const std::uint64_t rows = file.count("points");
+  if (table.points() != rows) file.refuse_rows(rows, table.points());
+  const std::vector<double>& done = file.column("/done", rows);
+  for (std::uint64_t i = 0; i < rows; ++i) table.done[i] = done[i] != 0;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const std::vector<double>& column = file.column("/measure/" + table.columns[c].name, rows);
+    for (std::uint64_t i = 0; i < rows; ++i) {
+      table.values[i * table.columns.size() + c] = column[i];
+    }
+  }
+}
+
+std::pair<double, double> range_of(const SweepTable& table, std::size_t column) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::uint64_t i = 0; i < table.points(); ++i) {
+    const double value = table.at(i, column);
+    if (!table.done[i] || !std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return low <= high ? std::pair{low, high} : std::pair{0.0, 1.0};
+}
 
 }  // namespace
 
@@ -69,47 +216,6 @@ void FileImage::write() {
         "cannot be made");
   write_atomically(path_, bytes);
 }
-
-namespace {
-
-// As the column of a table: of each point.
-std::vector<double> column_of(const SweepPlan& plan, std::size_t axis) {
-  std::vector<double> values(plan.points());
-  for (std::uint64_t i = 0; i < values.size(); ++i) {
-    values[i] = point_of(plan, i).values[axis];
-  }
-  return values;
-}
-
-void add_axis(const SweepPlan& plan, std::size_t a, FileImage& image) {
-  const SweepAxis& axis = plan.axes[a];
-  const std::vector<double> values = column_of(plan, a);
-  const hdf5::Dataset dataset = image.add("/axis/" + axis.name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-                                          values.size(), 1, values.data());
-  image.text(dataset.get(), "unit", axis.unit);
-  image.text(dataset.get(), "key", axis.key);
-  image.text(dataset.get(), "spread", kSpreads[static_cast<std::size_t>(axis.spread)]);
-  image.text(dataset.get(), "scale", axis.logarithmic ? "log" : "linear");
-  if (!axis.words.empty()) {
-    image.text(dataset.get(), "words", fmt::format("{}", fmt::join(axis.words, "\n")));
-  }
-}
-
-// Enough digits to give the same number again.
-std::string csv_number(double x) { return std::isnan(x) ? "" : fmt::format("{}", x); }
-
-std::string csv_word(const std::string& word) {
-  if (word.find_first_of(",\"\n") == std::string::npos) return word;
-  std::string quoted = "\"";
-  for (const char c : word) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
-std::string csv_header(const std::string& name, const std::string& unit) {
-  return csv_word(unit == "-" ? name : fmt::format("{} [{}]", name, unit));
-}
-
-}  // namespace
 
 std::uint64_t SweepTable::count() const {
   return static_cast<std::uint64_t>(std::ranges::count(done, 1));
@@ -182,7 +288,7 @@ std::uint64_t build_digest() {
   static const std::uint64_t digest = [] {
     Digest all;
     all.add(program_digest());
-    // The mathematical library chooses its code by the processor.
+    // Includes results of the mathematical library, which chooses its code by the processor.
     for (int i = 1; i <= 500; ++i) {
       const volatile double x = 0.0137 * i;
       for (const double y : {std::sin(x), std::cos(x), std::tan(x), std::exp(-x), std::log(x),
@@ -196,120 +302,6 @@ std::uint64_t build_digest() {
 }
 
 std::string hex(std::uint64_t digest) { return fmt::format("{:016x}", digest); }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-// Empty where it says nothing.
-std::string text_in(const wire::Table& table, const std::string& name) {
-  const auto found = table.texts.find(name);
-  return found == table.texts.end() ? "" : found->second;
-}
-
-bool says_it_is(const fs::path& path) {
-  try {
-    return text_in(read_table(path), "format") == kSweepFormat;
-  } catch (const FileError&) {
-    return false;
-  }
-}
-
-class TableFile {
- public:
-  explicit TableFile(const fs::path& path) : path_(path), table_(read_table(path)) {
-    const std::string format = text_if_any("format");
-    if (format != kSweepFormat) {
-      throw FileError(fmt::format("{}: format \"{:.40}\"; needed: \"{}\"", path_.string(), format,
-                                  kSweepFormat));
-    }
-    const auto version = count("version");
-    if (version != kSweepVersion) {
-      throw FileError(fmt::format("{}: version {}; this program reads {}", path_.string(), version,
-                                  kSweepVersion));
-    }
-  }
-
-  std::string text_if_any(const std::string& name) const { return text_in(table_, name); }
-  std::uint64_t count(const std::string& name) const {
-    const auto found = table_.counts.find(name);
-    if (found != table_.counts.end()) return found->second;
-    throw FileError(
-        fmt::format("{}: attribute {}: missing; needed: a whole number", path_.string(), name));
-  }
-  const std::vector<double>& column(const std::string& name, std::uint64_t rows) const {
-    const auto found = table_.columns.find(name);
-    if (found == table_.columns.end()) {
-      throw FileError(fmt::format("{}: damaged: {}: missing", path_.string(), name));
-    }
-    if (found->second.size() != rows) {
-      throw FileError(fmt::format("{}: damaged: {}: {} values; needed: {}, as it says",
-                                  path_.string(), name, found->second.size(), rows));
-    }
-    return found->second;
-  }
-
-  [[noreturn]] void refuse_rows(std::uint64_t found, std::uint64_t needed) const {
-    throw FileError(fmt::format("{}: damaged: {} points; needed: {}, as its plan has",
-                                path_.string(), found, needed));
-  }
-
- private:
-  const fs::path& path_;
-  wire::Table table_;
-};
-
-// With what its runs need, or why that cannot be had.
-std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& path,
-                                         std::string& why_no_run) {
-  const std::string text = file.text_if_any("plan");
-  if (text.empty()) {
-    throw FileError(
-        fmt::format("{}: holds no plan, so that nobody knows what its points are", path.string()));
-  }
-  auto plan = std::make_shared<SweepPlan>(plan_of_text(text, plan_behind(path.parent_path())));
-  try {
-    read_worlds(*plan);
-  } catch (const std::exception& e) {
-    plan->worlds.clear();
-    why_no_run = fmt::format("files that the plan names are not there: {}", e.what());
-    return plan;
-  }
-  const std::string key = file.text_if_any("key");
-  if (!key.empty() && key != hex(plan->key)) {
-    why_no_run = fmt::format(
-        "files that the plan names have changed since: they are looked for beside {} and among "
-        "the program's own",
-        plan->file.string());
-  }
-  return plan;
-}
-
-void fill(const TableFile& file, SweepTable& table) {
-  const std::uint64_t rows = file.count("points");
-  if (table.points() != rows) file.refuse_rows(rows, table.points());
-  const std::vector<double>& done = file.column("/done", rows);
-  for (std::uint64_t i = 0; i < rows; ++i) table.done[i] = done[i] != 0;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const std::vector<double>& column = file.column("/measure/" + table.columns[c].name, rows);
-    for (std::uint64_t i = 0; i < rows; ++i) {
-      table.values[i * table.columns.size() + c] = column[i];
-    }
-  }
-}
-
-std::pair<double, double> range_of(const SweepTable& table, std::size_t column) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (std::uint64_t i = 0; i < table.points(); ++i) {
-    const double value = table.at(i, column);
-    if (!table.done[i] || !std::isfinite(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return low <= high ? std::pair{low, high} : std::pair{0.0, 1.0};
-}
-
-}  // namespace
 
 std::optional<fs::path> sweep_table_at(const fs::path& path) {
   std::error_code none;

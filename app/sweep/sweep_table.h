@@ -47,7 +47,7 @@ struct SweepTable {
   std::vector<double> values;      // points x columns; NaN where not done
 
   std::uint64_t points() const { return done.size(); }
-  std::uint64_t count() const;  // done
+  std::uint64_t count() const;  // points done
   bool complete() const { return count() == points(); }
   double at(std::uint64_t point, std::size_t column) const {
     return values[point * columns.size() + column];
@@ -56,7 +56,7 @@ struct SweepTable {
   void take(std::uint64_t first, const std::vector<double>& found);
 };
 
-// The file as it stands for the plan and what is done of it: the same bytes from whoever writes it.
+// Writes the table; the same plan and points done give the same bytes, whoever writes it.
 //   /axis/NAME     points, float64: attributes unit, key, spread, scale, words (of 0, 1, ...)
 //   /measure/NAME  points, float64: attributes unit, what
 //   /repeat, /done points, uint32 and uint8

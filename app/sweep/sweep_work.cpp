@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kNote = "sweep.key";
 constexpr std::size_t kLongestNote = 1 << 13;  // [bytes]
 
-// What a folder, or a block, says that it belongs to.
+// Digests of the plan and build of a folder, or a block.
 struct Belongs {
   std::uint64_t plan, build;
 };
@@ -43,13 +43,38 @@ std::string note_of(const Belongs& own, const fs::path& plan) {
                      fs::weakly_canonical(plan).string());
 }
 
-// A block that was cut off is made again.
+// Empty for a block that was cut off, so that it is made again.
 hdf5::File opened_if_whole(const fs::path& path) {
   try {
     return hdf5::open_to_read(path);
   } catch (const FileError&) {
     return {};
   }
+}
+
+// Flags that end the work on a block.
+struct Ends {
+  const std::atomic<bool>&stop, &over;
+};
+
+// Values of a block from the folder, or measured and written there; nothing if the work was ended.
+std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepFolder& folder,
+                                             const SweepBlock& block, const Ends& ends,
+                                             std::atomic<std::uint64_t>& done) {
+  if (auto found = folder.read(block)) {
+    done += block.size;
+    return found;
+  }
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < block.size; ++i) {
+    if (ends.over) return std::nullopt;
+    const auto one = measure_point(plan, block.first + i, ends.stop);
+    if (!one) return std::nullopt;
+    values.insert(values.end(), one->begin(), one->end());
+    ++done;
+  }
+  folder.write(block, values);
+  return values;
 }
 
 }  // namespace
@@ -143,41 +168,12 @@ fs::path plan_behind(const fs::path& dir) {
   return dir / "plan.toml";
 }
 
-namespace {
-
-// Who may end the work on a block.
-struct Ends {
-  const std::atomic<bool>&stop, &over;
-};
-
-// As the folder has it, or measured, and written there; none if it was ended.
-std::optional<std::vector<double>> values_of(const SweepPlan& plan, const SweepFolder& folder,
-                                             const SweepBlock& block, const Ends& ends,
-                                             std::atomic<std::uint64_t>& done) {
-  if (auto found = folder.read(block)) {
-    done += block.size;
-    return found;
-  }
-  std::vector<double> values;
-  for (std::uint64_t i = 0; i < block.size; ++i) {
-    if (ends.over) return std::nullopt;
-    const auto one = measure_point(plan, block.first + i, ends.stop);
-    if (!one) return std::nullopt;
-    values.insert(values.end(), one->begin(), one->end());
-    ++done;
-  }
-  folder.write(block, values);
-  return values;
-}
-
-}  // namespace
-
 bool work_off(const SweepPlan& plan, const SweepFolder& folder, const SweepShare& share,
               const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
               const TakeBlock& take) {
   std::vector<std::uint64_t> own, others;
   const std::uint64_t count = blocks_of(plan);
-  // Each begins elsewhere with what others may be doing, too.
+  // Each share begins elsewhere with blocks of others, which several may be doing at once.
   const std::uint64_t from = count * share.shard / share.shards;
   for (std::uint64_t b = 0; b < count; ++b) {
     if (b % share.shards == share.shard) own.push_back(b);

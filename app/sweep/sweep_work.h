@@ -15,7 +15,7 @@ namespace limpid {
 struct SweepBlock {
   std::uint64_t number = 0, first = 0, size = 0;
 };
-std::uint64_t blocks_of(const SweepPlan& plan);  // how many
+std::uint64_t blocks_of(const SweepPlan& plan);  // number of blocks
 SweepBlock block_of(const SweepPlan& plan, std::uint64_t number);
 
 class SweepFolder {
@@ -54,8 +54,8 @@ struct SweepShare {
 // Called for each block that has come, from any thread, one call at a time.
 using TakeBlock = std::function<void(std::uint64_t block, const std::vector<double>& rows)>;
 
-// Does the missing blocks of a share. False if `stop` was set meanwhile; unfinished blocks are lost.
-// `done` counts points. Errors: FileError, std::runtime_error; finished blocks stay.
+// Does the missing blocks of a share. False if `stop` was set meanwhile; unfinished blocks are
+// lost. `done` counts points. Errors: FileError, std::runtime_error; finished blocks stay.
 bool work_off(const SweepPlan& plan, const SweepFolder& folder, const SweepShare& share,
               const std::atomic<bool>& stop, std::atomic<std::uint64_t>& done,
               const TakeBlock& take);

@@ -7,11 +7,11 @@
 
 namespace limpid::bench {
 
-// The boxes' motion.
+// Motion of all boxes.
 enum class Boxes {
-  rest,    // all awake
-  slide,   // all of them
-  asleep,  // all of them
+  rest,  // awake
+  slide,
+  asleep,
 };
 
 // Id of their line: "bodies/10/rest".

@@ -1,4 +1,4 @@
-// How fast Limpid is here, beside what it stands on: a table, or one JSON object.
+// Speed of ticks, meshes, bodies and runs here, beside yardsticks: a table, or one JSON object.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ constexpr const char* kMore =
     "is\n"
     "measured beside them and hold longer; instructions, where they can be counted, hold best.";
 
-// On a terminal, one line that is rewritten.
+// Rewrites one line on a terminal; prints nothing elsewhere.
 void say_progress(double share, const std::string& next) {
   if (isatty(STDERR_FILENO) == 0) return;
   fmt::print(stderr, "\r\033[K{}",

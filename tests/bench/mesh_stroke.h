@@ -24,8 +24,8 @@ struct StrokePlace {
   Scene on_plane(double tip_radius, bool capsule) const;
 };
 
-// A tip led over the body's surface, pressed in: figures of 3 cm over its front, at 0.05 to 0.15
-// m/s, from outside.
+// Leads a tip over the front of the body, pressed in from outside: figures of 3 cm at 0.05 to 0.15
+// m/s.
 class Stroke {
  public:
   // Errors: std::runtime_error if the arm does not reach the body.

@@ -92,7 +92,7 @@ void Playback::recover_leftovers(const fs::path& folder) {
                                recovered.file.filename().string(), recovered.rows));
       last_ = recovered.file;
     } catch (const NothingRecorded&) {
-      // It may hold more than can be read: it stays, under a name that nobody asks for again.
+      // The file may hold more than can be read: it stays, under a name not looked for again.
       fs::path aside = entry.path();
       aside += ".empty";
       fs::rename(entry.path(), aside, none);
