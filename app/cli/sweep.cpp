@@ -132,8 +132,7 @@ class Sweeping {
     return {.title = plan_.title, .whole = points, .unit = "", .rate = "points a second"};
   }
 
-  // Works until done; false if stopped. A refined plan continues with the next round while rounds
-  // are complete.
+  // Works until done; false if stopped.
   bool work(bool alone) {
     Bookkeeper keeper(book_);
     std::atomic<std::uint64_t> done{0};
