@@ -15,10 +15,10 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/device/device_hub.h"
-#include "app/run/fitted_gains.h"
-#include "app/run/rehearsal.h"
 #include "app/experiments/identification.h"
 #include "app/experiments/identify_report.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/rehearsal.h"
 #include "devices/identify/unlike_device.h"
 
 namespace limpid {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "app/base/markup.h"
+#include "app/plot/figure.h"
 #include "app/run/provenance.h"
 #include "app/run/urdf_writer.h"
-#include "app/plot/figure.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "app/device/device_hub.h"
-#include "app/plot/figure.h"
 #include "app/experiments/identification.h"
+#include "app/plot/figure.h"
 
 namespace limpid {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "app/base/folders.h"
-#include "app/run/analysis.h"
 #include "app/experiments/tap_bench.h"
+#include "app/run/analysis.h"
 #include "core/dynamics/random.h"
 #include "devices/files/urdf_file.h"
 

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "app/run/analysis.h"
-#include "app/run/provenance.h"
 #include "app/experiments/coordination.h"
 #include "app/experiments/signals.h"
 #include "app/experiments/tap_bench.h"
+#include "app/run/analysis.h"
+#include "app/run/provenance.h"
 #include "core/dynamics/arm.h"
 #include "core/math/eigen.h"
 #include "core/math/high_pass.h"

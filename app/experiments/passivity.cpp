@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
+#include "app/experiments/signals.h"
 #include "app/run/analysis.h"
 #include "app/run/varied_hand.h"
-#include "app/experiments/signals.h"
 #include "core/dynamics/arm.h"
 
 namespace limpid {

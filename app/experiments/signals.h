@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "app/run/simulate.h"
 #include "app/experiments/experiment.h"
+#include "app/run/simulate.h"
 
 namespace limpid {
 

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "app/base/folders.h"
+#include "app/experiments/signals.h"
 #include "app/run/analysis.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
-#include "app/experiments/signals.h"
 #include "core/dynamics/arm.h"
 #include "core/math/high_pass.h"
 #include "devices/files/urdf_file.h"

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/experiments/experiment.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
 #include "app/run/wall_tap.h"
-#include "app/experiments/experiment.h"
 #include "core/dynamics/random.h"
 #include "core/dynamics/random_arm.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "app/desktop/base/settings.h"
-#include "app/desktop/scene/document.h"
 #include "app/desktop/coupling/chatter.h"
 #include "app/desktop/live/live_session.h"
+#include "app/desktop/scene/document.h"
 
 namespace limpid {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/desktop/widgets/parameter_rows.h"
 #include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/parameter_rows.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
 #include "app/style/palette.h"

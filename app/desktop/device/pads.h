@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/desktop/base/settings.h"
-#include "app/desktop/live/live_session.h"
 #include "app/desktop/device/pad_hand.h"
+#include "app/desktop/live/live_session.h"
 #include "render/camera.h"
 
 namespace limpid {

@@ -10,8 +10,8 @@
 #include "app/base/tasks.h"
 #include "app/desktop/base/notices.h"
 #include "app/desktop/widgets/picture_shelf.h"
-#include "app/plot/plot_frame.h"
 #include "app/experiments/experiment.h"
+#include "app/plot/plot_frame.h"
 
 namespace limpid {
 

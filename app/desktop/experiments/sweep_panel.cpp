@@ -9,11 +9,11 @@
 #include "app/desktop/widgets/chart.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
-#include "app/sweep/sweep_map.h"
 #include "app/style/colour_scale.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
+#include "app/sweep/sweep_map.h"
 
 namespace limpid {
 namespace {

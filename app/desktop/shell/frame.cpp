@@ -8,12 +8,12 @@
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/picture_signs.h"
-#include "app/desktop/scene/picking.h"
-#include "app/desktop/view/over_view.h"
-#include "app/desktop/plots/plots_panel.h"
+#include "app/desktop/coupling/twin_panel.h"
 #include "app/desktop/playback/recorded_panel.h"
 #include "app/desktop/playback/transport.h"
-#include "app/desktop/coupling/twin_panel.h"
+#include "app/desktop/plots/plots_panel.h"
+#include "app/desktop/scene/picking.h"
+#include "app/desktop/view/over_view.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/theme.h"
 

@@ -5,13 +5,13 @@
 
 #include "app/desktop/coupling/coupling_panel.h"
 #include "app/desktop/plots/range_panel.h"
-#include "app/desktop/view/view_panel.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/desktop/shell/dialogs.h"
 #include "app/desktop/shell/layout.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/shell/sections.h"
 #include "app/desktop/shell/window.h"
+#include "app/desktop/view/view_panel.h"
 
 namespace limpid {
 

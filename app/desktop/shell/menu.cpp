@@ -12,8 +12,8 @@
 #include "app/base/folders.h"
 #include "app/desktop/base/thumbnails.h"
 #include "app/desktop/scene/object_signs.h"
-#include "app/desktop/shell/status_line.h"
 #include "app/desktop/shell/commands.h"
+#include "app/desktop/shell/status_line.h"
 #include "app/style/imgui_input.h"
 
 namespace limpid {

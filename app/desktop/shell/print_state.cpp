@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/desktop/scene/picking.h"
 #include "app/desktop/device/device_panel.h"
 #include "app/desktop/device/identify_dialog.h"
+#include "app/desktop/scene/picking.h"
 #include "app/desktop/shell/layout.h"
 #include "app/desktop/widgets/modal.h"
 

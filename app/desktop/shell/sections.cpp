@@ -7,12 +7,12 @@
 #include <memory>
 
 #include "app/desktop/coupling/analysis_panel.h"
-#include "app/desktop/device/device_panel.h"
-#include "app/desktop/widgets/parameter_rows.h"
-#include "app/desktop/scene/scene_panel.h"
 #include "app/desktop/coupling/tick_panel.h"
 #include "app/desktop/coupling/timing_panel.h"
+#include "app/desktop/device/device_panel.h"
+#include "app/desktop/scene/scene_panel.h"
 #include "app/desktop/shell/desktop.h"
+#include "app/desktop/widgets/parameter_rows.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 

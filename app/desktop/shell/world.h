@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/desktop/scene/document.h"
 #include "app/desktop/device/device_controller.h"
 #include "app/desktop/live/live_session.h"
+#include "app/desktop/scene/document.h"
 #include "devices/files/urdf_file.h"
 
 namespace limpid {

@@ -7,8 +7,8 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/base/settings.h"
-#include "app/desktop/scene/scene_loader.h"
 #include "app/desktop/playback/playback.h"
+#include "app/desktop/scene/scene_loader.h"
 #include "app/plot/plot_frame.h"
 
 namespace limpid {

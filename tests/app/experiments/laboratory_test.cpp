@@ -4,9 +4,9 @@
 #include <fstream>
 #include <map>
 
-#include "app/run/varied_hand.h"
 #include "app/experiments/passivity.h"
 #include "app/experiments/signals.h"
+#include "app/run/varied_hand.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <string_view>
 
-#include "app/run/analysis.h"
 #include "app/experiments/coordination.h"
 #include "app/experiments/signals.h"
+#include "app/run/analysis.h"
 #include "core/dynamics/arm.h"
 
 namespace limpid {

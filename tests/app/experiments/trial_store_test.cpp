@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
-#include "app/run/run_key.h"
 #include "app/experiments/experiment.h"
 #include "app/experiments/signals.h"
+#include "app/run/run_key.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_dir.h"
 
