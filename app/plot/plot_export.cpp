@@ -21,7 +21,7 @@ namespace limpid {
 
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) {
@@ -447,7 +447,7 @@ PlotTable plot_table(const PlotSpec& spec, const History& history, double start,
 
 std::string csv_text(const PlotTable& table) {
   std::string text = table.first;
-  for (const std::string& column : table.columns) text += "," + quoted(column);
+  for (const std::string& column : table.columns) text += "," + csv_cell(column);
   text += '\n';
   const auto out = std::back_inserter(text);
   auto value = table.values.begin();

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kStep = 0.005, kAngleStep = std::numbers::pi / 12, kFactorStep = 0.1;
 constexpr double kLeastFactor = 0.02, kMostFactor = 50;
-constexpr std::array kAxisNames{"x", "y", "z"};
 constexpr double kNearest = 8;  // least distance to the pivot for scaling [px]
 
 double whole(double number, double step, bool steps) {

@@ -1,6 +1,7 @@
 // Transform: moves, turns or scales an object with the mouse in the picture.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,6 +11,8 @@
 #include "render/camera.h"
 
 namespace limpid {
+
+inline constexpr std::array kAxisNames{"x", "y", "z"};
 
 enum class TransformKind : std::uint8_t { move, turn, scale };
 

@@ -16,7 +16,6 @@ namespace {
 constexpr double kHandleLength = 64;  // length of a handle at scale 1 [px]
 constexpr float kHandleReach = 9;     // largest distance of the mouse from it [px]
 constexpr std::array kAxisInks{Ink::contact, Ink::hand, Ink::proxy};
-constexpr std::array kAxisNames{"x", "y", "z"};
 
 // Returns the distance of a place from a line on the screen [px].
 float apart_from(ImVec2 place, ImVec2 a, ImVec2 b) {
