@@ -61,7 +61,11 @@ class RowsTold {
       force_->add(rows.subspan(at, stride));
       if (twin_) twin_->add(twin.subspan(at, stride));
     }
-    if (watch_) watch_->take(rows, twin);
+    try {
+      if (watch_) watch_->take(rows, twin);
+    } catch (const std::exception&) {
+      watch_.reset();
+    }
   }
 
   std::uint64_t count() const { return count_; }

@@ -29,10 +29,6 @@ MinMaxRing::MinMaxRing(std::size_t at_least) {
   const std::size_t blocks =
       std::max<std::size_t>((at_least + kLargestBlock - 1) / kLargestBlock, 1);
   capacity_ = blocks * kLargestBlock;
-  samples_.reserve(capacity_);
-  for (int level = 1; level <= kLevels; ++level) {
-    blocks_[static_cast<std::size_t>(level - 1)].reserve(capacity() >> (kFanBits * level));
-  }
 }
 
 void MinMaxRing::append(float sample) {
@@ -45,8 +41,10 @@ void MinMaxRing::append(float sample) {
 // Stores the rows that were only counted as no numbers, before the first number comes.
 void MinMaxRing::make_up() {
   const std::size_t rows = end_ < capacity() ? static_cast<std::size_t>(end_) : capacity();
+  samples_.reserve(capacity());
   samples_.assign(rows, kNothing);
   for (std::size_t level = 0; level < kLevels; ++level) {
+    blocks_[level].reserve(capacity() >> (kFanBits * (level + 1)));
     blocks_[level].assign(rows >> (kFanBits * (level + 1)), Extent{});
   }
 }

@@ -84,7 +84,7 @@ class MinMaxRing {
   static constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
   std::size_t capacity_;
-  // Storage is reserved at once, and touched only as samples come.
+  // Storage is reserved with the first number, and touched only as samples come.
   LargeVector<float> samples_;
   std::array<LargeVector<Extent>, kLevels> blocks_;
   SampleIndex end_ = 0;
@@ -105,7 +105,7 @@ inline constexpr const char* kNoteMark = "note";    // key of marks that people 
 // append() steps back (a reset), the axis goes on after a short gap and offset() tells the
 // difference. So data before and after a reset can be looked at together.
 //
-// Memory is set aside once, by the constructor: about 5.2 bytes a value and 8 bytes a row; it is
+// Memory is set aside once for a channel, with its first number: about 5.2 bytes a value. It is
 // used as rows come.
 class History {
  public:

@@ -129,6 +129,11 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
     throw FileError(
         fmt::format("{}: holds no plan, so that nobody knows what its points are", path.string()));
   }
+  if (("\n" + text).find("\n[refine]") != std::string::npos) {
+    throw FileError(fmt::format(
+        "{}: an older version refined its map, which this one does not show; h5py reads it",
+        path.string()));
+  }
   auto plan = std::make_shared<SweepPlan>(plan_of_text(text, plan_behind(path.parent_path())));
   try {
     read_worlds(*plan);

@@ -22,8 +22,9 @@ inline constexpr std::size_t kPlainBudget = std::size_t{512} << 20;
 
 // Takes a block of at least kLargeBlock bytes, aligned to a page. Beyond kPlainBudget the block is
 // a mapped file without a name, in $TMPDIR or else in /var/tmp: the kernel writes its pages there
-// and drops them when memory is short. If the disk has no room, the block is plain memory, up to a
-// quarter of the computer's. Errors: NoRoom. Not for the haptic thread.
+// and drops them when memory is short. Where the disk has no such room, or less than 1 GiB would be
+// left on it, the block is plain memory, up to a quarter of the computer's for all of them. Errors:
+// NoRoom. Not for the haptic thread.
 void* take_large_block(std::size_t bytes);
 void give_back_large_block(void* block, std::size_t bytes) noexcept;
 // Bytes of the large blocks that are files now.

@@ -130,6 +130,15 @@ struct CloseHid {
 };
 using Handle = std::unique_ptr<hid_device, CloseHid>;
 
+// hidapi keeps its errors in one place for all threads. Null: not opened.
+Handle opened(const std::string& path) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  return Handle(hid_open_path(path.c_str()));
+}
+
+constexpr auto kBeforeAnotherTry = std::chrono::milliseconds(100);
+
 // Asks for input reports by a thread and a handle of its own, as a device that hangs lets a
 // question wait for seconds. Nobody waits for that thread either: it shares what it needs and ends
 // when the kernel has given up.
@@ -194,7 +203,8 @@ class Questions {
       if (shared.quit) return;
       std::vector<std::uint8_t> report = shared.report;
       lock.unlock();
-      if (!device) device.reset(hid_open_path(path.c_str()));
+      if (!device) device = opened(path);
+      if (!device) std::this_thread::sleep_for(kBeforeAnotherTry);
       const int size =
           device ? hid_get_input_report(device.get(), report.data(), report.size()) : 0;
       lock.lock();
@@ -214,7 +224,7 @@ class HidapiTransport final : public HidTransport {
       : claim_(DeviceClaim::on_node(path)),
         descriptor_(read_descriptor(path)),
         numbered_(parse_report_descriptor(descriptor_).numbered),
-        device_(hid_open_path(path.c_str())),
+        device_(opened(path)),
         questions_(path) {
     if (!device_) refuse(path);
   }

@@ -91,13 +91,6 @@ void Playback::recover_leftovers(const fs::path& folder) {
       notices_.say(fmt::format("Recovered {} ({} ticks) from a recording that was cut off.",
                                recovered.file.filename().string(), recovered.rows));
       last_ = recovered.file;
-    } catch (const NothingRecorded&) {
-      // The file may hold more than can be read: it stays, under a name not looked for again.
-      fs::path aside = entry.path();
-      aside += ".empty";
-      fs::rename(entry.path(), aside, none);
-      notices_.say(fmt::format("Nothing was recorded in {}; it is kept as {}.",
-                               entry.path().string(), aside.filename().string()));
     } catch (const std::exception& e) {
       notices_.say(e.what(), true);
     }

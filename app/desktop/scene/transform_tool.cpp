@@ -34,9 +34,7 @@ void TransformTool::lock(int axis) { axis_ = axis_ == axis ? std::nullopt : std:
 void TransformTool::give_up(Document& document) {
   wanted_.reset();
   if (!std::exchange(transform_, std::nullopt)) return;
-  const auto moved = [&] { return document.editor().version().world != before_.world; };
-  if (moved()) document.undo();
-  if (moved()) document.undo();  // the first one ended a break of passivity
+  if (document.editor().version().world != before_.world) document.editor().restore(before_);
 }
 
 bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const Camera& camera,

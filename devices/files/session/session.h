@@ -163,12 +163,6 @@ void check_mark(const Mark& mark, const std::filesystem::path& file);
 void write_marks(const std::filesystem::path& session, std::span<const Mark> marks,
                  std::span<const Mark> known);
 
-// A leftover is whole, and has no rows.
-class NothingRecorded : public FileError {
- public:
-  using FileError::FileError;
-};
-
 // Path and number of rows of a recovered session.
 struct Recovered {
   std::filesystem::path file;

@@ -108,7 +108,8 @@ SessionInfo take_info(Reader& from) {
 }
 
 // Reads pieces of rows. Returns the number of rows.
-std::uint64_t take_rows(Reader& from, const Session& about, const TakeRows& take) {
+std::uint64_t take_rows(Reader& from, const Session& about, std::uint64_t claimed,
+                        const TakeRows& take) {
   const auto stride = static_cast<std::size_t>(about.layout.stride());
   std::uint64_t rows = 0;
   while (true) {
@@ -123,6 +124,7 @@ std::uint64_t take_rows(Reader& from, const Session& about, const TakeRows& take
       throw Broken("two runs that are not as long as each other");
     }
     rows += some.size() / stride;
+    if (rows > claimed) throw Broken("more rows than were announced");
     take(some, twin);
   }
 }
@@ -255,7 +257,7 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
   take_run(from, claimed, session);
   if (twin) take_run(from, claimed, *twin);
   begins(session, claimed);
-  const std::uint64_t rows = take_rows(from, session, take);
+  const std::uint64_t rows = take_rows(from, session, claimed, take);
   take_run(from, rows, session);
   session.marks = take_marks(from);
   for (const Mark& mark : session.marks) {

@@ -221,31 +221,42 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
   }
   check_place(out, force);
   const WriteLock lock(part, WriteLock::Make::no);
-  const Session session = read_session(part);
-  if (session.size() == 0) {
-    throw NothingRecorded(
-        fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
-  }
-  SessionInfo info = session.info;
-  info.arm = recorded_arm(info);
-  Draft draft(out);
-  SessionFile file(out, draft.descriptor(), info, Storage::packed);
-  const auto copy_run = [&file](const Session& run, std::size_t lane) {
-    file.append_world(run.world, lane);
-    for (const SettingChange& change : run.changes) file.append(change, lane);
-    file.append(run.rows, lane);
+  // In pieces: rows in memory or beside it would take room that the copy may need.
+  std::optional<Session> about;
+  std::optional<Draft> draft;
+  std::optional<SessionFile> file;
+  const auto begin = [&] {
+    SessionInfo info = about->info;
+    info.arm = recorded_arm(info);
+    draft.emplace(out);
+    file.emplace(out, draft->descriptor(), info, Storage::packed);
+    file->append_world(about->world, kMainLane);
+    if (about->twin) file->append_world(about->twin->world, kTwinLane);
   };
-  copy_run(session, kMainLane);
-  if (session.twin) copy_run(*session.twin, kTwinLane);
-  for (const Mark& mark : session.marks) file.append(mark);
-  file.close();
+  const Session rest = read_session(
+      part, [&](const Session& it) { about = it; },
+      [&](std::span<const double> rows, std::span<const double> twin) {
+        if (!file) begin();
+        file->append(rows, kMainLane);
+        if (about->twin) file->append(twin, kTwinLane);
+      });
+  if (!file) {
+    throw FileError(fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
+  }
+  for (const SettingChange& change : rest.changes) file->append(change, kMainLane);
+  if (rest.twin) {
+    for (const SettingChange& change : rest.twin->changes) file->append(change, kTwinLane);
+  }
+  for (const Mark& mark : rest.marks) file->append(mark);
+  const std::uint64_t rows = file->rows();
+  file->close();
   if (!force && fs::exists(out)) {
     throw FileError(fmt::format("{}: appeared meanwhile and was left alone; --force overwrites it",
                                 out.string()));
   }
-  draft.keep();
+  draft->keep();
   fs::remove(part);
-  return {out, session.size()};
+  return {out, rows};
 }
 
 }  // namespace limpid

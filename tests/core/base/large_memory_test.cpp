@@ -33,11 +33,13 @@ class WithFolder {
 // Resident memory of mapped files [bytes].
 std::size_t resident_of_files() {
   std::ifstream status("/proc/self/status");
+  std::size_t all = 0;
   for (std::string word; status >> word;) {
     std::size_t kibibytes = 0;
-    if (word == "RssFile:" && status >> kibibytes) return kibibytes << 10;
+    const bool file = word == "RssFile:" || word == "RssShmem:";  // the latter on a tmpfs
+    if (file && status >> kibibytes) all += kibibytes << 10;
   }
-  return 0;
+  return all;
 }
 
 std::size_t physical_memory() {

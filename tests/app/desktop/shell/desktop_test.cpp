@@ -686,10 +686,8 @@ TEST_F(ADesktop, SaysThatALeftoverHasNothingToRecover) {
   // The recording is never finished.
   Recorder(sessions / "cut.h5", session_info(plan), Parameters{}, false);
   desktop->playback.recover_leftovers(sessions);
-  EXPECT_TRUE(said("Nothing was recorded"));
+  EXPECT_TRUE(said("nothing was recorded"));
   EXPECT_FALSE(fs::exists(sessions / "cut.h5"));
-  EXPECT_FALSE(fs::exists(sessions / "cut.h5.part")) << "it would be told of at every start";
-  EXPECT_TRUE(fs::exists(sessions / "cut.h5.part.empty"));
 }
 
 TEST_F(ADesktop, KeepsChangesOfTheSceneWhenADeviceComesAndGoes) {
