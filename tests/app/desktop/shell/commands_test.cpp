@@ -293,17 +293,16 @@ TEST(Commands, NoneHasTheKeyOfAnotherWhereBothAct) {
 // A command without a menu and a key is a button of a panel, a dialog or a banner, which names it.
 TEST(Commands, EachIsReachedAndPanelsNameNoOthers) {
   std::set<std::string> named;
-  for (const char* folder : {"panels", "shell"}) {
-    const auto path = std::filesystem::path(LIMPID_SOURCE_DIR) / "app/desktop" / folder;
-    for (const auto& file : std::filesystem::directory_iterator(path)) {
-      if (file.path().filename() == "commands.cpp") continue;
-      std::stringstream text;
-      text << std::ifstream(file.path()).rdbuf();
-      const std::string source = text.str();
-      const std::regex id("\"([a-z]+\\.[a-z_.]+)\"");
-      for (std::sregex_iterator i(source.begin(), source.end(), id), end; i != end; ++i) {
-        named.insert((*i)[1]);
-      }
+  const auto window = std::filesystem::path(LIMPID_SOURCE_DIR) / "app/desktop";
+  for (const auto& file : std::filesystem::recursive_directory_iterator(window)) {
+    if (file.path().extension() != ".cpp" || file.path().filename() == "commands.cpp") continue;
+    std::stringstream text;
+    text << std::ifstream(file.path()).rdbuf();
+    const std::string source = text.str();
+    const std::regex id("\"([a-z]+\\.[a-z_.]+)\"");
+    for (std::sregex_iterator i(source.begin(), source.end(), id), end; i != end; ++i) {
+      const std::string name = (*i)[1];
+      if (!name.ends_with(".toml")) named.insert(name);
     }
   }
   for (const Command& command : commands()) {
