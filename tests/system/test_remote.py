@@ -228,7 +228,7 @@ class TestServe(RemoteTest):
 
     def test_cut_takes_the_force_away_and_start_over_gives_it_back(self) -> None:
         loop = self.connect()
-        self.assertTrue(loop.state()["force"])
+        self.wait("force", lambda: loop.state()["force"])
         loop.cut()
         self.wait("no force", lambda: not loop.state()["force"])
         loop.start_over()
