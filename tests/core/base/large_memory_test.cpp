@@ -85,7 +85,7 @@ TEST(LargeMemory, RefusesWhatNeitherDiskNorMemoryHasRoomFor) {
     more.reserve(physical_memory() / sizeof(double));
     FAIL() << "all of the memory was handed out";
   } catch (const NoRoom& no_room) {
-    EXPECT_THAT(no_room.what(), ::testing::HasSubstr("/proc/self has"));
+    EXPECT_THAT(no_room.what(), ::testing::HasSubstr("/proc/self: "));
     EXPECT_THAT(no_room.what(), ::testing::HasSubstr("TMPDIR"));
   }
 }
