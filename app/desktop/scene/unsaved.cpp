@@ -26,7 +26,7 @@ fs::path free_name(const fs::path& folder, const std::string& stem) {
 fs::path keep_unsaved(const SceneDocument& document, const ArmDescription& arm,
                       const std::string& name, const fs::path& folder) {
   fs::create_directories(folder);
-  const fs::path file = free_name(folder, name + std::string(kUnsaved));
+  fs::path file = free_name(folder, name + std::string(kUnsaved));
   save_scene(document, arm, file);
   return file;
 }

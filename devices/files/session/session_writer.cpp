@@ -15,6 +15,7 @@
 #include "devices/files/atomic_file.h"
 #include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_file.h"
+#include "devices/files/session/session_stream.h"
 
 namespace limpid {
 
