@@ -5,6 +5,9 @@
 
 #include <string_view>
 #ifdef __x86_64__
+#ifdef __clang__
+#define _Bool bool  // NOLINT: the header is for C, and clang knows no _Bool in C++
+#endif
 #include <sys/platform/x86.h>
 #endif
 
