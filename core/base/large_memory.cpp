@@ -60,11 +60,13 @@ int nameless_file(const std::string& in) {
 }
 
 // btrfs, ZFS and bcachefs write elsewhere what is written again: room that was taken is no promise.
+// tmpfs and ramfs are memory themselves.
 bool keeps_its_room(int file) {
-  constexpr std::array<std::uint32_t, 3> kCopyOnWrite{0x9123683e, 0x2fc12fc1, 0xca451a4e};
+  constexpr std::array<std::uint32_t, 5> kOthers{0x9123683e, 0x2fc12fc1, 0xca451a4e, 0x01021994,
+                                                 0x858458f6};
   struct statfs about {};
   return ::fstatfs(file, &about) == 0 &&
-         std::ranges::count(kCopyOnWrite, static_cast<std::uint32_t>(about.f_type)) == 0;
+         std::ranges::count(kOthers, static_cast<std::uint32_t>(about.f_type)) == 0;
 }
 
 // A mapped file, or why there is none. Its room on the disk is taken at once: a full disk would end
@@ -79,7 +81,8 @@ Mapped map_file(std::size_t bytes) {
   const auto failed = [&] { return Mapped{nullptr, in + ": " + std::strerror(errno)}; };
   const Descriptor file(nameless_file(in));
   if (*file < 0) return failed();
-  if (!keeps_its_room(*file)) return {nullptr, in + ": its file system keeps no room for a file"};
+  if (!keeps_its_room(*file))
+    return {nullptr, in + ": its file system is memory itself, or keeps no room for a file"};
   struct statvfs disk {};
   if (::fstatvfs(*file, &disk) != 0) return failed();
   const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
