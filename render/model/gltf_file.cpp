@@ -263,6 +263,7 @@ void give_views(json& gltf) {
   for (json& mesh : gltf_list(gltf, "meshes")) {
     if (!mesh.is_object()) continue;
     for (json& primitive : gltf_list(mesh, "primitives")) {
+      if (!primitive.is_object()) continue;
       const json packed =
           primitive.value(json::json_pointer("/extensions") / kDracoExtension, json());
       const json indices = primitive.value("indices", json());
@@ -307,6 +308,8 @@ std::vector<unsigned char> reworded(std::span<const unsigned char> bytes,
                                     std::span<const unsigned char> text, bool binary,
                                     const std::string& name) {
   json gltf = json::parse(text.begin(), text.end(), nullptr, false);
+  // The reader says what is wrong with it.
+  if (!gltf.is_object()) return {bytes.begin(), bytes.end()};
   if (shrink_fallbacks(gltf) > (binary ? 1 : 0))
     refuse(name, "has more than one buffer without a uri");
   give_views(gltf);

@@ -175,6 +175,20 @@ TEST(GltfLimits, RefusesADegenerateModel) {
   expect_refusal(file.binary(), "contains no triangles");
 }
 
+// A percent sign, or Draco's name, has the JSON read once more before the usual reader.
+TEST(GltfLimits, RefusesJsonThatIsNoObjectAsEveryOtherModel) {
+  for (const std::string json :
+       {"55 ", "[\"%\"]", "\"%\"", "{\"meshes\":[{\"primitives\":[5,\"%\"]}]}", "{\"%",
+        "{\"meshes\":[{\"primitives\":[\"KHR_draco_mesh_compression\"]}]}"}) {
+    const Bytes text(json.begin(), json.end());
+    EXPECT_THROW(parse_gltf(text, "part.gltf"), std::runtime_error) << json;
+    EXPECT_THROW(
+        parse_gltf(glb(json + std::string((4 - json.size() % 4) % 4, ' '), {}), "part.glb"),
+        std::runtime_error)
+        << json;
+  }
+}
+
 TEST(GltfLimits, SaysWhereTheJsonBreaks) {
   const std::string json = R"({"asset":{"version":"2.0"},)";
   expect_refusal(Bytes(json.begin(), json.end()), "is not valid JSON at its byte");
