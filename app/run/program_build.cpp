@@ -18,7 +18,6 @@ namespace limpid {
 namespace {
 
 constexpr std::string_view kBetween = "; ";
-const std::string kUnknown = "unknown";  // the program's own file cannot be read
 
 #ifdef __clang__
 constexpr const char* kCompiler = "clang " __clang_version__;
@@ -45,14 +44,14 @@ std::string processor() {
 const std::string& program_build() {
   static const std::string text =
       fmt::format("limpid {}, {}, build {}{}{}", program_version(), kCompiler,
-                  program_digest() == 0 ? kUnknown : fmt::format("{:016x}", program_digest()),
+                  program_digest() == 0 ? "unknown" : fmt::format("{:016x}", program_digest()),
                   kBetween, processor());
   return text;
 }
 
 std::string other_build(const std::string& recorded_by, const std::string& where) {
   const std::string& own = program_build();
-  if (recorded_by == own && own.find(kUnknown) == std::string::npos) return {};
+  if (recorded_by == own && program_digest() != 0) return {};
   if (recorded_by.empty()) {
     return fmt::format(
         "{} does not say which build recorded it; the numbers of this re-run can differ in their "

@@ -30,7 +30,7 @@ constexpr std::uint64_t kLeftOnDisk = std::uint64_t{1} << 30;
 struct Blocks {
   std::mutex mutex;
   std::map<void*, std::size_t> on_disk;  // bytes of each
-  std::size_t plain = 0, disk = 0;       // bytes of all
+  std::size_t plain = 0;                 // bytes of all others
 };
 
 // Never destroyed: blocks may be given back after main() has returned.
@@ -127,7 +127,6 @@ void* take_large_block(std::size_t bytes) {
     Blocks& all = blocks();
     const std::lock_guard lock(all.mutex);
     all.on_disk.emplace(file.block, bytes);
-    all.disk += bytes;
     return file.block;
   }
   const std::size_t memory = physical_memory();
@@ -144,7 +143,7 @@ void give_back_large_block(void* block, std::size_t bytes) noexcept {
   {
     Blocks& all = blocks();
     const std::lock_guard lock(all.mutex);
-    (all.on_disk.erase(block) > 0 ? all.disk : all.plain) -= bytes;
+    if (all.on_disk.erase(block) == 0) all.plain -= bytes;
   }
   ::munmap(block, bytes);
 }
@@ -152,7 +151,9 @@ void give_back_large_block(void* block, std::size_t bytes) noexcept {
 std::size_t large_bytes_on_disk() {
   Blocks& all = blocks();
   const std::lock_guard lock(all.mutex);
-  return all.disk;
+  std::size_t sum = 0;
+  for (const auto& [block, bytes] : all.on_disk) sum += bytes;
+  return sum;
 }
 
 void forget_large_blocks() {

@@ -21,6 +21,11 @@ namespace fs = std::filesystem;
 
 constexpr double kOfStory = 12;  // time that the plots of a story show: about a step [s]
 
+// Rows of a layout that fill kForgetAfter bytes.
+std::size_t rows_between_forgetting(const RowLayout& layout) {
+  return kForgetAfter / (static_cast<std::size_t>(layout.stride()) * sizeof(double)) + 1;
+}
+
 // Returns the history of the whole recording, and of the re-run if there is one. It marks a story's
 // steps, or else every change of a setting.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
@@ -33,7 +38,7 @@ History history_of(const Session& session, const std::string& where, const ArmDe
                    .seconds = length + 1,
                    .tick = session.info.tick});
   const auto stride = static_cast<std::size_t>(session.layout.stride());
-  const std::size_t forget_every = kForgetAfter / (stride * sizeof(double)) + 1;
+  const std::size_t forget_every = rows_between_forgetting(session.layout);
   auto change = session.changes.begin();
   for (std::size_t k = 0; k < session.size(); ++k) {
     for (; change != session.changes.end() && change->row <= k; ++change) {
@@ -113,8 +118,7 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
   LargeVector<double> rows;
   rows.reserve(session.rows.size());
   std::uint64_t count = 0;
-  const auto stride = static_cast<std::size_t>(session.layout.stride());
-  const std::size_t forget_every = kForgetAfter / (stride * sizeof(double)) + 1;
+  const std::size_t forget_every = rows_between_forgetting(session.layout);
   const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
                               [&](std::span<const double> row, LaneChanges) {
                                 rows.insert(rows.end(), row.begin(), row.end());

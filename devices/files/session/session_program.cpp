@@ -42,7 +42,6 @@ void put_run(Writer& to, const Session& run) {
 void take_run(Reader& from, std::uint64_t rows, Session& run) {
   run.world = from.list<std::vector<double>>();
   if (run.world.size() > kMostWorld) throw Broken("more of bodies than there can be");
-  run.changes.clear();
   const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < changes; ++i) {
     const auto row = from.number<std::uint64_t>();
@@ -229,9 +228,7 @@ void put_rows(Writer& to, std::span<const double> rows, std::span<const double> 
 
 void put_rest(Writer& to, const Session& session) {
   to.number(Answer::end);
-  put_run(to, session);
   put_marks(to, session.marks);
-  if (session.twin != nullptr) put_run(to, *session.twin);
 }
 
 void put_session(Writer& to, const Session& session) {
@@ -258,12 +255,12 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
   if (twin) take_run(from, claimed, *twin);
   begins(session, claimed);
   const std::uint64_t rows = take_rows(from, session, claimed, take);
-  take_run(from, rows, session);
+  drop_lost(session.changes, rows, claimed);
+  if (twin) drop_lost(twin->changes, rows, claimed);
   session.marks = take_marks(from);
   for (const Mark& mark : session.marks) {
     if (mark.tick >= rows) throw Broken("a mark behind the end");
   }
-  if (twin) take_run(from, rows, *twin);
   return session;
 }
 
@@ -330,6 +327,11 @@ Table take_table(Reader& from) {
 }
 
 }  // namespace wire
+
+void drop_lost(std::vector<SettingChange>& changes, std::uint64_t rows, std::uint64_t claimed) {
+  if (rows == claimed) return;
+  std::erase_if(changes, [&](const SettingChange& change) { return change.row >= rows; });
+}
 
 void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin) {
   session.rows = std::move(rows);

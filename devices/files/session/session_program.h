@@ -88,8 +88,8 @@ class Reader {
   std::uint64_t most_, left_;
 };
 
-// Write a session in pieces: first its contents, the number of rows that it claims, and changes;
-// rows as often as there are some; then all else, with the changes at rows that exist.
+// Write a session in pieces: first its contents, the number of rows that it claims, changes and
+// objects; rows as often as there are some; then its marks.
 void put_about(Writer& to, const Session& session, std::uint64_t rows);
 void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin);
 void put_rest(Writer& to, const Session& session);

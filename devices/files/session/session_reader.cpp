@@ -493,10 +493,8 @@ Session read_session_here(const fs::path& file,
   begins(session, first.rows());
   const std::size_t rows = read_rows(first, second ? &*second : nullptr, file, take);
   session.marks = read_marks(opened.get(), rows, file, claims);
-  // A leftover may have lost the rows of some changes.
-  const auto lost = [&](const SettingChange& change) { return change.row >= rows; };
-  if (rows < first.rows()) std::erase_if(session.changes, lost);
-  if (rows < first.rows() && twin) std::erase_if(twin->changes, lost);
+  drop_lost(session.changes, rows, first.rows());
+  if (twin) drop_lost(twin->changes, rows, first.rows());
   return session;
 }
 

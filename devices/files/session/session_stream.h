@@ -1,9 +1,11 @@
 // Sessions that need not fit into memory: reading of rows in turn.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "devices/files/session/session.h"
 
@@ -17,6 +19,9 @@ using TakeRows = std::function<void(std::span<const double> rows, std::span<cons
 // read_session(file).
 Session read_session(const std::filesystem::path& file,
                      const std::function<void(const Session& about)>& begins, const TakeRows& take);
+
+// Drops the changes at rows from `rows` on, where a leftover has fewer than it `claimed`.
+void drop_lost(std::vector<SettingChange>& changes, std::uint64_t rows, std::uint64_t claimed);
 
 // Puts rows into a session that was read without them.
 void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin);

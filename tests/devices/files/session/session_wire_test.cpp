@@ -91,6 +91,22 @@ TEST_F(SessionWire, CarriesEverything) {
   EXPECT_FALSE(back.twin->info.twin);
 }
 
+// A leftover claims rows that are not whole; its changes are told before that is known.
+TEST_F(SessionWire, LosesTheChangesAtRowsThatALeftoverHasLost) {
+  session_.marks.clear();
+  session_.changes = {{3, "coupling.k_vc = 8"}, {30, "coupling.k_vc = 9"}};
+  wire::Writer to(*file_);
+  put_about(to, session_, 40);
+  const std::size_t whole = 30 * static_cast<std::size_t>(session_.layout.stride());
+  put_rows(to, std::span(session_.rows).first(whole), std::span(session_.twin->rows).first(whole));
+  put_rest(to, session_);
+  const Session back = take();
+  EXPECT_EQ(back.size(), 30u);
+  ASSERT_EQ(back.changes.size(), 1u);
+  EXPECT_EQ(back.changes[0].row, 3u);
+  ASSERT_EQ(back.twin->changes.size(), 1u) << "the other change of the twin is at row 40";
+}
+
 TEST_F(SessionWire, ThatIsCutOffAnywhereIsNoSession) {
   session_.info.device_urdf = "u";
   put(session_);
