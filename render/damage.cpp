@@ -37,9 +37,10 @@ struct Near {
   bool operator()(const ContactShade& a, const ContactShade& b) const {
     return (*this)(a.position, b.position) && std::abs(a.height - b.height) <= tolerance;
   }
-  bool operator()(const SecondRun& a, const SecondRun& b) const {
+  bool operator()(const OtherRun& a, const OtherRun& b) const {
     return (*this)(a.device, b.device) && (*this)(a.proxy, b.proxy) &&
-           forces(a.hand_force, b.hand_force) && (*this)(a.contacts, b.contacts);
+           forces(a.hand_force, b.hand_force) && (*this)(a.contacts, b.contacts) &&
+           (*this)(a.bodies, b.bodies);
   }
   template <class T>
   bool operator()(const std::vector<T>& a, const std::vector<T>& b) const {
@@ -71,10 +72,10 @@ bool same_picture(const ViewState& a, const ViewState& b, double tolerance) {
   };
   const bool hands = !(a.show_hand && b.show_hand) || near(a.hand_target, b.hand_target);
   return switches(a) == switches(b) && near(a.device, b.device) && near(a.proxy, b.proxy) &&
-         near(a.rerun, b.rerun) && near(a.twin, b.twin) && hands &&
+         near(a.rerun, b.rerun) && near(a.beside, b.beside) && hands &&
          near.forces(a.hand_force, b.hand_force) && near(a.contacts, b.contacts) &&
          near(a.shade, b.shade) && near(a.pull, b.pull) && near(a.bodies, b.bodies) &&
-         near(a.other_bodies, b.other_bodies);
+         near(a.rerun_bodies, b.rerun_bodies);
 }
 
 void Damage::begin(const glm::mat4& to_clip, int width, int height) {

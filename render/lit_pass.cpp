@@ -228,21 +228,26 @@ Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts)
   return out;
 }
 
-BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
-                       double meters_per_pixel) {
-  if (state.other_bodies.empty()) return {};
+std::vector<BodyGhosts> body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
+                                    double meters_per_pixel) {
   constexpr double kSpan = 0.03;  // from a body's middle to its edge, which turns [m]
-  BodyGhosts ghosts{body_links(state.other_bodies, starts),
-                    {},
-                    state.rerun ? palette::kRerun : palette::of_twin(palette::kProxy, state.theme)};
-  const std::size_t both = std::min(state.bodies.size(), state.other_bodies.size());
-  for (std::size_t i = 0; i < std::min(both, starts.size()); ++i) {
-    const Pose &a = state.bodies[i], &b = state.other_bodies[i];
-    const double apart =
-        (a.translation() - b.translation()).norm() + kSpan * (a.linear() - b.linear()).norm();
-    ghosts.shown.push_back(apart > meters_per_pixel);
+  std::vector<BodyGhosts> all;
+  const auto add = [&](const std::vector<Pose>& bodies, const palette::Rgb& color) {
+    if (bodies.empty()) return;
+    BodyGhosts& ghosts = all.emplace_back(BodyGhosts{body_links(bodies, starts), {}, color});
+    const std::size_t both = std::min(state.bodies.size(), bodies.size());
+    for (std::size_t i = 0; i < std::min(both, starts.size()); ++i) {
+      const Pose &a = state.bodies[i], &b = bodies[i];
+      const double apart =
+          (a.translation() - b.translation()).norm() + kSpan * (a.linear() - b.linear()).norm();
+      ghosts.shown.push_back(apart > meters_per_pixel);
+    }
+  };
+  add(state.rerun_bodies, palette::kRerun);
+  for (std::size_t i = 0; i < state.beside.size(); ++i) {
+    add(state.beside[i].bodies, palette::of_lane(palette::kProxy, i + 1, state.theme));
   }
-  return ghosts;
+  return all;
 }
 
 std::vector<Ghost> ghosts_of(const ViewState& state, double meters_per_pixel) {
@@ -255,10 +260,11 @@ std::vector<Ghost> ghosts_of(const ViewState& state, double meters_per_pixel) {
   const auto add = [&](const ArmPose& arm, const ArmPose& over, const palette::Rgb& color) {
     ghosts.push_back({links_of(arm), color, outlines_of(arm, over, meters_per_pixel)});
   };
-  if (state.twin) {
-    add(state.twin->proxy, state.proxy, palette::of_twin(palette::kProxy, state.theme));
+  for (std::size_t i = 0; i < state.beside.size(); ++i) {
+    const OtherRun& run = state.beside[i];
+    add(run.proxy, state.proxy, palette::of_lane(palette::kProxy, i + 1, state.theme));
     if (state.show_ghost) {
-      add(state.twin->device, state.device, palette::of_twin(palette::kDevice, state.theme));
+      add(run.device, state.device, palette::of_lane(palette::kDevice, i + 1, state.theme));
     }
   }
   if (state.show_ghost) add(state.device, state.proxy, palette::kDevice);

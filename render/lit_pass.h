@@ -130,8 +130,8 @@ struct BodyGhosts {
 
 // Returns the frame of each body: as seen, else as it starts.
 Links body_links(const std::vector<Pose>& seen, const std::vector<Pose>& starts);
-BodyGhosts body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
-                       double meters_per_pixel);
+std::vector<BodyGhosts> body_ghosts(const ViewState& state, const std::vector<Pose>& starts,
+                                    double meters_per_pixel);
 
 // Returns the frame of each link; none if any is not finite.
 Links links_of(const ArmPose& arm);

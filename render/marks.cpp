@@ -124,12 +124,14 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
                             place(state.hand_target, Vec3::UnitZ(), 0.0085 * size, 0.0085 * size),
                             palette::kHand});
   add_contacts(state, state.contacts, palette::kContact, size, marks);
-  if (state.twin) {
-    const auto tint = [&](const palette::Rgb& c) { return palette::of_twin(c, state.theme); };
-    add_contacts(state, state.twin->contacts, tint(palette::kContact), size, marks);
+  for (std::size_t i = 0; i < state.beside.size(); ++i) {
+    const OtherRun& run = state.beside[i];
+    const auto tint = [&](const palette::Rgb& c) {
+      return palette::of_lane(c, i + 1, state.theme);
+    };
+    add_contacts(state, run.contacts, tint(palette::kContact), size, marks);
     if (state.show_forces) {
-      add_arrow(state.twin->device.tip, state.twin->hand_force, tint(palette::kHand), size,
-                marks.solids);
+      add_arrow(run.device.tip, run.hand_force, tint(palette::kHand), size, marks.solids);
     }
   }
   if (state.shade) add_shade(*state.shade, size, marks.shades);
@@ -143,10 +145,14 @@ void add_trails(const ViewState& state, LineBatch& lines) {
   if (state.show_ghost) add_trail(state.device.trail, palette::kDevice, lines);
   add_trail(state.proxy.trail, lighter(palette::kProxy, lift), lines);
   if (state.rerun) add_trail(state.rerun->trail, palette::kRerun, lines);
-  if (!state.twin) return;
-  const auto tint = [&](const palette::Rgb& c) { return palette::of_twin(c, state.theme); };
-  if (state.show_ghost) add_trail(state.twin->device.trail, tint(palette::kDevice), lines);
-  add_trail(state.twin->proxy.trail, tint(palette::kProxy), lines);
+  for (std::size_t i = 0; i < state.beside.size(); ++i) {
+    const OtherRun& run = state.beside[i];
+    const auto tint = [&](const palette::Rgb& c) {
+      return palette::of_lane(c, i + 1, state.theme);
+    };
+    if (state.show_ghost) add_trail(run.device.trail, tint(palette::kDevice), lines);
+    add_trail(run.proxy.trail, tint(palette::kProxy), lines);
+  }
 }
 
 void add_lines_on_top(const ViewState& state, LineBatch& lines) {
@@ -156,10 +162,12 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
   if (!state.show_error) return;
   const bool dark = state.theme == Theme::dark;
   const TipColors first{palette::kDevice, lighter(palette::kProxy, dark ? 0.25f : 0.0f)};
-  if (state.twin) {
-    const auto tint = [&](const palette::Rgb& c) { return palette::of_twin(c, state.theme); };
-    add_error(state.twin->device, state.twin->proxy, {tint(first.device), tint(first.proxy)}, dark,
-              lines);
+  for (std::size_t i = 0; i < state.beside.size(); ++i) {
+    const OtherRun& run = state.beside[i];
+    const auto tint = [&](const palette::Rgb& c) {
+      return palette::of_lane(c, i + 1, state.theme);
+    };
+    add_error(run.device, run.proxy, {tint(first.device), tint(first.proxy)}, dark, lines);
   }
   add_error(state.device, state.proxy, first, dark, lines);
 }

@@ -31,9 +31,12 @@ inline constexpr Rgb kSticks = from_hex(0xCC79A7);   // purple
 inline constexpr Rgb kSlips = from_hex(0xF0E442);    // yellow
 inline constexpr Rgb kRerun = from_hex(0xF0E442);    // yellow, as in the plots
 
-// Returns the colour of a second run at the same time: mixed with the text's, as its curves are.
-constexpr Rgb of_twin(const Rgb& color, Theme theme) {
-  return mix(color, from_hex(theme == Theme::dark ? 0xDFE4EA : 0x1D2329), 0.55f);
+// Returns a colour as the `lane`-th of several runs at the same time has it: mixed with the text's
+// or the background's, as its curves are.
+constexpr Rgb of_lane(const Rgb& color, std::size_t lane, Theme theme) {
+  const float shade = kLaneShades[lane];
+  const bool light = (theme == Theme::dark) == (shade > 0);
+  return mix(color, from_hex(light ? 0xDFE4EA : 0x1D2329), shade > 0 ? shade : -shade);
 }
 
 }  // namespace palette

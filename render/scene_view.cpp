@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -104,8 +105,8 @@ struct SceneView::Impl {
       : arm(description),
         items(collect_items(arm, scene, visuals)),
         surroundings(surroundings_of(items, {})),
-        painter(shaders, items, surroundings),
-        sheets{DrawnSheet(shaders), DrawnSheet(shaders), DrawnSheet(shaders), DrawnSheet(shaders)} {
+        painter(shaders, items, surroundings) {
+    while (sheets.size() < kSheets) sheets.emplace_back(shaders);
   }
 
   void use_surroundings() {
@@ -134,8 +135,10 @@ struct SceneView::Impl {
   std::vector<MeshPicture> meshes;
   std::map<const Model*, Bounds> model_bounds;  // of those in `meshes`
   ScenePainter painter;
-  std::array<DrawnSheet, 4> sheets;  // by SceneView::Sheet
-  std::uint64_t version = 1;         // of everything that stands still
+  static constexpr std::size_t kSheets =
+      static_cast<std::size_t>(SceneView::Sheet::beside) + kMostLanes - 1;
+  std::deque<DrawnSheet> sheets;  // by SceneView::Sheet
+  std::uint64_t version = 1;      // of everything that stands still
 };
 
 SceneView::SceneView(const std::filesystem::path& shaders, const ArmDescription& arm,
@@ -222,7 +225,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   const double mpp = eye.meters_per_pixel(state.proxy.tip) / painter.pixel_scale();
   const std::vector<Ghost> ghosts = ghosts_of(state, mpp);
   const Links bodies = body_links(state.bodies, items.starts);
-  const BodyGhosts others = body_ghosts(state, items.starts, mpp);
+  const std::vector<BodyGhosts> others = body_ghosts(state, items.starts, mpp);
 
   painter.begin_frame(lighting, eye);
   painter.draw_shadows(proxy, bodies);
@@ -233,7 +236,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   sheet.damage.begin(to_glm(DrawnSheet::matrix_of(eye)), columns, rows);
   painter.note(proxy, true, sheet.damage);
   painter.note_bodies(bodies, sheet.damage);
-  painter.note(others, sheet.damage);
+  for (const BodyGhosts& other : others) painter.note(other, sheet.damage);
   for (const Ghost& ghost : ghosts) painter.note(ghost, sheet.damage);
   painter.note(sheet.trails, sheet.damage);
   painter.note(sheet.lines_on_top, sheet.damage);
@@ -247,7 +250,7 @@ PixelArea SceneView::Impl::paint(DrawnSheet& sheet, const ViewState& state, cons
   painter.draw_shades(marks);
   painter.draw_lines(sheet.floor_lines, false);
   painter.draw_glass(proxy);
-  painter.draw_body_ghosts(others);
+  for (const BodyGhosts& other : others) painter.draw_body_ghosts(other);
   for (std::size_t i = 0; i < ghosts.size(); ++i) painter.draw_ghost(ghosts[i], i);
   painter.draw_marks(marks);
   painter.draw_lines(sheet.trails, false);

@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 
+#include "core/base/lanes.h"
 #include "core/dynamics/arm_description.h"
 #include "core/touch/scene.h"
 #include "render/camera.h"
@@ -35,9 +36,13 @@ struct MeshPicture {
 class SceneView {
  public:
   // Number of a picture where one frame has several: each remembers how it was drawn the last time.
-  // A lens is what Camera::magnified() sees; beside is a second arm in the same scene; small is
-  // kept as a file.
-  enum class Sheet { main, lens, beside, small };
+  // A lens is what Camera::magnified() sees; small is kept as a file; beside and those behind it
+  // are the arms of further lanes in the same scene.
+  enum class Sheet { main, lens, small, beside };
+  static Sheet sheet_of(std::size_t lane) {
+    if (lane == kMainLane) return Sheet::main;
+    return static_cast<Sheet>(static_cast<std::size_t>(Sheet::beside) + lane - 1);
+  }
 
   // Loads the shaders, every visual of the arm and these of the scene. An arm without visuals is
   // drawn as capsules from joint to joint. Throws std::runtime_error naming the file (and line of a

@@ -4,7 +4,13 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/lanes.h"
+
 namespace limpid {
+
+// Shades of what belongs to each lane: above 0 towards the text's colour, below 0 towards the
+// background.
+inline constexpr std::array<float, kMostLanes> kLaneShades{0, 0.55f, -0.4f};
 
 enum class Theme : std::uint8_t { dark, light };
 

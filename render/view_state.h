@@ -41,18 +41,19 @@ struct ContactShade {
   double height = 0;             // of the tip above the surface [m]
 };
 
-// A second run on the same hand in the same picture: in tints of the first one's colours.
-struct SecondRun {
+// A further run on the same hand in the same picture: in tints of the first one's colours.
+struct OtherRun {
   ArmPose device, proxy;           // both drawn as translucent ghosts
   Vec3 hand_force = Vec3::Zero();  // on the device tip [N]
   std::vector<ContactMark> contacts;
+  std::vector<Pose> bodies;  // as ViewState's: ghosts where they are apart from those
 };
 
 struct ViewState {
-  ArmPose device;                // drawn as a translucent ghost
-  ArmPose proxy;                 // drawn solid
-  std::optional<ArmPose> rerun;  // a second proxy in a colour of its own
-  std::optional<SecondRun> twin;
+  ArmPose device;                   // drawn as a translucent ghost
+  ArmPose proxy;                    // drawn solid
+  std::optional<ArmPose> rerun;     // a second proxy in a colour of its own
+  std::vector<OtherRun> beside;     // at most kMostLanes - 1
   Vec3 hand_target = Vec3::Zero();  // [m]
   bool show_hand = false;
   bool hand_grips = false;         // draws the line from the target to the device tip
@@ -66,7 +67,7 @@ struct ViewState {
   // Frames of the scene's moving objects, in their order. An object whose frame is missing or not
   // finite stands where the scene has it.
   std::vector<Pose> bodies;
-  std::vector<Pose> other_bodies;  // of the second run or the re-run: ghosts where they are apart
+  std::vector<Pose> rerun_bodies;  // ghosts where they are apart
 
   bool show_ghost = true;
   bool show_error = true;  // the two tips and the line between them

@@ -47,22 +47,21 @@ class RowsTold {
     const auto arm = recorded_arm(about.info);
     const std::vector<bool> slides = arm ? slides_of(*arm) : about.info.slides;
     layout_ = about.layout;
-    first_.emplace(layout_, slides);
-    if (about.twin) twin_.emplace(layout_, slides);
+    lanes_.assign(about.lanes(), Summary(layout_, slides));
     force_.emplace(layout_);
   }
-  void take(std::span<const double> rows, std::span<const double> twin) {
+  void take(LaneRows rows) {
     const auto stride = static_cast<std::size_t>(layout_.stride());
-    if (count_ == 0 && !rows.empty()) {
-      contacts_ = !std::isnan(layout_.in(rows.first(stride), Column::contact_force)[0]);
+    const std::span<const double> first = rows[kMainLane];
+    if (count_ == 0 && !first.empty()) {
+      contacts_ = !std::isnan(layout_.in(first.first(stride), Column::contact_force)[0]);
     }
-    for (std::size_t at = 0; at < rows.size(); at += stride, ++count_) {
-      first_->add(rows.subspan(at, stride));
-      force_->add(rows.subspan(at, stride));
-      if (twin_) twin_->add(twin.subspan(at, stride));
+    for (std::size_t at = 0; at < first.size(); at += stride, ++count_) {
+      force_->add(first.subspan(at, stride));
+      for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i].add(rows[i].subspan(at, stride));
     }
     try {
-      if (watch_) watch_->take(rows, twin);
+      if (watch_) watch_->take(rows);
     } catch (const std::exception&) {
       watch_.reset();
     }
@@ -73,10 +72,9 @@ class RowsTold {
   std::vector<std::string> warnings() const {
     return watch_ ? watch_->warnings() : std::vector<std::string>();
   }
-  // A summary of each run.
   std::vector<const Summary*> lanes() const {
-    std::vector<const Summary*> all{&*first_};
-    if (twin_) all.push_back(&*twin_);
+    std::vector<const Summary*> all;
+    for (const Summary& lane : lanes_) all.push_back(&lane);
     return all;
   }
   std::string text(double tick) const {
@@ -87,8 +85,11 @@ class RowsTold {
 
  private:
   std::string numbers() const {
-    if (!twin_) return first_->text();
-    return "two runs on one hand\n" + Summary::beside(*first_, "first", *twin_, "twin");
+    if (lanes_.size() == 1) return lanes_[0].text();
+    std::vector<std::string> names{"first"};
+    for (std::size_t i = 1; i < lanes_.size(); ++i) names.push_back(lane_name(i));
+    return fmt::format("{} runs on one hand\n", lanes_.size() == 2 ? "two" : "three") +
+           Summary::beside(lanes(), names);
   }
   // Describes the recorded contacts; recordings of the first edition have only their torque.
   std::string contacts() const {
@@ -99,7 +100,7 @@ class RowsTold {
   std::string file_;
   RowLayout layout_{3};
   std::optional<SessionWatch> watch_;
-  std::optional<Summary> first_, twin_;
+  std::vector<Summary> lanes_;
   std::optional<ForceTally> force_;
   std::uint64_t count_ = 0;
   bool contacts_ = false;  // are recorded
@@ -215,12 +216,11 @@ Session read_and_tell(const InfoOptions& options, RowsTold& told) {
   if (options.csv.empty()) {
     return read_session(
         options.session, [&](const Session& about) { told.begins(about); },
-        [&](std::span<const double> rows, std::span<const double> twin) { told.take(rows, twin); });
+        [&](LaneRows rows) { told.take(rows); });
   }
   Session session = read_session(options.session);
   told.begins(session);
-  told.take(session.rows,
-            session.twin ? std::span<const double>(session.twin->rows) : std::span<const double>());
+  told.take(session.lane_rows());
   return session;
 }
 

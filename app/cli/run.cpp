@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -18,6 +19,7 @@
 #include "app/cli/still_picture.h"
 #include "app/cli/summary_json.h"
 #include "app/run/fitted_gains.h"
+#include "app/run/lane_settings.h"
 #include "app/run/provenance.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
@@ -59,7 +61,7 @@ int run_live(const LiveRunOptions& options) {
     fmt::print(stderr, "limpid: stopped\n");
     return 1;
   }
-  if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable(), {});
+  if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable());
   fmt::print("{}", summary.text());
   if (!options.record.empty()) fmt::print("recorded in {}\n", options.record);
   print_warnings(watch.cautions());
@@ -76,7 +78,8 @@ struct RunOptions {
   std::string picture;
   bool force = false;
   bool realtime = false, json = false;
-  std::optional<std::vector<std::string>> twin;  // key=value
+  // Settings of each further lane, as key=value; nothing: there is no such lane.
+  std::array<std::optional<std::vector<std::string>>, kMostLanes - 1> beside;
   LiveOptions live;
 };
 
@@ -114,18 +117,27 @@ std::string short_name(const Parameters& p) {
   return fmt::format("{} {:.3g}", name(p.kind), p.eta);
 }
 
-// Second lane beside the chosen one: with the given settings, else with the standard coupling
-// (predictive beside standard).
-Lane make_twin(const Parameters& chosen, const std::vector<std::string>& settings) {
-  Lane twin{chosen, {}};
-  for (const std::string& setting : settings) apply_setting(twin.parameters, setting);
-  if (!settings.empty()) {
-    if (twin.parameters.tick == chosen.tick) return twin;
-    throw UsageError("--twin loop.tick: both runs go in the same ticks");
+std::string lane_option(std::size_t lane) { return "--" + lane_name(lane); }
+
+// Adds further lanes to a plan: with the given settings, else with a law that no lane has yet.
+void add_lanes(const RunOptions& options, RunPlan& plan) {
+  bool last = false;
+  for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
+    const auto& settings = options.beside[lane - 1];
+    if (settings && last) {
+      throw UsageError(
+          fmt::format("{}: needs {} beside it", lane_option(lane), lane_option(lane - 1)));
+    }
+    last = !settings;
+    if (!settings) continue;
+    Lane added{plan.parameters, {}};
+    for (const std::string& setting : *settings) apply_setting(added.parameters, setting);
+    if (added.parameters.tick != plan.parameters.tick) {
+      throw UsageError(lane_option(lane) + " loop.tick: all runs go in the same ticks");
+    }
+    if (settings->empty()) added.parameters.kind = law_beside(plan.settings());
+    plan.beside.push_back(std::move(added));
   }
-  using enum CouplingKind;
-  twin.parameters.kind = chosen.kind == standard ? predictive : standard;
-  return twin;
 }
 
 // Takes the ticks as they come.
@@ -149,11 +161,10 @@ class RunLog {
     }
     ++rows_;
     const bool memorable = runs_[0].add(rows.first(stride_));
-    if (runs_.size() > 1) {
-      const auto twin = rows.subspan(stride_);
-      runs_[1].add(twin);
-      if (memorable) twin_.assign(twin.begin(), twin.end());
+    for (std::size_t lane = 1; lane < runs_.size(); ++lane) {
+      runs_[lane].add(rows.subspan(lane * stride_, stride_));
     }
+    if (memorable) memorable_.assign(rows.begin(), rows.end());
     if (recorder_ == nullptr) return true;
     for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
       if (changed[lane] != nullptr) recorder_->changed(*changed[lane], lane);
@@ -164,13 +175,11 @@ class RunLog {
   }
 
   nlohmann::ordered_json json() const {
-    std::vector<const Summary*> lanes;
     std::vector<std::string> warnings;
     for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
-      lanes.push_back(&runs_[lane]);
       add_warnings(watches_[lane].warnings(), lane, warnings);
     }
-    return runs_json(lanes, warnings);
+    return runs_json(summaries(), warnings);
   }
   // Warnings besides that of an unstable run.
   std::vector<std::string> cautions() const {
@@ -181,20 +190,27 @@ class RunLog {
     return all;
   }
   double time() const { return runs_[0].time(); }
-  std::span<const double> memorable() const { return runs_[0].memorable(); }
-  std::span<const double> twin() const { return twin_; }  // at time()
+  // Rows of all lanes when the first one's contact was strongest.
+  std::span<const double> memorable() const { return memorable_; }
   std::string text(const RunPlan& plan) const {
     if (plan.beside.empty()) return runs_[0].text();
-    return Summary::beside(runs_[0], short_name(plan.parameters), runs_[1],
-                           short_name(*plan.twin()));
+    std::vector<std::string> names;
+    for (const Parameters& p : plan.settings()) names.push_back(short_name(p));
+    return Summary::beside(summaries(), names);
   }
 
  private:
+  std::vector<const Summary*> summaries() const {
+    std::vector<const Summary*> all;
+    for (const Summary& run : runs_) all.push_back(&run);
+    return all;
+  }
+
   std::size_t stride_;
   std::vector<Summary> runs_;
   std::deque<RunWatch> watches_;
   std::uint64_t rows_ = 0;
-  std::vector<double> twin_;
+  std::vector<double> memorable_;
   Recorder* recorder_;
   bool waits_;
 };
@@ -259,7 +275,7 @@ void say_about(const RunPlan& plan) {
 int live(const RunOptions& options) {
   for (const auto& [given, what] : {std::pair(!options.input.hand.empty(), "--hand"),
                                     std::pair(options.input.variation.has_value(), "--variation"),
-                                    std::pair(options.twin.has_value(), "--twin")}) {
+                                    std::pair(options.beside[0].has_value(), "--twin")}) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
   }
   if (options.json) throw UsageError("--json: not beside --live");
@@ -285,13 +301,14 @@ int run(const RunOptions& options) {
                "limpid: note: --seed changes nothing here: only variations of the hand are random, "
                "and --variation asks for none\n");
   }
-  if (options.twin) plan.beside = {make_twin(plan.parameters, *options.twin)};
+  if (options.beside[0]) plan.beside.clear();  // those of a recording
+  add_lanes(options, plan);
   check_outputs(options);
   catch_interrupts();
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
-    recorder.emplace(options.record, session_info(plan), plan.parameters, options.force,
-                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom, plan.twin());
+    recorder.emplace(options.record, session_info(plan), plan.settings(), options.force,
+                     options.realtime ? Recorder::kLiveRoom : Recorder::kWaitingRoom);
     tell_start(*recorder, plan);
     if (const std::string note = lock_note(*recorder); !note.empty()) {
       fmt::print(stderr, "limpid: note: {}\n", note);
@@ -302,9 +319,7 @@ int run(const RunOptions& options) {
   const RunEnd end = carry_out(options, plan, log);
   const double took = Seconds(std::chrono::steady_clock::now() - began).count();
   if (recorder) finish(*recorder);
-  if (!options.picture.empty()) {
-    save_picture(options.picture, plan, log.memorable(), log.twin());
-  }
+  if (!options.picture.empty()) save_picture(options.picture, plan, log.memorable());
   if (options.json) {
     print_json(options, plan, log);
     return report(options, end, recorder ? &*recorder : nullptr, log);
@@ -330,19 +345,21 @@ Command declare_run(CLI::App& app) {
   command->add_flag("--json", options->json,
                     "what came of it as one JSON object, instead of lines");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
-  command
-      ->add_option_function<std::vector<std::string>>(
-          "--twin",
-          [options](const auto& settings) {
-            options->twin = settings;
-            std::erase(*options->twin, "");  // from --twin alone
-          },
-          "a second run on the same hand beside this one: with the standard coupling, or with "
-          "these "
-          "settings changed")
-      ->type_name("[KEY=VALUE ...]")
-      ->expected(0, -1)
-      ->trigger_on_parse(false);
+  for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
+    command
+        ->add_option_function<std::vector<std::string>>(
+            lane_option(lane),
+            [options, lane](const auto& settings) {
+              options->beside[lane - 1] = settings;
+              std::erase(*options->beside[lane - 1], "");  // from the option alone
+            },
+            fmt::format("a {} run on the same hand beside this one: with the standard coupling, or "
+                        "another law if that one is there, or with these settings changed",
+                        lane_ordinal(lane)))
+        ->type_name("[KEY=VALUE ...]")
+        ->expected(0, -1)
+        ->trigger_on_parse(false);
+  }
   options->live.add(*command);
   options->input.add_world(*command);
   options->input.add_hand(*command);

@@ -8,7 +8,7 @@
 namespace limpid {
 
 void save_picture(const std::filesystem::path& png, const RunPlan& plan,
-                  std::span<const double> row, std::span<const double> twin) {
+                  std::span<const double> rows) {
   constexpr int kWidth = 1280, kHeight = 800;
   const OffscreenContext context(kWidth, kHeight);
   SceneView picture(data_dir() / "shaders", plan.arm, plan.document.scene,
@@ -16,13 +16,16 @@ void save_picture(const std::filesystem::path& png, const RunPlan& plan,
   picture.set_quality(Quality::level(0));  // best quality, as time does not matter
   picture.set_meshes(mesh_pictures(plan.document.scene, plan.models));
   const RowLayout layout = plan.layout();
-  const RowView rows(plan.arm, plan.document.scene);
-  ViewState view = rows.view(layout, row);
-  if (!twin.empty()) {
-    view.rerun = rows.pose(layout.in(twin, Column::proxy_position));
-    view.other_bodies = rows.bodies(layout, twin);
-  }
-  ViewMemory().update(view, rows.contacts(layout, row), 0);
+  const RowView reader(plan.arm, plan.document.scene);
+  const auto stride = static_cast<std::size_t>(layout.stride());
+  const auto view_of = [&](std::size_t lane) {
+    const std::span<const double> row = rows.subspan(lane * stride, stride);
+    ViewState view = reader.view(layout, row);
+    ViewMemory().update(view, reader.contacts(layout, row), 0);
+    return view;
+  };
+  ViewState view = view_of(kMainLane);
+  for (std::size_t lane = 1; lane < rows.size() / stride; ++lane) lay_over(view, view_of(lane));
   Camera camera;
   camera.resize(kWidth, kHeight);
   camera.reset(picture.bounds());

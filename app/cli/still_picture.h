@@ -8,9 +8,9 @@
 
 namespace limpid {
 
-// Draws the plan's arm in its scene at `row`, 1280 x 800, with the twin's proxy if there is one.
-// Errors: std::runtime_error without OpenGL, or if the file cannot be written.
+// Draws the plan's arm in its scene at the rows of a tick, 1280 x 800, with further runs' arms over
+// the first one. Errors: std::runtime_error without OpenGL, or if the file cannot be written.
 void save_picture(const std::filesystem::path& png, const RunPlan& plan,
-                  std::span<const double> row, std::span<const double> twin = {});
+                  std::span<const double> rows);
 
 }  // namespace limpid

@@ -37,7 +37,7 @@ void print_numbers(const Story& story, const Session& session) {
     fmt::print("{:.1f} to {:.1f} s  {}\n", step.begins, step.ends, step.caption);
     std::size_t width = 0;
     for (const std::string& name : step.names) width = std::max(width, name.size());
-    for (std::size_t lane = 0; lane < 2; ++lane) {
+    for (std::size_t lane = 0; lane < all[i].size(); ++lane) {
       const StepNumbers& n = all[i][lane];
       fmt::print(
           "    {:{}}  |x_E| up to {:.4g} mrad, |f1| {:.4g} N m rms, |f2| up to {:.4g} N m, E_c "

@@ -10,9 +10,9 @@
 #include "app/desktop/base/picture_signs.h"
 #include "app/plot/plot_frame.h"
 #include "app/plot/plot_row.h"
+#include "app/run/lane_settings.h"
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
-#include "app/run/twin_settings.h"
 #include "app/style/picture_legend.h"
 #include "core/coupling/laws.h"
 #include "core/tick/arming.h"
@@ -62,7 +62,7 @@ class Shown {
  public:
   struct Moment {
     ViewState view;
-    std::optional<ViewState> beside;  // of a twin's second run
+    std::vector<ViewState> beside;  // of further runs
   };
 
   Shown(const Session& session, const std::string& where, const FilmOrder& order,
@@ -73,8 +73,9 @@ class Shown {
         stage_(stage(session, where, cut, order.steps)),
         row_(index(cut.from)),
         seconds_(1.0 / cut.fps) {
-    runs_.emplace_back(session, session_parameters(session, where));
-    if (session.twin) runs_.emplace_back(*session.twin, session_parameters(*session.twin, where));
+    for (std::size_t i = 0; i < session.lanes(); ++i) {
+      runs_.emplace_back(session.lane(i), session_parameters(session.lane(i), where));
+    }
     apply_changes(row_);
     enter_step(row_);
     camera_.finish();
@@ -89,7 +90,9 @@ class Shown {
     for (; row_ <= now; ++row_) {
       apply_changes(row_);
       enter_step(row_);
-      stage_.append(session_.row(row_), session_.twin ? session_.twin->row(row_) : Row());
+      std::vector<Row> rows;
+      for (std::size_t i = 0; i < session_.lanes(); ++i) rows.push_back(session_.lane(i).row(row_));
+      stage_.append(rows);
       for (const Mark& mark : session_.marks) {
         if (mark.tick == row_) stage_.history.mark(time_at(row_), mark.text, kNoteMark);
       }
@@ -101,7 +104,9 @@ class Shown {
     FilmCaption caption{.time = fmt::format("{:.2f} s", session_.layout.in(row, Column::time)[0]),
                         .text = law_text(session_.layout, row),
                         .aside = order_.title};
-    if (twin_shown()) caption.text = stage_.names().first + "  |  " + stage_.names().second;
+    if (runs_shown() > 1) {
+      caption.text = fmt::format("{}", fmt::join(stage_.names().names, "  |  "));
+    }
     if (step_ != nullptr) caption.told = step_->caption;
     const double force = session_.layout.in(row, Column::force_state)[0];
     caption.sign = force_text(static_cast<ForceState>(force));
@@ -123,7 +128,8 @@ class Shown {
                      const std::vector<StoryStep>& steps) {
     RunPlan world = replay(session, where, {});
     const double shown = longest_stretch(steps, cut);
-    History history({.channels = TraceChannels(session.layout).count() * (session.twin ? 2 : 1),
+    const int lanes = static_cast<int>(session.lanes());
+    History history({.channels = TraceChannels(session.layout).count() * lanes,
                      .seconds = shown + 1,
                      .tick = session.info.tick});
     return {std::move(world.arm), std::move(world.document), std::move(world.models),
@@ -133,13 +139,15 @@ class Shown {
     const auto k = static_cast<std::size_t>(time / session_.info.tick + 1e-6);
     return std::min(k, session_.size() - 1);
   }
-  bool twin_shown() const { return session_.twin && (step_ == nullptr || step_->beside); }
+  std::size_t runs_shown() const {
+    return step_ == nullptr || step_->beside ? session_.lanes() : 1;
+  }
 
   Moment see(std::size_t k) {
-    Moment moment{.view = view(session_.row(k), stage_.memory), .beside = {}};
-    if (session_.twin) {
-      const ViewState beside = view(session_.twin->row(k), stage_.twin_memory);
-      if (twin_shown()) moment.beside = beside;
+    Moment moment{.view = view(session_.row(k), stage_.memory[kMainLane]), .beside = {}};
+    for (std::size_t i = 1; i < session_.lanes(); ++i) {
+      ViewState beside = view(session_.lane(i).row(k), stage_.memory[i]);
+      if (i < runs_shown()) moment.beside.push_back(std::move(beside));
     }
     return moment;
   }
@@ -164,12 +172,15 @@ class Shown {
       }
     }
     stage_.follow(runs_.front().parameters);
-    if (!session_.twin || !order_.steps.empty()) return;
-    name_runs(twin_names(runs_[0].parameters, runs_[1].parameters), time_at(k));
+    if (runs_.size() == 1 || !order_.steps.empty()) return;
+    std::vector<Parameters> now;
+    for (const Run& run : runs_) now.push_back(run.parameters);
+    name_runs(lane_names(now), time_at(k));
   }
-  // Names the two runs in the plots, with their laws at `time` [s].
-  void name_runs(const std::array<std::string, 2>& names, double time) {
-    stage_.name_runs({names[0], names[1], true, laws_at(session_, time)});
+  // Names all runs in the plots, with their laws at `time` [s].
+  void name_runs(std::vector<std::string> names, double time) {
+    names.resize(std::min(names.size(), session_.lanes()));
+    stage_.name_runs({std::move(names), true, laws_at(session_, time)});
   }
   double time_at(std::size_t k) const { return session_.at(k, Column::time)[0]; }
 
@@ -179,7 +190,7 @@ class Shown {
     step_ = step;
     aimed_ = true;
     const StoryCamera aim = step == nullptr ? StoryCamera{} : camera_in(order_.steps, *step);
-    const ImVec2 viewport = frame_.viewport(twin_shown());
+    const ImVec2 viewport = frame_.viewport(runs_shown());
     camera_.resize(viewport.x, viewport.y);
     camera_.look(aim.view);
     camera_.frame(aim.of.value_or(stage_.picture.bounds()));
@@ -221,71 +232,71 @@ FilmFrame::Places FilmFrame::lay_out() const {
           .plots = {{0, height - plots}, {width, height}}};
 }
 
-ImVec2 FilmFrame::viewport(bool twin) const {
-  const ScreenRect picture = lay_out().picture;
-  return twin && !look_.overlaid ? half_of(picture, false).size() : picture.size();
+ImVec2 FilmFrame::viewport(std::size_t runs) const {
+  return part_of(lay_out().picture, 0, look_.overlaid ? 1 : runs).size();
 }
 
 std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const Camera& camera,
                                            const FilmCaption& caption, double elapsed,
-                                           std::optional<ViewState> beside) {
+                                           std::vector<ViewState> beside) {
   ImGui::GetIO().DeltaTime = static_cast<float>(elapsed);
   ImGuiGl::begin_frame();
   ImGui::NewFrame();
   const Places at = lay_out();
   view.theme = look_.theme;
-  if (beside) beside->theme = look_.theme;
-  const bool overlaid = beside && look_.overlaid;
-  if (overlaid) lay_over(view, *std::exchange(beside, std::nullopt));
+  for (ViewState& other : beside) other.theme = look_.theme;
+  const bool overlaid = !beside.empty() && look_.overlaid;
+  if (overlaid) {
+    for (const ViewState& other : std::exchange(beside, {})) lay_over(view, other);
+  }
   stage.draw_at(0);  // at the best quality: there is time
   stage.picture.set_pixel_scale(scale_);
-  draw_picture(at.picture, stage, view, camera, beside ? &*beside : nullptr);
+  draw_picture(at.picture, stage, view, camera, beside);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  draw_legend(at.picture, overlaid ? stage.names() : RunNames(), beside.has_value());
+  draw_legend(at.picture, overlaid ? stage.names() : RunNames(), !beside.empty());
   draw_caption(at.caption, caption);
   draw_told(caption.told, at.picture, list);
-  draw_sign(caption.sign, at.picture, beside.has_value(), list);
+  draw_sign(caption.sign, at.picture, !beside.empty(), list);
   if (at.plots.height() > 0) draw_plots(at.plots, stage);
   ImGuiGl::render();
   return read_rgba(look_.width, look_.height);
 }
 
 void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
-                             const Camera& camera, const ViewState* beside) const {
+                             const Camera& camera, std::span<const ViewState> beside) const {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const auto paint = [&](const ViewState& state, const ScreenRect& part, SceneView::Sheet sheet) {
+  const auto paint = [&](const ViewState& state, const ScreenRect& part, std::size_t run) {
     stage.picture.draw(state, camera, static_cast<int>(part.min.x),
                        look_.height - static_cast<int>(part.max.y), static_cast<int>(part.width()),
-                       static_cast<int>(part.height()), sheet);
+                       static_cast<int>(part.height()), SceneView::sheet_of(run));
   };
-  if (beside == nullptr) {
-    paint(view, rect, SceneView::Sheet::main);
-    if (!view.twin) return;
+  if (beside.empty()) {
+    paint(view, rect, kMainLane);
+    if (view.beside.empty()) return;
     Camera shown = camera;
     shown.resize(rect.width(), rect.height());
     list.PushClipRect(rect.min, rect.max);
     draw_gap(view, shown, {rect}, list, stage.names());
     return list.PopClipRect();
   }
-  const auto half = [&](const ViewState& state, bool right) {
-    const ScreenRect part = half_of(rect, right);
-    paint(state, part, right ? SceneView::Sheet::beside : SceneView::Sheet::main);
+  for (std::size_t run = 0; run <= beside.size(); ++run) {
+    const ViewState& state = run == kMainLane ? view : beside[run - 1];
+    const ScreenRect part = part_of(rect, run, 1 + beside.size());
+    paint(state, part, run);
     Camera shown = camera;
     shown.resize(part.width(), part.height());
     list.PushClipRect(part.min, part.max);
     draw_gap(state, shown, {part}, list);
-    draw_run_name(stage.names(), right, part, list);
+    draw_run_name(stage.names(), run, part, list);
     list.PopClipRect();
-  };
-  half(view, false);
-  half(*beside, true);
+  }
 }
 
-void FilmFrame::draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool halves) const {
+void FilmFrame::draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool compact) const {
   const float em = font(Face::small)->FontSize;
   if (rect.height() < 10 * em) return;
   draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max,
-                      {.first = overlaid.first, .second = overlaid.second, .compact = halves});
+                      {.runs = overlaid.names, .compact = compact});
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ namespace limpid {
 struct FilmLook {
   int width = 1280, height = 720;  // [px]
   bool plots = true;               // left out if there is no room for them
-  bool overlaid = false;           // a twin's two runs in one picture
+  bool overlaid = false;           // all runs in one picture
   double text_scale = 0;           // 1 as in the window on an ordinary screen; 0: by the size
   Theme theme = Theme::dark;
 };
@@ -44,14 +45,14 @@ class FilmFrame {
   explicit FilmFrame(const FilmLook& look);
 
   // Draws `view` in the stage's picture, and the stage's plots with what its history holds by now
-  // and a line at the newest row. `elapsed` since the last picture [s]. With a second run `beside`
-  // it, each has half of the picture and the name that the stage gives it, unless they are
+  // and a line at the newest row. `elapsed` since the last picture [s]. With further runs `beside`
+  // it, each has a part of the picture and the name that the stage gives it, unless they are
   // overlaid. Returns four bytes a pixel, top row first.
   std::vector<unsigned char> draw(Stage& stage, ViewState view, const Camera& camera,
                                   const FilmCaption& caption, double elapsed,
-                                  std::optional<ViewState> beside = {});
-  // Returns the viewport that the camera should expect [px], of one run or of a twin's two.
-  ImVec2 viewport(bool twin) const;
+                                  std::vector<ViewState> beside = {});
+  // Returns the viewport that the camera should expect [px], of each of this many runs.
+  ImVec2 viewport(std::size_t runs) const;
 
  private:
   struct Places {
@@ -59,8 +60,8 @@ class FilmFrame {
   };
   Places lay_out() const;
   void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
-                    const Camera& camera, const ViewState* beside) const;
-  void draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool halves) const;
+                    const Camera& camera, std::span<const ViewState> beside) const;
+  void draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool compact) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 

@@ -1,6 +1,7 @@
 #include "app/live/live_loop.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -15,8 +16,13 @@
 namespace limpid {
 namespace {
 
-constexpr std::size_t kTraceRows = 1 << 13;  // eight seconds without the window
-constexpr double kGuideReach = 0.03;         // a guided hand stays this near to the tip [m]
+// Returns the ticks that the ring keeps for the window: eight seconds, or 128 MiB.
+std::size_t trace_rows(std::size_t stride) {
+  constexpr std::size_t kRows = 1 << 13, kBytes = std::size_t{128} << 20;
+  return std::min(kRows, std::bit_floor(kBytes / (stride * sizeof(double))));
+}
+
+constexpr double kGuideReach = 0.03;  // a guided hand stays this near to the tip [m]
 
 }  // namespace
 
@@ -27,10 +33,11 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
                     const Vec3& home) {
   RigStart start = rest_at(arm, home);
   auto rig = std::make_unique<Rig>(arm, scene);
-  auto twin = std::make_unique<Rig>(arm, scene);
+  std::array<std::unique_ptr<Rig>, kMostLanes - 1> beside;
+  for (auto& each : beside) each = std::make_unique<Rig>(arm, scene);
   close();
   rig_ = std::move(rig);
-  twin_.open(std::move(twin), start);
+  for (std::size_t i = 0; i < beside.size(); ++i) beside_[i].open(std::move(beside[i]), start);
   start.armed = virtual_armed_;
   begin(std::move(start), p);
 }
@@ -54,19 +61,18 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
 
 void LiveLoop::begin(RigStart start, const Parameters& p) {
   const auto stride = static_cast<std::size_t>(rig_->layout().stride());
-  trace_ = std::make_unique<TraceRing>(kTraceRows, 2 * stride);
+  const std::size_t all = kMostLanes * stride;
+  trace_ = std::make_unique<TraceRing>(trace_rows(all), all);
   next_tick_ = drained_from_ = seen_dropped_ = gap_ = 0;
   before_gap_ = 0;
-  rows_.assign(2 * stride, 0.0);
-  row_ = std::span(rows_).first(stride);
-  of_twin_ = std::span(rows_).subspan(stride);
-  std::ranges::fill(of_twin_, std::numeric_limits<double>::quiet_NaN());
+  rows_.assign(all, std::numeric_limits<double>::quiet_NaN());
+  std::ranges::fill(row(kMainLane), 0.0);
   home_ = rebase_ = std::move(start);
   parameters_ = p;
   limits_ = {};  // as in a new rig; the first tick lowers them again
   rig_->start(p, home_);
   rig_->present(rebase_);  // makes room for all sizes needed from now on
-  twin_.room_for(rebase_);
+  for (FurtherLane& lane : beside_) lane.room_for(rebase_);
   hand_.reset(home_.target);
   guided_.reset(home_.target);
   led_ = false;
@@ -92,7 +98,7 @@ void LiveLoop::close() {
   delete std::exchange(slot_, nullptr);
   plugged_ = false;
   rig_.reset();
-  twin_.close();
+  for (FurtherLane& lane : beside_) lane.close();
   in_place_ = false;
 }
 
@@ -123,8 +129,10 @@ void LiveLoop::plug(std::unique_ptr<Device> device) {
 // Takes in what the window has offered.
 void LiveLoop::take_in() {
   if (TouchWorlds* worlds = worlds_.take()) {
-    rig_->exchange(worlds->first);
-    if (!in_place_) twin_.exchange(worlds->twin);
+    rig_->exchange(worlds->lanes[kMainLane]);
+    for (std::size_t i = 1; i < kMostLanes && !in_place_; ++i) {
+      beside_[i - 1].exchange(worlds->lanes[i]);
+    }
     worlds_.give_back(worlds);
   }
   if (DeviceSlot* slot = slots_.take()) {
@@ -199,7 +207,7 @@ void LiveLoop::start_over(const Parameters& p) {
   }
   home_.armed = rig_->force().armed() && rig_->force().state() != Arming::tripped;
   rig_->start(p, home_);
-  twin_.begin_anew();
+  for (FurtherLane& lane : beside_) lane.begin_anew();
   hand_.reset(home_.target);
   led_ = false;  // else the guide would pull it back
   path_tick_ = 0;
@@ -232,7 +240,7 @@ void LiveLoop::tick(const TickTiming& timing) {
   const Controls& controls = controls_.front();
   take_in();
   if (!due(controls)) return;
-  const Parameters wanted = for_device(controls.parameters);
+  const Parameters wanted = for_device(controls.parameters());
   if (controls.resets != resets_) {
     resets_ = controls.resets;
     start_over(wanted);
@@ -250,11 +258,8 @@ void LiveLoop::tick(const TickTiming& timing) {
   if (controls.pull.body >= 0) hand.pull = controls.pull;
   follow_recorder(hand.target);
   const RigInput input = rig_input(timing, hand);
-  if (!in_place_) twin_.step(controls.twin, controls.twin_parameters, *rig_, input, of_twin_);
-  if (twin_.changed() && recording_to_ != nullptr && recording_to_->of_twin()) {
-    recording_to_->changed(twin_.parameters(), kTwinLane);
-  }
-  rig_->step(parameters_, input, row_);
+  if (!in_place_) step_beside(controls, input);
+  rig_->step(parameters_, input, row(kMainLane));
   const auto ended = std::chrono::steady_clock::now();
   compute_ = std::chrono::duration<double>(ended - began).count();
   if (in_place_ && rig_->device_reading(guide_)) {
@@ -262,6 +267,21 @@ void LiveLoop::tick(const TickTiming& timing) {
                std::chrono::duration<double>(ended.time_since_epoch()).count());
   }
   publish(timing);
+}
+
+void LiveLoop::step_beside(const Controls& controls, const RigInput& input) {
+  for (std::size_t i = 1; i < kMostLanes; ++i) {
+    FurtherLane& lane = beside_[i - 1];
+    lane.step(i < controls.lane_count, controls.lanes[i], *rig_, input, row(i));
+    if (lane.changed() && recording_to_ != nullptr && i < recording_to_->lanes()) {
+      recording_to_->changed(lane.parameters(), i);
+    }
+  }
+}
+
+std::span<double> LiveLoop::row(std::size_t lane) {
+  const std::size_t stride = rows_.size() / kMostLanes;
+  return std::span(rows_).subspan(lane * stride, stride);
 }
 
 // Takes up or releases the recorder. A recording restarts the rig where it stands, so that its
@@ -278,23 +298,27 @@ void LiveLoop::follow_recorder(const Vec3& target) {
   recording_to_ = offered;
   if (!std::exchange(path_runs_, true)) path_tick_ = 1;  // its first point is the first row's
   rig_->restart_here(parameters_, rebase_, target);
-  twin_.restart_here(target);
+  for (FurtherLane& lane : beside_) lane.restart_here(target);
   offered->changed(parameters_);
   offered->begins(rebase_.world);
-  if (!offered->of_twin()) return;
-  offered->changed(twin_.parameters(), kTwinLane);
-  offered->begins(twin_.start().world, kTwinLane);
+  for (std::size_t i = 1; i < offered->lanes(); ++i) {
+    offered->changed(beside_[i - 1].parameters(), i);
+    offered->begins(beside_[i - 1].start().world, i);
+  }
 }
 
 void LiveLoop::publish(const TickTiming& timing) {
   const RowLayout& layout = rig_->layout();
-  layout.in(row_, Column::wake_latency)[0] = timing.wake_latency;
-  layout.in(row_, Column::compute)[0] = compute_;
+  layout.in(row(kMainLane), Column::wake_latency)[0] = timing.wake_latency;
+  layout.in(row(kMainLane), Column::compute)[0] = compute_;
   trace_->push(rows_);
-  if (recording_to_ != nullptr) recording_to_->push(recording_to_->of_twin() ? rows_ : row_);
+  if (recording_to_ != nullptr) {
+    recording_to_->push(std::span(rows_).first(recording_to_->stride()));
+  }
   Snapshot& snapshot = snapshots_.back();
-  std::ranges::copy(row_, snapshot.row.begin());
-  std::ranges::copy(of_twin_, snapshot.twin.begin());
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    std::ranges::copy(row(i), snapshot.rows[i].begin());
+  }
   snapshot.diverged = rig_->diverged();
   snapshot.recording = recording_to_ != nullptr;
   snapshot.arming = rig_->force().state();
@@ -306,7 +330,7 @@ void LiveLoop::publish(const TickTiming& timing) {
 }
 
 void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
-  if ((recorder->of_twin() ? 1 : 2) * recorder->stride() != trace_->stride()) {
+  if (recorder->stride() / recorder->lanes() * kMostLanes != trace_->stride()) {
     throw std::invalid_argument("the recording was begun for an arm of other joints");
   }
   recorder_ = std::move(recorder);

@@ -1,14 +1,15 @@
-// The running loop behind the window: rig, haptic thread, and their exchange with other threads.
+// The running loop behind the window: lanes, haptic thread, and their exchange with other threads.
 #pragma once
 
 #include <array>
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "app/live/device_pace.h"
-#include "app/live/twin.h"
+#include "app/live/further_lane.h"
 #include "app/run/recorder.h"
 #include "core/realtime/hand_over.h"
 #include "core/realtime/haptic_thread.h"
@@ -22,7 +23,9 @@ namespace limpid {
 
 // From the window to the loop; the newest wins.
 struct Controls {
-  Parameters parameters;
+  // Settings of each lane that runs. A device in the arm's place has the first one alone.
+  std::array<Parameters, kMostLanes> lanes;
+  std::size_t lane_count = 1;
   SafetyLimits limits;       // of a guarded device
   bool grab = false;         // the hand holds the tip
   Vec3 goal = Vec3::Zero();  // the mouse's target for the tip [m]
@@ -34,21 +37,23 @@ struct Controls {
   int slow = 1;
   bool paused = false;
   std::uint32_t steps = 0;
-  bool twin = false;  // a second run beside; not with a device in the arm's place
-  Parameters twin_parameters;
+
+  Parameters& parameters() { return lanes[kMainLane]; }
+  const Parameters& parameters() const { return lanes[kMainLane]; }
 };
 
-// The things to touch from now on, for both runs.
+// The things to touch from now on, for each lane.
 struct TouchWorlds {
-  TouchWorlds(const ArmDescription& arm, const Scene& scene)
-      : first(arm, scene), twin(arm, scene) {}
+  TouchWorlds(const ArmDescription& arm, const Scene& scene) {
+    for (std::size_t i = 0; i < kMostLanes; ++i) lanes.emplace_back(arm, scene);
+  }
 
-  TouchWorld first, twin;
+  std::deque<TouchWorld> lanes;
 };
 
 // From the loop to the window; the newest wins.
 struct Snapshot {
-  std::array<double, kMaxStride> row{}, twin{};  // NaN without a twin
+  std::array<std::array<double, kMaxStride>, kMostLanes> rows{};  // NaN where no lane runs
   bool diverged = false;
   bool recording = false;
   Arming arming = Arming::off;
@@ -149,7 +154,7 @@ class LiveLoop {
   }
   const Snapshot& snapshot() const { return snapshots_.front(); }
   // Takes the ticks since the last call, as far as `into` has room; returns their number. Each tick
-  // is its row and the twin's, NaN without a twin.
+  // is the rows of all kMostLanes lanes, NaN where none runs.
   std::size_t drain(std::span<double> into);
   // Number of the first tick of the last drain(), counted since open().
   std::uint64_t drained_from() const { return drained_from_; }
@@ -157,8 +162,8 @@ class LiveLoop {
   const RowLayout& layout() const { return rig_->layout(); }
 
   // Begins recording at the next tick without fading; its first row is time zero. Preconditions:
-  // the loop runs, with rows as wide as the recorder's, and is not recording. If the recorder is of
-  // a twin, the twin runs and goes on running.
+  // the loop runs, with rows as wide as the recorder's, and is not recording. The lanes that the
+  // recorder is of run and go on running.
   void record(std::unique_ptr<Recorder> recorder);
   bool recording() const { return recorder_ && !stopping_; }
   const Recorder* recorder() const { return recorder_.get(); }
@@ -185,6 +190,8 @@ class LiveLoop {
   void follow_recorder(const Vec3& target);                             // the loop's
   RigInput rig_input(const TickTiming& timing, const HandInput& hand);  // the loop's
   ForceRequest wish();                                                  // the loop's
+  void step_beside(const Controls& controls, const RigInput& input);    // the loop's
+  std::span<double> row(std::size_t lane);                              // a part of rows_
   void publish(const TickTiming& timing);
   void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's
@@ -224,7 +231,7 @@ class LiveLoop {
   // Used by the loop alone.
   Recorder* recording_to_ = nullptr;
   std::unique_ptr<Rig> rig_;
-  Twin twin_;
+  std::array<FurtherLane, kMostLanes - 1> beside_;
   DeviceSlot* slot_ = nullptr;
   DeviceReading guide_;
   bool connected_ = false;
@@ -240,10 +247,9 @@ class LiveLoop {
   RigStart home_;
   RigStart rebase_;
   std::uint32_t resets_ = 0, known_arms_ = 0, known_cuts_ = 0;
-  std::uint32_t steps_ = 0;          // taken, or obsolete
-  int slowed_ = 0;                   // ticks of the loop since the last one of the arm
-  std::vector<double> rows_;         // the newest row and the twin's
-  std::span<double> row_, of_twin_;  // parts of rows_
+  std::uint32_t steps_ = 0;   // taken, or obsolete
+  int slowed_ = 0;            // ticks of the loop since the last one of the arm
+  std::vector<double> rows_;  // the newest rows of all lanes
   double compute_ = 0;
 
   HapticThread thread_;  // last, to be destroyed first

@@ -10,60 +10,52 @@ using namespace std::chrono_literals;
 
 constexpr auto kBetween = 10ms;  // between controls; well within SafetyLimits::kSilence
 constexpr auto kGone = 1s;
-constexpr std::size_t kDrained = 256;  // rows at a time
 
 }  // namespace
 
 LiveRun::LiveRun(const RunPlan& plan, const SafetyLimits& limits, std::unique_ptr<Device> device,
                  AskForPriority ask)
-    : arm_(plan.arm), loop_(std::move(ask)) {
-  controls_.parameters = plan.parameters;
-  controls_.limits = limits;
-  loop_.open(plan.arm, plan.document.scene, plan.parameters, std::move(device));
-  loop_.set(controls_);
-  rows_.resize(kDrained * 2 * static_cast<std::size_t>(loop_.layout().stride()));
+    : arm_(plan.arm), session_(std::move(ask)) {
+  session_.controls().limits = limits;
+  session_.open(plan.arm, plan.document.scene, plan.parameters, std::move(device));
   seen_ = MonotonicTime{}.now();
 }
 
-void LiveRun::touch(const Scene& scene) {
-  loop_.exchange(std::make_unique<TouchWorlds>(arm_, scene));
-}
+void LiveRun::touch(const Scene& scene) { session_.touch(arm_, scene); }
 
 void LiveRun::check() {
-  const LoopStatus status = loop_.status();
+  const LoopStatus status = session_.loop().status();
   if (!status.running) throw std::runtime_error("the loop has ended: " + status.failure);
   const nanoseconds now = MonotonicTime{}.now();
-  if (loop_.snapshot().connected) seen_ = now;
+  if (session_.loop().snapshot().connected) seen_ = now;
   if (now - seen_ > kGone) throw std::runtime_error("the device is gone");
-}
-
-void LiveRun::drain(const Row& row) {
-  const auto stride = static_cast<std::size_t>(loop_.layout().stride());
-  for (std::size_t count = loop_.drain(rows_); count > 0; count = loop_.drain(rows_)) {
-    for (std::size_t i = 0; row && i < count; ++i) {
-      row(std::span(rows_).subspan(2 * i * stride, stride));
-    }
-  }
 }
 
 bool LiveRun::pass(double seconds, const std::atomic<bool>& stop, const Row& row) {
   const MonotonicTime time;
-  drain({});  // drops older rows
+  session_.turn({});  // drops older rows
   const nanoseconds end = time.now() + nanoseconds(std::llround(1e9 * seconds));
   while (time.now() < end) {
     if (stop) return false;
-    loop_.set(controls_);
+    session_.loop().set(session_.controls());
     time.sleep_until(std::min(end, time.now() + kBetween));
-    loop_.update();
+    session_.turn([&](LaneRows rows, std::uint64_t) {
+      if (row) row(rows[kMainLane]);
+    });
     check();
-    drain(row);
   }
   return true;
 }
 
 std::uint64_t LiveRun::finish_recording() {
-  const std::uint64_t dropped = loop_.recorder() != nullptr ? loop_.recorder()->dropped() : 0;
-  loop_.finish_recording();
+  const Recorder* recorder = session_.loop().recorder();
+  const std::uint64_t dropped =
+      recorder != nullptr ? recorder->dropped() : session_.last_recording().dropped;
+  session_.complete_recording();
+  // A recording that ended by itself was finished beside the loop.
+  if (const std::string& why = session_.last_recording().failure; !why.empty()) {
+    throw FileError(why);
+  }
   return dropped;
 }
 

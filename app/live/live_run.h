@@ -1,9 +1,9 @@
-// A loop with a device in the arm's place, led by a command without a window.
+// A session with a device in the arm's place, led by a command without a window.
 #pragma once
 
 #include <functional>
 
-#include "app/live/live_loop.h"
+#include "app/live/live_session.h"
 #include "app/run/simulate.h"
 
 namespace limpid {
@@ -15,11 +15,11 @@ class LiveRun {
   LiveRun(const RunPlan& plan, const SafetyLimits& limits, std::unique_ptr<Device> device,
           AskForPriority ask);
 
-  void arm() { loop_.arm(); }
-  void cut() { loop_.cut(); }
-  void set(const Parameters& parameters) { controls_.parameters = parameters; }
+  void arm() { session_.loop().arm(); }
+  void cut() { session_.loop().cut(); }
+  void set(const Parameters& parameters) { session_.set(kMainLane, parameters); }
   // Settings as the loop takes them, see LiveLoop.
-  Parameters taken(const Parameters& p) const { return loop_.taken(p); }
+  Parameters taken(const Parameters& p) const { return session_.loop().taken(p); }
   // Sets another scene for the same arm.
   void touch(const Scene& scene);
 
@@ -29,20 +29,17 @@ class LiveRun {
   // ended, or the device is gone for over a second.
   bool pass(double seconds, const std::atomic<bool>& stop, const Row& row = {});
 
-  void record(std::unique_ptr<Recorder> recorder) { loop_.record(std::move(recorder)); }
+  void record(std::unique_ptr<Recorder> recorder) { session_.record(std::move(recorder)); }
   // Returns the number of rows that found no room. Errors: FileError.
   std::uint64_t finish_recording();
 
-  const Snapshot& now() const { return loop_.snapshot(); }
+  const Snapshot& now() const { return session_.loop().snapshot(); }
 
  private:
   void check();
-  void drain(const Row& row);
 
   ArmDescription arm_;
-  Controls controls_;
-  LiveLoop loop_;
-  std::vector<double> rows_;
+  LiveSession session_;
   nanoseconds seen_{0};  // time of the device's last answer
 };
 

@@ -432,6 +432,10 @@ void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float empha
 void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale) {
   const float r = kSign * scale;
   const ImVec2 from{at.x - r, at.y - r}, to{at.x + r, at.y + r};
+  const auto triangle = [&](float size, ImU32 ink) {
+    list.AddTriangleFilled({at.x, at.y - size}, {at.x + size, at.y + 0.8f * size},
+                           {at.x - size, at.y + 0.8f * size}, ink);
+  };
   switch (sign) {
     case RunSign::none: return;
     case RunSign::square:
@@ -440,6 +444,7 @@ void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 
     case RunSign::ring:
       list.AddCircleFilled(at, r + 1.2f * scale, back, 16);
       return list.AddCircle(at, r, rgba, 16, 1.8f * scale);
+    case RunSign::triangle: triangle(r + 2 * scale, back); return triangle(1.2f * r, rgba);
   }
 }
 

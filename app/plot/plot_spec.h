@@ -1,10 +1,12 @@
 // Specification of a plot: plain data, the same for the window, pictures and tables.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "app/style/palette.h"
+#include "core/base/lanes.h"
 
 namespace limpid {
 
@@ -16,7 +18,14 @@ enum class PlotKind : std::uint8_t {
 };
 
 // Sign drawn on a curve at even distances, so that curves of two runs differ by more than a tint.
-enum class RunSign : std::uint8_t { none, square, ring };
+enum class RunSign : std::uint8_t { none, square, ring, triangle };
+
+// Returns the sign of a lane's curves.
+constexpr RunSign sign_of_lane(std::size_t lane) {
+  constexpr std::array kSigns{RunSign::none, RunSign::square, RunSign::triangle};
+  static_assert(kSigns.size() == kMostLanes);
+  return kSigns[lane];
+}
 
 struct Curve {
   int channel = 0;

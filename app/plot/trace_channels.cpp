@@ -12,15 +12,20 @@ namespace limpid {
 
 namespace {
 
-// Returns whether the mark is of a setting of this run. Settings of hand, device and loop are both
-// runs'.
-bool changes(const PlotMark& mark, const RunOfHistory& run) {
+// Returns whether the mark is of a setting of this lane. Settings of hand, device and loop are all
+// lanes'.
+bool changes(const PlotMark& mark, std::size_t lane) {
   std::string_view key = mark.key;
-  const bool of_twin = key.starts_with(kTwinMark);
-  if (of_twin) key.remove_prefix(kTwinMark.size());
-  if (key.find('.') == std::string_view::npos || of_twin > run.twin) return false;
+  std::size_t of = kMainLane;
+  for (std::size_t i = 1; i < kMostLanes; ++i) {
+    const std::string begins = lane_mark(i);
+    if (!key.starts_with(begins)) continue;
+    of = i;
+    key.remove_prefix(begins.size());
+  }
+  if (key.find('.') == std::string_view::npos || (of != kMainLane && of != lane)) return false;
   const ParameterInfo* info = find_parameter(key);
-  return of_twin == run.twin || info == nullptr || !of_controller(*info);
+  return of == lane || info == nullptr || !of_controller(*info);
 }
 
 double norm(std::span<const double> v) {
@@ -136,7 +141,7 @@ ChannelInfo column_channel(const ColumnInfo& column, int part, const std::string
 
 }  // namespace
 
-void EnergyAccount::follow(const History& history, SampleIndex end, RunOfHistory run) {
+void EnergyAccount::follow(const History& history, SampleIndex end, LaneOfHistory of) {
   if (end < next_) start_over();
   next_ = std::max(next_, history.first());
   // A mark placed at the last sample, after that was looked at, counts too.
@@ -148,13 +153,13 @@ void EnergyAccount::follow(const History& history, SampleIndex end, RunOfHistory
         const SampleIndex at = next_;
         start_over();
         next_ = at;
-      } else if (changes(*mark, run)) {
+      } else if (changes(*mark, of.lane)) {
         shares_.change(mark->time);
       }
     }
     looked_until_ = time;
     const auto value = [&](Channel c) {
-      return history.value(run.first + static_cast<int>(c), next_);
+      return history.value(of.first + static_cast<int>(c), next_);
     };
     const double energy = static_cast<double>(value(Channel::energy_total)) -
                           static_cast<double>(value(Channel::energy_compensation));
@@ -336,21 +341,22 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put_tips(row, of_bodies.first(kOfTips));
 }
 
-void TraceChannels::append(History& history, std::span<const double> row,
-                           std::span<const double> again) const {
+void TraceChannels::append(History& history, LaneRows rows) const {
   const auto one = static_cast<std::size_t>(count());
   constexpr auto kMost = static_cast<std::size_t>(Channel::joints) + kMaxDof + kMaxStride + kOfTips;
-  std::array<double, 2 * kMost> all;
+  std::array<double, kMostLanes * kMost> all;
   const auto used = std::span(all).first(static_cast<std::size_t>(history.channels()));
-  values(row, used.first(one));
-  if (used.size() > one) {
-    if (again.empty()) {
-      std::ranges::fill(used.subspan(one), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t lane = 0; lane * one < used.size(); ++lane) {
+    const std::span<double> into = used.subspan(lane * one, one);
+    if (lane < rows.size() && !rows[lane].empty() && !std::isnan(rows[lane][0])) {
+      values(rows[lane], into);
     } else {
-      values(again, used.subspan(one));
+      std::ranges::fill(into, std::numeric_limits<double>::quiet_NaN());
     }
   }
-  history.append(layout_.in(row, Column::time)[0], used);
+  history.append(layout_.in(rows[kMainLane], Column::time)[0], used);
 }
+
+std::string lane_mark(std::size_t lane) { return lane_name(lane) + ": "; }
 
 }  // namespace limpid

@@ -69,9 +69,12 @@ class TraceChannels {
   std::optional<int> find(const std::string& key) const;
   // Fills count() values.
   void values(std::span<const double> row, std::span<double> into) const;
-  // Adds a row; in a history with room for two runs, the same row of the second one too.
-  void append(History& history, std::span<const double> row,
-              std::span<const double> again = {}) const;
+  // Adds the same row of each lane that the history has room for; nothing is known of lanes whose
+  // row is missing or begins with NaN.
+  void append(History& history, LaneRows rows) const;
+  void append(History& history, std::span<const double> row) const {
+    append(history, LaneRows(&row, 1));
+  }
   const RowLayout& layout() const { return layout_; }
   // Returns the columns that are computed from rows, the tips among them; null without an arm.
   const DerivedColumns* tips() const { return tips_ ? &*tips_ : nullptr; }
@@ -96,20 +99,20 @@ class TraceChannels {
   std::optional<DerivedColumns> tips_;
 };
 
-// Place of a run in a history: its first channel there, and whether it is the second of two runs.
-struct RunOfHistory {
+// Place of a lane in a history: its first channel there.
+struct LaneOfHistory {
   int first = 0;
-  bool twin = false;
+  std::size_t lane = kMainLane;
 };
-// Beginning of the marks for settings of the second run alone.
-inline constexpr std::string_view kTwinMark = "twin: ";
+// Returns the beginning of the marks for settings of a further lane alone: "twin: ".
+std::string lane_mark(std::size_t lane);
 
 // Energy that the coupling gave, followed through a history.
 class EnergyAccount {
  public:
   // Accounts for the samples up to `end` that were not looked at yet; from the beginning if `end`
   // lies before them. The history has the channels of TraceChannels.
-  void follow(const History& history, SampleIndex end, RunOfHistory run = {});
+  void follow(const History& history, SampleIndex end, LaneOfHistory of = {});
 
   // Shares of E_c as EnergyShares has them [J].
   double total() const { return shares_.total(); }

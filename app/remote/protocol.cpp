@@ -16,13 +16,13 @@ constexpr std::size_t kShown = 60;
 
 constexpr std::array<const char*, 0> kNone{};
 constexpr std::array kGet{"keys"};
-constexpr std::array kSet{"values", "twin", "reset"};
+constexpr std::array kSet{"values", "twin", "lane", "reset"};
 constexpr std::array kOpen{"scene", "arm", "tip", "session", "hand", "wait"};
 constexpr std::array kRecord{"file", "force"};
 constexpr std::array kMark{"text"};
 constexpr std::array kRow{"channels"};
 constexpr std::array kFollow{"channels", "rate"};
-constexpr std::array kTwin{"on", "values"};
+constexpr std::array kTwin{"on", "values", "lane"};
 constexpr std::array kBlind{"on"};
 constexpr std::array kAsk{"text", "choices", "beside", "seconds"};
 constexpr std::array kPicture{"file", "replace"};
@@ -31,7 +31,8 @@ constexpr std::array kVerbs{
     Verb{"hello", kNone, "which Limpid this is, and what it has"},
     Verb{"get", kGet, "settings, all or those of \"keys\", and the state"},
     Verb{"set", kSet,
-         "\"values\" of settings, all or none of them; with \"twin\" true, the twin's; with "
+         "\"values\" of settings, all or none of them; with \"twin\" true, the twin's, and with "
+         "\"lane\" 2 the third run's; with "
          "\"reset\" true, all others as they usually are"},
     Verb{"open", kOpen, "a scene, an arm, a session or a hand's path"},
     Verb{"record", kRecord,
@@ -42,7 +43,9 @@ constexpr std::array kVerbs{
     Verb{"mark", kMark, "\"text\" in the plots and in what is recorded; answers which tick it is"},
     Verb{"row", kRow, "the newest row, of all \"channels\" or some"},
     Verb{"follow", kFollow, "rows of \"channels\" from now on, \"rate\" a second; none ends it"},
-    Verb{"twin", kTwin, "a second run on the same hand, with \"values\" of its own"},
+    Verb{"twin", kTwin,
+         "a second run on the same hand, or with \"lane\" 2 a third one, with \"values\" of its "
+         "own"},
     Verb{"blind", kBlind, "the window hides law, settings and plots while this client is there"},
     Verb{"ask", kAsk,
          "a person \"text\"; answers which of the \"choices\", and after how long; \"beside\" the "

@@ -19,9 +19,37 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kRowsInALine = 128;
-constexpr std::string_view kTwinPrefix = "twin/";
+
+// Returns the lane of a channel's name, and takes the lane's beginning off: "twin/".
+std::size_t lane_in(std::string& name) {
+  for (std::size_t i = 1; i < kMostLanes; ++i) {
+    const std::string begins = lane_name(i) + "/";
+    if (!name.starts_with(begins)) continue;
+    name.erase(0, begins.size());
+    return i;
+  }
+  return kMainLane;
+}
+
+bool runs(LaneRows rows, std::size_t lane) {
+  return lane < rows.size() && !rows[lane].empty() && !std::isnan(rows[lane][0]);
+}
 
 }  // namespace
+
+std::size_t asked_lane(const Keys& keys, std::size_t usual) {
+  constexpr double kLast = kMostLanes - 1;
+  const double lane = keys.number_or("lane", static_cast<double>(usual), 0, kLast);
+  if (lane == std::floor(lane)) return static_cast<std::size_t>(lane);
+  throw keys.error("lane", fmt::format("{} is not allowed; allowed: whole numbers", lane));
+}
+
+void check_beside(const Keys& keys, std::size_t lane, std::size_t lanes) {
+  if (lane == kMainLane) throw keys.error("lane", "0 is the first run, which always runs");
+  if (keys.flag_or("on", true) && lane > lanes) {
+    throw keys.error("lane", fmt::format("{} needs {} beside it", lane, lane - 1));
+  }
+}
 
 std::string noted(const Keys& keys) {
   std::string text = keys.text("text");
@@ -164,13 +192,12 @@ json Remote::hello() const {
 }
 
 json Remote::get(const Keys& keys) const {
-  json values = json::object(), twin;
   const auto wanted = keys.texts_if("keys", kMostSettings);
-  const Parameters* second = host_.twin();
-  if (second != nullptr) twin = json::object();
+  std::vector<json> lanes(host_.lanes(), json::object());
   const auto add = [&](const ParameterInfo& info) {
-    values[info.key] = value_of(host_.parameters(), info);
-    if (second != nullptr) twin[info.key] = value_of(*second, info);
+    for (std::size_t i = 0; i < lanes.size(); ++i) {
+      lanes[i][info.key] = value_of(host_.parameters(i), info);
+    }
   };
   if (wanted) {
     for (const std::string& key : *wanted) {
@@ -181,17 +208,19 @@ json Remote::get(const Keys& keys) const {
   } else {
     for (const ParameterInfo& info : parameter_table()) add(info);
   }
-  json answer{{"values", values}, {"state", host_.state()}};
-  if (second != nullptr) answer["twin"] = twin;
+  json answer{{"values", lanes[kMainLane]}, {"state", host_.state()}};
+  for (std::size_t i = 1; i < lanes.size(); ++i) answer[lane_name(i)] = lanes[i];
   return answer;
 }
 
 json Remote::set(const Keys& keys, Client client) {
-  const bool of_twin = keys.flag_or("twin", false);
+  const std::size_t lane = asked_lane(keys, keys.flag_or("twin", false) ? kTwinLane : kMainLane);
   const bool reset = keys.flag_or("reset", false);
-  if (of_twin && host_.twin() == nullptr) throw keys.error("twin", "there is none");
+  if (lane >= host_.lanes()) {
+    throw keys.error(keys.has("lane") ? "lane" : "twin", "there is none");
+  }
   const auto changed = [&] {
-    Parameters p = of_twin ? *host_.twin() : host_.parameters();
+    Parameters p = host_.parameters(lane);
     if (reset) p = host_.usual();
     set_values(p, keys, host_.highest());
     return p;
@@ -199,7 +228,7 @@ json Remote::set(const Keys& keys, Client client) {
   changed();  // throws before anything changes
   host_.before_set(client);
   const Parameters p = changed();
-  host_.set(p, of_twin);
+  host_.set(p, lane);
   json now = json::object();
   for (const auto& [key, value] : keys.of("values").items()) {
     now[key] = value_of(p, *find_parameter(key));
@@ -212,48 +241,51 @@ std::vector<Remote::Wanted> Remote::find(const std::vector<std::string>& names,
   const TraceChannels& channels = host_.channels();
   std::vector<Wanted> found;
   for (const std::string& name : names) {
-    const bool of_twin = name.starts_with(kTwinPrefix);
-    const auto channel =
-        LiveChannel::find(channels, of_twin ? name.substr(kTwinPrefix.size()) : name);
+    std::string of_lane = name;
+    const std::size_t lane = lane_in(of_lane);
+    const auto channel = LiveChannel::find(channels, of_lane);
     if (!channel) {
       throw RemoteError(fmt::format(
           "{}: channels: {} is no channel of this arm and scene; allowed: those of sessions, as "
           "hand/torque, and those that `row` without channels lists",
           verb, shown(name)));
     }
-    found.push_back({*channel, of_twin});
+    found.push_back({*channel, lane});
   }
   return found;
 }
 
 json Remote::newest(const Keys& keys) const {
   const TraceChannels& channels = host_.channels();
-  const auto row = host_.row(), twin_row = host_.twin_row();
-  if (row.empty()) throw RemoteError("row: there is none yet");
-  std::vector<double> values(static_cast<std::size_t>(channels.count()));
-  std::vector<double> of_twin = values;
-  channels.values(row, values);
-  if (!twin_row.empty()) channels.values(twin_row, of_twin);
+  const auto rows = host_.rows();
+  if (rows.empty()) throw RemoteError("row: there is none yet");
+  std::vector<std::vector<double>> values;
+  for (const std::span<const double> row : rows) {
+    values.emplace_back(static_cast<std::size_t>(channels.count()));
+    channels.values(row, values.back());
+  }
   json all = json::object();
   if (const auto names = keys.texts_if("channels", kMostSettings)) {
     const auto wanted = find(*names, "row");
     for (std::size_t i = 0; i < names->size(); ++i) {
-      if (wanted[i].of_twin && twin_row.empty()) {
-        throw RemoteError(fmt::format("row: channels: {}: there is no twin", shown((*names)[i])));
+      const std::size_t lane = wanted[i].lane;
+      if (lane >= rows.size()) {
+        throw RemoteError(fmt::format("row: channels: {}: there is no {}", shown((*names)[i]),
+                                      lane == kTwinLane ? "twin" : "third run"));
       }
-      all[(*names)[i]] = wanted[i].of_twin ? wanted[i].channel.value(channels, twin_row, of_twin)
-                                           : wanted[i].channel.value(channels, row, values);
+      all[(*names)[i]] = wanted[i].channel.value(channels, rows[lane], values[lane]);
     }
   } else {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      all[channels.infos()[i].key] = number(values[i]);
+    for (std::size_t i = 0; i < values[kMainLane].size(); ++i) {
+      all[channels.infos()[i].key] = number(values[kMainLane][i]);
+    }
   }
-  const double time = channels.layout().in(row, Column::time)[0];
+  const double time = channels.layout().in(rows[kMainLane], Column::time)[0];
   return {{"tick", host_.tick()}, {"time", time}, {"values", all}};
 }
 
 json Remote::follow(const Keys& keys, Client client) {
-  const double tick = host_.parameters().tick;
+  const double tick = host_.parameters(kMainLane).tick;
   const auto names = keys.texts_if("channels", kMostChannels);
   const double rate = keys.number_or("rate", std::min(kUsualRate, 1 / tick), 0.1, 1 / tick + 1e-6);
   if (!names || names->empty()) {
@@ -273,27 +305,23 @@ json Remote::follow(const Keys& keys, Client client) {
   return answer;
 }
 
-void Remote::row(std::span<const double> row, std::span<const double> twin, std::uint64_t tick) {
+void Remote::row(LaneRows rows, std::uint64_t tick) {
   bool worked_out = false;
   const TraceChannels& channels = host_.channels();
-  const bool two = !twin.empty() && !std::isnan(twin[0]);
   for (auto& [client, f] : followers_) {
     if (tick % f.every != 0) continue;
     if (!std::exchange(worked_out, true)) {
-      values_.resize(static_cast<std::size_t>(channels.count()));
-      twin_values_.assign(values_.size(), std::numeric_limits<double>::quiet_NaN());
-      channels.values(row, values_);
-      if (two) channels.values(twin, twin_values_);
+      for (std::size_t i = 0; i < kMostLanes; ++i) {
+        values_[i].resize(static_cast<std::size_t>(channels.count()));
+        if (runs(rows, i)) channels.values(rows[i], values_[i]);
+      }
     }
     if (f.last && tick > *f.last) f.dropped += (tick - *f.last) / f.every - 1;
     f.last = tick;
     json each = json::array({tick});
     for (const Wanted& w : f.wanted) {
-      if (!w.of_twin) {
-        each.push_back(w.channel.value(channels, row, values_));
-      } else {
-        each.push_back(two ? w.channel.value(channels, twin, twin_values_) : json());
-      }
+      each.push_back(runs(rows, w.lane) ? w.channel.value(channels, rows[w.lane], values_[w.lane])
+                                        : json());
     }
     f.rows.push_back(std::move(each));
     if (f.rows.size() >= kRowsInALine) flush(client, f);

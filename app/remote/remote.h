@@ -3,6 +3,7 @@
 // common to both, and the rows that clients follow.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -40,19 +41,19 @@ struct RemoteHost {
 
   std::string kind;  // "window" or "serve"
   std::function<nlohmann::json()> state;
-  std::function<const Parameters&()> parameters;
-  std::function<const Parameters*()> twin;  // null: no twin
+  std::function<std::size_t()> lanes;                             // that run
+  std::function<const Parameters&(std::size_t lane)> parameters;  // of a lane that runs
   // Highest limits allowed to clients: a person's choice, by with_limits_of().
   std::function<Parameters()> highest;
   // Called before this client sets anything: ends a temporary replacement of the settings.
   std::function<void(LineServer::Client)> before_set = [](LineServer::Client) {};
   // The arm's usual settings, as far as they can change while the loop runs.
   std::function<Parameters()> usual = [] { return Parameters{}; };
-  // Sets all settings, of the twin if `of_twin`.
-  std::function<void(const Parameters&, bool of_twin)> set;
+  // Sets all settings of a lane that runs.
+  std::function<void(const Parameters&, std::size_t lane)> set;
   std::function<const TraceChannels&()> channels;
-  std::function<std::span<const double>()> row, twin_row;  // empty: no row
-  std::function<std::uint64_t()> tick;                     // of the newest row
+  std::function<std::vector<std::span<const double>>()> rows;  // of the lanes that run; or none
+  std::function<std::uint64_t()> tick;                         // of the newest rows
   // Actions by verb; missing verbs need a window.
   std::map<std::string, Action> actions;
   // A lasting trouble in words, such as a recording that ended on a full disk; empty: none. Every
@@ -63,6 +64,13 @@ struct RemoteHost {
 
 // The loop's part of a state, the same for every owner.
 nlohmann::json loop_state(const LiveLoop& loop, const ArmDescription& arm);
+
+// Returns the lane that a request names. Errors: RemoteError for what is no lane's number.
+std::size_t asked_lane(const Keys& keys, std::size_t usual);
+
+// Refuses a lane for the verb "twin" that is the first, or not beside one of the `lanes` that run.
+// Errors: RemoteError.
+void check_beside(const Keys& keys, std::size_t lane, std::size_t lanes);
 
 // Text of a mark. Errors: RemoteError if it is missing, or longer than sessions allow.
 std::string noted(const Keys& keys);
@@ -77,8 +85,9 @@ class Remote {
   // Answers requests, new ones and those answered later. Call it once a turn of the owner. True if
   // there were new requests.
   bool turn();
-  // Passes on a row, the twin's (or none), and the number of its tick.
-  void row(std::span<const double> row, std::span<const double> twin, std::uint64_t tick);
+  // Passes on the rows of a tick, and its number. Rows of lanes that do not run are missing or
+  // begin with NaN.
+  void row(LaneRows rows, std::uint64_t tick);
   // From now on rows and channels are of another world.
   void reopened();
   // Returns at the next request, or at `end`.
@@ -91,7 +100,7 @@ class Remote {
 
   struct Wanted {
     LiveChannel channel;
-    bool of_twin = false;
+    std::size_t lane = kMainLane;
   };
   struct Follower {
     std::vector<std::string> names;
@@ -125,7 +134,7 @@ class Remote {
   std::vector<Pending> pending_;
   std::set<Client> here_, untold_;  // all clients; those not told of trouble_
   std::string trouble_;
-  std::vector<double> values_, twin_values_;
+  std::array<std::vector<double>, kMostLanes> values_;
   LineServer server_;  // last, to be destroyed first
 };
 

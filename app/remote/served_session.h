@@ -1,4 +1,4 @@
-// A live loop without a window, led by programs on the control socket.
+// A live session without a window, led by programs on the control socket.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/base/tasks.h"
-#include "app/live/live_loop.h"
+#include "app/live/live_session.h"
 #include "app/remote/remote.h"
 #include "app/run/simulate.h"
 #include "devices/device.h"
@@ -45,29 +45,18 @@ class ServedSession {
                 Options options);
   ~ServedSession();  // completes a recording
 
-  bool realtime() const { return loop_.status().realtime.realtime(); }
+  bool realtime() const { return loop().status().realtime.realtime(); }
   // The verbs and state for programs. Valid as long as this.
   RemoteHost host();
   // Cuts the force; from any thread.
-  void cut() { loop_.cut(); }
+  void cut() { loop().cut(); }
   // Call once a turn, at least every SafetyLimits::kSilence / 4. Passes the new rows to `remote`.
   // Errors: std::runtime_error if the loop has ended.
   void turn(Remote& remote);
 
  private:
-  struct Recording {
-    std::future<std::unique_ptr<Recorder>> opening;
-    std::future<void> closing;
-    std::filesystem::path file;
-    std::uint64_t rows = 0, dropped = 0;  // dropped: rows that found no room
-    std::string failure;
-    std::string trouble;  // why it ended by itself, for people; empty: it did not
-    bool complete = false;
-  };
-
   void begin(World world, bool hand_waits);
   nlohmann::json state() const;
-  void set(const Parameters& p, bool of_twin);
   Answer open(const Keys& keys);
   Answer record(const Keys& keys);
   Answer stop();
@@ -76,27 +65,25 @@ class ServedSession {
   Answer twin(const Keys& keys);
   Answer picture(const Keys& keys);
   nlohmann::json place() const;
-  void follow_recording();
-  bool recording() const { return loop_.recording() || recording_.opening.valid(); }
+  LiveLoop& loop() { return session_.loop(); }
+  const LiveLoop& loop() const { return session_.loop(); }
+  Controls& controls() { return session_.controls(); }
+  const Controls& controls() const { return session_.controls(); }
   void watch_buttons();
   std::string source() const;
 
   Options options_;
   World world_;
-  Controls controls_;
   Parameters highest_;  // highest limits: a person's choice
   TraceChannels channels_;
-  std::vector<double> rows_, newest_;  // rows drained; the last of them with its twin
-  std::uint64_t tick_ = 0;             // of newest_
   bool reopened_ = false;
-  Recording recording_;
+  bool told_ = false;  // the failure of the last recording, to a client that stopped it
   // Work for a client that may have gone; one of each kind at a time.
   std::shared_ptr<std::future<World>> opening_;
   std::shared_ptr<std::future<bool>> drawing_;
   ButtonPresses buttons_;
-  std::optional<Parameters> of_twin_;
-  TaskQueue recordings_, files_;  // beside the loop
-  LiveLoop loop_;                 // last, to be destroyed first
+  TaskQueue files_;      // beside the loop
+  LiveSession session_;  // last, to be destroyed first
 };
 
 }  // namespace limpid

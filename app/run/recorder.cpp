@@ -17,17 +17,20 @@ constexpr std::size_t kBlockRows = 4096;  // rows that SessionWriter writes at o
 constexpr int kMostNaps = 10;             // of 2 ms, for a block to come together
 
 // Returns the rows of the ring: `room`, but never more than 64 MiB.
-std::size_t ring_rows(std::size_t room, int stride) {
+std::size_t ring_rows(std::size_t room, std::size_t stride) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
-  const std::size_t fit = kBytes / (static_cast<std::size_t>(stride) * sizeof(double));
-  return std::min(room, std::bit_floor(fit));
+  return std::min(room, std::bit_floor(kBytes / (stride * sizeof(double))));
+}
+
+std::size_t row_size(const SessionInfo& info) {
+  return static_cast<std::size_t>(info.layout().stride());
 }
 
 // Returns memory that is there, so that taking in what a loop begins with does not ask for any.
-std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t lanes) {
-  std::array<std::vector<double>, 2> worlds;
+std::vector<std::vector<double>> rooms(const SessionInfo& info, std::size_t lanes) {
+  std::vector<std::vector<double>> worlds(lanes);
   if (info.bodies.empty()) return worlds;
-  for (std::vector<double>& world : std::span(worlds).first(lanes)) {
+  for (std::vector<double>& world : worlds) {
     world.assign(kMostWorld, 0.0);
     world.clear();
   }
@@ -35,27 +38,24 @@ std::array<std::vector<double>, 2> rooms(const SessionInfo& info, std::size_t la
 }
 
 // Makes one watch for each lane; none if the recording does not say which arm its rows are of.
-std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Parameters> initial,
-                                std::size_t lanes) {
+std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Parameters> initial) {
   std::deque<RunWatch> watches;
-  for (std::size_t lane = 0; info.arm && lane < lanes; ++lane) {
-    watches.emplace_back(*info.arm, info.layout(), initial[lane]);
-  }
+  if (!info.arm) return watches;
+  for (const Parameters& p : initial) watches.emplace_back(*info.arm, info.layout(), p);
   return watches;
 }
 
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
-                   const Parameters& initial, bool force, std::size_t room, const Parameters* twin)
+                   std::span<const Parameters> initial, bool force, std::size_t room)
     : out_(out),
       // Packing costs nobody time where a clock sets the pace.
       writer_(out, info, force, room > kWaitingRoom ? Packing::yes : Packing::no),
-      ring_(ring_rows(room, (twin ? 2 : 1) * info.layout().stride()),
-            static_cast<std::size_t>((twin ? 2 : 1) * info.layout().stride())),
-      lanes_(twin ? 2 : 1),
-      known_{initial, twin ? *twin : initial},
-      watches_(watches_of(info, known_, lanes_)),
+      ring_(ring_rows(room, initial.size() * row_size(info)), initial.size() * row_size(info)),
+      lanes_(initial.size()),
+      known_(initial.begin(), initial.end()),
+      watches_(watches_of(info, initial)),
       worlds_(rooms(info, lanes_)),
       block_(kBlockRows * ring_.stride()),
       thread_([this] { live(); }) {}
@@ -151,19 +151,19 @@ void Recorder::live() {
 
 void Recorder::write_rows() {
   const std::size_t rows = ring_.pop(block_);
-  const auto both = std::span<const double>(block_).first(rows * ring_.stride());
+  const auto all = std::span<const double>(block_).first(rows * ring_.stride());
   if (rows > 0 && !std::exchange(begun_, true)) {
     for (std::size_t lane = 0; lane < lanes_; ++lane) writer_.append_world(worlds_[lane], lane);
   }
   const std::size_t stride = ring_.stride() / lanes_;
-  for (std::size_t at = 0; at < both.size() && !watches_.empty(); at += stride) {
-    watches_[at / stride % lanes_].add(both.subspan(at, stride));
+  for (std::size_t at = 0; at < all.size() && !watches_.empty(); at += stride) {
+    watches_[at / stride % lanes_].add(all.subspan(at, stride));
   }
-  if (lanes_ == 1) return writer_.append(both);
+  if (lanes_ == 1) return writer_.append(all);
   for (std::size_t lane = 0; lane < lanes_; ++lane) {
     of_lane_.clear();
-    for (std::size_t at = lane * stride; at < both.size(); at += ring_.stride()) {
-      const auto row = both.subspan(at, stride);
+    for (std::size_t at = lane * stride; at < all.size(); at += ring_.stride()) {
+      const auto row = all.subspan(at, stride);
       of_lane_.insert(of_lane_.end(), row.begin(), row.end());
     }
     writer_.append(of_lane_, lane);

@@ -1,12 +1,13 @@
 // Writes every tick to a session file, from a thread of its own.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <deque>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "app/run/run_watch.h"
 #include "core/realtime/trace_ring.h"
@@ -24,15 +25,17 @@ class Recorder {
   static constexpr std::size_t kLiveRoom = 1 << 15;
   static constexpr std::size_t kWaitingRoom = 1 << 13;
 
-  // Opens the file at once, so that errors of writing are known before the first tick. `twin`:
-  // parameters of a second run on the same hand, whose rows then come with every push. Errors:
-  // FileError.
+  // Opens the file at once, so that errors of writing are known before the first tick. `initial`:
+  // the parameters of each lane that `info` has. Errors: FileError.
+  Recorder(const std::filesystem::path& out, const SessionInfo& info,
+           std::span<const Parameters> initial, bool force, std::size_t room = kLiveRoom);
   Recorder(const std::filesystem::path& out, const SessionInfo& info, const Parameters& initial,
-           bool force, std::size_t room = kLiveRoom, const Parameters* twin = nullptr);
+           bool force, std::size_t room = kLiveRoom)
+      : Recorder(out, info, std::span(&initial, 1), force, room) {}
   ~Recorder();  // without finish(): leaves what was written as OUT.h5.part
 
   // Hands over a row, for the loop: allocates nothing and waits for nothing. Returns false if there
-  // was no room. A twin's two rows stand one behind the other.
+  // was no room. The rows of all lanes stand one behind the other.
   bool push(std::span<const double> row) noexcept;
   // Waits for room instead of losing the row, for loops without a clock to obey. Returns false once
   // the recording has failed.
@@ -48,7 +51,7 @@ class Recorder {
   void mark(Mark mark);
   std::uint64_t newest() const noexcept { return rows() > 0 ? rows() - 1 : 0; }  // the newest row
   std::size_t stride() const noexcept { return ring_.stride(); }                 // doubles a push
-  bool of_twin() const noexcept { return lanes_ > 1; }
+  std::size_t lanes() const noexcept { return lanes_; }
   std::uint64_t rows() const noexcept { return pushed_.load(std::memory_order_relaxed); }
   std::uint64_t dropped() const noexcept { return ring_.dropped() + lost_changes_.load(); }
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
@@ -75,12 +78,12 @@ class Recorder {
   SessionWriter writer_;
   TraceRing ring_;
   SpscQueue<Change> changes_{256};
-  std::size_t lanes_;                          // runs
-  std::array<Parameters, 2> known_;            // the writing thread's, for each run
-  std::deque<RunWatch> watches_;               // the writing thread's, for each run
-  std::array<std::vector<double>, 2> worlds_;  // for each run, with room for the largest
-  bool begun_ = false;                         // the writing thread's: worlds_ are written
-  std::vector<double> block_, of_lane_;        // the writing thread's
+  std::size_t lanes_;
+  std::vector<Parameters> known_;            // the writing thread's, for each lane
+  std::deque<RunWatch> watches_;             // the writing thread's, for each lane
+  std::vector<std::vector<double>> worlds_;  // for each lane, with room for the largest
+  bool begun_ = false;                       // the writing thread's: worlds_ are written
+  std::vector<double> block_, of_lane_;      // the writing thread's
   std::atomic<std::uint64_t> pushed_{0};
   std::atomic<std::uint64_t> lost_changes_{0};
   std::atomic<bool> stop_{false};

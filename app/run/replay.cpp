@@ -29,12 +29,12 @@ SessionInfo session_info(const RunPlan& plan) {
   info.scene = plan.document.toml;
   info.models = files_of(plan.document);
   info.arm = std::make_shared<const ArmDescription>(plan.arm);
-  if (plan.twin() != nullptr) info.twin = config_text(*plan.twin());
+  for (const Lane& lane : plan.beside) info.beside.push_back(config_text(lane.parameters));
   return info;
 }
 
 void tell_start(Recorder& recorder, const RunPlan& plan) {
-  for (std::size_t lane = 0; lane < std::min<std::size_t>(plan.lanes(), 2); ++lane) {
+  for (std::size_t lane = 0; lane < plan.lanes(); ++lane) {
     const auto& start = plan.lane(lane).start ? plan.lane(lane).start : plan.start;
     if (start) recorder.begins(start->world, lane);
   }
@@ -79,15 +79,15 @@ std::vector<SettingChange> changes_again(const Session& run, const std::string& 
   return changes;
 }
 
-// Makes changes to the first run's settings in the twin's, too, but for those in which the two
-// differed: these are what the twin compares.
-Parameters with_changed(Parameters twin, const Parameters& began, const Parameters& chosen) {
+// Makes changes to the first lane's settings in another lane's, too, but for those in which the two
+// differed: these are what the lanes compare.
+Parameters with_changed(Parameters other, const Parameters& began, const Parameters& chosen) {
   for (const ParameterInfo& info : parameter_table()) {
     const std::string was = parameter_text(began, info);
-    if (parameter_text(chosen, info) == was || parameter_text(twin, info) != was) continue;
-    set_parameter_number(twin, info, parameter_number(chosen, info));
+    if (parameter_text(chosen, info) == was || parameter_text(other, info) != was) continue;
+    set_parameter_number(other, info, parameter_number(chosen, info));
   }
-  return twin;
+  return other;
 }
 
 RigStart start_of(const Session& run) {
@@ -146,14 +146,15 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
 
   plan.changes = changes_again(session, where, session_parameters(session, where), chosen);
   if (!measured) give_forces(plan);
-  if (session.twin) {
-    const Session& twin = *session.twin;
-    const Parameters own = session_parameters(twin, where + " (twin)");
+  for (std::size_t i = 1; i < session.lanes(); ++i) {
+    const Session& lane = session.lane(i);
+    const std::string of_lane = fmt::format("{} ({})", where, lane_name(i));
+    const Parameters own = session_parameters(lane, of_lane);
     Lane& again = plan.beside.emplace_back();
     again.parameters = with_changed(own, session_parameters(session, where), chosen);
     again.parameters.tick = session.info.tick;
-    again.changes = changes_again(twin, where + " (twin)", own, again.parameters);
-    again.start = start_of(twin);
+    again.changes = changes_again(lane, of_lane, own, again.parameters);
+    again.start = start_of(lane);
   }
   return plan;
 }

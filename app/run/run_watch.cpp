@@ -14,7 +14,6 @@ namespace limpid {
 namespace {
 
 constexpr std::size_t kTipVelocity = 1;  // of the device, in kDerivedInfo
-const std::string kSecondRun = "the second run: ";
 
 // Returns the largest E_c that the law allows [J].
 double promised(const Parameters& p) {
@@ -103,7 +102,8 @@ std::vector<std::string> RunWatch::cautions() const {
 void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
                   std::vector<std::string>& into) {
   for (const std::string& warning : of_lane) {
-    into.push_back((lane == kMainLane ? "" : kSecondRun) + warning);
+    into.push_back(lane == kMainLane ? warning
+                                     : fmt::format("the {} run: {}", lane_ordinal(lane), warning));
   }
 }
 
@@ -115,22 +115,21 @@ SessionWatch::SessionWatch(const Session& about, const std::string& file)
     : stride_(static_cast<std::size_t>(about.layout.stride())) {
   const auto arm = recorded_arm(about.info);
   if (!arm) return;
-  for (const Session* lane : {&about, static_cast<const Session*>(about.twin.get())}) {
-    if (lane == nullptr) continue;
-    Parameters p = session_parameters(*lane, file);
-    RunWatch& watch = lanes_.emplace_back(*arm, lane->layout, p);
-    for (const SettingChange& change : lane->changes) {
+  for (std::size_t i = 0; i < about.lanes(); ++i) {
+    const Session& lane = about.lane(i);
+    Parameters p = session_parameters(lane, file);
+    RunWatch& watch = lanes_.emplace_back(*arm, lane.layout, p);
+    for (const SettingChange& change : lane.changes) {
       apply_change(p, change);
       watch.change(change.row, p);
     }
   }
 }
 
-void SessionWatch::take(std::span<const double> rows, std::span<const double> twin) {
+void SessionWatch::take(LaneRows rows) {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
-    const std::span<const double> of_lane = i == 0 ? rows : twin;
-    for (std::size_t at = 0; at < of_lane.size(); at += stride_) {
-      lanes_[i].add(of_lane.subspan(at, stride_));
+    for (std::size_t at = 0; at < rows[i].size(); at += stride_) {
+      lanes_[i].add(rows[i].subspan(at, stride_));
     }
   }
 }
@@ -143,8 +142,7 @@ std::vector<std::string> SessionWatch::warnings() const {
 
 std::vector<std::string> warnings_of(const Session& session, const std::string& file) {
   SessionWatch watch(session, file);
-  watch.take(session.rows, session.twin ? std::span<const double>(session.twin->rows)
-                                        : std::span<const double>());
+  watch.take(session.lane_rows());
   return watch.warnings();
 }
 

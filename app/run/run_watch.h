@@ -65,7 +65,7 @@ class RunWatch {
   Excess energy_, speed_;
 };
 
-// Appends a lane's warnings; a further lane's have "the second run: " before them.
+// Appends a lane's warnings; a further lane's begin with "the second run: " or the like.
 void add_warnings(const std::vector<std::string>& of_lane, std::size_t lane,
                   std::vector<std::string>& into);
 
@@ -76,7 +76,7 @@ class SessionWatch {
   // and ParameterError where its settings cannot be read.
   SessionWatch(const Session& about, const std::string& file);
   // Takes whole rows in turn, and as many of the second run's, if there is one.
-  void take(std::span<const double> rows, std::span<const double> twin);
+  void take(LaneRows rows);
   std::vector<std::string> warnings() const;
 
  private:

@@ -181,6 +181,12 @@ RunEnd end_of(const Session& session) {
   return end;
 }
 
+std::vector<Parameters> RunPlan::settings() const {
+  std::vector<Parameters> all;
+  for (std::size_t i = 0; i < lanes(); ++i) all.push_back(lane(i).parameters);
+  return all;
+}
+
 RunEnd simulate(const RunPlan& plan, const RunPace& pace, const RowSink& sink) {
   Run run(plan, pace, sink);
   if (pace.realtime) {

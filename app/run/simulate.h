@@ -35,13 +35,13 @@ struct RunPlan : Lane {
   std::vector<bool> force;          // armed at each row of a recording; empty: always
   std::uint64_t rows = 0;           // number of ticks
   std::uint64_t seed = 0;           // for everything random
-  std::vector<Lane> beside;         // further lanes; one makes a twin
+  std::vector<Lane> beside;         // further lanes, at most kMostLanes - 1
   std::string note = {};  // for people: why rows of a re-run may differ from the recorded ones
 
   std::size_t lanes() const { return 1 + beside.size(); }
   const Lane& lane(std::size_t i) const { return i == 0 ? *this : beside[i - 1]; }
-  // Returns the second lane's parameters, for a recorder; null: there is none.
-  const Parameters* twin() const { return beside.empty() ? nullptr : &beside[0].parameters; }
+  // Returns the parameters of each lane at the first row.
+  std::vector<Parameters> settings() const;
   RowLayout layout() const { return row_layout(arm.dof(), document.scene); }  // of each lane's rows
 };
 

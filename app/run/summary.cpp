@@ -182,21 +182,32 @@ std::vector<Summary::Number> Summary::numbers() const {
   return numbers;
 }
 
-std::string Summary::beside(const Summary& first, const std::string& name, const Summary& second,
-                            const std::string& other) {
-  std::string text =
-      fmt::format("{:<24} {:>16} {:>16} {:<5} {:>10}\n", "", name, other, "", "ratio");
-  const std::vector<Number> a = first.numbers(), b = second.numbers();
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const bool comparable = std::abs(a[i].value) > 1e-9;
-    text +=
-        fmt::format("{:<24} {:>16.4f} {:>16.4f} {:<5} {:>10}\n", a[i].what, a[i].value, b[i].value,
-                    a[i].unit, comparable ? fmt::format("{:.3g}", b[i].value / a[i].value) : "-");
+std::string Summary::beside(std::span<const Summary* const> lanes,
+                            std::span<const std::string> names) {
+  std::string text = fmt::format("{:<24}", "");
+  for (const std::string& name : names) text += fmt::format(" {:>16}", name);
+  text += fmt::format(" {:<5}", "");
+  for (std::size_t lane = 1; lane < lanes.size(); ++lane) text += fmt::format(" {:>10}", "ratio");
+  text += '\n';
+  std::vector<std::vector<Number>> numbers;
+  for (const Summary* lane : lanes) numbers.push_back(lane->numbers());
+  for (std::size_t i = 0; i < numbers[0].size(); ++i) {
+    const double first = numbers[0][i].value;
+    text += fmt::format("{:<24}", numbers[0][i].what);
+    for (const auto& lane : numbers) text += fmt::format(" {:>16.4f}", lane[i].value);
+    text += fmt::format(" {:<5}", numbers[0][i].unit);
+    for (std::size_t lane = 1; lane < lanes.size(); ++lane) {
+      const bool comparable = std::abs(first) > 1e-9;
+      text += fmt::format(" {:>10}",
+                          comparable ? fmt::format("{:.3g}", numbers[lane][i].value / first) : "-");
+    }
+    text += '\n';
   }
-  for (const auto* run : {&first, &second}) {
-    if (!run->watch_.lost()) continue;
-    text += fmt::format("{} is unstable from t = {:.3f} s on: {}\n", run == &first ? name : other,
-                        run->watch_.since(), run->watch_.why());
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+    const DivergenceWatch& watch = lanes[lane]->watch_;
+    if (!watch.lost()) continue;
+    text += fmt::format("{} is unstable from t = {:.3f} s on: {}\n", names[lane], watch.since(),
+                        watch.why());
   }
   return text;
 }

@@ -71,9 +71,9 @@ class Summary {
   // Returns the row of the strongest contact; the last row of a run without any.
   std::span<const double> memorable() const { return totals().memorable; }
   std::string text() const;
-  // Compares a twin's two runs: their numbers side by side, and the second's over the first's.
-  static std::string beside(const Summary& first, const std::string& name, const Summary& second,
-                            const std::string& other);
+  // Compares lanes: their numbers side by side, and those of each further lane over the first's.
+  static std::string beside(std::span<const Summary* const> lanes,
+                            std::span<const std::string> names);
 
   struct Totals {
     std::uint64_t rows = 0;

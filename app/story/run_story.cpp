@@ -8,6 +8,7 @@
 #include "app/run/replay.h"
 #include "app/run/run_watch.h"
 #include "app/story/story.h"
+#include "devices/files/session/session_stream.h"
 #include "devices/files/toml_reader.h"
 
 namespace limpid {
@@ -27,7 +28,9 @@ toml::table box_table(const StoryCamera& camera) {
 toml::table table_of(const StoryStep& step) {
   toml::table table{{"begins", step.begins}, {"ends", step.ends},     {"caption", step.caption},
                     {"mark", step.mark},     {"beside", step.beside}, {"anew", step.anew}};
-  table.insert("names", toml::array{step.names[0], step.names[1]});
+  toml::array names;
+  for (const std::string& name : step.names) names.push_back(name);
+  table.insert("names", names);
   if (step.camera && step.camera->of) {
     table.insert("camera", box_table(*step.camera));
   } else if (step.camera) {
@@ -115,29 +118,32 @@ StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
   first.layout = plan.layout();
   first.changes = plan.changes;
   const auto stride = static_cast<std::size_t>(first.layout.stride());
-  auto twin = std::make_shared<Session>(first);
-  twin->info.config = *first.info.twin;
-  twin->info.twin.reset();
-  twin->changes = plan.beside[0].changes;
-  first.rows.reserve(plan.rows * stride);
-  twin->rows.reserve(plan.rows * stride);
+  for (const std::string& config : std::exchange(first.info.beside, {})) add_lane(first, config);
+  for (std::size_t i = 0; i < first.lanes(); ++i) {
+    first.lane(i).changes = plan.lane(i).changes;
+    first.lane(i).rows.reserve(plan.rows * stride);
+  }
   const auto take = [&](std::span<const double> rows, const auto&) {
-    first.rows.insert(first.rows.end(), rows.begin(), rows.begin() + first.layout.stride());
-    twin->rows.insert(twin->rows.end(), rows.begin() + first.layout.stride(), rows.end());
+    for (std::size_t i = 0; i < first.lanes(); ++i) {
+      const auto row = rows.subspan(i * stride, stride);
+      first.lane(i).rows.insert(first.lane(i).rows.end(), row.begin(), row.end());
+    }
     at(static_cast<double>(first.size()) * plan.parameters.tick);
     return true;
   };
   run.end = simulate(plan, {.realtime = false, .stop = &stop}, take);
-  first.twin = std::move(twin);
   return run;
 }
 
-std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
-                                                const Session& session) {
-  std::vector<std::array<StepNumbers, 2>> all;
+std::vector<std::vector<StepNumbers>> measure(const std::vector<StoryStep>& steps,
+                                              const Session& session) {
+  std::vector<std::vector<StepNumbers>> all;
   for (const StoryStep& step : steps) {
     if (step.begins >= static_cast<double>(session.size()) * session.info.tick) break;
-    all.push_back({numbers(step, session), numbers(step, *session.twin)});
+    std::vector<StepNumbers>& of_step = all.emplace_back();
+    for (std::size_t i = 0; i < session.lanes(); ++i) {
+      of_step.push_back(numbers(step, session.lane(i)));
+    }
   }
   return all;
 }
@@ -147,12 +153,12 @@ void write_session(const Session& session, const ToldSteps& told, const std::fil
   SessionInfo info = session.info;
   info.story = told_text(told);
   SessionWriter writer(out, info, force);
-  const Session* runs[] = {&session, session.twin.get()};
-  for (std::size_t lane = 0; lane < 2 && runs[lane] != nullptr; ++lane) {
-    writer.append_world(runs[lane]->world, lane);
-    writer.append(runs[lane]->rows, lane);
-    for (const SettingChange& change : runs[lane]->changes) {
-      if (change.row < runs[lane]->size()) writer.append(change, lane);
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    const Session& lane = session.lane(i);
+    writer.append_world(lane.world, i);
+    writer.append(lane.rows, i);
+    for (const SettingChange& change : lane.changes) {
+      if (change.row < lane.size()) writer.append(change, i);
     }
   }
   writer.close(warnings_text(warnings_of(session, out.string())));

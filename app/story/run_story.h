@@ -33,7 +33,7 @@ struct StepNumbers {
 };
 
 struct StoryRun {
-  Session session;  // both runs, in memory
+  Session session;  // all runs, in memory
   RunEnd end;
 };
 
@@ -42,9 +42,9 @@ struct StoryRun {
 StoryRun run_story(const Story& story, const std::atomic<bool>& stop,
                    const std::function<void(double)>& at);
 
-// Measures both runs in each of the steps. `session` has a twin.
-std::vector<std::array<StepNumbers, 2>> measure(const std::vector<StoryStep>& steps,
-                                                const Session& session);
+// Measures each of the runs in each of the steps.
+std::vector<std::vector<StepNumbers>> measure(const std::vector<StoryStep>& steps,
+                                              const Session& session);
 
 // Writes a session with the story that it tells, which is told again when it is opened. Errors: as
 // SessionWriter.

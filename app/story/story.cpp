@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/base/folders.h"
-#include "app/run/twin_settings.h"
+#include "app/run/lane_settings.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
 #include "devices/files/config_file.h"
@@ -29,7 +29,7 @@ Camera::View view_in(const TomlTable& table, const char* key) {
   return static_cast<Camera::View>(at - kViews.begin());
 }
 
-constexpr std::size_t kBoth = 2;
+constexpr std::size_t kAll = kMostLanes;  // in place of a lane
 
 // Returns the settings in a list of "key = value", with their lines.
 std::vector<std::pair<std::string, std::uint32_t>> settings_in(const TomlTable& step,
@@ -55,8 +55,8 @@ const ParameterInfo* key_of(const std::string& setting) {
 void check(const std::string& setting, std::size_t lane, double time) {
   const ParameterInfo* info = key_of(setting);
   if (info == nullptr) return;  // apply_setting has a better message
-  if (lane != kBoth && !of_controller(*info)) {
-    throw ParameterError(fmt::format("{}: is one for both runs; it belongs under set", info->key));
+  if (lane != kAll && !of_controller(*info)) {
+    throw ParameterError(fmt::format("{}: is one for all runs; it belongs under set", info->key));
   }
   if (!info->live && time > 0) {
     throw ParameterError(fmt::format("{}: may be set in the first step only", info->key));
@@ -105,9 +105,13 @@ constexpr double kLongestStory = 3600;           // [s]
 constexpr double kShortestStep = 0.1;            // [s]
 constexpr std::ptrdiff_t kLongestCaption = 140;  // two lines of a small picture [letters]
 
-std::array<std::string, 2> names_in(const TomlTable& step, const StorySettings& settings) {
+std::vector<std::string> names_in(const TomlTable& step, const StorySettings& settings) {
   const auto said = names_said(step);
-  return said ? *said : twin_names(settings.now(kMainLane), settings.now(kTwinLane));
+  const std::size_t runs = settings.now().size();
+  if (said && said->size() != runs) {
+    step.refuse("names", fmt::format("{} words, one for each run", runs));
+  }
+  return said ? *said : lane_names(settings.now());
 }
 
 std::string short_text(const TomlTable& table, const char* key, std::string text) {
@@ -165,8 +169,8 @@ class Reader {
   }
 
   void read_step(const TomlTable& step, double begins, double ends) {
-    step.allow_only({"time", "caption", "mark", "names", "hand", "set", "first", "twin", "beside",
-                     "anew", "camera"});
+    step.allow_only({"time", "caption", "mark", "names", "hand", "set", "first", "twin", "lane3",
+                     "beside", "anew", "camera"});
     if (!(ends >= begins + kShortestStep)) {
       step.refuse("time", fmt::format("at least {} s before what comes next, which is at {} s",
                                       kShortestStep, ends));
@@ -209,14 +213,16 @@ std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string&
                      Bounds(target - Vec3::Constant(size / 2), target + Vec3::Constant(size / 2))};
 }
 
-std::optional<std::array<std::string, 2>> names_said(const TomlTable& step) {
+std::optional<std::vector<std::string>> names_said(const TomlTable& step) {
   const toml::node* node = step.find("names");
   if (node == nullptr) return std::nullopt;
   const toml::array* list = node->as_array();
-  const bool good = list != nullptr && list->size() == 2 && list->get(0)->is_string() &&
-                    list->get(1)->is_string();
-  if (!good) step.refuse("names", "two words, as [\"left\", \"right\"]");
-  return std::array{*list->get(0)->value<std::string>(), *list->get(1)->value<std::string>()};
+  const bool good = list != nullptr && list->size() >= 2 && list->size() <= kMostLanes &&
+                    list->is_homogeneous(toml::node_type::string);
+  if (!good) step.refuse("names", "a word for each run, as [\"left\", \"right\"]");
+  std::vector<std::string> names;
+  for (const toml::node& name : *list) names.push_back(*name.value<std::string>());
+  return names;
 }
 
 bool flag_in(const TomlTable& step, const char* key, bool otherwise) {
@@ -228,14 +234,21 @@ bool flag_in(const TomlTable& step, const char* key, bool otherwise) {
 }
 
 void StorySettings::read(const TomlTable& step, const std::string& where, double time) {
-  const std::array<Parameters, 2> before = now_;
+  constexpr std::size_t kThird = 2;
+  if (time == 0 && step.find(lane_name(kThird).c_str()) != nullptr) now_.resize(kThird + 1);
+  const std::vector<Parameters> before = now_;
+  changes_.resize(now_.size());
   for (const auto& [key, lane] :
-       {std::pair{"set", kBoth}, {"first", kMainLane}, {"twin", kTwinLane}}) {
+       {std::pair{"set", kAll}, {"first", kMainLane}, {"twin", kTwinLane}, {"lane3", kThird}}) {
+    if (lane == kThird && now_.size() <= kThird && step.find(key) != nullptr) {
+      step.refuse(key, "in the first step as well, which begins the third run");
+    }
     for (const auto& [setting, line] : settings_in(step, key)) {
       try {
         check(setting, lane, time);
-        if (lane != kTwinLane) apply_setting(now_[kMainLane], setting);
-        if (lane != kMainLane) apply_setting(now_[kTwinLane], setting);
+        for (std::size_t i = 0; i < now_.size(); ++i) {
+          if (lane == kAll || lane == i) apply_setting(now_[i], setting);
+        }
       } catch (const ParameterError& error) {
         throw FileError(fmt::format("{}:{}: step.{}: {}", where, line, key, error.what()));
       }
@@ -265,7 +278,7 @@ void StorySettings::into(RunPlan& plan) const {
   };
   plan.parameters = began_[kMainLane];
   plan.changes = rows(kMainLane);
-  plan.beside.push_back({began_[kTwinLane], rows(kTwinLane)});
+  for (std::size_t i = 1; i < began_.size(); ++i) plan.beside.push_back({began_[i], rows(i)});
 }
 
 void StoryHand::read(const TomlTable& step, double begins, double ends) {

@@ -1,11 +1,11 @@
 // Stories: scripts that play themselves. For each step a script gives the hand's path, the settings
-// of two runs on it, the view, and a sentence. Its file is TOML; assets/stories/README.md says how
+// of all runs on it, the view, and a sentence. Its file is TOML; assets/stories/README.md says how
 // to write one.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,11 +24,11 @@ struct StoryCamera {
 };
 
 struct StoryStep {
-  double begins = 0, ends = 0;  // [s]
-  std::string caption;          // a sentence
-  std::string mark;             // in the plots at its beginning; empty: none
-  std::array<std::string, 2> names;
-  bool beside = true;                      // the second run is shown, too
+  double begins = 0, ends = 0;             // [s]
+  std::string caption;                     // a sentence
+  std::string mark;                        // in the plots at its beginning; empty: none
+  std::vector<std::string> names;          // of all runs
+  bool beside = true;                      // further runs are shown, too
   bool anew = false;                       // the plots begin anew
   std::optional<StoryCamera> camera = {};  // none: as in the step before
 };
@@ -36,7 +36,7 @@ struct StoryStep {
 struct Story {
   std::string title;
   std::vector<StoryStep> steps;  // at least one, from 0 on, one after the other
-  RunPlan plan;                  // always with a twin
+  RunPlan plan;                  // of two or three lanes
 
   double seconds() const { return steps.back().ends; }
 };
@@ -63,17 +63,17 @@ const char* view_word(Camera::View view);
 // Return nothing where the key is missing. Errors of all: FileError for values that are not
 // allowed.
 std::optional<StoryCamera> camera_said(const TomlTable& step, const std::string& where);
-std::optional<std::array<std::string, 2>> names_said(const TomlTable& step);
+std::optional<std::vector<std::string>> names_said(const TomlTable& step);
 bool flag_in(const TomlTable& step, const char* key, bool otherwise);
 
-// Settings of a story's two runs, step by step.
+// Settings of a story's runs, step by step: two, or three if the first step has `lane3`.
 class StorySettings {
  public:
-  // Takes in the settings that a step beginning at `time` [s] has under `set` (both runs), `first`
-  // and `twin`. Errors: FileError.
+  // Takes in the settings that a step beginning at `time` [s] has under `set` (all runs), `first`,
+  // `twin` and `lane3`. Errors: FileError.
   void read(const TomlTable& step, const std::string& where, double time);
 
-  const Parameters& now(std::size_t lane) const { return now_[lane]; }
+  std::span<const Parameters> now() const { return now_; }
   // Puts into the plan the settings at the beginning, and the later changes at their rows.
   void into(RunPlan& plan) const;
 
@@ -82,8 +82,8 @@ class StorySettings {
     double time;
     std::string setting;
   };
-  std::array<Parameters, 2> began_, now_;
-  std::array<std::vector<Change>, 2> changes_;
+  std::vector<Parameters> began_, now_ = std::vector<Parameters>(2);
+  std::vector<std::vector<Change>> changes_;
 };
 
 // Path of a story's hand, step by step.

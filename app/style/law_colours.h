@@ -1,5 +1,5 @@
 // Colours of the coupling laws: one table, by the law's number in recordings
-// (core/coupling/laws.h), for buttons, bands, curves, heads of a twin and figures. A new law is a
+// (core/coupling/laws.h), for buttons, bands, curves, names of runs and figures. A new law is a
 // line at its end.
 //
 // Each has a contrast of 3 to 1 at least with its background, and none is a thing's colour. People

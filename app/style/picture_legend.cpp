@@ -6,6 +6,7 @@
 
 #include "app/style/palette.h"
 #include "app/style/theme.h"
+#include "render/theme.h"
 
 namespace limpid {
 namespace {
@@ -20,7 +21,6 @@ constexpr float kLeft = 0.9f, kTop = 0.8f;
 constexpr float kDot = 0.7f;             // from one dot to the next
 constexpr float kBetween = 1.1f;         // entries side by side
 constexpr float kTall = 20, kWide = 30;  // a picture with room for lines
-constexpr float kTwinShade = 0.55f;      // as a second run's curves
 
 bool in_lines(ImVec2 from, ImVec2 to) {
   const float em = font(Face::small)->FontSize;
@@ -37,10 +37,7 @@ std::vector<Entry> entries_of(const PictureLegend& legend, bool lines) {
   const auto run = [&](const std::string& name, float shade) {
     entries.push_back({name, {ink(colours, Ink::device, shade), ink(colours, Ink::proxy, shade)}});
   };
-  if (!legend.second.empty()) {
-    run(legend.first, 0);
-    run(legend.second, kTwinShade);
-  }
+  for (std::size_t i = 0; i < legend.runs.size(); ++i) run(legend.runs[i], kLaneShades[i]);
   if (legend.beside != nullptr) entries.push_back({legend.beside, of(Ink::rerun)});
   if (legend.cone != nullptr) {  // in the picture's colours
     entries.push_back({legend.cone, {legend.slips ? rgb(0xf0e442) : rgb(0xcc79a7)}});

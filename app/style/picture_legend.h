@@ -4,16 +4,16 @@
 #include <imgui.h>
 
 #include <string>
+#include <vector>
 
 namespace limpid {
 
 struct PictureLegend {
-  const char* beside = nullptr;  // name of a second proxy, if there is one
-  const char* cone = nullptr;    // meaning of the friction cone, if there is one
-  bool slips = false;            // shows the colour of slipping, too
-  // Names of two runs in one picture; or none.
-  std::string first = {}, second = {};
-  bool compact = false;  // short words side by side, however much room there is
+  const char* beside = nullptr;        // name of a second proxy, if there is one
+  const char* cone = nullptr;          // meaning of the friction cone, if there is one
+  bool slips = false;                  // shows the colour of slipping, too
+  std::vector<std::string> runs = {};  // names of several runs in one picture; or none
+  bool compact = false;                // short words side by side, however much room there is
 };
 
 // Draws the legend in the upper left corner of a picture, line by line. Where that would hide half

@@ -34,7 +34,9 @@ void attempt(Work work) {
 void check(const limpid::Session& session) {
   demand(session.rows.size() == session.size() * static_cast<std::size_t>(session.layout.stride()));
   for (const limpid::SettingChange& change : session.changes) demand(change.row <= session.size());
-  if (session.twin) demand(session.twin->size() == session.size());
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    demand(session.lane(i).size() == session.size());
+  }
   limpid::check_rows(session, "fuzz.h5");
 }
 

@@ -92,15 +92,15 @@ TEST(Marks, OfATwinAreItsOwn) {
   ViewState state;
   state.device.tip = Vec3(0.5, 0, 0);
   state.hand_force = Vec3(0, 3, 0);
-  state.twin = SecondRun{{}, {}, Vec3(0, 0, 2), {{kPoint, kForce, 1}}};
-  state.twin->device.tip = Vec3(-0.5, 0, 0);
+  state.beside = {{{}, {}, Vec3(0, 0, 2), {{kPoint, kForce, 1}}, {}}};
+  state.beside[0].device.tip = Vec3(-0.5, 0, 0);
   const Marks marks = collect_marks(state, Camera(), 1);
   ASSERT_EQ(marks.solids.size(), 6u);
   expect_arrow(marks.solids[0], marks.solids[1], kPoint, kForce);
   expect_arrow(marks.solids[2], marks.solids[3], Vec3(-0.5, 0, 0), Vec3(0, 0, 2));
   expect_arrow(marks.solids[4], marks.solids[5], Vec3(0.5, 0, 0), Vec3(0, 3, 0));
-  EXPECT_EQ(marks.solids[0].color, palette::of_twin(palette::kContact, state.theme));
-  EXPECT_EQ(marks.solids[2].color, palette::of_twin(palette::kHand, state.theme));
+  EXPECT_EQ(marks.solids[0].color, palette::of_lane(palette::kContact, 1, state.theme));
+  EXPECT_EQ(marks.solids[2].color, palette::of_lane(palette::kHand, 1, state.theme));
   EXPECT_EQ(marks.solids[4].color, palette::kHand);
   EXPECT_EQ(marks.flashes.size(), 1u);
   state.show_forces = false;
@@ -183,13 +183,13 @@ TEST(Ghosts, AreReRunTwinAndDevice) {
   state.proxy = arm_at(0);
   state.device = arm_at(0.1);
   state.rerun = arm_at(0.2);
-  state.twin = SecondRun{arm_at(0.4), arm_at(0.3), Vec3::Zero(), {}};
+  state.beside = {{arm_at(0.4), arm_at(0.3), Vec3::Zero(), {}, {}}};
   const auto ghosts = ghosts_of(state, 1e-3);
   ASSERT_EQ(ghosts.size(), 4u);
   const std::array<double, 4> places{0.2, 0.3, 0.4, 0.1};
   const std::array<palette::Rgb, 4> colors{
-      palette::kRerun, palette::of_twin(palette::kProxy, state.theme),
-      palette::of_twin(palette::kDevice, state.theme), palette::kDevice};
+      palette::kRerun, palette::of_lane(palette::kProxy, 1, state.theme),
+      palette::of_lane(palette::kDevice, 1, state.theme), palette::kDevice};
   for (std::size_t i = 0; i < 4; ++i) {
     ASSERT_EQ(ghosts[i].links.size(), 2u);
     EXPECT_NEAR(ghosts[i].links[0][3][0], places[i], 1e-6);
@@ -200,13 +200,30 @@ TEST(Ghosts, AreReRunTwinAndDevice) {
   EXPECT_EQ(ghosts_of(state, 1e-3).size(), 2u) << "the devices are the ghosts that can be hidden";
 }
 
+// Shades of all runs can be told apart on both themes.
+TEST(Ghosts, OfEachRunHaveAShadeOfTheirOwn) {
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    for (const palette::Rgb& color : {palette::kProxy, palette::kDevice, palette::kHand}) {
+      for (std::size_t a = 0; a < kMostLanes; ++a) {
+        for (std::size_t b = 0; b < a; ++b) {
+          const palette::Rgb x = palette::of_lane(color, a, theme);
+          const palette::Rgb y = palette::of_lane(color, b, theme);
+          float apart = 0;
+          for (std::size_t i = 0; i < 3; ++i) apart += std::abs(x[i] - y[i]);
+          EXPECT_GT(apart, 0.3f) << a << " and " << b;
+        }
+      }
+    }
+  }
+}
+
 // The outline appears between one and four pixels of distance. A twin's arm is compared with the
 // first run's.
 TEST(Ghosts, HaveAnOutlineWhereTheyAreBesideTheirLikes) {
   ViewState state;
   state.proxy = arm_at(0);
   state.device = arm_at(0.0025);
-  state.twin = SecondRun{arm_at(0.0025), arm_at(0.5), Vec3::Zero(), {}};
+  state.beside = {{arm_at(0.0025), arm_at(0.5), Vec3::Zero(), {}, {}}};
   const auto ghosts = ghosts_of(state, 1e-3);
   ASSERT_EQ(ghosts.size(), 3u);
   EXPECT_THAT(ghosts[0].outline, testing::ElementsAre(1, 1)) << "twin's proxy";

@@ -21,7 +21,8 @@ ViewState everything() {
   ViewState state;
   state.device = state.proxy = arm();
   state.rerun = arm();
-  state.twin = SecondRun{arm(), arm(), Vec3(1, 0, 0), {{.force = Vec3(0, 1, 0)}}};
+  state.beside.assign(
+      2, {arm(), arm(), Vec3(1, 0, 0), {{.force = Vec3(0, 1, 0)}}, {Pose::Identity()}});
   state.show_hand = true;
   state.contacts = {{Vec3(0.1, 0, 0), Vec3(0, 0, 2), 1, Vec3::UnitZ(), 0.5, false}};
   state.shade = ContactShade{};
@@ -55,9 +56,9 @@ TEST(SamePicture, IsAnotherWhereAnythingAloneIsFurtherOffThanTheTolerance) {
       {"ghost", [](ViewState& s) -> Vec3& { return s.device.tip; }},
       {"trail", [](ViewState& s) -> Vec3& { return s.proxy.trail[0]; }},
       {"re-run", [](ViewState& s) -> Vec3& { return s.rerun->tip; }},
-      {"twin's proxy", [](ViewState& s) -> Vec3& { return s.twin->proxy.tip; }},
-      {"twin's device", [](ViewState& s) -> Vec3& { return s.twin->device.tip; }},
-      {"twin's contact", [](ViewState& s) -> Vec3& { return s.twin->contacts[0].position; }},
+      {"twin's proxy", [](ViewState& s) -> Vec3& { return s.beside[0].proxy.tip; }},
+      {"twin's device", [](ViewState& s) -> Vec3& { return s.beside[0].device.tip; }},
+      {"twin's contact", [](ViewState& s) -> Vec3& { return s.beside[0].contacts[0].position; }},
       {"hand", [](ViewState& s) -> Vec3& { return s.hand_target; }},
       {"contact", [](ViewState& s) -> Vec3& { return s.contacts[0].position; }},
       {"shade", [](ViewState& s) -> Vec3& { return s.shade->position; }}};
@@ -73,8 +74,8 @@ TEST(SamePicture, IsAnotherWhereAnArrowIsLonger) {
   const std::pair<const char*, std::function<Vec3&(ViewState&)>> forces[] = {
       {"contact", [](ViewState& s) -> Vec3& { return s.contacts[0].force; }},
       {"hand", [](ViewState& s) -> Vec3& { return s.hand_force; }},
-      {"twin's hand", [](ViewState& s) -> Vec3& { return s.twin->hand_force; }},
-      {"twin's contact", [](ViewState& s) -> Vec3& { return s.twin->contacts[0].force; }}};
+      {"twin's hand", [](ViewState& s) -> Vec3& { return s.beside[0].hand_force; }},
+      {"twin's contact", [](ViewState& s) -> Vec3& { return s.beside[0].contacts[0].force; }}};
   for (const auto& [what, force] : forces) {
     expect_another(what, [&](ViewState& s) { force(s).x() += 0.006; });
     expect_the_same(what, [&](ViewState& s) { force(s).x() += 0.004; });
@@ -102,7 +103,8 @@ TEST(SamePicture, IsAnotherWhereAContactIsAnother) {
   expect_the_same("it has been there long", [](ViewState& s) { s.contacts[0].age = 7; });
   expect_another("height", [](ViewState& s) { s.shade->height = 2e-4; });
   expect_another("no shade", [](ViewState& s) { s.shade.reset(); });
-  expect_another("no twin", [](ViewState& s) { s.twin.reset(); });
+  expect_another("one run less", [](ViewState& s) { s.beside.pop_back(); });
+  expect_another("its bodies", [](ViewState& s) { s.beside[1].bodies[0].translation() = kFar; });
   expect_another("no re-run", [](ViewState& s) { s.rerun.reset(); });
 }
 

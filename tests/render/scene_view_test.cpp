@@ -102,14 +102,16 @@ TEST_F(Picture, ShowsASecondRunInPalerColoursOverTheFirst) {
     return seen[0] - seen[2];
   };
   const int nothing = warmth(middle), first = warmth(kMiddleOfSecondLink);
-  state_.twin.emplace().device = elsewhere;
+  state_.beside.assign(1, {});
+  state_.beside[0].device = elsewhere;
   EXPECT_GT(warmth(middle), nothing + 10);
   EXPECT_LT(warmth(middle), first - 10);
-  state_.twin.emplace().proxy = elsewhere;
+  state_.beside[0] = {};
+  state_.beside[0].proxy = elsewhere;
   const Eigen::Vector3i proxy = seen_at(middle);
   EXPECT_GT(proxy[2], proxy[0]) << "as blue as a proxy is";
   EXPECT_FALSE(view_->differs(state_, camera_));
-  state_.twin->proxy = pose_of(arm_, -0.8, 0);
+  state_.beside[0].proxy = pose_of(arm_, -0.8, 0);
   EXPECT_TRUE(view_->differs(state_, camera_)) << "it has moved";
 }
 

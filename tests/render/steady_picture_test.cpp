@@ -190,16 +190,23 @@ TEST_F(MovingObjects, AreNotDrawnAgainWhileTheySleep) {
   EXPECT_EQ(pixels(), before);
 }
 
-// Objects have shadows, and a second run's objects are beside them.
+// Objects have shadows, and objects of further runs and of a re-run are beside them.
 TEST_F(MovingObjects, AreTheSameDrawnInPartsOrAtOnce) {
   for (const int level : {0, 2, 4}) {
     view_->set_quality(Quality::level(level));
     for (int step = 0; step < 6; ++step) {
       move_bodies(step);
-      state_.other_bodies.clear();
-      if (step > 2) {
-        state_.other_bodies = state_.bodies;
-        state_.other_bodies[0].translation().y() -= 0.03;
+      state_.rerun_bodies.clear();
+      state_.beside.clear();
+      std::vector<Pose> apart = state_.bodies;
+      apart[0].translation().y() -= 0.03;
+      if (step == 3) state_.rerun_bodies = apart;
+      if (step > 3) {
+        state_.beside.resize(kMostLanes - 1);
+        for (OtherRun& run : state_.beside) {
+          run.bodies = apart;
+          apart[0].translation().y() -= 0.02;
+        }
       }
       ASSERT_LT(wrong_in_parts(level), 12) << "level " << level << ", step " << step;
       move_bodies(step + 1);

@@ -219,6 +219,27 @@ class TestServe(RemoteTest):
         self.assertGreater(len(session), 100)
         self.assertEqual((session.law, session.twin.law), ("proposed", "standard"))
 
+    def test_a_third_run_comes_and_goes_beside_the_second(self) -> None:
+        loop = self.connect()
+        loop.open(hand="touch.csv")
+        with self.assertRaisesRegex(limpid.RequestError, "lane"):
+            loop.twin(lane=2)
+        loop.twin({"coupling.kind": "standard"})
+        loop.twin({"coupling.kind": "predictive"}, lane=2)
+        names = ["coupling/kind", "twin/coupling/kind", "lane3/coupling/kind"]
+        self.wait("three runs", lambda: self.twin_row(loop, names) == [1, 0, 2])
+        loop.set({"coupling.eta": 0.5}, lane=2)
+        file = loop.record(self.home / "three.h5")
+        time.sleep(0.2)
+        loop.stop()
+        session = limpid.session(file)
+        self.assertEqual([run.law for run in session.lanes], ["proposed", "standard", "predictive"])
+        self.assertEqual(set(session["lane3/coupling/eta"]), {0.5})
+        self.assertEqual(session.lanes[2].channels, session.twin.channels)
+        loop.twin(on=False, lane=2)
+        self.wait("two runs", lambda: self.twin_row(loop, names) is None)
+        self.assertEqual(loop.state()["lanes"], 2)
+
     @staticmethod
     def twin_row(loop, names):
         try:

@@ -1,5 +1,6 @@
-"""Two runs on one hand: from the command line, and in the window."""
+"""Two and three runs on one hand: from the command line, and in the window."""
 
+import json
 import unittest
 
 import h5py
@@ -39,6 +40,29 @@ class Headless(WithAnArm):
                     numpy.testing.assert_array_equal(a[run + name], b[run + name])
             self.assertEqual(set(b["twin/coupling/eta"][...]), {0.3})
 
+    def test_three_laws_are_led_by_one_hand_and_come_again_bit_for_bit(self) -> None:
+        first = self.record(*self.arm, "--coupling", "predictive", "--twin", "--lane3")
+        again = self.record("--hand", first)
+        with h5py.File(first) as a, h5py.File(again) as b:
+            laws = [set(a[run + "coupling/kind"][...]) for run in ("", "twin/", "lane3/")]
+            self.assertEqual(laws, [{2}, {0}, {1}])
+            for run in ("twin/", "lane3/"):
+                numpy.testing.assert_array_equal(a["hand/target"], a[run + "hand/target"])
+                for name in ("device/position", "proxy/contact_torque", "energy/port"):
+                    numpy.testing.assert_array_equal(a[run + name], b[run + name])
+        said = limpid("info", first).out
+        self.assertIn("three runs on one hand", said)
+        table = self.out(".csv")
+        self.assertEqual(limpid("info", first, "--csv", table).status, 0)
+        self.assertIn("lane3_device_position_1_rad", table.open().readline())
+        summary = json.loads(limpid("info", first, "--json").out)
+        self.assertEqual(len(summary["runs"]), 3, summary)
+
+    def test_a_third_run_needs_a_second_one(self) -> None:
+        result = limpid("run", *self.arm, "--lane3")
+        self.assertEqual(result.status, 2, result)
+        self.assertIn("--lane3: needs --twin beside it", result.err)
+
     def test_what_is_no_setting_is_refused_before_anything_is_written(self) -> None:
         for wrong in ("coupling.etta=1", "coupling.eta=-1", "loop.tick=0.002"):
             with self.subTest(wrong):
@@ -77,6 +101,42 @@ class Window(WindowTest):
         self.check_rerun_is_the_same(session)
         self.key("p")
         self.wait("playback of both", lambda s: s["playing"] and s["twin"])
+
+    def test_ctrl_b_adds_a_third_coupling_which_is_recorded_and_played(self) -> None:
+        self.key("ctrl+b")
+        self.wait("two runs", lambda s: s["lanes"] == 2)
+        self.key("ctrl+b")
+        self.wait("three runs", lambda s: s["lanes"] == 3)
+        self.key("ctrl+b")
+        self.wait_for_notice("Three runs are the most")
+        x, y = self.hold_tip()
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
+        for step in range(40):
+            self.move(x, y + 3 * step)
+        self.go_on(1)
+        self.key("r")
+        self.wait("the end", lambda s: not s["recording"])
+        self.xdotool("mouseup", "1")
+        sessions = self.home / "data/limpid/sessions"
+        self.wait_until("the session", lambda: list(sessions.glob("*.h5")))
+        session = max(sessions.glob("*.h5"))
+        with h5py.File(session) as file:
+            laws = [file[run + "coupling/kind"][0] for run in ("", "twin/", "lane3/")]
+            self.assertEqual(len(set(laws)), 3, laws)
+            for run in ("twin/", "lane3/"):
+                numpy.testing.assert_array_equal(file["hand/target"], file[run + "hand/target"])
+        self.check_rerun_is_the_same(session)
+        self.key("p")
+        self.wait("playback of all", lambda s: s["playing"] and s["lanes"] == 3)
+        self.key("shift+b")
+        self.wait("one picture", lambda s: s["overlaid"])
+        self.key("BackSpace")
+        self.wait("live", lambda s: not s["playing"] and s["lanes"] == 3)
+        self.key("ctrl+shift+b")
+        self.wait("two runs", lambda s: s["lanes"] == 2)
+        self.key("b")
+        self.wait("one run", lambda s: s["lanes"] == 1)
 
 
 if __name__ == "__main__":

@@ -89,7 +89,7 @@ class Desk {
   void open() { open(connect()); }
   void open(std::unique_ptr<Device> one) {
     await_reading(*one, 200ms);
-    loop.open(arm, document.scene, controls.parameters, std::move(one));
+    loop.open(arm, document.scene, controls.parameters(), std::move(one));
     window = std::jthread([this](const std::stop_token& closed) {
       while (!closed.stop_requested()) {
         if (!hangs) {

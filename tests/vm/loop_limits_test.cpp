@@ -25,7 +25,7 @@ struct LimitedLoop : testing::Test {
     for (Joint& joint : desk->arm.joints) joint.effort = effort;
     desk->document = {};
     desk->document.scene.add({.shape = JointStop{0, -1, 1}, .material = {100}});
-    desk->controls.parameters.k_vc = 100;
+    desk->controls.parameters().k_vc = 100;
     desk->set([&](Controls& controls) { controls.limits = limits; });
     desk->open(Desk<Model>::connect(effort));
     desk->arm_force(true);
@@ -150,7 +150,7 @@ TYPED_TEST(LimitedLoop, IsZeroWhenTheLoopBecomesUnstable) {
   wait(1000ms);
   ASSERT_LT(this->desk->torque(), -0.4);
   const Time moment = steady_now();
-  this->desk->set([](Controls& controls) { controls.parameters.k_vc = NAN; });
+  this->desk->set([](Controls& controls) { controls.parameters().k_vc = NAN; });
   wait(100ms);
   const auto zero = this->desk->zero_after(moment);
   print_time(std::string(kName<TypeParam>) + ": unstable (and a frame)", zero, 25ms);

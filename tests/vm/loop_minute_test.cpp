@@ -68,11 +68,11 @@ Minute run_on_device(Desk<Model>& desk) {
   // time.
   const RowLayout layout = minute.session.layout;
   const auto stride = static_cast<std::size_t>(layout.stride());
-  std::vector<double> early(8192 * 2 * stride);
+  std::vector<double> early(8192 * kMostLanes * stride);
   const std::size_t count = desk.loop.drain(early);
   std::size_t first = 1;
   while (first < count &&
-         layout.in(std::span<const double>(early).subspan(2 * first * stride, stride),
+         layout.in(std::span<const double>(early).subspan(first * kMostLanes * stride, stride),
                    Column::time)[0] > 0) {
     ++first;
   }

@@ -18,7 +18,7 @@ int drive() {
   using namespace limpid;
   LiveLoop loop({});
   Controls controls;
-  loop.open(test::joystick_arm(), test::joystick_gate().scene, controls.parameters,
+  loop.open(test::joystick_arm(), test::joystick_gate().scene, controls.parameters(),
             test::Desk<Model>::connect());
   catch_interrupts();
   loop.arm();

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "app/run/analysis.h"
-#include "app/run/twin_settings.h"
+#include "app/run/lane_settings.h"
 #include "core/dynamics/arm.h"
 
 namespace limpid {
@@ -13,10 +14,6 @@ namespace {
 
 constexpr double kStiffGrip = 3000;   // [N/m]
 constexpr double kBelowLimit = 0.75;  // part of Routh's limit: energy grows within a second
-
-Parameters& run_of(Settings& settings, bool twin) {
-  return twin ? settings.twin.parameters : settings.parameters;
-}
 
 }  // namespace
 
@@ -33,30 +30,29 @@ Parameters without_passivity(const Parameters& p, const ArmDescription& arm) {
 
 void break_passivity(Settings& settings, const ArmDescription& arm) {
   if (passivity_broken(settings)) return;
-  const bool twin = settings.twin.on && settings.twin.edited;
-  settings.before_break = {settings.parameters, settings.twin.parameters, twin};
-  Parameters& run = run_of(settings, twin);
-  run = without_passivity(run, arm);
-  // The hand is the same for both runs, and the first run's settings hold it.
-  settings.parameters.hand_stiffness = run.hand_stiffness;
-  settings.parameters.hand_damping = run.hand_damping;
-  share_world(settings.parameters, settings.twin.parameters);
+  LaneParameters& all = settings.lanes.parameters;
+  const std::size_t lane = settings.lanes.edited;
+  settings.before_break = {all, lane};
+  all[lane] = without_passivity(all[lane], arm);
+  // The hand is the same for all lanes, and the first one's settings hold it.
+  all[kMainLane].hand_stiffness = all[lane].hand_stiffness;
+  all[kMainLane].hand_damping = all[lane].hand_damping;
+  for (Parameters& other : std::span(all).subspan(1)) share_world(all[kMainLane], other);
 }
 
 void end_passivity_break(Settings& settings) {
   const auto before = std::exchange(settings.before_break, std::nullopt);
   if (!before) return;
-  settings.parameters = before->first;
-  settings.twin.parameters = before->twin;
+  settings.lanes.parameters = before->parameters;
 }
 
 bool end_break_by_law(Settings& settings) {
   if (!passivity_broken(settings)) return false;
-  const bool twin = settings.before_break->of_twin;
-  const CouplingKind chosen = run_of(settings, twin).kind;
+  const std::size_t lane = settings.before_break->lane;
+  const CouplingKind chosen = settings.lanes.parameters[lane].kind;
   if (chosen == CouplingKind::proposed) return false;
   end_passivity_break(settings);
-  run_of(settings, twin).kind = chosen;
+  settings.lanes.parameters[lane].kind = chosen;
   return true;
 }
 

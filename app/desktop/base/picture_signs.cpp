@@ -13,14 +13,14 @@ namespace limpid {
 namespace {
 
 constexpr double kLeastGap = 1e-5;  // least gap that is shown [m]
-constexpr float kBetween = 2;       // between the halves of a twin's picture [px]
+constexpr float kBetween = 2;       // between the pictures of runs side by side [px]
 
 bool overlap(ScreenRect a, ScreenRect b) {
   return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
 }
 
-// Draws the gap beside the middle of the tips, above or below it.
-void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool below,
+// Draws the gap beside the middle of the tips, `lines` below it or, if negative, above.
+void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, float lines,
                       const Camera& camera, const GapPlace& at, ImDrawList& list) {
   const ScreenRect& picture = at.picture;
   const auto pixel = camera.project(0.5 * (a + b));
@@ -32,7 +32,7 @@ void draw_gap_between(const Vec3& a, const Vec3& b, const std::string& run, bool
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
   const ImVec2 tips = in_window(picture, *pixel);
   const float edge = picture.max.x - 1.6f * em;  // a panel's tab may be to the right of it
-  const float top = tips.y + (below ? 1.2f : -2.2f) * em;
+  const float top = tips.y + lines * em;
   const auto box_at = [&](float left) {
     return ScreenRect{{left - pad, top - 0.5f * pad},
                       {left + size.x + pad, top + size.y + 0.5f * pad}};
@@ -70,10 +70,12 @@ std::string gap_text(double meters) {
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names) {
   if (view.device.links.empty() || view.proxy.links.empty()) return;
-  draw_gap_between(view.device.tip, view.proxy.tip, names.first, false, camera, at, list);
-  if (!view.twin) return;
-  draw_gap_between(view.twin->device.tip, view.twin->proxy.tip, names.second, true, camera, at,
-                   list);
+  draw_gap_between(view.device.tip, view.proxy.tip, names.name(kMainLane), -2.2f, camera, at, list);
+  for (std::size_t i = 0; i < view.beside.size(); ++i) {
+    const OtherRun& run = view.beside[i];
+    draw_gap_between(run.device.tip, run.proxy.tip, names.name(i + 1),
+                     1.2f + 1.6f * static_cast<float>(i), camera, at, list);
+  }
 }
 
 void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
@@ -105,16 +107,16 @@ void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture,
             picture, list);
 }
 
-void draw_run_name(const RunNames& names, bool second, ScreenRect half, ImDrawList& list) {
+void draw_run_name(const RunNames& names, std::size_t run, ScreenRect part, ImDrawList& list) {
   const Palette& colours = current_palette();
-  const std::string& name = second ? names.second : names.first;
-  const int law = names.laws[second ? 1 : 0];
+  const std::string name = names.name(run);
+  const int law = names.law(run);
   ImFont* face = font(Face::semibold);
   const float em = face->FontSize, pad = 0.4f * em;
   const float sample = law < 0 ? 0 : 1.5f * em;
   const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, name.c_str());
-  const ImVec2 at(std::round((half.min.x + half.max.x - size.x - sample) / 2),
-                  half.min.y + 2 * pad);
+  const ImVec2 at(std::round((part.min.x + part.max.x - size.x - sample) / 2),
+                  part.min.y + 2 * pad);
   list.AddRectFilled({at.x - pad, at.y - pad / 2},
                      {at.x + sample + size.x + pad, at.y + size.y + pad / 2},
                      colour(colours.backdrop, 0.72f), 4);
@@ -123,8 +125,8 @@ void draw_run_name(const RunNames& names, bool second, ScreenRect half, ImDrawLi
   const float y = std::round(at.y + 0.5f * size.y), scale = em / 16;
   const ImU32 rgba = colour(law_ink(colours, law));
   list.AddRectFilled({at.x, y - 1.5f * scale}, {at.x + 1.2f * em, y + 1.5f * scale}, rgba);
-  draw_run_sign(list, {at.x + 0.6f * em, y}, second ? RunSign::square : RunSign::none, rgba,
-                colour(colours.backdrop), 1.2f * scale);
+  draw_run_sign(list, {at.x + 0.6f * em, y}, sign_of_lane(run), rgba, colour(colours.backdrop),
+                1.2f * scale);
 }
 
 void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list) {
@@ -165,10 +167,14 @@ void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list) {
   }
 }
 
-ScreenRect half_of(ScreenRect picture, bool right) {
-  const float middle = std::round((picture.min.x + picture.max.x) / 2);
-  return right ? ScreenRect{{middle + kBetween / 2, picture.min.y}, picture.max}
-               : ScreenRect{picture.min, {middle - kBetween / 2, picture.max.y}};
+ScreenRect part_of(ScreenRect picture, std::size_t run, std::size_t runs) {
+  const auto edge = [&](std::size_t i) {
+    const float part = static_cast<float>(i) / static_cast<float>(runs);
+    return std::round(picture.min.x + part * picture.width());
+  };
+  const float left = run == 0 ? picture.min.x : edge(run) + kBetween / 2;
+  const float right = run + 1 == runs ? picture.max.x : edge(run + 1) - kBetween / 2;
+  return {{left, picture.min.y}, {right, picture.max.y}};
 }
 
 }  // namespace limpid

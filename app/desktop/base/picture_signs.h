@@ -23,7 +23,7 @@ struct GapPlace {
   ScreenRect picture;
   std::optional<ScreenRect> lens = {};
 };
-// Draws the gap at the two tips. Two runs in one picture have a number each, with its run's name.
+// Draws the gap at the two tips. Runs in one picture have a number each, with its run's name.
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
 // Draws a line from the body that is pulled to the point it is pulled to.
@@ -33,18 +33,16 @@ void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, 
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // Draws a ring around the device's tip: the mouse has hold of it, or would have.
 void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
-// Draws the name of a twin's first or second run at the top of its half, with a sample of its
-// curves.
-void draw_run_name(const RunNames& names, bool second, ScreenRect half, ImDrawList& list);
+// Draws a run's name at the top of its part of the picture, with a sample of its curves.
+void draw_run_name(const RunNames& names, std::size_t run, ScreenRect part, ImDrawList& list);
 
-// Draws a sign that must not be missed, at the top of a picture or below the names of a twin's
-// halves.
+// Draws a sign that must not be missed, at the top of a picture or below the names of its runs.
 void draw_sign(const std::string& sign, ScreenRect picture, bool below_names, ImDrawList& list);
 
 // Draws a sentence at the bottom of a picture, in as many lines as it needs.
 void draw_told(const std::string& told, ScreenRect picture, ImDrawList& list);
 
-// Returns the left or right half of a twin's picture.
-ScreenRect half_of(ScreenRect picture, bool right);
+// Returns the part of a picture that one of `runs` side by side has, from left to right.
+ScreenRect part_of(ScreenRect picture, std::size_t run, std::size_t runs);
 
 }  // namespace limpid

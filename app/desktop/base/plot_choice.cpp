@@ -6,11 +6,10 @@
 #include <set>
 
 #include "core/tick/arming.h"
+#include "render/theme.h"
 
 namespace limpid {
 namespace {
-
-constexpr float kTwinTint = 0.55f;  // shade of the second run's curves
 
 struct Scale {
   std::string_view unit;
@@ -76,18 +75,21 @@ void tell_apart(Curve& curve, const std::vector<Curve>& others) {
   }
 }
 
-// Returns the curve of the same channel of the second run.
-Curve of_second(const Curve& first, std::size_t number, const TraceChannels& channels,
-                const RunNames& names) {
+// Returns the curve of the same channel of a further run.
+Curve of_run(std::size_t run, const Curve& first, std::size_t number, const TraceChannels& channels,
+             const RunNames& names) {
   constexpr std::array kShades{0.0f, 0.5f, -0.5f, 0.25f, -0.25f};
   Curve curve = first;
-  curve.channel += channels.count();
-  if (curve.across >= 0) curve.across += channels.count();
-  if (names.twin) {
-    curve.sign = RunSign::square;
-    const bool another = curve.law >= 0 && names.laws[1] != names.laws[0];
-    if (curve.law >= 0) curve.law = names.laws[1];
-    if (!another) curve.shade = std::min(1.0f, first.shade + kTwinTint);
+  const int offset = static_cast<int>(run) * channels.count();
+  curve.channel += offset;
+  if (curve.across >= 0) curve.across += offset;
+  if (names.beside) {
+    curve.sign = sign_of_lane(run);
+    const auto before = names.laws.begin() + static_cast<std::ptrdiff_t>(run);
+    const bool another =
+        curve.law >= 0 && std::find(names.laws.begin(), before, names.law(run)) == before;
+    if (curve.law >= 0) curve.law = names.law(run);
+    if (!another) curve.shade = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
   } else {
     curve.sign = RunSign::ring;
     curve.law = -1;
@@ -143,15 +145,17 @@ const char* name(PlotKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::array<int, 2> laws_at(const Session& session, double time) {
-  std::array<int, 2> laws{-1, -1};
+std::vector<int> laws_at(const Session& session, double time) {
+  std::vector<int> laws;
   const double row = std::clamp(time / session.info.tick + 0.5, 0.0, 1e15);
   const auto law = [&](const Session& run) {
     const std::size_t k = std::min(static_cast<std::size_t>(row), run.size() - 1);
     return static_cast<int>(run.at(k, Column::kind)[0]);
   };
-  if (session.size() > 0) laws[0] = law(session);
-  if (session.twin && session.twin->size() > 0) laws[1] = law(*session.twin);
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    const Session& lane = session.lane(i);
+    laws.push_back(lane.size() > 0 ? law(lane) : -1);
+  }
   return laws;
 }
 
@@ -198,21 +202,20 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     Curve curve{.channel = *channel, .label = info.label, .ink = info.ink, .shade = info.shade};
     if (choice.kind == PlotKind::cross) curve.across = *across;
     tell_apart(curve, firsts);
-    curve.visible = !names.twin || !info.seldom;
+    curve.visible = !names.beside || !info.seldom;
     firsts.push_back(std::move(curve));
   }
   // A curve that is its run's only one has the colour of the run's law.
-  if (names.twin && firsts.size() == 1) firsts[0].law = names.laws[0];
+  if (names.beside && firsts.size() == 1) firsts[0].law = names.law(kMainLane);
   spec.y = axis_for(shown, choice.kind == PlotKind::spectrum);
   if (spec.y.unit.find(',') != std::string::npos) {
     for (std::size_t i = 0; i < firsts.size(); ++i) firsts[i].label += " [" + shown[i].unit + "]";
   }
-  for (const bool again : {false, true}) {
-    if (again && names.second.empty()) break;
-    const std::string& run = again ? names.second : names.first;
+  for (std::size_t run = 0; run < std::max<std::size_t>(1, names.names.size()); ++run) {
+    const std::string name = names.name(run);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-      Curve curve = again ? of_second(firsts[i], i, channels, names) : firsts[i];
-      if (!run.empty()) curve.label = firsts.size() == 1 ? run : run + " " + curve.label;
+      Curve curve = run > 0 ? of_run(run, firsts[i], i, channels, names) : firsts[i];
+      if (!name.empty()) curve.label = firsts.size() == 1 ? name : name + " " + curve.label;
       spec.curves.push_back(std::move(curve));
     }
   }
@@ -222,8 +225,8 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     spec.x = axis_for({at(*across)}, false);
     spec.x.label = at(*across).label;
   }
-  spec.bands = bands(channels, names.second.empty());
-  spec.end_labels = !names.second.empty();
+  spec.bands = bands(channels, !names.several());
+  spec.end_labels = names.several();
   return spec;
 }
 

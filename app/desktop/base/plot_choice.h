@@ -1,7 +1,6 @@
 // Plots that a user has chosen, by the names of channels: the same for every arm and run.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -27,19 +26,22 @@ const char* name(PlotKind kind);
 // torque.
 std::vector<PlotChoice> default_plots();
 
-// Names of two runs, in front of their curves' labels.
+// Names of several runs, in front of their curves' labels.
 struct RunNames {
-  std::string first, second;        // both empty for a single run
-  bool twin = false;                // the second runs beside the first, and not before it
-  std::array<int, 2> laws{-1, -1};  // numbers of a twin's laws; -1: unknown
+  std::vector<std::string> names;  // fewer than two for a single run
+  bool beside = false;             // all run at once; else the second is a re-run of the first
+  std::vector<int> laws = {};      // numbers of the laws of runs at once; -1: unknown
 
+  bool several() const { return names.size() > 1; }
+  std::string name(std::size_t run) const { return run < names.size() ? names[run] : ""; }
+  int law(std::size_t run) const { return run < laws.size() ? laws[run] : -1; }
   friend bool operator==(const RunNames&, const RunNames&) = default;
 };
 
-// Returns the laws of a session's runs at a time of the session [s].
-std::array<int, 2> laws_at(const Session& session, double time);
+// Returns the laws of a session's lanes at a time of the session [s].
+std::vector<int> laws_at(const Session& session, double time);
 
-// Returns the plot of a choice. Leaves out channels that the arm does not have. A second run's
+// Returns the plot of a choice. Leaves out channels that the arm does not have. A further run's
 // channels follow the first one's and are drawn beside them, if the run has a name.
 PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, const RunNames& names);
 

@@ -109,9 +109,9 @@ ViewState RowView::view(const RowLayout& layout, std::span<const double> row) co
   return view;
 }
 
-void lay_over(ViewState& view, const ViewState& twin) {
-  view.twin = {twin.device, twin.proxy, twin.hand_force, twin.contacts};
-  view.other_bodies = twin.bodies;
+void lay_over(ViewState& view, const ViewState& other) {
+  view.beside.push_back(
+      {other.device, other.proxy, other.hand_force, other.contacts, other.bodies});
 }
 
 void ViewMemory::clear() {

@@ -67,7 +67,7 @@ class RowView {
 };
 
 // Puts a second run's view into the first one's picture.
-void lay_over(ViewState& view, const ViewState& twin);
+void lay_over(ViewState& view, const ViewState& other);
 
 // Remembers when each contact began and where the tips were in the last second.
 class ViewMemory {

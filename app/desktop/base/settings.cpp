@@ -75,7 +75,7 @@ void each(S& s, Visit&& visit) {
   visit("show_grid", s.show_grid);
   visit("show_lens", s.show_lens);
   visit("show_joints", s.show_joints);
-  visit("twin_overlaid", s.twin_overlaid);
+  visit("twin_overlaid", s.overlaid);
   visit("hold_on_release", s.hold_on_release);
   visit("own_file_dialogs", s.own_file_dialogs);
   visit("hint_seen", s.hint_seen);
@@ -128,6 +128,11 @@ void read_parameters(const std::string& text, const char* table, const std::stri
   lower_untaken(p, untaken, complaint);
 }
 
+// Returns the table of a lane's settings in the file.
+std::string table_name(std::size_t lane) {
+  return lane == kMainLane ? "parameters" : lane_name(lane);
+}
+
 Settings settings_of(const std::string& text, const fs::path& file, std::string& complaint) {
   Settings s;
   try {
@@ -144,10 +149,11 @@ Settings settings_of(const std::string& text, const fs::path& file, std::string&
       }
     }
     if (table["window"]["theme"].value_or(std::string("dark")) == "light") s.theme = Theme::light;
-    read_parameters(text, "parameters", file.string(), s.parameters, complaint);
-    s.parameters.tick = Parameters{}.tick;
-    s.parameters.substeps = Parameters{}.substeps;
-    read_parameters(text, "twin", file.string(), s.twin.parameters, complaint);
+    for (std::size_t i = 0; i < kMostLanes; ++i) {
+      read_parameters(text, table_name(i).c_str(), file.string(), s.lanes.parameters[i], complaint);
+    }
+    s.parameters().tick = Parameters{}.tick;
+    s.parameters().substeps = Parameters{}.substeps;
     try {
       s.plot_choices = plots_of(table, file.string());
     } catch (const std::exception& e) {
@@ -155,7 +161,7 @@ Settings settings_of(const std::string& text, const fs::path& file, std::string&
     }
   } catch (const std::exception& e) {
     complain(complaint, e.what());
-    lower_all(s.parameters, complaint);
+    lower_all(s.parameters(), complaint);
   }
   return s;
 }
@@ -170,8 +176,9 @@ toml::table table_of(const Settings& settings) {
   toml::table all;
   all.insert("window", window);
   all.insert("plot", plots_toml(settings.plot_choices));
-  all.insert("parameters", toml::parse(config_text(settings.parameters)));
-  all.insert("twin", toml::parse(config_text(settings.twin.parameters)));
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    all.insert(table_name(i), toml::parse(config_text(settings.lanes.parameters[i])));
+  }
   return all;
 }
 
@@ -283,7 +290,7 @@ Settings load_settings(std::string& complaint) {
   } catch (const std::exception& e) {
     complain(complaint, e.what());
     Settings s;
-    lower_all(s.parameters, complaint);
+    lower_all(s.parameters(), complaint);
     return s;
   }
 }

@@ -3,12 +3,14 @@
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/desktop/base/plot_choice.h"
+#include "core/base/lanes.h"
 #include "core/tick/parameters.h"
 #include "render/theme.h"
 
@@ -20,22 +22,31 @@ toml::array plots_toml(const std::vector<PlotChoice>& plots);
 // `where`, the plot, its key and what is allowed.
 std::vector<PlotChoice> plots_of(const toml::table& table, const std::string& where);
 
-// Second run beside the first, on the same hand, with settings of its own.
-struct TwinSettings {
-  bool on = false;
-  bool edited = false;  // sliders and keys act on the twin, not on the first run
-  Parameters parameters = [] {
-    Parameters p;
-    p.kind = CouplingKind::standard;
-    return p;
+// Settings of every lane, whether it runs or not.
+using LaneParameters = std::array<Parameters, kMostLanes>;
+
+// Lanes of the window: the first one, and those beside it.
+struct LaneSettings {
+  std::size_t count = 1;           // of those that run
+  std::size_t edited = kMainLane;  // sliders and keys act on this one
+  LaneParameters parameters = [] {
+    // A first start has the coupling that feels best and stays passive.
+    LaneParameters all;
+    using enum CouplingKind;
+    constexpr std::array kFirst{predictive, standard, proposed};
+    static_assert(kFirst.size() == kMostLanes);
+    for (std::size_t i = 0; i < kMostLanes; ++i) all[i].kind = kFirst[i];
+    return all;
   }();
+
+  friend bool operator==(const LaneSettings&, const LaneSettings&) = default;
 };
 
-// Settings of both runs from before passivity was broken for a demonstration. They come back whole,
+// Settings of all lanes from before passivity was broken for a demonstration. They come back whole,
 // whatever is changed meanwhile, and are the settings that are kept and undone.
 struct BeforeBreak {
-  Parameters first, twin;
-  bool of_twin = false;  // the twin is the broken run
+  LaneParameters parameters;
+  std::size_t lane = kMainLane;  // the broken one
 };
 
 struct Settings {
@@ -47,7 +58,7 @@ struct Settings {
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
   bool show_lens = true;  // while gap or contact is small
   bool show_joints = true;
-  bool twin_overlaid = false;  // both runs in one picture, else one beside the other
+  bool overlaid = false;  // all runs in one picture, else one beside the other
   bool hold_on_release = false;
   bool own_file_dialogs = false;  // even if the desktop has file dialogs
   bool hint_seen = false;         // the story's button was pressed, or the arm was dragged
@@ -60,15 +71,12 @@ struct Settings {
   std::string device_tip;                     // a link of the device; empty: as its file has it
   std::string gamepad;  // the gamepad that leads the hand, as GLFW identifies it; or none
   std::vector<PlotChoice> plot_choices = default_plots();
-  std::vector<std::string> recent;  // recordings and scenes, the newest first
-  // A first start has the coupling that feels best and stays passive.
-  Parameters parameters = [] {
-    Parameters p;
-    p.kind = CouplingKind::predictive;
-    return p;
-  }();
-  TwinSettings twin;                        // starts switched off
+  std::vector<std::string> recent;          // recordings and scenes, the newest first
+  LaneSettings lanes;                       // starts with one
   std::optional<BeforeBreak> before_break;  // while passivity is broken, see passivity_break.h
+
+  Parameters& parameters() { return lanes.parameters[kMainLane]; }
+  const Parameters& parameters() const { return lanes.parameters[kMainLane]; }
 };
 
 // Puts a file at the front of the recent ones.

@@ -79,9 +79,10 @@ void Stage::name_runs(const RunNames& names) {
 }
 
 void Stage::follow_energy(SampleIndex end) {
-  energy.follow(history, end);
-  const int second = channels_.count();
-  if (history.channels() > second) twin_energy.follow(history, end, {second, true});
+  const int one = channels_.count();
+  for (std::size_t lane = 0; static_cast<int>(lane) * one < history.channels(); ++lane) {
+    energy[lane].follow(history, end, {static_cast<int>(lane) * one, lane});
+  }
 }
 
 void Stage::show(const SceneDocument& document, const MeshModels& models,

@@ -1,6 +1,7 @@
 // Stage: arm and scene, their picture, and the plots of their rows.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -17,8 +18,8 @@ namespace limpid {
 
 class Stage {
  public:
-  // Draws the scene's meshes by `models`. `history` has the arm's channels, or twice as many for a
-  // second run beside the first; the plots show `shown` of it at first [s]. Needs a current OpenGL
+  // Draws the scene's meshes by `models`. `history` has the arm's channels, once for each run; the
+  // plots show `shown` of it at first [s]. Needs a current OpenGL
   // context. Errors: std::runtime_error naming the file of a picture.
   Stage(ArmDescription arm, SceneDocument document, const MeshModels& models, History history,
         double shown);
@@ -29,7 +30,7 @@ class Stage {
             std::optional<std::size_t> highlighted);
   // Makes a plot for each choice; plots that stay keep their range.
   void choose_plots(const std::vector<PlotChoice>& choices);
-  // Names the runs in the plots; a second run is drawn while it has a name.
+  // Names the runs in the plots; further runs are drawn while they have a name.
   void name_runs(const RunNames& names);
   const RunNames& names() const { return names_; }
   // Draws at a level of Quality.
@@ -43,20 +44,19 @@ class Stage {
   // Sets the torque limits under these parameters, from the next row on.
   void follow(const Parameters& p) { channels_.set_limits(motor_limits(arm_, p)); }
 
-  // Accounts for the energy of both runs in the samples up to `end`.
+  // Accounts for the energy of all runs in the samples up to `end`.
   void follow_energy(SampleIndex end);
 
-  // Adds a row to the plots, and a second run's beside it.
-  void append(std::span<const double> row, std::span<const double> beside = {}) {
-    channels_.append(history, row, beside);
-  }
+  // Adds the rows of one tick to the plots.
+  void append(LaneRows rows) { channels_.append(history, rows); }
+  void append(std::span<const double> row) { channels_.append(history, row); }
 
   SceneView picture;
-  ViewMemory memory, twin_memory;
+  std::array<ViewMemory, kMostLanes> memory;
   History history;
   PlotGroup group;
   std::vector<Plot> plots;  // one for each choice
-  EnergyAccount energy, twin_energy;
+  std::array<EnergyAccount, kMostLanes> energy;
 
  private:
   void show_meshes(const MeshModels& models, std::optional<std::size_t> highlighted);

@@ -22,10 +22,9 @@ ViewState view_of(const Stage& stage, std::span<const double> row) {
   return view;
 }
 
-std::vector<unsigned char> small_picture(Stage& stage, std::span<const double> row,
-                                         std::span<const double> twin, Theme theme) {
-  ViewState view = view_of(stage, row);
-  if (!twin.empty()) lay_over(view, view_of(stage, twin));
+std::vector<unsigned char> small_picture(Stage& stage, LaneRows rows, Theme theme) {
+  ViewState view = view_of(stage, rows[kMainLane]);
+  for (const std::span<const double> other : rows.subspan(1)) lay_over(view, view_of(stage, other));
   view.theme = theme;
   Camera camera;
   camera.resize(kThumbnailWidth, kThumbnailHeight);
@@ -53,12 +52,11 @@ fs::path picture_of(const fs::path& file) {
   return fs::exists(made, none) || !fs::exists(shipped, none) ? made : shipped;
 }
 
-void make_thumbnail(const fs::path& session, Stage& stage, std::span<const double> row,
-                    std::span<const double> twin, Theme theme) {
+void make_thumbnail(const fs::path& session, Stage& stage, LaneRows rows, Theme theme) {
   try {
     fs::create_directories(thumbnails_dir());
     write_png(thumbnail_of(session), kThumbnailWidth, kThumbnailHeight,
-              small_picture(stage, row, twin, theme));
+              small_picture(stage, rows, theme));
     keep_newest(thumbnails_dir(), kMostThumbnails);
   } catch (const std::exception&) {
     std::error_code none;

@@ -20,10 +20,9 @@ std::filesystem::path thumbnail_of(const std::filesystem::path& session);
 // with Limpid, and the sessions recorded in them, have pictures that came along.
 std::filesystem::path picture_of(const std::filesystem::path& file);
 
-// Draws and keeps the picture of a row, and of a twin's; removes the oldest pictures beyond
+// Draws and keeps the picture of the rows of all runs; removes the oldest pictures beyond
 // kMostThumbnails. Needs a current OpenGL context. Never throws: a missing picture is no harm.
-void make_thumbnail(const std::filesystem::path& session, Stage& stage, std::span<const double> row,
-                    std::span<const double> twin, Theme theme);
+void make_thumbnail(const std::filesystem::path& session, Stage& stage, LaneRows rows, Theme theme);
 // Removes all but the `most` newest pictures of a folder.
 void keep_newest(const std::filesystem::path& folder, std::size_t most);
 

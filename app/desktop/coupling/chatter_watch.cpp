@@ -62,24 +62,24 @@ void ChatterWatch::follow() {
   note_touch();
   if (found_ && is_over()) found_.reset();
   const int channels = stage.channels().count();
-  for (const bool twin : {false, true}) {
-    Chatter& chatter = chatter_[twin ? 1 : 0];
-    if (twin && (!settings_.twin.on || stage.history.channels() < 2 * channels)) {
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+    Chatter& chatter = chatter_[lane];
+    if (lane >= settings_.lanes.count) {
       chatter.start_over();
       continue;
     }
-    const Parameters& p = run(twin);
-    chatter.follow(stage.history, stage.history.end(), twin ? channels : 0, stage.arm().dof(),
-                   p.k_vc);
+    const Parameters& p = settings_.lanes.parameters[lane];
+    chatter.follow(stage.history, stage.history.end(), static_cast<int>(lane) * channels,
+                   stage.arm().dof(), p.k_vc);
     if (!chatter.there() || passivity_broken(settings_)) continue;
-    if (!found_) found_ = Found{twin, p, wall_of(p)};
-    if (found_->of_twin == twin) seen_ = Clock::now();
+    if (!found_) found_ = Found{lane, p, wall_of(p)};
+    if (found_->lane == lane) seen_ = Clock::now();
   }
 }
 
 // Returns whether the finding is out of date: other settings or another wall are judged anew.
 bool ChatterWatch::is_over() const {
-  const Parameters& now = run(found_->of_twin);
+  const Parameters& now = settings_.lanes.parameters[found_->lane];
   const Scene& scene = document_.scene();
   const auto& wall = found_->wall;
   const bool same_wall =
@@ -87,12 +87,15 @@ bool ChatterWatch::is_over() const {
       (wall->place < scene.objects.size() && scene.objects[wall->place].name == wall->name &&
        scene.objects[wall->place].material.stiffness == wall->stiffness);
   return Clock::now() - seen_ > kStays || !(now == found_->parameters) || !same_wall ||
-         (found_->of_twin && !settings_.twin.on) || passivity_broken(settings_);
+         found_->lane >= settings_.lanes.count || passivity_broken(settings_);
 }
 
 std::string ChatterWatch::text() const {
   const LawInfo& law = info(found_->parameters.kind);
-  const std::string of = found_->of_twin ? " of the twin" : "";
+  const std::string of = found_->lane == kMainLane ? ""
+                         : settings_.lanes.count == 2
+                             ? " of the twin"
+                             : fmt::format(" of the {} run", lane_ordinal(found_->lane));
   const auto& wall = found_->wall;
   if (!wall) return fmt::format("It chatters: the {} law{} gives energy.", law.key, of);
   return fmt::format("It chatters: {} ({:.4g} N/m) is stiffer than the {} law{} holds here.",
@@ -100,8 +103,7 @@ std::string ChatterWatch::text() const {
 }
 
 void ChatterWatch::take_predictive() {
-  Parameters& p = found_->of_twin ? settings_.twin.parameters : settings_.parameters;
-  p.kind = CouplingKind::predictive;
+  settings_.lanes.parameters[found_->lane].kind = CouplingKind::predictive;
   forget();
   for (Chatter& each : chatter_) each.start_over();
 }

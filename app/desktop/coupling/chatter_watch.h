@@ -8,7 +8,7 @@
 
 #include "app/desktop/base/settings.h"
 #include "app/desktop/coupling/chatter.h"
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "app/desktop/scene/document.h"
 
 namespace limpid {
@@ -22,12 +22,12 @@ class ChatterWatch {
     double softer;     // that the law renders in theory, at most half of `stiffness` [N/m]
   };
   struct Found {
-    bool of_twin;
-    Parameters parameters;     // of that run
+    std::size_t lane;
+    Parameters parameters;     // of that lane
     std::optional<Wall> wall;  // none: the tip touches nothing of the scene, or a joint's stop
   };
 
-  ChatterWatch(Settings& settings, LiveSession& live, Document& document)
+  ChatterWatch(Settings& settings, LiveStage& live, Document& document)
       : settings_(settings), live_(live), document_(document) {}
 
   // Looks at new rows of the loop; to be called once a frame.
@@ -49,14 +49,11 @@ class ChatterWatch {
   void note_touch();
   std::optional<Wall> wall_of(const Parameters& p) const;
   bool is_over() const;
-  const Parameters& run(bool twin) const {
-    return twin ? settings_.twin.parameters : settings_.parameters;
-  }
 
   Settings& settings_;
-  LiveSession& live_;
+  LiveStage& live_;
   Document& document_;
-  std::array<Chatter, 2> chatter_;      // of both runs
+  std::array<Chatter, kMostLanes> chatter_;
   const Stage* of_ = nullptr;           // stage whose history was looked at
   std::optional<std::size_t> touched_;  // object touched last
   std::optional<Found> found_;

@@ -3,18 +3,21 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <span>
+
 #include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/window_layout.h"
 #include "app/run/fitted_gains.h"
-#include "app/run/twin_settings.h"
+#include "app/run/lane_settings.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
 
-Tuning::Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
+Tuning::Tuning(Settings& settings, Notices& notices, LiveStage& live, DeviceController& devices,
                Playback& playback)
     : presets(data_dir() / "assets/presets.toml", user_config_dir() / "presets.toml"),
       settings_(settings),
@@ -22,12 +25,7 @@ Tuning::Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceCo
       live_(live),
       devices_(devices),
       playback_(playback),
-      analysed_(settings.parameters),
-      analysed_twin_(settings.twin.parameters) {}
-
-Parameters& Tuning::edited() {
-  return edits_twin() ? settings_.twin.parameters : settings_.parameters;
-}
+      analysed_(settings.lanes.parameters) {}
 
 void Tuning::next_law() {
   if (passivity_broken(settings_)) return end_break();
@@ -37,18 +35,38 @@ void Tuning::next_law() {
 }
 
 void Tuning::toggle_twin() {
+  const std::size_t before = settings_.lanes.count;
+  run_lanes(before > 1 ? 1 : 2);
+  notices_.say(before == 1 ? "Two couplings on one hand. The tabs choose which one the sliders set."
+               : before == 2 ? "The twin is gone. B brings it back."
+                             : "One run is left. B brings the second one back.");
+}
+
+void Tuning::add_lane() {
+  run_lanes(settings_.lanes.count + 1);
+  notices_.say(fmt::format("{} couplings on one hand. The tabs choose which one the sliders set.",
+                           settings_.lanes.count == 2 ? "Two" : "Three"));
+}
+
+void Tuning::drop_lane() {
+  run_lanes(settings_.lanes.count - 1);
+  notices_.say(fmt::format("The {} run is gone.", lane_ordinal(settings_.lanes.count)));
+}
+
+// Lets this many lanes run. A lane that would be like another one gets a law that none has.
+void Tuning::run_lanes(std::size_t count) {
   end_break();
   playback_.close();
-  TwinSettings& twin = settings_.twin;
-  twin.on = !twin.on;
-  twin.edited = false;
-  if (!twin.on) return notices_.say("The twin is gone. B brings it back.");
-  if (twin.parameters.kind == settings_.parameters.kind &&
-      twin.parameters.eta == settings_.parameters.eta) {
-    using enum CouplingKind;
-    twin.parameters.kind = settings_.parameters.kind == standard ? predictive : standard;
+  LaneSettings& lanes = settings_.lanes;
+  for (std::size_t i = lanes.count; i < count; ++i) {
+    const auto there = std::span(lanes.parameters).first(i);
+    Parameters& added = lanes.parameters[i];
+    const bool alike = std::ranges::any_of(
+        there, [&](const Parameters& p) { return p.kind == added.kind && p.eta == added.eta; });
+    if (alike) added.kind = law_beside(there);
   }
-  notices_.say("Two couplings on one hand. The tabs choose which one the sliders set.");
+  lanes.count = count;
+  lanes.edited = kMainLane;
 }
 
 void Tuning::break_passivity() { limpid::break_passivity(settings_, live_.stage().arm()); }
@@ -61,8 +79,8 @@ void Tuning::end_break() {
 
 void Tuning::reset() {
   end_break();
-  settings_.parameters = fitted(live_.stage().arm());
-  const bool usual = settings_.parameters == Parameters{};
+  settings_.parameters() = fitted(live_.stage().arm());
+  const bool usual = settings_.parameters() == Parameters{};
   notices_.say(usual
                    ? "All settings have their usual values again, the paper's where it gives them."
                    : "All settings have their usual values again, with gains fitted to this arm.");
@@ -79,28 +97,26 @@ void Tuning::use_preset(const std::string& name) {
 // Fits the gains, as those for the arm before may be far too stiff. A device's compensation of its
 // own weight is remembered with the device, and no later arm gets it.
 Tuning::Suited Tuning::suited(const ArmDescription& arm, const DeviceTraits* device) const {
-  Suited s{settings_.parameters, settings_.twin.parameters, fitted_for_, of_virtual_, device_,
-           encoder_of_device_};
+  Suited s{settings_.lanes.parameters, fitted_for_, of_virtual_, device_, encoder_of_device_};
+  Parameters& first = s.lanes[kMainLane];
   if (!s.fitted_for || s.fitted_for->urdf != arm.urdf) {
     const ArmDescription* before = fitted_for_ ? &*fitted_for_ : nullptr;
-    refit(s.first, before, &arm);
-    refit(s.twin, before, &arm);
+    for (Parameters& p : s.lanes) refit(p, before, &arm);
     s.fitted_for = arm;
   }
-  const OfVirtualArm of_virtual = s.of_virtual ? *s.of_virtual : OfVirtualArm::of(s.first);
+  const OfVirtualArm of_virtual = s.of_virtual ? *s.of_virtual : OfVirtualArm::of(first);
   s.of_virtual.reset();
-  of_virtual.give(s.first);
+  of_virtual.give(first);
   if (device == nullptr) return s;
   s.of_virtual = of_virtual;
   s.device = devices_.hub().in_use();
-  devices_.hub().notes(s.device).compensation.give(s.first);
-  s.first.encoder_step = s.encoder_of_device = encoder_step_of(*device);
+  devices_.hub().notes(s.device).compensation.give(first);
+  first.encoder_step = s.encoder_of_device = encoder_step_of(*device);
   return s;
 }
 
 void Tuning::take(Suited suited) {
-  settings_.parameters = suited.first;
-  settings_.twin.parameters = suited.twin;
+  settings_.lanes.parameters = suited.lanes;
   fitted_for_ = std::move(suited.fitted_for);
   of_virtual_ = suited.of_virtual;
   device_ = std::move(suited.device);
@@ -110,7 +126,7 @@ void Tuning::take(Suited suited) {
 void Tuning::note_compensation() {
   const bool sliding = ImGui::GetCurrentContext() != nullptr && ImGui::IsAnyItemActive();
   if (!of_virtual_ || sliding) return;
-  const OwnForces now = OwnForces::of(settings_.parameters);
+  const OwnForces now = OwnForces::of(settings_.parameters());
   OwnForces& noted = devices_.hub().notes(device_).compensation;
   if (noted == now) return;
   noted = now;
@@ -119,41 +135,40 @@ void Tuning::note_compensation() {
 
 void Tuning::analyze_anew() {
   const ArmDescription& arm = live_.stage().arm();
-  analysis_ = analyze(arm, rest_pose(arm), live_.loop().taken(settings_.parameters), std::nullopt);
+  analysis_ =
+      analyze(arm, rest_pose(arm), live_.loop().taken(settings_.parameters()), std::nullopt);
 }
 
 void Tuning::update() {
-  follow_twin();
-  const Parameters &first = settings_.parameters, &twin = settings_.twin.parameters;
-  const bool changed = !(first == analysed_) || !(twin == analysed_twin_);
-  if (!changed && analysed_of_twin_ == edits_twin()) return;
-  if (!playback_.on()) {
-    mark_changes(first, analysed_, "");
-    if (settings_.twin.on) mark_changes(twin, analysed_twin_, std::string(kTwinMark));
+  follow_lanes();
+  const LaneParameters& now = settings_.lanes.parameters;
+  if (now == analysed_ && analysed_lane_ == edited_lane()) return;
+  for (std::size_t i = 0; i < settings_.lanes.count && !playback_.on(); ++i) {
+    mark_changes(now[i], analysed_[i], i == kMainLane ? "" : lane_mark(i));
   }
-  analysed_ = first;
-  analysed_twin_ = twin;
-  analysed_of_twin_ = edits_twin();
+  analysed_ = now;
+  analysed_lane_ = edited_lane();
   const Stage& shown = playback_.on() ? playback_.shown()->stage() : live_.stage();
   const Parameters p = playback_.on() ? edited() : live_.loop().taken(edited());
   analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), p, std::nullopt);
 }
 
-// Keeps both runs on one hand, one device and one world, and names them in the plots.
-void Tuning::follow_twin() {
-  TwinSettings& twin = settings_.twin;
-  if (live_.loop().device_in_place()) twin.on = false;
-  share_world(settings_.parameters, twin.parameters);
-  if (!twin.on) return live_.stage().name_runs({});
-  const auto names = twin_names(settings_.parameters, twin.parameters);
-  live_.stage().name_runs(
-      {names[0],
-       names[1],
-       true,
-       {static_cast<int>(settings_.parameters.kind), static_cast<int>(twin.parameters.kind)}});
+// Keeps all lanes on one hand, one device and one world, and names them in the plots.
+void Tuning::follow_lanes() {
+  LaneSettings& lanes = settings_.lanes;
+  if (live_.loop().device_in_place()) lanes.count = 1;
+  lanes.edited = std::min(lanes.edited, lanes.count - 1);
+  for (Parameters& other : std::span(lanes.parameters).subspan(1)) {
+    share_world(lanes.parameters[kMainLane], other);
+  }
+  if (lanes.count == 1) return live_.stage().name_runs({});
+  const auto running = std::span(lanes.parameters).first(lanes.count);
+  RunNames names{lane_names(running), true};
+  for (const Parameters& p : running) names.laws.push_back(static_cast<int>(p.kind));
+  live_.stage().name_runs(names);
 }
 
-// Marks changes in the plots. Parameters that both runs share are marked once.
+// Marks changes in the plots. Parameters that all lanes share are marked once.
 void Tuning::mark_changes(const Parameters& now, const Parameters& before,
                           const std::string& whose) {
   for (const ParameterInfo& info : parameter_table()) {
@@ -178,19 +193,19 @@ void Tuning::follow_recorded(bool another) {
 Tuning::Choices Tuning::choices() const {
   Settings now = settings_;
   end_passivity_break(now);
-  if (of_virtual_) of_virtual_->give(now.parameters);
-  return {now.parameters, now.twin, fitted_for_};
+  if (of_virtual_) of_virtual_->give(now.parameters());
+  return {now.lanes, fitted_for_};
 }
 
 void Tuning::take(const Choices& of_person) {
-  Parameters& first = settings_.parameters;
-  first = of_person.first;
-  settings_.twin = of_person.twin;
+  settings_.lanes = of_person.lanes;
   if (fitted_for_ && of_person.fitted_for && fitted_for_->urdf != of_person.fitted_for->urdf) {
-    refit(first, &*of_person.fitted_for, &*fitted_for_);
-    refit(settings_.twin.parameters, &*of_person.fitted_for, &*fitted_for_);
+    for (Parameters& p : settings_.lanes.parameters) {
+      refit(p, &*of_person.fitted_for, &*fitted_for_);
+    }
   }
   if (!of_virtual_) return;
+  Parameters& first = settings_.parameters();
   of_virtual_ = OfVirtualArm::of(first);
   devices_.hub().notes(device_).compensation.give(first);
   first.encoder_step = encoder_of_device_;
@@ -199,11 +214,9 @@ void Tuning::take(const Choices& of_person) {
 Settings Tuning::settings_to_keep(const Choices& of_person) const {
   Settings kept = settings_;
   kept.before_break.reset();
-  kept.parameters = of_person.first;
-  kept.twin = of_person.twin;
+  kept.lanes = of_person.lanes;
   if (!of_person.fitted_for) return kept;
-  refit(kept.parameters, &*of_person.fitted_for, nullptr);
-  refit(kept.twin.parameters, &*of_person.fitted_for, nullptr);
+  for (Parameters& p : kept.lanes.parameters) refit(p, &*of_person.fitted_for, nullptr);
   return kept;
 }
 

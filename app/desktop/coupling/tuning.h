@@ -1,4 +1,4 @@
-// Settings of the two runs, their changes by sliders, keys and presets, and their analysis.
+// Settings of all lanes, their changes by sliders, keys and presets, and their analysis.
 #pragma once
 
 #include <optional>
@@ -27,18 +27,22 @@ class Tuning {
   };
 
  public:
-  Tuning(Settings& settings, Notices& notices, LiveSession& live, DeviceController& devices,
+  Tuning(Settings& settings, Notices& notices, LiveStage& live, DeviceController& devices,
          Playback& playback);
 
-  // Returns the settings that sliders and keys act on: those of one of two runs.
-  Parameters& edited();
-  bool edits_twin() const { return settings_.twin.on && settings_.twin.edited && !playback_.on(); }
+  // Returns the settings that sliders and keys act on: those of one of the lanes.
+  Parameters& edited() { return settings_.lanes.parameters[edited_lane()]; }
+  std::size_t edited_lane() const { return playback_.on() ? kMainLane : settings_.lanes.edited; }
   const Analysis& analysis() const { return analysis_; }  // of edited(), at the arm's rest pose
   // Returns the analysis of a played recording's settings.
   const Analysis& recorded_analysis() const { return recorded_analysis_; }
 
-  void next_law();     // if passivity is broken, ends that
-  void toggle_twin();  // precondition: LiveSession::why_twin_is_fixed() is empty
+  void next_law();  // if passivity is broken, ends that
+  // Let further lanes come or go: all but the first or one beside it; one more; the last one.
+  // Precondition: LiveStage::why_lanes_are_fixed() is empty.
+  void toggle_twin();
+  void add_lane();
+  void drop_lane();
   // Breaks passivity for a demonstration. All changes of the coupling, the world or the screen end
   // it, and everything is as it was before.
   void break_passivity();
@@ -50,7 +54,7 @@ class Tuning {
   // gains that suit it, its motors' share of its own weight, and its encoders. `device` null: the
   // virtual arm. take() makes them the settings.
   struct Suited {
-    Parameters first, twin;
+    LaneParameters lanes;
     std::optional<ArmDescription> fitted_for;
     std::optional<OfVirtualArm> of_virtual;
     std::string device;
@@ -61,16 +65,15 @@ class Tuning {
   void keep_as_they_are_for(const ArmDescription& arm) { fitted_for_ = arm; }
   // Makes analysis() for the present arm.
   void analyze_anew();
-  // Follows the settings of both runs, before the loop takes them. follow_recorded() follows those
+  // Follows the settings of all lanes, before the loop takes them. follow_recorded() follows those
   // of a recording, after the loop. Both are to be called once a frame.
   void update();
   void follow_recorded(bool another);  // session is shown
   // Remembers with the device which part of its own forces its motors compensate.
   void note_compensation();
-  // Settings of both runs as with the virtual arm, and the arm that they suit.
+  // Settings of all lanes as with the virtual arm, and the arm that they suit.
   struct Choices {
-    Parameters first;
-    TwinSettings twin;
+    LaneSettings lanes;
     std::optional<ArmDescription> fitted_for;
   };
   Choices choices() const;
@@ -82,12 +85,13 @@ class Tuning {
   NamedTexts presets;
 
  private:
-  void follow_twin();
+  void run_lanes(std::size_t count);
+  void follow_lanes();
   void mark_changes(const Parameters& now, const Parameters& before, const std::string& whose);
 
   Settings& settings_;
   Notices& notices_;
-  LiveSession& live_;
+  LiveStage& live_;
   DeviceController& devices_;
   Playback& playback_;
   std::optional<ArmDescription> fitted_for_;  // arm that the gains suit
@@ -95,8 +99,8 @@ class Tuning {
   std::string device_;                        // id of that device
   double encoder_of_device_ = 0;              // of that device [rad]
   Analysis analysis_;
-  Parameters analysed_, analysed_twin_;  // as marks and analysis know them
-  bool analysed_of_twin_ = false;
+  LaneParameters analysed_;  // as marks and analysis know them
+  std::size_t analysed_lane_ = kMainLane;
   Analysis recorded_analysis_;
   std::optional<Parameters> recorded_analysed_;  // parameters of recorded_analysis_
 };

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "app/device/device_hub.h"
 #include "devices/device.h"
 
@@ -34,7 +34,7 @@ struct DeviceRequests {
 
 class DeviceController {
  public:
-  DeviceController(LiveSession& live, Notices& notices, AskForPriority ask, DeviceRequests requests)
+  DeviceController(LiveStage& live, Notices& notices, AskForPriority ask, DeviceRequests requests)
       : live_(live),
         notices_(notices),
         hub_(device_store_file(), std::move(ask)),
@@ -97,7 +97,7 @@ class DeviceController {
   // Returns whether the device has to wait: a recording goes on only with the device it began with.
   bool must_wait() const;
 
-  LiveSession& live_;
+  LiveStage& live_;
   Notices& notices_;
   DeviceHub hub_;
   DeviceRequests requests_;

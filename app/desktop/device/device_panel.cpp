@@ -111,7 +111,7 @@ void status(DeviceController& devices, const LiveLoop& loop) {
 
 // Draws measured and assumed values of the device, and the delay that the law reckons with. Returns
 // true if the user wants more measured.
-bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p) {
+bool knowledge(DeviceController& devices, const LiveStage& live, Parameters& p) {
   if (!live.loop().device_in_place()) return false;
   const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
   const bool found = !notes.arm.empty();
@@ -140,7 +140,7 @@ bool knowledge(DeviceController& devices, const LiveSession& live, Parameters& p
 }
 
 // Asks which arm the device is; returns true if a file is to be chosen.
-bool arm_question(DeviceController& devices, const LiveSession& live) {
+bool arm_question(DeviceController& devices, const LiveStage& live) {
   const DeviceHub& hub = devices.hub();
   if (!hub.may_say_arm()) return false;
   const bool in_place = live.loop().device_in_place();
@@ -304,7 +304,7 @@ bool axis_rows(DeviceNotes& notes, std::span<const double> angles, std::span<con
   return changed;
 }
 
-void adjustments(DeviceController& devices, const LiveSession& live) {
+void adjustments(DeviceController& devices, const LiveStage& live) {
   const FoundDevice* found = devices.hub().present();
   if (found == nullptr || !live.loop().device_plugged()) return;
   const bool in_place = live.loop().device_in_place();
@@ -341,7 +341,7 @@ Parameters reckoning_with(Parameters p, double delay) {
   return p;
 }
 
-DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveSession& live,
+DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveStage& live,
                                   const PadChoice& pads, Parameters& p) {
   DevicePanelAsks asks;
   choices(devices, pads);

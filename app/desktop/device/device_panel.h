@@ -41,7 +41,7 @@ struct DevicePanelAsks {
   bool identify = false;
   bool arm_file = false;  // asks for the file of the device's arm
 };
-DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveSession& live,
+DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveStage& live,
                                   const PadChoice& pads, Parameters& p);
 
 }  // namespace limpid

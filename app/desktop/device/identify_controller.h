@@ -23,7 +23,7 @@ class IdentifyController {
     std::string no_pictures;       // why there are no pictures
   };
 
-  IdentifyController(LiveSession& live, DeviceController& devices, Notices& notices)
+  IdentifyController(LiveStage& live, DeviceController& devices, Notices& notices)
       : live_(live), devices_(devices), notices_(notices) {}
   ~IdentifyController() { stop(); }
 
@@ -61,7 +61,7 @@ class IdentifyController {
   void follow_work();
   void fail(const std::string& why);
 
-  LiveSession& live_;
+  LiveStage& live_;
   DeviceController& devices_;
   Notices& notices_;
   Phase phase_ = Phase::asking;

@@ -6,7 +6,7 @@
 
 #include "app/desktop/base/settings.h"
 #include "app/desktop/device/pad_hand.h"
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "render/camera.h"
 
 namespace limpid {
@@ -17,7 +17,7 @@ std::vector<Pad> plugged_pads();
 
 class Pads {
  public:
-  Pads(const Settings& settings, Notices& notices, LiveSession& live)
+  Pads(const Settings& settings, Notices& notices, LiveStage& live)
       : settings_(settings), notices_(notices), live_(live) {}
 
   // Takes the present gamepads, `dt` [s] after the last call. The chosen one leads the hand as seen
@@ -33,7 +33,7 @@ class Pads {
  private:
   const Settings& settings_;
   Notices& notices_;
-  LiveSession& live_;
+  LiveStage& live_;
   std::vector<Pad> pads_;
   PadHand hand_;
   std::string leading_;

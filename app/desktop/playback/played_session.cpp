@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "app/run/lane_settings.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
-#include "app/run/twin_settings.h"
 #include "app/story/run_story.h"
 #include "app/style/words.h"
 #include "devices/files/session/hand_file.h"
@@ -26,15 +26,15 @@ std::size_t rows_between_forgetting(const RowLayout& layout) {
   return kForgetAfter / (static_cast<std::size_t>(layout.stride()) * sizeof(double)) + 1;
 }
 
-// Returns the history of the whole recording, and of the re-run if there is one. It marks a story's
+// Returns the history of the whole recording, and of runs beside it. It marks a story's
 // steps, or else every change of a setting.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
-                   std::span<const double> again, const std::vector<StoryStep>& steps) {
+                   LaneRows beside, const std::vector<StoryStep>& steps) {
   TraceChannels channels(arm, session.layout, session.info.bodies);
   Parameters p = session_parameters(session, where);
   channels.set_limits(motor_limits(arm, p));
   const double length = static_cast<double>(session.size()) * session.info.tick;
-  History history({.channels = channels.count() * (again.empty() ? 1 : 2),
+  History history({.channels = channels.count() * (1 + static_cast<int>(beside.size())),
                    .seconds = length + 1,
                    .tick = session.info.tick});
   const auto stride = static_cast<std::size_t>(session.layout.stride());
@@ -52,8 +52,9 @@ History history_of(const Session& session, const std::string& where, const ArmDe
       const double at = std::round(step.begins / session.info.tick);
       if (at == static_cast<double>(k) && !step.mark.empty()) history.mark(step.begins, step.mark);
     }
-    const auto second = again.empty() ? again : again.subspan(k * stride, stride);
-    channels.append(history, session.row(k), second);
+    std::vector<std::span<const double>> rows{session.row(k)};
+    for (const auto& run : beside) rows.push_back(run.subspan(k * stride, stride));
+    channels.append(history, rows);
     if (k % forget_every == 0) forget_large_blocks();
   }
   forget_large_blocks();
@@ -66,10 +67,10 @@ LoadedSession load_session(const fs::path& file) {
   auto session = std::make_shared<const Session>(read_session(file));
   if (session->size() == 0) throw FileError(file.string() + ": holds no rows");
   RunPlan world = replay(*session, file.string(), {});
-  const std::span<const double> twin =
-      session->twin ? std::span<const double>(session->twin->rows) : std::span<const double>();
+  const auto lanes = session->lane_rows();
   std::vector<StoryStep> steps = told_in(*session, file).steps;
-  History history = history_of(*session, file.string(), world.arm, twin, steps);
+  History history =
+      history_of(*session, file.string(), world.arm, LaneRows(lanes).subspan(1), steps);
   return {.file = file,
           .session = std::move(session),
           .arm = std::move(world.arm),
@@ -131,15 +132,16 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
     return {{}, end, history_of(session, where, plan.arm, {}, {}), {}};
   const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
   while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
-  History history = history_of(session, where, plan.arm, rows, {});
+  const std::span<const double> again(rows);
+  History history = history_of(session, where, plan.arm, LaneRows(&again, 1), {});
   return {std::move(rows), end, std::move(history), plan.note};
 }
 
 RecordedSettings::RecordedSettings(const Session& session, const std::string& where)
-    : session_(session), began_(session_parameters(session, where)), now_(began_) {}
+    : session_(&session), began_(session_parameters(session, where)), now_(began_) {}
 
 const Parameters& RecordedSettings::at(std::size_t row) {
-  const std::vector<SettingChange>& changes = session_.changes;
+  const std::vector<SettingChange>& changes = session_->changes;
   if (made_ > 0 && changes[made_ - 1].row > row) {
     made_ = 0;
     now_ = began_;
@@ -159,9 +161,10 @@ PlayedSession::PlayedSession(LoadedSession loaded)
       steps_(std::move(loaded.steps)),
       facts_(std::move(loaded.facts)),
       verdict_(std::move(loaded.verdict)),
-      first_(player_.session(), file_.string()),
       stage_(make_stage(std::move(loaded.history))) {
-  if (const auto& twin = player_.session().twin) second_.emplace(*twin, file_.string());
+  for (std::size_t i = 0; i < player_.session().lanes(); ++i) {
+    lanes_.emplace_back(player_.session().lane(i), file_.string());
+  }
   if (const auto names = names_now()) stage_->name_runs(*names);
   show(player_.session().marks);
 }
@@ -175,7 +178,7 @@ std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
 
 void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
-  stage_->name_runs({"", "re-run", false});
+  stage_->name_runs({{"", "re-run"}, false});
   rerun_ = std::move(again.rows);
   show(std::move(marks_));
 }
@@ -212,22 +215,33 @@ const StoryStep* PlayedSession::step() const {
 }
 
 RunNames PlayedSession::names_in(const StoryStep& step) const {
-  return {step.names[0], step.names[1], true, laws_at(player_.session(), step.begins)};
+  RunNames names{step.names, true, laws_at(player_.session(), step.begins)};
+  names.names.resize(std::min(names.names.size(), player_.session().lanes()));
+  return names;
 }
 
 std::optional<RunNames> PlayedSession::names_now() {
-  if (!second_ || has_rerun() || !steps_.empty()) return std::nullopt;
-  const Parameters &first = settings(), &second = *twin_settings();
-  const auto names = twin_names(first, second);
-  return RunNames{
-      names[0], names[1], true, {static_cast<int>(first.kind), static_cast<int>(second.kind)}};
+  if (lanes_.size() == 1 || has_rerun() || !steps_.empty()) return std::nullopt;
+  const std::vector<Parameters> now = lane_settings();
+  RunNames names{lane_names(now), true};
+  for (const Parameters& p : now) names.laws.push_back(static_cast<int>(p.kind));
+  return names;
 }
 
-std::span<const double> PlayedSession::twin_row() const {
+std::vector<Parameters> PlayedSession::lane_settings() {
+  std::vector<Parameters> all;
+  for (RecordedSettings& lane : lanes_) all.push_back(lane.at(player_.index()));
+  return all;
+}
+
+std::vector<std::span<const double>> PlayedSession::rows() const {
   const Session& session = player_.session();
   const bool shown = step() == nullptr || step()->beside;
-  return session.twin && !has_rerun() && shown ? session.twin->row(player_.index())
-                                               : std::span<const double>();
+  std::vector<std::span<const double>> rows;
+  for (std::size_t i = 0; i < (shown && !has_rerun() ? session.lanes() : 1); ++i) {
+    rows.push_back(session.lane(i).row(player_.index()));
+  }
+  return rows;
 }
 
 std::span<const double> PlayedSession::rerun_row() const {

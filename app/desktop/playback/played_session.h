@@ -35,7 +35,7 @@ struct LoadedSession {
   std::vector<Fact> verdict = {};     // measures of the recording
 };
 
-// Settings of one run of a recording, as they were at a row.
+// Settings of one lane of a recording, as they were at a row.
 class RecordedSettings {
  public:
   // Errors: FileError if the session's settings cannot be read.
@@ -44,7 +44,7 @@ class RecordedSettings {
   const Parameters& at(std::size_t row);
 
  private:
-  const Session& session_;
+  const Session* session_;
   Parameters began_, now_;
   std::size_t made_ = 0;  // number of changes made in `now_`
 };
@@ -86,10 +86,10 @@ class PlayedSession {
   // Returns the story's step at the player's time; null: it is no story.
   const StoryStep* step() const;
   const std::vector<StoryStep>& steps() const { return steps_; }
-  // Returns the names of the two runs in a step of the story.
+  // Returns the names of all runs in a step of the story.
   RunNames names_in(const StoryStep& step) const;
 
-  // Returns the names of a twin's runs at the player's time; nothing for a story, for a single run,
+  // Returns the names of several runs at the player's time; nothing for a story, for a single run,
   // or beside a re-run.
   std::optional<RunNames> names_now();
 
@@ -99,9 +99,9 @@ class PlayedSession {
   // Facts on the recording, for example its place in a sweep; may be empty.
   const std::vector<Fact>& facts() const { return facts_; }
   const std::vector<Fact>& verdict() const { return verdict_; }
-  // Settings at the player's time of the first run, and of the second; null: there is one run.
-  const Parameters& settings() { return first_.at(player_.index()); }
-  const Parameters* twin_settings() { return second_ ? &second_->at(player_.index()) : nullptr; }
+  // Returns the settings at the player's time of the first lane, and of all lanes.
+  const Parameters& settings() { return lanes_[kMainLane].at(player_.index()); }
+  std::vector<Parameters> lane_settings();
 
   // Returns the users' marks in the order of their ticks; show() replaces them without writing
   // them.
@@ -114,9 +114,8 @@ class PlayedSession {
   bool has_rerun() const { return !rerun_.empty(); }
   // Returns the re-run's row at the player's time; empty without one.
   std::span<const double> rerun_row() const;
-  // Returns the twin's row at the player's time; empty for a single run and while there is a
-  // re-run.
-  std::span<const double> twin_row() const;
+  // Returns the rows of all lanes at the player's time; the first one's alone beside a re-run.
+  std::vector<std::span<const double>> rows() const;
 
  private:
   std::unique_ptr<Stage> make_stage(History history) const;
@@ -129,8 +128,7 @@ class PlayedSession {
   std::vector<StoryStep> steps_;
   std::vector<Fact> facts_, verdict_;
   std::vector<Mark> marks_;
-  RecordedSettings first_;
-  std::optional<RecordedSettings> second_;
+  std::vector<RecordedSettings> lanes_;
   LargeVector<double> rerun_;  // rows of the re-run; may be empty
   std::unique_ptr<Stage> stage_;
 };

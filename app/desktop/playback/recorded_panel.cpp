@@ -40,42 +40,43 @@ void cell(const std::string& text, Rgb ink) {
   ImGui::PopStyleColor();
 }
 
-void row(const RecordedSetting& setting, bool twin) {
+void row(const RecordedSetting& setting) {
   const Palette& colours = current_palette();
   ImGui::TableNextRow();
   cell(setting.name, colours.muted);
   if (!setting.help.empty()) tooltip(setting.help.c_str());
-  cell(setting.value, colours.text);
-  if (twin) cell(setting.of_twin, colours.text);
+  for (const std::string& value : setting.values) cell(value, colours.text);
 }
 
 }  // namespace
 
-std::vector<RecordedSetting> recorded_settings(const Parameters& first, const Parameters* twin) {
+std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes) {
   std::vector<RecordedSetting> all;
   for (const ParameterInfo& each : parameter_table()) {
-    if (!told(each, first) && !(twin != nullptr && told(each, *twin))) continue;
-    all.push_back({each.key == std::string("coupling.kind") ? "Coupling" : caption(each),
-                   value_of(each, first), twin != nullptr ? value_of(each, *twin) : "",
-                   each.meaning});
+    const auto has_line = [&](const Parameters& p) { return told(each, p); };
+    if (std::ranges::none_of(lanes, has_line)) continue;
+    RecordedSetting& setting = all.emplace_back(RecordedSetting{
+        each.key == std::string("coupling.kind") ? "Coupling" : caption(each), {}, each.meaning});
+    for (const Parameters& p : lanes) setting.values.push_back(value_of(each, p));
   }
   return all;
 }
 
 void draw_recorded(PlayedSession& session) {
-  const Parameters* twin = session.has_rerun() ? nullptr : session.twin_settings();
-  const int columns = twin != nullptr ? 3 : 2;
+  std::vector<Parameters> lanes = session.lane_settings();
+  if (session.has_rerun()) lanes.resize(1);
+  const int columns = 1 + static_cast<int>(lanes.size());
   if (!ImGui::BeginTable("recorded", columns, ImGuiTableFlags_BordersInnerH)) return;
   ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 1.4f);
   for (int i = 1; i < columns; ++i) {
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1);
   }
   for (const std::vector<Fact>& facts : {session.facts(), session.verdict()}) {
-    for (const Fact& fact : facts) row({fact.name, fact.value, fact.value}, twin != nullptr);
+    for (const Fact& fact : facts) {
+      row({fact.name, std::vector<std::string>(lanes.size(), fact.value)});
+    }
   }
-  for (const RecordedSetting& setting : recorded_settings(session.settings(), twin)) {
-    row(setting, twin != nullptr);
-  }
+  for (const RecordedSetting& setting : recorded_settings(lanes)) row(setting);
   ImGui::EndTable();
 }
 

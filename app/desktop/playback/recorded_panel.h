@@ -1,6 +1,7 @@
 // Panel of a recording's own settings, which cannot be changed.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,14 +9,14 @@
 
 namespace limpid {
 
-// Setting as text, with the second run's value if that differs.
+// Setting as text.
 struct RecordedSetting {
-  std::string name, value;
-  std::string of_twin = {};
+  std::string name;
+  std::vector<std::string> values;  // of each lane
   std::string help = {};
 };
-// Returns law and its sliders, the grip, and all unusual settings, of both runs.
-std::vector<RecordedSetting> recorded_settings(const Parameters& first, const Parameters* twin);
+// Returns law and its sliders, the grip, and all unusual settings, of all lanes.
+std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes);
 
 // Draws into the open ImGui window.
 void draw_recorded(PlayedSession& session);

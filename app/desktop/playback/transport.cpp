@@ -178,7 +178,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
   return changed;
 }
 
-void recording_controls(const LiveSession& live, double tick, const Act& act) {
+void recording_controls(const LiveStage& live, double tick, const Act& act) {
   const LiveLoop& loop = live.loop();
   const bool recording = loop.recording();
   if (button(recording ? "Stop" : "Record", "R starts and stops recording every tick.", recording,
@@ -203,7 +203,7 @@ void recording_controls(const LiveSession& live, double tick, const Act& act) {
 }
 
 // Draws controls of the virtual arm's time: its speed, or single ticks.
-void time_controls(LiveSession& live, const Act& act) {
+void time_controls(LiveStage& live, const Act& act) {
   if (!live.why_time_is_fixed().empty()) return;
   const bool paused = live.paused();
   if (button("Pause", "The simulation stands still until it is pressed again (K).", paused)) {
@@ -219,7 +219,7 @@ void time_controls(LiveSession& live, const Act& act) {
   ImGui::SameLine();
 }
 
-void live_controls(LiveSession& live, double tick, double& plot_length, const Act& act) {
+void live_controls(LiveStage& live, double tick, double& plot_length, const Act& act) {
   recording_controls(live, tick, act);
   if (button("Open...", "Choose a recorded session (Ctrl+O).")) act("session.open");
   if (button("A/B", "To the next coupling law, without a jump (C).")) {
@@ -248,7 +248,7 @@ void live_controls(LiveSession& live, double tick, double& plot_length, const Ac
 
 }  // namespace
 
-std::optional<std::size_t> draw_transport(Playback& playback, LiveSession& live, double tick,
+std::optional<std::size_t> draw_transport(Playback& playback, LiveStage& live, double tick,
                                           double& plot_length, const Act& act, ScreenRect rect) {
   begin_panel("transport", rect);
   std::optional<std::size_t> mark;

@@ -61,9 +61,9 @@ void VideoDialog::draw_choices(const PlayedSession& session) {
     return speed == 1 ? std::string("as it was") : fmt::format("x{:g}", speed);
   });
   ImGui::Checkbox("with the plots", &request_.plots);
-  if (!session.player().session().twin) return;
+  if (session.player().session().lanes() == 1) return;
   ImGui::SameLine();
-  ImGui::Checkbox("both runs in one picture", &request_.overlaid);
+  ImGui::Checkbox("all runs in one picture", &request_.overlaid);
 }
 
 void VideoDialog::draw_span(const PlayedSession& session) {
@@ -114,7 +114,7 @@ std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playba
   std::optional<VideoRequest> asked;
   if (ImGui::Button("Write (Enter)") || accepted()) {
     asked = request_;
-    asked->overlaid = request_.overlaid && session->player().session().twin;
+    asked->overlaid = request_.overlaid && session->player().session().lanes() > 1;
     if (to_ < session->player().duration()) asked->to = to_;
   }
   ImGui::SameLine();

@@ -10,7 +10,7 @@ namespace limpid {
 class VideoDialog {
  public:
   // Draws the dialog while `open`. Returns the request once it is made, and clears `open`.
-  // `overlaid`: the window has both runs of a twin in one picture.
+  // `overlaid`: the window has all runs in one picture.
   std::optional<VideoRequest> draw(bool& open, const Playback& playback, bool overlaid);
 
  private:

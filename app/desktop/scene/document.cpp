@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "app/base/folders.h"
 #include "app/desktop/base/passivity_break.h"
-#include "app/run/twin_settings.h"
+#include "app/run/lane_settings.h"
 #include "core/touch/triangle_mesh.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/scene/body_file.h"
@@ -94,9 +95,7 @@ void Document::open(const ArmDescription& arm, SceneDocument document, MeshModel
   known_.scene = editor_.version();
   // Steps of other scenes cannot be undone in this one.
   history_.rewrite([&](EditState& state) { state.scene = known_.scene; },
-                   [](const EditState& a, const EditState& b) {
-                     return a.parameters == b.parameters && a.twin == b.twin;
-                   });
+                   [](const EditState& a, const EditState& b) { return a.lanes == b.lanes; });
 }
 
 std::string Document::why_fixed() const {
@@ -175,29 +174,25 @@ Bounds Document::selected_bounds() const {
   return object ? bounds_of(*object, editor_.models()[*editor_.selected()].get()) : Bounds();
 }
 
-// Returns the settings as undo sees them. The world that a twin shares with the first run is no
-// setting of its own, and breaking passivity is no step.
+// Returns the settings as undo sees them. The world that lanes share is no setting of further ones,
+// and breaking passivity is no step.
 Document::EditState Document::present() const {
-  EditState now{settings_.parameters, settings_.twin.parameters, editor_.version()};
-  if (const auto& before = settings_.before_break) {
-    now.parameters = before->first;
-    now.twin = before->twin;
-  }
-  share_world(now.parameters, now.twin);
+  EditState now{settings_.lanes.parameters, editor_.version()};
+  if (const auto& before = settings_.before_break) now.lanes = before->parameters;
+  for (Parameters& other : std::span(now.lanes).subspan(1))
+    share_world(now.lanes[kMainLane], other);
   return now;
 }
 
 void Document::note_changes() {
   const EditState now = present();
   const bool scene = now.scene.world != known_.scene.world;
-  const bool first = !(now.parameters == known_.parameters);
-  const bool settings = first || !(now.twin == known_.twin);
+  const auto changed = std::ranges::mismatch(now.lanes, known_.lanes);
+  const bool settings = changed.in1 != now.lanes.end();
   std::string what = scene ? editor_.last_change() : "";
   if (settings) {
     for (const ParameterInfo& info : parameter_table()) {
-      const Parameters& a = first ? now.parameters : now.twin;
-      const Parameters& b = first ? known_.parameters : known_.twin;
-      const bool same = parameter_text(a, info) == parameter_text(b, info);
+      const bool same = parameter_text(*changed.in1, info) == parameter_text(*changed.in2, info);
       if (!same) what = scene ? "" : info.key;
     }
   }
@@ -215,8 +210,7 @@ bool Document::may_go_to(const EditState* state, const char* otherwise) {
 
 void Document::go_to(const std::optional<EditState>& state) {
   if (!state) return;
-  settings_.parameters = state->parameters;
-  settings_.twin.parameters = state->twin;
+  settings_.lanes.parameters = state->lanes;
   editor_.restore(state->scene);
   known_ = *state;
 }

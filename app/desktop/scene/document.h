@@ -163,7 +163,7 @@ class Document {
  private:
   // State that undo goes back to.
   struct EditState {
-    Parameters parameters, twin;
+    LaneParameters lanes;
     SceneEditor::Version scene;
   };
   EditState present() const;

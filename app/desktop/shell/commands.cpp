@@ -174,12 +174,22 @@ void begin_transform(Desktop& d) {
 template <TransformKind kKind>
 std::string cannot(const Desktop& d) {
   std::string why = selection_fixed(d);
-  if (why.empty() && d.settings.twin.on && !d.settings.twin_overlaid) {
-    return "Two runs are shown side by side. Show them in one picture (menu View), or end the twin "
+  if (why.empty() && d.settings.lanes.count > 1 && !d.settings.overlaid) {
+    return "Runs are shown side by side. Show them in one picture (menu View), or end the twin "
            "(B), to change objects in the picture.";
   }
   if (!why.empty() || can(kKind, *d.document.editor().selected_object())) return why;
   return "This object cannot be changed in that way.";
+}
+
+std::string why_no_more_runs(const Desktop& d) {
+  const std::string why = d.live.why_lanes_are_fixed();
+  return why.empty() && d.settings.lanes.count == kMostLanes ? "Three runs are the most." : why;
+}
+
+std::string why_no_fewer_runs(const Desktop& d) {
+  const std::string why = d.live.why_lanes_are_fixed();
+  return why.empty() && d.settings.lanes.count == 1 ? "There is one run only." : why;
 }
 
 std::string no_virtual_arm(const Desktop& d) {
@@ -364,9 +374,9 @@ constexpr std::array kCommands{
         {.checked = is_shown<&Settings::show_grid>}),
     row("view.joints", "Axes of the joints", "View", nullptr, nullptr,
         show_or_hide<&Settings::show_joints>, {.checked = is_shown<&Settings::show_joints>}),
-    row("view.overlay", "Twin in one picture", "View", "Shift+B",
-        "both couplings of a twin in one picture", show_or_hide<&Settings::twin_overlaid>,
-        {.checked = is_shown<&Settings::twin_overlaid>}),
+    row("view.overlay", "All runs in one picture", "View", "Shift+B",
+        "several couplings in one picture", show_or_hide<&Settings::overlaid>,
+        {.checked = is_shown<&Settings::overlaid>}),
     row("view.front", "Front", "View", "1", "front, side, top view; reset the camera",
         [](Desktop& d) { d.shown.look(Camera::View::front); }, {.apart = true, .blind = true}),
     row("view.side", "Side", "View", "2", "", [](Desktop& d) { d.shown.look(Camera::View::side); },
@@ -412,8 +422,14 @@ constexpr std::array kCommands{
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
     row("session.twin", "Twin: two couplings on one hand", "Session", "B",
         "twin: a second coupling on the same hand", [](Desktop& d) { d.tuning.toggle_twin(); },
-        {.why_not = [](const Desktop& d) { return d.live.why_twin_is_fixed(); },
-         .checked = [](const Desktop& d) { return d.settings.twin.on; }}),
+        {.why_not = [](const Desktop& d) { return d.live.why_lanes_are_fixed(); },
+         .checked = [](const Desktop& d) { return d.settings.lanes.count > 1; }}),
+    row("session.add_run", "One more run on the same hand", "Session", "Ctrl+B",
+        "one more coupling on the same hand, up to three", [](Desktop& d) { d.tuning.add_lane(); },
+        {.why_not = why_no_more_runs}),
+    row("session.drop_run", "One run less", "Session", "Ctrl+Shift+B",
+        "end the last of several runs on the same hand", [](Desktop& d) { d.tuning.drop_lane(); },
+        {.why_not = why_no_fewer_runs}),
     row("loop.pause", "Pause the simulation", "Session", "K",
         "pause the simulation; paused: on by a tick, by ten",
         [](Desktop& d) { d.live.pause(!d.live.paused()); },

@@ -23,8 +23,8 @@ std::span<const double> Shown::row() const {
   return playback_.on() ? playback_.shown()->player().row() : live_.row();
 }
 
-std::span<const double> Shown::twin_row() const {
-  return playback_.on() ? playback_.shown()->twin_row() : live_.twin_row();
+std::vector<std::span<const double>> Shown::rows() const {
+  return playback_.on() ? playback_.shown()->rows() : live_.rows();
 }
 
 void Shown::look(Camera::View view) {
@@ -106,7 +106,7 @@ std::optional<Banner> recorded_force(const PlayedSession& session) {
   return force_banner("In this recording", text, false);
 }
 
-std::optional<Banner> live_force(const LiveSession& live) {
+std::optional<Banner> live_force(const LiveStage& live) {
   const Snapshot& now = live.loop().snapshot();
   const std::string why = explain(now.force_state);
   if (now.arming == Arming::waiting) {
@@ -189,7 +189,7 @@ Desktop::Desktop(Settings first, const AskForPriority& ask)
       pads(settings, notices, live),
       kept(notices),
       world(*this) {
-  live.controls().parameters = settings.parameters;
+  live.controls().parameters() = settings.parameters();
 }
 
 void Desktop::drop_pictures() {
@@ -237,8 +237,8 @@ void Desktop::follow_first_steps() {
   }
   // Settings that a program or the break chose do not count as steps.
   if (passivity_broken(settings) || lead.on()) return law_.reset();
-  if (settings.twin.on) note_done(settings, FirstStep::twin);
-  const Parameters& p = settings.parameters;
+  if (settings.lanes.count > 1) note_done(settings, FirstStep::twin);
+  const Parameters& p = settings.parameters();
   const auto now = std::pair(p.kind, p.eta);
   const auto before = std::exchange(law_, now);
   if (before && before->first != now.first) note_done(settings, FirstStep::law);
@@ -257,11 +257,11 @@ void Desktop::update(double dt) {
   follow_break();
   shown.stage().choose_plots(settings.plot_choices);
   world.hand_over(false);
-  live.update(settings.parameters, settings.twin.on ? &settings.twin.parameters : nullptr);
+  live.update(std::span(settings.lanes.parameters).first(settings.lanes.count));
   chatter.follow();
   if (const auto recorded = live.take_recorded()) {
     playback.set_last(*recorded);
-    make_thumbnail(*recorded, live.stage(), live.row(), live.twin_row(), settings.theme);
+    make_thumbnail(*recorded, live.stage(), live.rows(), settings.theme);
     remember_recent(settings, recorded->string());
   }
   follow_playback(dt);
@@ -298,8 +298,9 @@ void Desktop::follow_playback(double dt) {
   const PlayedSession& opened = *playback.shown();
   const std::size_t k = opened.row_to_show();
   const Session& session = opened.player().session();
-  make_thumbnail(opened.file(), shown.stage(), session.row(k),
-                 session.twin ? session.twin->row(k) : std::span<const double>(), settings.theme);
+  std::vector<std::span<const double>> rows;
+  for (std::size_t i = 0; i < session.lanes(); ++i) rows.push_back(session.lane(i).row(k));
+  make_thumbnail(opened.file(), shown.stage(), rows, settings.theme);
   shown.camera.frame(shown.stage().picture.bounds());
   shown.leave_story();
   if (playback.last() != sweep.last_point()) {

@@ -15,7 +15,7 @@
 #include "app/desktop/device/identify_controller.h"
 #include "app/desktop/device/pads.h"
 #include "app/desktop/experiments/sweep_controller.h"
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/scene/document.h"
 #include "app/desktop/scene/transform_tool.h"
@@ -37,13 +37,14 @@ namespace limpid {
 // View of the screen's content: the recording that is played, or else the loop.
 class Shown {
  public:
-  Shown(const Settings& settings, Playback& playback, LiveSession& live)
+  Shown(const Settings& settings, Playback& playback, LiveStage& live)
       : settings_(settings), playback_(playback), live_(live) {}
 
   Stage& stage() { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
   const Stage& stage() const { return playback_.on() ? playback_.shown()->stage() : live_.stage(); }
-  std::span<const double> row() const;       // empty before the first row
-  std::span<const double> twin_row() const;  // empty without a twin
+  std::span<const double> row() const;  // empty before the first row
+  // Returns the rows of all lanes that run.
+  std::vector<std::span<const double>> rows() const;
 
   // Tells whether the view fits itself to the window's size, until the user chooses one.
   bool automatic_view() const { return automatic_; }
@@ -57,13 +58,13 @@ class Shown {
   int quality_level() const;  // level of Quality that the settings want
 
   Camera camera;
-  ScreenRect picture{};  // place in the window; of a twin the left one
+  ScreenRect picture{};  // place in the window; the first of several pictures
   AutoQuality automatic_quality;
 
  private:
   const Settings& settings_;
   Playback& playback_;
-  LiveSession& live_;
+  LiveStage& live_;
   bool automatic_ = true;
   const StoryStep* step_ = nullptr;  // step of the present camera
 };
@@ -106,7 +107,7 @@ class Desktop {
   Notices notices;
   OpenDialog dialog;
   Document document;
-  LiveSession live;
+  LiveStage live;
   DeviceController devices;
   IdentifyController identify;
   Playback playback;

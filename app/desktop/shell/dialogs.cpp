@@ -200,7 +200,7 @@ DrawDialog save_scene_as(Desktop& d) {
 
 DrawDialog video(Desktop& d) {
   return [&d, dialog = std::make_shared<VideoDialog>()](bool& open, ScreenRect) {
-    const auto order = dialog->draw(open, d.playback, d.settings.twin_overlaid);
+    const auto order = dialog->draw(open, d.playback, d.settings.overlaid);
     if (order) d.playback.export_video(*order);
   };
 }
@@ -253,7 +253,7 @@ DrawDialog preset_list(Desktop& d) {
       d, d.tuning.presets,
       {.title = "Presets",
        .what = "preset",
-       .help = "Coupling and gains by name; of a twin those that the sliders set. Ctrl+Z "
+       .help = "Coupling and gains by name; of several runs those that the sliders set. Ctrl+Z "
                "brings back what was before."},
       [](Desktop& desktop, const std::string& name) { desktop.tuning.use_preset(name); },
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
@@ -271,7 +271,7 @@ DrawDialog question(Desktop& d) {
 
 DrawDialog identify(Desktop& d) {
   return [&d, dialog = std::make_shared<IdentifyDialog>()](bool& open, ScreenRect) {
-    dialog->draw(open, d.identify, d.settings.parameters.down, d.live.stage().arm());
+    dialog->draw(open, d.identify, d.settings.parameters().down, d.live.stage().arm());
   };
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "app/desktop/plots/export_dialog.h"
 #include "app/desktop/shell/dialogs.h"
 
@@ -13,7 +13,7 @@ namespace limpid {
 
 class Exporter {
  public:
-  Exporter(LiveSession& live, OpenDialog& dialog, Notices& notices)
+  Exporter(LiveStage& live, OpenDialog& dialog, Notices& notices)
       : live_(live), dialog_(dialog), notices_(notices) {}
 
   // Opens the dialog, with this plot offered first.
@@ -35,7 +35,7 @@ class Exporter {
   void show_written();
 
  private:
-  LiveSession& live_;
+  LiveStage& live_;
   OpenDialog& dialog_;
   Notices& notices_;
   std::size_t plot_ = 0;

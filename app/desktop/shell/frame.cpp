@@ -8,7 +8,7 @@
 
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/base/picture_signs.h"
-#include "app/desktop/coupling/twin_panel.h"
+#include "app/desktop/coupling/lanes_panel.h"
 #include "app/desktop/playback/recorded_panel.h"
 #include "app/desktop/playback/transport.h"
 #include "app/desktop/plots/plots_panel.h"
@@ -23,7 +23,7 @@ namespace {
 // Removes signs that show the gap between device and proxy, or which law has friction.
 Settings without_signs(Settings settings) {
   settings.show_ghost = settings.show_lens = settings.show_forces = settings.show_joints = false;
-  settings.twin_overlaid = false;
+  settings.overlaid = false;
   return settings;
 }
 
@@ -46,7 +46,7 @@ void Frame::draw() {
   }
   if (at.show_plots) part([&] { draw_plot_row(at.plots, at.view); });
   part([&] {
-    const auto mark = draw_transport(desktop_.playback, desktop_.live, settings.parameters.tick,
+    const auto mark = draw_transport(desktop_.playback, desktop_.live, settings.parameters().tick,
                                      settings.plot_length, act_, at.transport);
     if (mark) desktop_.marking.edit(*mark);
   });
@@ -66,7 +66,7 @@ void Frame::draw() {
   part([&] {
     const std::string_view open = desktop_.dialog.name();
     if (open == "sweep" || open == "ask") return;  // it would cover these
-    const bool hinted = desktop_.shown.twin_row().empty();
+    const bool hinted = desktop_.shown.rows().size() < 2;
     if (story_asked_for(desktop_.playback, settings, at.view, hinted)) act_("help.story");
   });
   // Modal dialogs come last: ImGui fails on windows that appear after them in their first frame.
@@ -117,14 +117,14 @@ ViewScene Frame::view_scene() {
   if (const PlayedSession* session = desktop_.playback.shown()) {
     scene.recorded = true;
     scene.rerun = session->rerun_row();
-    scene.twin = session->twin_row();
     if (const StoryStep* step = session->step()) scene.told = step->caption;
   } else if (const auto selected = desktop_.document.editor().selected()) {
     scene.selected =
         placed_now(desktop_.document.scene(), *selected, bodies_of(scene.stage, scene.row));
   }
-  if (!scene.recorded) scene.twin = desktop_.live.twin_row();
-  if (!scene.twin.empty()) scene.names = desktop_.shown.stage().names();
+  const auto rows = desktop_.shown.rows();
+  scene.beside.assign(rows.begin() + std::min<std::ptrdiff_t>(1, std::ssize(rows)), rows.end());
+  if (!scene.beside.empty()) scene.names = desktop_.shown.stage().names();
   scene.blind = desktop_.blind;
   if (!scene.recorded && !scene.blind) {
     scene.grasp = [this](const Ray& ray) {
@@ -134,9 +134,10 @@ ViewScene Frame::view_scene() {
     };
   }
   scene.asked = desktop_.dialog.name() == "ask";
-  if (scene.blind && !scene.twin.empty()) scene.names = {"left", "right", true};
+  if (scene.blind && scene.beside.size() == 1) scene.names = {{"left", "right"}, true};
+  if (scene.blind && scene.beside.size() == 2) scene.names = {{"left", "middle", "right"}, true};
   scene.pad = desktop_.pads.leading();
-  scene.overlaid = desktop_.settings.twin_overlaid;
+  scene.overlaid = desktop_.settings.overlaid;
   return scene;
 }
 
@@ -145,8 +146,8 @@ void Frame::draw_view(ScreenRect rect) {
   Camera& camera = desktop_.shown.camera;
   ViewScene scene = view_scene();
   if (below_banners_.max.x >= rect.max.x) scene.words = below_banners_.max.y - rect.min.y;
-  const float width = scene.split() ? rect.width() / 2 : rect.width();
-  constexpr double kApart = 2;  // tolerance for a twin's gap and for rounding [px]
+  const float width = rect.width() / static_cast<float>(scene.pictures());
+  constexpr double kApart = 2;  // tolerance for gaps of pictures and for rounding [px]
   const bool resized = std::abs(camera.width() - static_cast<double>(width)) > kApart ||
                        std::abs(camera.height() - static_cast<double>(rect.height())) > kApart;
   if (resized && desktop_.shown.automatic_view() && width >= 8 && rect.height() >= 8) {
@@ -156,7 +157,7 @@ void Frame::draw_view(ScreenRect rect) {
   }
   Settings without = without_signs(desktop_.settings);
   Settings& settings = desktop_.blind ? without : desktop_.settings;
-  desktop_.shown.picture = scene.split() ? half_of(rect, false) : rect;
+  desktop_.shown.picture = part_of(rect, 0, scene.pictures());
   const bool acts = !scene.recorded && !desktop_.blind;
   const bool taken = acts && !scene.split() && draw_handles(scene, rect);
   const ViewRequest asked =
@@ -203,15 +204,15 @@ void Frame::draw_coupling(ScreenRect rect) {
   const Stage& shown = desktop_.shown.stage();
   const TraceChannels& channels = shown.channels();
   const RowLayout& layout = channels.layout();
-  const std::span<const double> twin = desktop_.shown.twin_row();
-  const bool of_twin = desktop_.tuning.edits_twin() && !twin.empty();
-  const std::span<const double> row = of_twin ? twin : desktop_.shown.row();
+  const auto rows = desktop_.shown.rows();
+  const std::size_t lane = desktop_.tuning.edited_lane();
+  const std::span<const double> row = lane < rows.size() ? rows[lane] : desktop_.shown.row();
   const auto at = [&](Column c) { return layout.in(row, c)[0]; };
   const auto& chatter = desktop_.chatter.found();
   CouplingReading reading{at(Column::energy_total),
                           at(Column::energy_compensation),
-                          of_twin ? shown.twin_energy : shown.energy,
-                          chatter && chatter->of_twin == of_twin && !desktop_.playback.on(),
+                          shown.energy[lane],
+                          chatter && chatter->lane == lane && !desktop_.playback.on(),
                           {},
                           at(Column::energy_ledger),
                           at(Column::governor),
@@ -227,10 +228,10 @@ void Frame::draw_coupling(ScreenRect rect) {
                               .real = desktop_.live.loop().device_in_place(),
                               .broken = passivity_broken(desktop_.settings)};
   begin_panel("coupling", rect);
-  if (!twin.empty()) {
-    TwinSettings& settings = desktop_.settings.twin;
-    draw_twin(shown, desktop_.shown.row(), twin,
-              desktop_.playback.on() ? nullptr : &settings.edited, desktop_.settings.twin_overlaid);
+  if (rows.size() > 1) {
+    LaneSettings& lanes = desktop_.settings.lanes;
+    draw_lanes(shown, rows, desktop_.playback.on() ? nullptr : &lanes.edited,
+               desktop_.settings.overlaid, act_);
   }
   if (PlayedSession* session = desktop_.playback.shown()) {
     draw_played(*session, reading, now);

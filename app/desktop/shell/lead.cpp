@@ -20,10 +20,6 @@ void take_changes(Parameters& own, const Parameters& now, const Parameters& befo
   }
 }
 
-bool same(const TwinSettings& a, const TwinSettings& b) {
-  return a.on == b.on && a.edited == b.edited && a.parameters == b.parameters;
-}
-
 }  // namespace
 
 void Lead::begin() {
@@ -40,15 +36,14 @@ void Lead::begin_elsewhere() {
   elsewhere_ = Elsewhere{d_.world.place(), now.scene, now.device, now.device_tip};
 }
 
-void Lead::note_program() {
-  seen_ = d_.settings.parameters;
-  seen_twin_ = d_.settings.twin.parameters;
-}
+void Lead::note_program() { seen_ = d_.settings.lanes.parameters; }
 
 void Lead::follow_person() {
   if (!on() || passivity_broken(d_.settings)) return;
-  take_changes(own_->first, d_.settings.parameters, seen_, false);
-  take_changes(own_->twin.parameters, d_.settings.twin.parameters, seen_twin_, true);
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    take_changes(own_->lanes.parameters[i], d_.settings.lanes.parameters[i], seen_[i],
+                 i != kMainLane);
+  }
   note_program();
 }
 
@@ -56,12 +51,11 @@ bool Lead::end(bool study) {
   if (!on()) return true;
   if (d_.live.recording() || d_.live.closing() || d_.document.loader().busy()) return false;
   d_.tuning.end_break();
-  const Parameters first = d_.settings.parameters;
-  const TwinSettings twin = d_.settings.twin;
+  const LaneSettings lanes = d_.settings.lanes;
   d_.tuning.take(*own_);
   d_.settings.recent = recent_;
   const auto before = std::exchange(elsewhere_, std::nullopt);
-  if (before || !(first == d_.settings.parameters) || !same(twin, d_.settings.twin)) {
+  if (before || !(lanes == d_.settings.lanes)) {
     // The law must not change without notice under a hand on the device.
     if (d_.live.loop().device_in_place()) d_.cut_force();
     if (before) go_back(*before);

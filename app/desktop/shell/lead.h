@@ -45,7 +45,7 @@ class Lead {
   Desktop& d_;
   std::optional<Tuning::Choices> own_;
   std::vector<std::string> recent_;
-  Parameters seen_, seen_twin_;  // as the program left them
+  LaneParameters seen_;  // as the program left them
   std::optional<Elsewhere> elsewhere_;
 };
 

@@ -97,7 +97,7 @@ void Marking::go(int direction) {
 }
 
 bool Marking::last() const {
-  return playback_.on() && playback_.shown()->file() == file_ && then_ == settings_.parameters;
+  return playback_.on() && playback_.shown()->file() == file_ && then_ == settings_.parameters();
 }
 
 void Marking::change(Marks marks) {
@@ -124,7 +124,7 @@ void Marking::step(std::vector<Marks>& from, std::vector<Marks>& to) {
 // Writes the marks beside the window, after earlier changes. If that fails, they stay in the plots,
 // and a notice says so.
 void Marking::save(Marks marks) {
-  then_ = settings_.parameters;
+  then_ = settings_.parameters();
   live_.save_beside([file = playback_.shown()->file(), marks = std::move(marks), known = known_] {
     try {
       write_marks(file, marks, known);

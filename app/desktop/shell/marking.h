@@ -10,7 +10,7 @@
 
 #include "app/desktop/base/notices.h"
 #include "app/desktop/base/settings.h"
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/shell/dialogs.h"
 
@@ -18,7 +18,7 @@ namespace limpid {
 
 class Marking {
  public:
-  Marking(const Settings& settings, LiveSession& live, Playback& playback, OpenDialog& dialog,
+  Marking(const Settings& settings, LiveStage& live, Playback& playback, OpenDialog& dialog,
           Notices& notices)
       : settings_(settings), live_(live), playback_(playback), dialog_(dialog), notices_(notices) {}
 
@@ -51,12 +51,12 @@ class Marking {
   std::size_t count() const;
 
   const Settings& settings_;
-  LiveSession& live_;
+  LiveStage& live_;
   Playback& playback_;
   OpenDialog& dialog_;
   Notices& notices_;
   std::optional<std::size_t> which_;  // the mark that is edited
-  LiveSession::Moment moment_;        // of a new mark, in the loop
+  LiveStage::Moment moment_;          // of a new mark, in the loop
   std::uint64_t tick_ = 0;            // of a mark in a recording
   std::string text_;
   std::filesystem::path file_;  // of the steps in done_ and undone_

@@ -281,7 +281,7 @@ void draw_menu_bar(Desktop& desktop, FileMenus& files) {
       ImGui::EndMenu();
     }
   }
-  const Parameters& p = desktop.settings.parameters;
+  const Parameters& p = desktop.settings.parameters();
   StatusLaw law{p.kind, p.eta};
   std::string played;
   if (const PlayedSession* session = desktop.playback.shown()) {

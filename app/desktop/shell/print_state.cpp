@@ -56,7 +56,7 @@ nlohmann::json notes_of(const Stage& stage) {
 double twin_error(const Desktop& d) {
   const TraceChannels& channels = d.shown.stage().channels();
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
-  if (!d.shown.twin_row().empty()) channels.values(d.shown.twin_row(), values);
+  if (const auto rows = d.shown.rows(); rows.size() > 1) channels.values(rows[kTwinLane], values);
   return values[static_cast<std::size_t>(Channel::error)];
 }
 
@@ -197,8 +197,8 @@ std::string told(Desktop& d) {
 }  // namespace
 
 void print_state(Desktop& d, const WindowState& window) {
-  const Parameters& p = d.settings.parameters;
-  const LiveSession& live = d.live;
+  const Parameters& p = d.settings.parameters();
+  const LiveStage& live = d.live;
   const SceneEditor& editor = d.document.editor();
   const PlayedSession* played = d.playback.shown();
   const Focus focus = d.focus();
@@ -221,6 +221,7 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"dirty\": {}, \"scene\": {}, \"asking\": {}, \"quality\": {}, \"alpha\": {}, \"dialog\": "
       "{}, "
       "\"typing\": {}, \"arm\": {}, \"k_vc\": {}, \"notices\": {}, \"plots\": {}, \"twin\": {}, "
+      "\"lanes\": {}, "
       "\"twin_error\": {:.6f}, \"size\": [{}, {}], \"overlaid\": {}, \"told\": {}, "
       "\"filming\": {}, \"pads\": {}, \"frames\": {}, \"input_waits\": {}, "
       "\"loading_part\": {:.3f}, \"sweep\": {}, \"identify\": {}, \"device\": {}, \"banners\": {}, "
@@ -231,23 +232,23 @@ void print_state(Desktop& d, const WindowState& window) {
       "\"hand\": {{\"stiffness\": {}, \"damping\": {}}}, "
       "\"taken\": {{\"keys\": {}, \"buttons\": {}}}, \"popup\": {}}}\n",
       layout.in(row, Column::time)[0], channel(Channel::kind), p.eta, channel(Channel::error),
-      channel(Channel::contact), channel(Channel::energy_total), d.shown.stage().energy.own(),
-      channel(Channel::limited) > 0, layout.in(row, Column::hand_grip)[0], live.force_armed(),
-      live.loop().recording(), played != nullptr, played != nullptr && played->has_rerun(),
-      status.rate, status.ticks, status.late, status.missed, status.slipped,
-      live.loop().trace_dropped(), editor.scene().objects.size(),
-      selected ? nlohmann::json(selected->name).dump() : "null", d.document.loader().busy(),
-      editor.dirty(), nlohmann::json(d.document.file()).dump(), focus.question || focus.modal,
-      d.shown.quality_level(), p.alpha,
+      channel(Channel::contact), channel(Channel::energy_total),
+      d.shown.stage().energy[kMainLane].own(), channel(Channel::limited) > 0,
+      layout.in(row, Column::hand_grip)[0], live.force_armed(), live.loop().recording(),
+      played != nullptr, played != nullptr && played->has_rerun(), status.rate, status.ticks,
+      status.late, status.missed, status.slipped, live.loop().trace_dropped(),
+      editor.scene().objects.size(), selected ? nlohmann::json(selected->name).dump() : "null",
+      d.document.loader().busy(), editor.dirty(), nlohmann::json(d.document.file()).dump(),
+      focus.question || focus.modal, d.shown.quality_level(), p.alpha,
       nlohmann::json(focus.question ? "question" : focus.dialog).dump(), focus.text,
       nlohmann::json(live.stage().arm().name).dump(), p.k_vc, notices.dump(),
-      plots_of(d.shown.stage()).dump(), !d.shown.twin_row().empty(), twin_error(d), window.width,
-      window.height, d.settings.twin_overlaid, nlohmann::json(told(d)).dump(),
-      d.playback.video().busy(), d.pads.all().size(), window.frames, window.input_waits,
-      d.playback.loading() ? d.playback.loading_part() : 1, state_of(d.sweep).dump(),
-      state_of(d.identify, live.loop().device_plugged()).dump(), state_of(d.devices).dump(),
-      banners_of(d).dump(), closing().dump(), recorded(d).dump(), places_of(d).dump(), d.blind,
-      d.lead.on(), question_of(d).dump(), d.settings.your_turn,
+      plots_of(d.shown.stage()).dump(), d.shown.rows().size() > 1, d.shown.rows().size(),
+      twin_error(d), window.width, window.height, d.settings.overlaid,
+      nlohmann::json(told(d)).dump(), d.playback.video().busy(), d.pads.all().size(), window.frames,
+      window.input_waits, d.playback.loading() ? d.playback.loading_part() : 1,
+      state_of(d.sweep).dump(), state_of(d.identify, live.loop().device_plugged()).dump(),
+      state_of(d.devices).dump(), banners_of(d).dump(), closing().dump(), recorded(d).dump(),
+      places_of(d).dump(), d.blind, d.lead.on(), question_of(d).dump(), d.settings.your_turn,
       nlohmann::json(d.settings.tried).dump(), range_of(d.shown.stage()).dump(),
       notes_of(d.shown.stage()).dump(), d.shown.stage().group.start(), d.shown.stage().group.stop(),
       p.hand_stiffness, p.hand_damping, window.taken.keys, window.taken.buttons, focus.popup);

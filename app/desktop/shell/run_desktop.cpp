@@ -44,7 +44,7 @@ void keep_changes(const SceneDocument& document, const ArmDescription& arm,
 }
 
 Settings with(Settings settings, const DesktopOptions& options) {
-  if (options.parameters) settings.parameters = options.parameters(settings.parameters);
+  if (options.parameters) settings.parameters() = options.parameters(settings.parameters());
   return settings;
 }
 
@@ -270,8 +270,7 @@ Settings Application::settings_to_keep() const {
   Settings kept = desktop_.lead.settings_to_keep();
   if (!options_.until_eof) return kept;
   const Settings& before = kept_.kept();
-  kept.parameters = before.parameters;
-  kept.twin = before.twin;
+  kept.lanes = before.lanes;
   kept.scene = before.scene;
   kept.device = before.device;
   kept.device_tip = before.device_tip;

@@ -48,7 +48,7 @@ DrawSection scene_section(Desktop& d) {
 DrawSection hand_section(Desktop& d) {
   return [&d](const Act&) {
     say_for_rerun(d);
-    draw_parameters(d.settings.parameters, d.shown.stage().arm(),
+    draw_parameters(d.settings.parameters(), d.shown.stage().arm(),
                     {"hand.stiffness", "hand.damping", "hand.mass"});
     ImGui::Checkbox("hold where released", &d.settings.hold_on_release);
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
@@ -57,7 +57,7 @@ DrawSection hand_section(Desktop& d) {
 
 DrawSection device_section(Desktop& d) {
   return [&d](const Act&) {
-    Parameters& parameters = d.settings.parameters;
+    Parameters& parameters = d.settings.parameters();
     const ArmDescription& arm = d.shown.stage().arm();
     const DevicePanelAsks asks =
         draw_device_panel(d.devices, d.live, {d.pads.all(), d.settings.gamepad}, parameters);
@@ -93,7 +93,7 @@ DrawSection timing_section(Desktop& d) {
     const LiveLoop& loop = d.live.loop();
     draw_timing(loop, quality_text(d), d.frame_time);
     if (!loop.device_in_place()) return;
-    of_device->draw(loop.device_pace(), d.live.stage().arm(), loop.taken(d.settings.parameters),
+    of_device->draw(loop.device_pace(), d.live.stage().arm(), loop.taken(d.settings.parameters()),
                     d.document.scene(), loop.layout().in(d.live.row(), Column::device_position));
   };
 }

@@ -42,13 +42,12 @@ std::string limits_of(const Parameters& p) {
 
 WindowRemote::WindowRemote(const fs::path& socket, Desktop& desktop)
     : d_(desktop),
-      highest_(desktop.settings.parameters),
+      highest_(desktop.settings.parameters()),
       limits_(limits_of(highest_)),
       remote_(socket, host(), [&desktop] { desktop.live.loop().cut(); }) {
-  d_.live.on_row = [this](std::span<const double> row, std::span<const double> twin,
-                          std::uint64_t tick) {
+  d_.live.on_row = [this](LaneRows rows, std::uint64_t tick) {
     tick_ = tick;
-    remote_.row(row, twin, tick);
+    remote_.row(rows, tick);
   };
 }
 
@@ -69,7 +68,7 @@ bool WindowRemote::turn() {
 
 // Takes limits that the person sets with a slider or a preset as the highest for programs.
 void WindowRemote::follow_limits() {
-  const Parameters& now = d_.settings.parameters;
+  const Parameters& now = d_.settings.parameters();
   if (std::string limits = limits_of(now); limits != limits_) {
     highest_ = now;
     limits_ = std::move(limits);
@@ -86,20 +85,19 @@ RemoteHost WindowRemote::host() {
   RemoteHost host;
   host.kind = "window";
   host.state = [this] { return state(); };
-  host.parameters = [this]() -> const Parameters& { return d_.settings.parameters; };
-  host.twin = [this]() -> const Parameters* {
-    return d_.settings.twin.on ? &d_.settings.twin.parameters : nullptr;
+  host.lanes = [this] { return d_.settings.lanes.count; };
+  host.parameters = [this](std::size_t lane) -> const Parameters& {
+    return d_.settings.lanes.parameters[lane];
   };
   host.highest = [this] { return with_limits_of(d_.live.stage().arm(), highest_); };
   host.before_set = [this](LineServer::Client client) { lead(client); };
   host.usual = [this] {
-    return usual_settings(d_.settings.parameters, highest_, d_.live.stage().arm(),
+    return usual_settings(d_.settings.parameters(), highest_, d_.live.stage().arm(),
                           d_.live.loop().device_in_place());
   };
-  host.set = [this](const Parameters& p, bool of_twin) { set(p, of_twin); };
+  host.set = [this](const Parameters& p, std::size_t lane) { set(p, lane); };
   host.channels = [this]() -> const TraceChannels& { return d_.live.stage().channels(); };
-  host.row = [this] { return d_.live.row(); };
-  host.twin_row = [this] { return d_.live.twin_row(); };
+  host.rows = [this] { return d_.live.rows(); };
   host.tick = [this] { return tick_; };
   host.trouble = [this] { return d_.live.last_recording().trouble; };
   host.gone = [this](LineServer::Client client) { gone(client); };
@@ -149,15 +147,16 @@ json WindowRemote::state() const {
                 {"recording", d_.live.recording()},
                 {"trouble", trouble.empty() ? json() : json(trouble)},
                 {"playing", d_.playback.on()},
-                {"twin", d_.settings.twin.on},
+                {"twin", d_.settings.lanes.count > 1},
+                {"lanes", d_.settings.lanes.count},
                 {"blind", d_.blind},
                 {"hand", nullptr}});
   return state;
 }
 
-void WindowRemote::set(const Parameters& p, bool of_twin) {
-  (of_twin ? d_.settings.twin.parameters : d_.settings.parameters) = p;
-  if (!of_twin) limits_ = limits_of(p);
+void WindowRemote::set(const Parameters& p, std::size_t lane) {
+  d_.settings.lanes.parameters[lane] = p;
+  if (lane == kMainLane) limits_ = limits_of(p);
   d_.lead.note_program();
 }
 
@@ -223,8 +222,8 @@ Answer WindowRemote::open_arm(const fs::path& file, const std::string& tip) {
   return Answer::Later([this, before = stage_]() -> std::optional<json> {
     if (d_.document.loader().busy()) return std::nullopt;
     if (&d_.live.stage() == before) throw RemoteError(last_complaint("open: the arm did not come"));
-    hold_limits(d_.settings.parameters, highest_, d_.live.stage().arm());
-    limits_ = limits_of(d_.settings.parameters);
+    hold_limits(d_.settings.parameters(), highest_, d_.live.stage().arm());
+    limits_ = limits_of(d_.settings.parameters());
     d_.lead.note_program();
     return state();
   });
@@ -274,7 +273,7 @@ Answer WindowRemote::stop() {
       return std::nullopt;
     }
     if (d_.live.closing()) return std::nullopt;
-    const LiveSession::Recorded& last = d_.live.last_recording();
+    const Recorded& last = d_.live.last_recording();
     if (!last.complete) throw RemoteError(last_complaint("stop: it could not be completed"));
     return json{{"file", last.file.string()}, {"rows", last.rows}, {"dropped", last.dropped}};
   });
@@ -300,13 +299,17 @@ Answer WindowRemote::mark(const Keys& keys) {
 Answer WindowRemote::twin(const Keys& keys, LineServer::Client client) {
   const bool on = keys.flag_or("on", true);
   const bool sets = on && keys.has("values");
-  Parameters p = d_.settings.twin.parameters;
+  LaneSettings& lanes = d_.settings.lanes;
+  const std::size_t lane = asked_lane(keys, kTwinLane);
+  check_beside(keys, lane, lanes.count);
+  Parameters p = lanes.parameters[lane];
   if (sets) set_values(p, keys, with_limits_of(d_.live.stage().arm(), highest_));
   lead(client);
-  if (on != d_.settings.twin.on) run("session.twin");
+  if (on && lanes.count == lane) run("session.add_run");
+  while (!on && lanes.count > lane) run("session.drop_run");
   d_.lead.note_program();
   if (!sets) return json{{"on", on}};
-  set(p, true);
+  set(p, lane);
   return json{{"on", on}};
 }
 

@@ -30,7 +30,7 @@ class WindowRemote {
   RemoteHost host();
   void add_actions(RemoteHost& host);
   nlohmann::json state() const;
-  void set(const Parameters& p, bool of_twin);
+  void set(const Parameters& p, std::size_t lane);
   Answer open(const Keys& keys, LineServer::Client client);
   Answer open_scene(const std::filesystem::path& file);
   Answer open_arm(const std::filesystem::path& file, const std::string& tip);

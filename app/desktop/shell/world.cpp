@@ -122,8 +122,8 @@ void World::open(ArmDescription arm, SceneDocument document, MeshModels models,
                  std::unique_ptr<Device> device, bool saved) {
   d_.tuning.end_break();
   Tuning::Suited suited = d_.tuning.suited(arm, device ? &device->traits() : nullptr);
-  d_.live.open(std::move(arm), std::move(document), models, suited.first, d_.settings.plot_length,
-               std::move(device));
+  d_.live.open(std::move(arm), std::move(document), models, suited.lanes[kMainLane],
+               d_.settings.plot_length, std::move(device));
   d_.tuning.take(std::move(suited));
   take_stage(std::move(models), saved);
 }
@@ -346,7 +346,7 @@ void World::go_to(const Place& place) {
   MeshModels models = place.world->models;
   if (with_device) {
     d_.cut_force();
-    d_.live.open_beside(std::move(document), models, d_.settings.parameters,
+    d_.live.open_beside(std::move(document), models, d_.settings.parameters(),
                         d_.settings.plot_length);
     take_stage(std::move(models), true);
   } else {
@@ -427,7 +427,7 @@ void World::accept(LoadedScene& loaded) {
   d_.tuning.end_break();
   if (d_.live.loop().device_in_place()) {
     d_.cut_force();
-    d_.live.open_beside(std::move(loaded.document), loaded.models, d_.settings.parameters,
+    d_.live.open_beside(std::move(loaded.document), loaded.models, d_.settings.parameters(),
                         d_.settings.plot_length);
     take_stage(std::move(loaded.models), true);
   } else {
@@ -501,7 +501,7 @@ void World::take_up(const SceneEditor& editor) {
   }
   try {
     d_.live.open(ArmDescription(d_.live.stage().arm()), editor.document(), editor.models(),
-                 d_.settings.parameters, d_.settings.plot_length, nullptr);
+                 d_.settings.parameters(), d_.settings.plot_length, nullptr);
   } catch (const std::exception& e) {
     d_.notices.say(e.what(), true);
   }
@@ -532,8 +532,10 @@ void World::start_recording(fs::path file, bool replaces) {
   plan.document = d_.document.editor().document();
   plan.document.toml = d_.document.toml();
   plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
-  plan.parameters = d_.live.loop().taken(d_.settings.parameters);
-  if (d_.settings.twin.on) plan.beside.push_back({d_.settings.twin.parameters, {}});
+  plan.parameters = d_.live.loop().taken(d_.settings.parameters());
+  for (std::size_t i = 1; i < d_.settings.lanes.count; ++i) {
+    plan.beside.push_back({d_.settings.lanes.parameters[i], {}});
+  }
   hand_scene_over(true);
   if (plan.layout().bodies() != d_.live.loop().layout().bodies()) {
     d_.notices.say("Not recorded: objects that move came or went while a device is in place.",
@@ -577,7 +579,7 @@ void World::run_hand(const fs::path& file) {
   plan.document = d_.document.editor().document();
   plan.document.toml = d_.document.toml();
   plan.models = d_.document.editor().models();
-  plan.parameters = d_.settings.parameters;
+  plan.parameters = d_.settings.parameters();
   d_.playback.run_hand(file, std::move(plan));
 }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/desktop/device/device_controller.h"
-#include "app/desktop/live/live_session.h"
+#include "app/desktop/live/live_stage.h"
 #include "app/desktop/scene/document.h"
 #include "devices/files/urdf_file.h"
 
@@ -67,7 +67,7 @@ class World {
   };
   Place place() const;
   // Opens a place again. If a real device has come or gone meanwhile, opens its scene for the
-  // present arm. Errors: as LiveSession::open().
+  // present arm. Errors: as LiveStage::open().
   void go_to(const Place& place);
 
   void toggle_recording();  // into a new file among the user's sessions

@@ -161,7 +161,7 @@ void draw_loading(SceneLoader& loader, ScreenRect view) {
 void draw_video_bar(Playback& playback, ScreenRect view) {
   if (!playback.video().busy()) return;
   const float em = ImGui::GetFontSize();
-  const float below_names = 2.6f * em;  // below the names of a twin's runs
+  const float below_names = 2.6f * em;  // below the names of runs side by side
   ImGui::SetNextWindowPos({view.max.x - em, view.min.y + below_names}, ImGuiCond_Always, {1, 0});
   ImGui::Begin("video", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |

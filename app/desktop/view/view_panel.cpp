@@ -87,10 +87,7 @@ void draw_grid_labels(const Scene& objects, const Bounds& grid, const ViewState&
 // Returns the legend with the friction cone at a contact, preferably one that slips.
 PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
   PictureLegend legend{.beside = scene.rerun.empty() ? nullptr : "proxy of the re-run (ghost)"};
-  if (view.twin) {
-    legend.first = scene.names.first;
-    legend.second = scene.names.second;
-  }
+  if (!view.beside.empty()) legend.runs = scene.names.names;
   if (!view.show_forces) return legend;
   for (const ContactMark& contact : view.contacts) {
     if (!(contact.friction > 0) || legend.slips) continue;
@@ -159,51 +156,56 @@ ScreenRect legend_box(ScreenRect view) {
 
 ViewState ViewPanel::state_of(const ViewScene& scene, const Settings& settings) {
   Stage& stage = scene.stage;
-  ViewState view = view_of(stage, scene.row, stage.memory, settings);
+  ViewState view = view_of(stage, scene.row, stage.memory[kMainLane], settings);
   if (!scene.rerun.empty()) {
     const RowLayout& layout = stage.channels().layout();
     view.rerun = stage.rows().pose(layout.in(scene.rerun, Column::proxy_position));
-    view.other_bodies = stage.rows().bodies(layout, scene.rerun);
+    view.rerun_bodies = stage.rows().bodies(layout, scene.rerun);
   }
-  if (scene.overlaid && !scene.twin.empty()) lay_over(view, twin_of(scene, settings));
+  for (std::size_t i = 1; scene.overlaid && i <= scene.beside.size(); ++i) {
+    lay_over(view, state_beside(scene, i, settings));
+  }
   return view;
 }
 
-ViewState ViewPanel::twin_of(const ViewScene& scene, const Settings& settings) {
-  return view_of(scene.stage, scene.twin, scene.stage.twin_memory, settings);
+ViewState ViewPanel::state_beside(const ViewScene& scene, std::size_t run,
+                                  const Settings& settings) {
+  return view_of(scene.stage, scene.beside[run - 1], scene.stage.memory[run], settings);
 }
 
 ViewRequest ViewPanel::draw(const ViewScene& scene, Camera& camera, Controls& controls,
                             Settings& settings, ScreenRect rect, bool taken) {
-  const bool split = scene.split();
+  const std::size_t pictures = scene.pictures();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  if (!ImGui::IsAnyMouseDown()) on_right_ = split && half_of(rect, true).contains(mouse);
-  const ScreenRect under = split ? half_of(rect, on_right_) : rect;
+  for (std::size_t i = 0; i < pictures && !ImGui::IsAnyMouseDown(); ++i) {
+    if (i == 0 || part_of(rect, i, pictures).contains(mouse)) under_mouse_ = i;
+  }
+  const ScreenRect under = part_of(rect, std::min(under_mouse_, pictures - 1), pictures);
   const ImVec2 size = under.size();
   if (size.x < 8 || size.y < 8) return {};
   camera.resize(size.x, size.y);
   ViewRequest asked = handle_mouse(scene, camera, controls, settings, under, taken);
   scene.stage.picture.set_pixel_scale(scene.pixel_scale * static_cast<double>(current_scale()));
   scene.stage.draw_at(scene.quality);
-  drawn_ = split ? half_of(rect, false) : rect;
-  draw_halves(scene, camera, settings, rect);
+  drawn_ = part_of(rect, 0, pictures);
+  draw_pictures(scene, camera, settings, rect);
   return asked;
 }
 
-// Draws the picture, or both pictures of a twin, with one camera.
-void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
-                            ScreenRect rect) {
+// Draws the pictures of all runs with one camera.
+void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
+                              const Settings& settings, ScreenRect rect) {
   SceneView& picture = scene.stage.picture;
   const double scale = scene.pixel_scale;
   const auto pixels = [&](float points) {
     return static_cast<int>(std::lround(static_cast<double>(points) * scale));
   };
-  const auto paint = [&](const ViewState& view, ScreenRect half, SceneView::Sheet sheet) {
-    picture.draw(view, camera, pixels(half.min.x), scene.pixel_height - pixels(half.max.y),
-                 pixels(half.width()), pixels(half.height()), sheet);
+  const auto paint = [&](const ViewState& view, ScreenRect part, std::size_t run) {
+    picture.draw(view, camera, pixels(part.min.x), scene.pixel_height - pixels(part.max.y),
+                 pixels(part.width()), pixels(part.height()), SceneView::sheet_of(run));
   };
   const ViewState view = state_of(scene, settings);
-  paint(view, *drawn_, SceneView::Sheet::main);
+  paint(view, *drawn_, kMainLane);
   if (settings.show_lens && !scene.split()) {
     magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words});
   } else {
@@ -212,22 +214,24 @@ void ViewPanel::draw_halves(const ViewScene& scene, const Camera& camera, const 
   if (!scene.blind) draw_signs(scene, view, camera, settings, *drawn_);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   float below_names = 0;
-  if (scene.split()) {
-    const ScreenRect right = half_of(rect, true);
-    const ViewState twin = twin_of(scene, settings);
-    paint(twin, right, SceneView::Sheet::beside);
-    list.PushClipRect(right.min, right.max);
-    if (!scene.blind) draw_gap(twin, camera, {right}, list);
+  for (std::size_t run = 1; run < scene.pictures(); ++run) {
+    const ScreenRect part = part_of(rect, run, scene.pictures());
+    const ViewState other = state_beside(scene, run, settings);
+    paint(other, part, run);
+    list.PushClipRect(part.min, part.max);
+    if (!scene.blind) draw_gap(other, camera, {part}, list);
     list.PopClipRect();
-    list.AddRectFilled({drawn_->max.x, rect.min.y}, {right.min.x, rect.max.y},
+    const ScreenRect before = part_of(rect, run - 1, scene.pictures());
+    list.AddRectFilled({before.max.x, rect.min.y}, {part.min.x, rect.max.y},
                        colour(current_palette().border));
-    draw_run_name(scene.names, false, *drawn_, list);
-    draw_run_name(scene.names, true, right, list);
+  }
+  for (std::size_t run = 0; scene.split() && run < scene.pictures(); ++run) {
+    draw_run_name(scene.names, run, part_of(rect, run, scene.pictures()), list);
     below_names = 2.2f * font(Face::semibold)->FontSize;
   }
   if (scene.blind) return;
   PictureLegend legend = legend_of(view, scene);
-  legend.compact = scene.split();  // each half is narrow: full lines would cover its arm
+  legend.compact = scene.split();  // each picture is narrow: full lines would cover its arm
   draw_picture_legend(list, {rect.min.x, rect.min.y + below_names}, rect.max, legend);
   draw_told(scene.told, rect, list);
 }
@@ -247,7 +251,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   draw_magnet(view, camera, rect, list);
   if (pulls_) draw_grasp(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
-  if (!scene.recorded && scene.twin.empty() && !settings.your_turn && !scene.asked) {
+  if (!scene.recorded && scene.beside.empty() && !settings.your_turn && !scene.asked) {
     draw_hint(scene.pad, settings, rect, list);
   }
   list.PopClipRect();
@@ -261,9 +265,12 @@ bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Sett
   };
   shown.resize(pixels(drawn_->size().x), pixels(drawn_->size().y));
   const SceneView& picture = scene.stage.picture;
-  return picture.differs(state_of(scene, settings), shown) ||
-         (scene.split() &&
-          picture.differs(twin_of(scene, settings), shown, SceneView::Sheet::beside));
+  if (picture.differs(state_of(scene, settings), shown)) return true;
+  for (std::size_t run = 1; run < scene.pictures(); ++run) {
+    const ViewState other = state_beside(scene, run, settings);
+    if (picture.differs(other, shown, SceneView::sheet_of(run))) return true;
+  }
+  return false;
 }
 
 bool ViewPanel::near_tip(const ViewScene& scene, const Camera& camera,

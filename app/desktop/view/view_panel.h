@@ -22,13 +22,13 @@ namespace limpid {
 struct ViewScene {
   Stage& stage;
   std::span<const double> row;
-  bool recorded = false;               // the row is a recording's
-  std::span<const double> rerun = {};  // row of a re-run; or none
-  std::span<const double> twin = {};   // row of a second run at the same time; or none
-  RunNames names = {};                 // of the two runs
-  bool overlaid = false;               // both runs in one picture
-  std::string told = {};               // sentence of a story
-  std::string pad = {};                // name of the gamepad that leads the hand; or none
+  bool recorded = false;                             // the row is a recording's
+  std::span<const double> rerun = {};                // row of a re-run; or none
+  std::vector<std::span<const double>> beside = {};  // rows of further runs at the same time
+  RunNames names = {};                               // of all runs
+  bool overlaid = false;                             // all runs in one picture
+  std::string told = {};                             // sentence of a story
+  std::string pad = {};  // name of the gamepad that leads the hand; or none
   std::optional<Object> selected = {};
   // Returns the body under the mouse, with the point to pull at; null: no body may be pulled.
   std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
@@ -39,7 +39,9 @@ struct ViewScene {
   int pixel_height = 0;    // height of the window [px]
   float words = 0;         // height of words at the top, over all of its width [points]
 
-  bool split() const { return !twin.empty() && !overlaid; }
+  // Number of pictures side by side.
+  std::size_t pictures() const { return overlaid ? 1 : 1 + beside.size(); }
+  bool split() const { return pictures() > 1; }
 };
 
 // Returns the part of a view's upper left corner that its legend takes.
@@ -65,10 +67,10 @@ class ViewPanel {
  private:
   void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
                   const Settings& settings, ScreenRect rect) const;
-  void draw_halves(const ViewScene& scene, const Camera& camera, const Settings& settings,
-                   ScreenRect rect);
+  void draw_pictures(const ViewScene& scene, const Camera& camera, const Settings& settings,
+                     ScreenRect rect);
   static ViewState state_of(const ViewScene& scene, const Settings& settings);
-  static ViewState twin_of(const ViewScene& scene, const Settings& settings);
+  static ViewState state_beside(const ViewScene& scene, std::size_t run, const Settings& settings);
   ViewRequest handle_mouse(const ViewScene& scene, Camera& camera, Controls& controls,
                            Settings& settings, ScreenRect rect, bool taken);
   bool pull_body(const ViewScene& scene, const Camera& camera, Controls& controls, ScreenRect rect,
@@ -88,7 +90,7 @@ class ViewPanel {
   std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // places: left, right
   std::array<bool, 2> moved_{};                              // since pressed
   bool pushed_ = false;                                      // the wheel pushed the hand
-  bool on_right_ = false;                                    // the mouse began in the right half
+  std::size_t under_mouse_ = 0;                              // picture in which the mouse began
   Vec3 anchor_ = Vec3::Zero();  // point that is dragged, without depth [m]
   Vec3 offset_ = Vec3::Zero();  // from the mouse's point to anchor_ [m]
   // Camera when the hand was dragged last.

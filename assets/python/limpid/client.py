@@ -107,13 +107,16 @@ class Client:
         `trouble`: why the last recording ended by itself, or None."""
         return dict(self.request("get", keys=[])["state"])
 
-    def set(self, values: Optional[Mapping[str, Any]] = None, twin: bool = False, reset: bool = False,
+    def set(self, values: Optional[Mapping[str, Any]] = None, twin: bool = False, reset: bool = False, lane: int = 0,
             **more: Any) -> Dict[str, Any]:  # fmt: skip
-        """Sets all of these or, where one is refused, none; `twin`: those of the second run; `reset`:
-        all others have their usual values then, up to limits that a person has chosen. Settings are
-        those of a dict, or keywords: coupling__eta=0.5. Of a window they last as long as this
-        connection; then those of its user come back."""
+        """Sets all of these or, where one is refused, none. `twin`: those of the second run; `lane`: 1
+        is the second run, too, and 2 the third. `reset`: all others have their usual values then, up
+        to limits that a person has chosen. Settings are those of a dict, or keywords:
+        coupling__eta=0.5. Of a window they last as long as this connection; then those of its user
+        come back."""
         asked: Dict[str, Any] = {"twin": True} if twin else {}
+        if lane:
+            asked["lane"] = lane
         if reset:
             asked["reset"] = True
         return dict(self.request("set", values=settings_of(values, more, "values"), **asked)["values"])
@@ -187,9 +190,12 @@ class Client:
                 values.append(row)
         return Rows(ticks, values, dropped)
 
-    def twin(self, values: Optional[Mapping[str, Any]] = None, on: bool = True) -> None:
-        """A second run on the same hand, with these settings of its own; or none any more."""
-        asked = {} if values is None else {"values": settings_of(values, name="values")}
+    def twin(self, values: Optional[Mapping[str, Any]] = None, on: bool = True, lane: int = 1) -> None:
+        """A second run on the same hand, or a third one (`lane` 2), with these settings of its own; or
+        none any more."""
+        asked: Dict[str, Any] = {} if values is None else {"values": settings_of(values, name="values")}
+        if lane != 1:
+            asked["lane"] = lane
         self.request("twin", on=on, **asked)
 
     def blind(self, on: bool = True) -> None:

@@ -45,6 +45,7 @@ def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
         coupling: Optional[str] = None, eta: Optional[float] = None, alpha: Optional[float] = None,
         arm: Optional[PathLike] = None, duration: Optional[float] = None,
         seed: Optional[int] = None, twin: Union[None, bool, Mapping[str, Any]] = None,
+        lane3: Union[None, bool, Mapping[str, Any]] = None,
         record: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
         variation: Optional[int] = None, force: bool = False,
         channels: Optional[Sequence[str]] = None, **more: Any) -> Session:  # fmt: skip
@@ -53,7 +54,7 @@ def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
     `hand`: FILE.csv, FILE.h5 of a recorded session, or rows of time [s], x, y, z [m]; the default is
     a hand that touches a table. `variation`: the hand as the same person would lead it another time,
     which one of them `seed` decides with it; 0 is the hand as it is, and nothing else is random.
-    `duration` [s]. `twin`: settings of a second run on the same hand, or True.
+    `duration` [s]. `twin`: settings of a second run on the same hand, or True; `lane3`: of a third one.
     `settings`: by their keys, {"coupling.k_vc": 8}, or each as a keyword with two underscores for the
     dot: coupling__k_vc=8. `record`: where the session is kept, also in place of one that is there with
     `force`; else it goes once it has been read. `channels`: only these are read.
@@ -76,8 +77,9 @@ def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
             if count is not None:
                 words += [option, str(whole(name, count))]
         words += setting_words(chosen)
-        if twin is not None and twin is not False:
-            words += ["--twin", *setting_words(settings_of({} if twin is True else twin, name="twin"), "")]
+        for name, lane in (("twin", twin), ("lane3", lane3)):
+            if lane is not None and lane is not False:
+                words += [f"--{name}", *setting_words(settings_of({} if lane is True else lane, name=name), "")]
         try:
             carry_out(words)
         except ProgramError as error:

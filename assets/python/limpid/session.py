@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 # As /coupling/kind has them.
 LAWS = ("standard", "proposed", "predictive", "tank")
-MAIN, TWIN = "", "twin/"  # the runs that a recording keeps, by what the names of their channels begin with
+# The runs that a recording keeps, by what the names of their channels begin with.
+MAIN, TWIN = "", "twin/"
+LANES = (MAIN, TWIN, "lane3/")
 BESIDE_ROWS = ("axis", "check", "events", "joint", "marks", "models")  # of each run
 ONE_STATE = "objects/state"  # of the first row only
 
@@ -58,7 +60,7 @@ class _Recording:
         lengths: List[int] = []
 
         def take(name: str, item: Any) -> None:
-            bare = name[len(TWIN):] if name.startswith(TWIN) else name
+            bare = name[len(_lane_of(name)):]
             rows = hasattr(item, "shape") and bare.split("/")[0] not in BESIDE_ROWS and bare != ONE_STATE
             if rows and item.ndim > 0 and item.attrs.get("unit") is not None:
                 self.units[name] = str(item.attrs["unit"])
@@ -71,7 +73,7 @@ class _Recording:
             self.attributes: Dict[str, Any] = dict(opened.attrs)
             opened.visititems(take)
             self.rows = min(lengths, default=0)
-            self.lanes = {name: self._lane(opened[name] if name else opened) for name in (MAIN, TWIN)
+            self.lanes = {name: self._lane(opened[name] if name else opened) for name in LANES
                           if not name or name in opened}  # fmt: skip
             self.marks = sorted(_pairs(opened, "marks/tick", "marks/text"), key=lambda mark: mark[0])
         self._choose(wanted)
@@ -108,7 +110,7 @@ class _Recording:
         if wanted is None:
             return
         names = [self.known(name) for name in names_of("channels", wanted)]
-        names += [name for name in ("time", TWIN + "time") if name in self.units and name not in names]
+        names += [name for name in [lane + "time" for lane in LANES] if name in self.units and name not in names]
         self.units = {name: self.units[name] for name in names}
         self.about = {name: self.about[name] for name in names}
 
@@ -133,6 +135,10 @@ class _Recording:
             for name in self.units:
                 if name not in self._read:
                     self._read[name] = opened[name][: self.rows]
+
+
+def _lane_of(channel: str) -> str:
+    return next((lane for lane in LANES if lane and channel.startswith(lane)), MAIN)
 
 
 def _pairs(group: Any, numbers: str, texts: str) -> List[Tuple[int, str]]:
@@ -164,26 +170,34 @@ class Session:
         return self._recording.attributes
 
     @property
+    def lanes(self) -> "List[Session]":
+        """All runs on the same hand, this one first; each with its own channels, law, settings and
+        changes. Of a further run: that run alone."""
+        if self._lane != MAIN:
+            return [self]
+        return [self, *(self._of(lane) for lane in self._recording.lanes if lane)]
+
+    @property
     def twin(self) -> "Optional[Session]":
-        """The second run on the same hand, with its own channels, law, settings and changes; None
-        where there is none."""
-        if self._lane == TWIN or TWIN not in self._recording.lanes:
-            return None
-        second = Session.__new__(Session)
-        second._recording, second._lane = self._recording, TWIN
-        return second
+        """The second run on the same hand; None where there is none."""
+        return next((run for run in self.lanes[1:]), None)
+
+    def _of(self, lane: str) -> "Session":
+        run = Session.__new__(Session)
+        run._recording, run._lane = self._recording, lane
+        return run
 
     def __len__(self) -> int:
         return self._recording.rows
 
     def __repr__(self) -> str:
-        which = ", second run" * (self._lane == TWIN)
+        which = f", {self._lane[:-1]}" * bool(self._lane)
         return f"<limpid.Session {self.file}{which}: {len(self)} rows, {len(self) * self.tick:.3f} s>"
 
     @property
     def channels(self) -> List[str]:
-        """Names of all channels; those of a second run begin with "twin/", and are those of twin
-        without that."""
+        """Names of all channels; those of further runs begin with "twin/" and "lane3/", and are those
+        of lanes[1] and lanes[2] without that."""
         names = [name for name in self._recording.units if name.startswith(self._lane)]
         return [name[len(self._lane):] for name in names]
 
@@ -238,7 +252,7 @@ class Session:
     @property
     def warnings(self) -> List[str]:
         """What went wrong in the run, a sentence each: it gave energy, became unstable, or moved as no
-        hand does. Those of the second run begin with "the second run: "."""
+        hand does. Those of further runs begin with "the second run: " or the like."""
         return str(self.attributes.get("warnings", "")).splitlines()
 
     @property

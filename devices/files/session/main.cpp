@@ -39,9 +39,7 @@ void answer(std::string_view what, const char* file, limpid::wire::Writer& to) {
           to.number(Answer::contents);
           put_about(to, about, rows);
         },
-        [&](std::span<const double> rows, std::span<const double> twin) {
-          put_rows(to, rows, twin);
-        });
+        [&](limpid::LaneRows rows) { put_rows(to, rows); });
     put_rest(to, rest);
   } else if (what == "marks") {
     limpid::wire::Reader from(STDIN_FILENO, limpid::hdf5::physical_memory());

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/lanes.h"
 #include "core/base/large_memory.h"
 #include "core/tick/row.h"
 #include "devices/files/scene_files.h"
@@ -22,7 +22,6 @@ inline constexpr const char* kSessionFormat = "limpid-session";
 inline constexpr int kSessionVersion = 2;
 inline constexpr std::size_t kSettingLength = 120;
 inline constexpr const char* kEventRowPath = "/events/row";
-inline constexpr const char* kTwinGroup = "twin";  // group of the second run, if there is one
 inline constexpr const char* kRoundingPath = "/check/rounding";
 inline constexpr const char* kJointTypes = "joint_types";  // attribute of the root
 inline constexpr const char* kSlidingType = "prismatic";   // in URDF's words
@@ -41,7 +40,8 @@ inline constexpr const char* kBodyNames = "names";  // attribute of datasets of 
 // not-a-number that no arithmetic makes.
 inline constexpr std::uint64_t kNeverWritten = 0x7ff8'6c69'6d70'6964;
 
-// The same path below a group: a session's datasets are at the root, a twin's in a group.
+// The same path below a group: a session's datasets are at the root, those of
+// further lanes in groups named as lane_name() says.
 inline const char* within_group(const char* path) { return path + 1; }
 
 inline std::size_t column_index(Column c) { return static_cast<std::size_t>(c); }
@@ -67,9 +67,10 @@ struct SessionInfo {
   std::shared_ptr<const ArmDescription> arm;
   std::vector<bool> slides;         // joints that slide, as far as known; empty: none
   std::vector<std::string> bodies;  // names of the objects that move, in the rows' order
-  // All parameters at row 0 of a second run on the same hand (TOML); nothing if there is one run.
-  std::optional<std::string> twin;
+  // All parameters at row 0 of each further lane (TOML).
+  std::vector<std::string> beside;
 
+  std::size_t lanes() const { return 1 + beside.size(); }
   RowLayout layout() const { return RowLayout(dof, static_cast<int>(bodies.size())); }
 };
 
@@ -98,10 +99,19 @@ struct Session {
   // State of all bodies at the first row, as RigStart has it. Empty: as the scene has them, or
   // unknown.
   std::vector<double> world;
-  // The second run on the same hand, as a session of its own: as many rows, its own parameters and
-  // changes, the same world. Null if there is one run.
-  std::shared_ptr<const Session> twin;
+  // Further lanes, as sessions of their own: as many rows, their own parameters and changes, the
+  // same world.
+  std::vector<Session> beside;
 
+  std::size_t lanes() const { return 1 + beside.size(); }
+  const Session& lane(std::size_t i) const { return i == kMainLane ? *this : beside[i - 1]; }
+  Session& lane(std::size_t i) { return i == kMainLane ? *this : beside[i - 1]; }
+  // Returns the rows of each lane.
+  std::vector<std::span<const double>> lane_rows() const {
+    std::vector<std::span<const double>> all;
+    for (std::size_t i = 0; i < lanes(); ++i) all.emplace_back(lane(i).rows);
+    return all;
+  }
   std::size_t size() const { return rows.size() / static_cast<std::size_t>(layout.stride()); }
   std::span<const double> row(std::size_t k) const {
     const auto stride = static_cast<std::size_t>(layout.stride());
@@ -109,9 +119,6 @@ struct Session {
   }
   std::span<const double> at(std::size_t k, Column c) const { return layout.in(row(k), c); }
 };
-
-// Lanes of a twin's two runs.
-inline constexpr std::size_t kMainLane = 0, kTwinLane = 1;
 
 // Choice whether a complete session is packed, which takes several times as long as writing it.
 enum class Packing { no, yes };
@@ -129,7 +136,7 @@ class SessionWriter {
   SessionWriter(const SessionWriter&) = delete;
   SessionWriter& operator=(const SessionWriter&) = delete;
 
-  // Appends any whole number of rows. Both runs of a twin get as many.
+  // Appends any whole number of rows. All lanes get as many.
   void append(std::span<const double> rows, std::size_t lane = kMainLane);
   void append(const SettingChange& change, std::size_t lane = kMainLane);
   void append(const Mark& mark);

@@ -165,10 +165,11 @@ class Lines {
 void write_table(const Session& session, Lines&& lines) {
   const auto arm = recorded_arm(session.info);
   std::vector<Table> runs;
-  runs.emplace_back(session, arm.get());
-  if (session.twin) runs.emplace_back(*session.twin, arm.get());
+  for (std::size_t i = 0; i < session.lanes(); ++i) runs.emplace_back(session.lane(i), arm.get());
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name(i == 0 ? "" : "twin_", names);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].name(i == kMainLane ? "" : lane_name(i) + "_", names);
+  }
   lines.add(names);
   std::vector<double> numbers;
   for (std::size_t k = 0; k < session.size(); ++k) {

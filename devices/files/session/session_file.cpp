@@ -141,8 +141,7 @@ SessionFile::SessionFile(std::filesystem::path path, int descriptor, const Sessi
     : path_(std::move(path)), descriptor_(descriptor), storage_(storage), layout_(about.layout()) {
   SessionInfo info = about;
   if (info.arm) info.slides = slides_of(*info.arm);
-  lanes_.emplace_back(path_, info, storage);
-  if (info.twin) lanes_.emplace_back(path_, info, storage);
+  for (std::size_t i = 0; i < info.lanes(); ++i) lanes_.emplace_back(path_, info, storage);
   guarded([&] { create(info); });
 }
 
@@ -174,12 +173,12 @@ void SessionFile::create(const SessionInfo& info) {
   write_models(file_.get(), info.models, path_);
   lanes_[kMainLane].create(file_.get());
   marks_.create(file_.get(), path_);
-  if (info.twin) {
-    const hdf5::Group twin(
-        H5Gcreate2(file_.get(), kTwinGroup, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-    check(static_cast<bool>(twin), path_, "cannot write");
-    hdf5::write_text(twin.get(), "config", *info.twin, path_);
-    lanes_[kTwinLane].create(twin.get());
+  for (std::size_t i = 1; i < lanes_.size(); ++i) {
+    const hdf5::Group group(
+        H5Gcreate2(file_.get(), lane_name(i).c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    check(static_cast<bool>(group), path_, "cannot write");
+    hdf5::write_text(group.get(), "config", info.beside[i - 1], path_);
+    lanes_[i].create(group.get());
   }
   hdf5::Scales scales;
   if (info.arm) scales = hdf5::create_scales(file_.get(), *info.arm, info.bodies, path_);

@@ -117,14 +117,19 @@ std::uint64_t take_rows(Reader& from, const Session& about, std::uint64_t claime
     if (next == Answer::refusal) throw FileError(from.text());
     if (next == Answer::end) return rows;
     if (next != Answer::rows) throw Broken("no piece of a session");
-    const auto some = from.list<std::vector<double>>(), twin = from.list<std::vector<double>>();
-    if (some.size() % stride != 0) throw Broken("rows that are not whole");
-    if (twin.size() != (about.twin ? some.size() : 0)) {
-      throw Broken("two runs that are not as long as each other");
+    std::array<std::vector<double>, kMostLanes> lists;
+    std::array<std::span<const double>, kMostLanes> pieces;
+    for (std::size_t i = 0; i < about.lanes(); ++i) {
+      lists[i] = from.list<std::vector<double>>();
+      if (lists[i].size() % stride != 0) throw Broken("rows that are not whole");
+      if (lists[i].size() != lists[0].size()) {
+        throw Broken("runs that are not as long as each other");
+      }
+      pieces[i] = lists[i];
     }
-    rows += some.size() / stride;
+    rows += lists[0].size() / stride;
     if (rows > claimed) throw Broken("more rows than were announced");
-    take(some, twin);
+    take(LaneRows(pieces).first(about.lanes()));
   }
 }
 
@@ -213,17 +218,15 @@ void put_about(Writer& to, const Session& session, std::uint64_t rows) {
       std::vector<unsigned char>(info.slides.begin(), info.slides.end())));
   to.number<std::uint64_t>(info.bodies.size());
   for (const std::string& name : info.bodies) to.text(name);
-  to.number<std::uint8_t>(session.twin != nullptr);
-  if (session.twin != nullptr) to.text(session.twin->info.config);
+  to.number<std::uint64_t>(session.beside.size());
+  for (const Session& lane : session.beside) to.text(lane.info.config);
   to.number(rows);
-  put_run(to, session);
-  if (session.twin != nullptr) put_run(to, *session.twin);
+  for (std::size_t i = 0; i < session.lanes(); ++i) put_run(to, session.lane(i));
 }
 
-void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin) {
+void put_rows(Writer& to, LaneRows rows) {
   to.number(Answer::rows);
-  to.list(rows);
-  to.list(twin);
+  for (const std::span<const double> lane : rows) to.list(lane);
 }
 
 void put_rest(Writer& to, const Session& session) {
@@ -233,8 +236,7 @@ void put_rest(Writer& to, const Session& session) {
 
 void put_session(Writer& to, const Session& session) {
   put_about(to, session, session.size());
-  put_rows(to, session.rows,
-           session.twin ? std::span<const double>(session.twin->rows) : std::span<const double>());
+  put_rows(to, session.lane_rows());
   put_rest(to, session);
 }
 
@@ -243,20 +245,14 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
   Session session;
   session.info = take_info(from);
   session.layout = session.info.layout();
-  std::shared_ptr<Session> twin;
-  if (from.number<std::uint8_t>() != 0) {
-    twin = std::make_shared<Session>(session);
-    twin->info.config = from.text();
-    session.info.twin = twin->info.config;
-    session.twin = twin;
-  }
+  const std::size_t beside = from.taken(sizeof(std::uint64_t));
+  if (beside >= kMostLanes) throw Broken("more runs than there can be");
+  for (std::size_t i = 0; i < beside; ++i) add_lane(session, from.text());
   const auto claimed = from.number<std::uint64_t>();
-  take_run(from, claimed, session);
-  if (twin) take_run(from, claimed, *twin);
+  for (std::size_t i = 0; i < session.lanes(); ++i) take_run(from, claimed, session.lane(i));
   begins(session, claimed);
   const std::uint64_t rows = take_rows(from, session, claimed, take);
-  drop_lost(session.changes, rows, claimed);
-  if (twin) drop_lost(twin->changes, rows, claimed);
+  drop_lost(session, rows, claimed);
   session.marks = take_marks(from);
   for (const Mark& mark : session.marks) {
     if (mark.tick >= rows) throw Broken("a mark behind the end");
@@ -266,25 +262,25 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
 
 Session take_session(Reader& from) {
   constexpr std::uint64_t kMostRows = std::uint64_t{1} << 40;  // more than 30 years of ticks
-  LargeVector<double> rows, twin_rows;
+  std::array<LargeVector<double>, kMostLanes> rows;
   std::size_t since = 0;
   Session session = take_session(
       from,
       [&](const Session& about, std::uint64_t count) {
         const auto stride = static_cast<std::size_t>(about.layout.stride());
         if (count > kMostRows) throw Broken("too much");
-        rows.reserve(count * stride);
-        if (about.twin) twin_rows.reserve(count * stride);
+        for (std::size_t i = 0; i < about.lanes(); ++i) rows[i].reserve(count * stride);
       },
-      [&](std::span<const double> some, std::span<const double> twin) {
-        rows.insert(rows.end(), some.begin(), some.end());
-        twin_rows.insert(twin_rows.end(), twin.begin(), twin.end());
-        since += some.size_bytes() + twin.size_bytes();
+      [&](LaneRows some) {
+        for (std::size_t i = 0; i < some.size(); ++i) {
+          rows[i].insert(rows[i].end(), some[i].begin(), some[i].end());
+          since += some[i].size_bytes();
+        }
         if (since < kForgetAfter) return;
         since = 0;
         forget_large_blocks();
       });
-  limpid::put_rows(session, std::move(rows), std::move(twin_rows));
+  for (std::size_t i = 0; i < session.lanes(); ++i) session.lane(i).rows = std::move(rows[i]);
   return session;
 }
 
@@ -328,34 +324,37 @@ Table take_table(Reader& from) {
 
 }  // namespace wire
 
-void drop_lost(std::vector<SettingChange>& changes, std::uint64_t rows, std::uint64_t claimed) {
-  if (rows == claimed) return;
-  std::erase_if(changes, [&](const SettingChange& change) { return change.row >= rows; });
+void add_lane(Session& session, std::string config) {
+  Session lane;
+  lane.info = session.info;
+  lane.info.beside.clear();
+  lane.info.config = config;
+  lane.layout = session.layout;
+  session.info.beside.push_back(std::move(config));
+  session.beside.push_back(std::move(lane));
 }
 
-void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin) {
-  session.rows = std::move(rows);
-  if (!session.twin) return;
-  Session second = *session.twin;
-  second.rows = std::move(twin);
-  session.twin = std::make_shared<const Session>(std::move(second));
+void drop_lost(Session& session, std::uint64_t rows, std::uint64_t claimed) {
+  if (rows == claimed) return;
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    std::erase_if(session.lane(i).changes,
+                  [&](const SettingChange& change) { return change.row >= rows; });
+  }
 }
 
 Session read_session(const fs::path& file, const std::function<void(const Session&)>& begins,
                      const TakeRows& take) {
   return ask("session", file, [&](wire::Reader& from) {
-    std::optional<RowCheck> first, second;
+    std::vector<RowCheck> checks;
     return wire::take_session(
         from,
         [&](const Session& about, std::uint64_t) {
-          first.emplace(about.layout, file);
-          second.emplace(about.layout, file);
+          checks.assign(about.lanes(), RowCheck(about.layout, file));
           begins(about);
         },
-        [&](std::span<const double> rows, std::span<const double> twin) {
-          first->take(rows);
-          second->take(twin);
-          take(rows, twin);
+        [&](LaneRows rows) {
+          for (std::size_t i = 0; i < rows.size(); ++i) checks[i].take(rows[i]);
+          take(rows);
         });
   });
 }
@@ -363,8 +362,7 @@ Session read_session(const fs::path& file, const std::function<void(const Sessio
 Session read_session(const fs::path& file) {
   return ask("session", file, [&](wire::Reader& from) {
     Session session = wire::take_session(from);
-    check_rows(session, file);
-    if (session.twin) check_rows(*session.twin, file);
+    for (std::size_t i = 0; i < session.lanes(); ++i) check_rows(session.lane(i), file);
     return session;
   });
 }

@@ -91,7 +91,7 @@ class Reader {
 // Write a session in pieces: first its contents, the number of rows that it claims, changes and
 // objects; rows as often as there are some; then its marks.
 void put_about(Writer& to, const Session& session, std::uint64_t rows);
-void put_rows(Writer& to, std::span<const double> rows, std::span<const double> twin);
+void put_rows(Writer& to, LaneRows rows);
 void put_rest(Writer& to, const Session& session);
 void put_session(Writer& to, const Session& session);  // all pieces
 // Reads a session; `begins` is told how many rows are claimed. Errors: Broken; FileError for what

@@ -166,9 +166,16 @@ SessionInfo read_info(hid_t root, const fs::path& file, hdf5::Claims& claims) {
   return info;
 }
 
-hdf5::Group twin_group(hid_t root, const fs::path& file) {
-  if (!hdf5::has(root, kTwinGroup, file)) return {};
-  return hdf5::open_group(root, kTwinGroup, file);
+// Opens the groups of further lanes, in turn.
+std::vector<hdf5::Group> groups_beside(hid_t root, const fs::path& file) {
+  std::vector<hdf5::Group> groups;
+  for (std::size_t i = 1; hdf5::has(root, lane_name(i), file); ++i) {
+    if (i == kMostLanes) {
+      refuse(file, fmt::format("/{}: more runs than {}, the most", lane_name(i), kMostLanes));
+    }
+    groups.push_back(hdf5::open_group(root, lane_name(i), file));
+  }
+  return groups;
 }
 
 Source open_rounding(hid_t group, hsize_t width, const fs::path& file) {
@@ -238,7 +245,7 @@ void read_changes(hid_t root, std::size_t size, Session& session, const fs::path
   }
 }
 
-// Reader of a run, at the file's root or in the twin's group.
+// Reader of a lane, at the file's root or in a group.
 class RunReader {
  public:
   RunReader(hid_t group, const SessionInfo& info, const fs::path& file, hdf5::Claims& claims)
@@ -372,24 +379,29 @@ class RunReader {
   std::vector<std::int8_t> roundings_;
 };
 
-// Reads the same rows of both runs in turn. Returns how many there are.
-std::size_t read_rows(RunReader& first, RunReader* second, const fs::path& file,
-                      const TakeRows& take) {
-  const std::size_t rows = second ? std::min(first.rows(), second->rows()) : first.rows();
-  const std::size_t unit = second ? std::lcm(first.block(), second->block()) : first.block();
-  if (unit > kMostUnit)
-    refuse(file, fmt::format("sums over {} rows; allowed: {}", unit, kMostUnit));
+// Reads the same rows of all lanes in turn. Returns how many there are.
+std::size_t read_rows(std::span<RunReader> lanes, const fs::path& file, const TakeRows& take) {
+  std::size_t rows = lanes[0].rows(), unit = 1;
+  for (const RunReader& lane : lanes) {
+    rows = std::min(rows, lane.rows());
+    unit = std::lcm(unit, lane.block());
+    if (unit > kMostUnit) {
+      refuse(file, fmt::format("sums over {} rows; allowed: {}", unit, kMostUnit));
+    }
+  }
   const std::size_t block = unit * std::max<std::size_t>(1, kBlockRows / unit);
-  std::vector<double> ones, others;
+  std::vector<std::vector<double>> blocks(lanes.size());
   std::size_t read = 0;
   while (read < rows) {
     const std::size_t count = std::min(block, rows - read);
-    first.read(count, ones);
-    if (second) second->read(count, others);
-    // A leftover may lack some of a twin's rows.
-    if (second) ones.resize(std::min(ones.size(), others.size())), others.resize(ones.size());
-    if (!ones.empty()) take(ones, others);
-    const std::size_t whole = ones.size() / static_cast<std::size_t>(first.layout().stride());
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i].read(count, blocks[i]);
+    // A leftover may lack some rows of a lane.
+    const std::size_t there =
+        std::ranges::min_element(blocks, {}, &std::vector<double>::size)->size();
+    std::vector<std::span<const double>> pieces;
+    for (const std::vector<double>& each : blocks) pieces.push_back(std::span(each).first(there));
+    if (there > 0) take(pieces);
+    const std::size_t whole = there / static_cast<std::size_t>(lanes[0].layout().stride());
     read += whole;
     if (whole < count) break;
   }
@@ -468,45 +480,40 @@ Session read_session_here(const fs::path& file,
   hdf5::Claims claims(file);
   session.info = read_info(opened.get(), file, claims);
   session.layout = session.info.layout();
-  RunReader first(opened.get(), session.info, file, claims);
-  std::optional<RunReader> second;
-  const hdf5::Group group = twin_group(opened.get(), file);
-  std::shared_ptr<Session> twin;
-  if (group) {
-    second.emplace(group.get(), session.info, file, claims);
-    session.info.twin = hdf5::read_text(group.get(), "config", file);
-    twin = std::make_shared<Session>(session);
-    twin->info.config = *session.info.twin;
-    twin->info.twin.reset();
-    session.twin = twin;
-    if (second->rows() != first.rows() && !is_leftover(file)) {
-      refuse(file, fmt::format("/twin has {} rows, the other run {}; needed: the same",
-                               second->rows(), first.rows()));
+  std::vector<hdf5::Group> groups = groups_beside(opened.get(), file);
+  std::vector<RunReader> readers;
+  readers.emplace_back(opened.get(), session.info, file, claims);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const RunReader& lane = readers.emplace_back(groups[i].get(), session.info, file, claims);
+    add_lane(session, hdf5::read_text(groups[i].get(), "config", file));
+    if (lane.rows() != readers[0].rows() && !is_leftover(file)) {
+      refuse(file, fmt::format("/{} has {} rows, the first run {}; needed: the same",
+                               lane_name(i + 1), lane.rows(), readers[0].rows()));
     }
   }
-  const auto read_beside = [&](hid_t of, Session& run) {
-    read_world(of, run, file, claims);
-    read_changes(of, first.rows(), run, file, claims);
-  };
-  read_beside(opened.get(), session);
-  if (group) read_beside(group.get(), *twin);
-  begins(session, first.rows());
-  const std::size_t rows = read_rows(first, second ? &*second : nullptr, file, take);
+  const std::size_t claimed = readers[0].rows();
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    const hid_t of = i == kMainLane ? opened.get() : groups[i - 1].get();
+    read_world(of, session.lane(i), file, claims);
+    read_changes(of, claimed, session.lane(i), file, claims);
+  }
+  begins(session, claimed);
+  const std::size_t rows = read_rows(readers, file, take);
   session.marks = read_marks(opened.get(), rows, file, claims);
-  drop_lost(session.changes, rows, first.rows());
-  if (twin) drop_lost(twin->changes, rows, first.rows());
+  drop_lost(session, rows, claimed);
   return session;
 }
 
 Session read_session_here(const fs::path& file) {
-  LargeVector<double> rows, twin_rows;
+  std::array<LargeVector<double>, kMostLanes> rows;
   Session session = read_session_here(
       file, [](const Session&, std::uint64_t) {},
-      [&](std::span<const double> some, std::span<const double> twin) {
-        rows.insert(rows.end(), some.begin(), some.end());
-        twin_rows.insert(twin_rows.end(), twin.begin(), twin.end());
+      [&](LaneRows some) {
+        for (std::size_t i = 0; i < some.size(); ++i) {
+          rows[i].insert(rows[i].end(), some[i].begin(), some[i].end());
+        }
       });
-  put_rows(session, std::move(rows), std::move(twin_rows));
+  for (std::size_t i = 0; i < session.lanes(); ++i) session.lane(i).rows = std::move(rows[i]);
   return session;
 }
 

@@ -76,7 +76,7 @@ inline bool is_leftover(const std::filesystem::path& file) { return file.extensi
 // Throws FileError "FILE: WHY".
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
 
-// Open a dataset. `root` is the file's, or a twin's group; paths begin with "/" either way.
+// Open a dataset. `root` is the file's, or a further lane's group; paths begin with "/" either way.
 // Datasets of bodies, with `each_body` numbers of each, have rank 3. Errors: FileError for what
 // open_dataset() refuses, or has another shape (or, for a column, type).
 Source open_source(hid_t root, const char* path, hsize_t width, const std::filesystem::path& file,

@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
-#include <vector>
+#include <string>
 
 #include "devices/files/session/session.h"
 
 namespace limpid {
 
-// Takes whole rows of a session in turn, and as many of its twin; empty if it has none.
-using TakeRows = std::function<void(std::span<const double> rows, std::span<const double> twin)>;
+// Takes whole rows of a session in turn.
+using TakeRows = std::function<void(LaneRows rows)>;
 
 // Reads a session in pieces: `begins` gets contents and changes, `take` the rows. Returns all but
 // rows. A leftover may lack its last rows; changes at these are left out. Errors: as
@@ -20,10 +19,9 @@ using TakeRows = std::function<void(std::span<const double> rows, std::span<cons
 Session read_session(const std::filesystem::path& file,
                      const std::function<void(const Session& about)>& begins, const TakeRows& take);
 
+// Adds a lane without rows, which begins with the parameters `config` (TOML).
+void add_lane(Session& session, std::string config);
 // Drops the changes at rows from `rows` on, where a leftover has fewer than it `claimed`.
-void drop_lost(std::vector<SettingChange>& changes, std::uint64_t rows, std::uint64_t claimed);
-
-// Puts rows into a session that was read without them.
-void put_rows(Session& session, LargeVector<double> rows, LargeVector<double> twin);
+void drop_lost(Session& session, std::uint64_t rows, std::uint64_t claimed);
 
 }  // namespace limpid

@@ -111,6 +111,10 @@ void check_session_info(const SessionInfo& info, const fs::path& file) {
   if (info.dof < 1 || info.dof > kMaxDof) {
     throw FileError(fmt::format("{}: dof {}; allowed: 1 to {}", file.string(), info.dof, kMaxDof));
   }
+  if (info.lanes() > kMostLanes) {
+    throw FileError(
+        fmt::format("{}: {} runs; allowed: 1 to {}", file.string(), info.lanes(), kMostLanes));
+  }
   if (info.bodies.size() > kMostBodies) {
     throw FileError(fmt::format("{}: {} objects that move; allowed: 0 to {}", file.string(),
                                 info.bodies.size(), kMostBodies));
@@ -231,22 +235,19 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
     info.arm = recorded_arm(info);
     draft.emplace(out);
     file.emplace(out, draft->descriptor(), info, Storage::packed);
-    file->append_world(about->world, kMainLane);
-    if (about->twin) file->append_world(about->twin->world, kTwinLane);
+    for (std::size_t i = 0; i < about->lanes(); ++i) file->append_world(about->lane(i).world, i);
   };
   const Session rest = read_session(
       part, [&](const Session& it) { about = it; },
-      [&](std::span<const double> rows, std::span<const double> twin) {
+      [&](LaneRows rows) {
         if (!file) begin();
-        file->append(rows, kMainLane);
-        if (about->twin) file->append(twin, kTwinLane);
+        for (std::size_t i = 0; i < rows.size(); ++i) file->append(rows[i], i);
       });
   if (!file) {
     throw FileError(fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
   }
-  for (const SettingChange& change : rest.changes) file->append(change, kMainLane);
-  if (rest.twin) {
-    for (const SettingChange& change : rest.twin->changes) file->append(change, kTwinLane);
+  for (std::size_t i = 0; i < rest.lanes(); ++i) {
+    for (const SettingChange& change : rest.lane(i).changes) file->append(change, i);
   }
   for (const Mark& mark : rest.marks) file->append(mark);
   const std::uint64_t rows = file->rows();

@@ -55,11 +55,11 @@ void let_live(LiveLoop& loop, std::int64_t ticks) {
 std::vector<std::pair<std::uint64_t, Vec3>> targets(LiveLoop& loop) {
   const RowLayout& layout = loop.layout();
   const auto stride = static_cast<std::size_t>(layout.stride());
-  std::vector<double> rows(1024 * 2 * stride);
+  std::vector<double> rows(1024 * kMostLanes * stride);
   std::vector<std::pair<std::uint64_t, Vec3>> all;
   while (const std::size_t count = loop.drain(rows)) {
     for (std::size_t i = 0; i < count; ++i) {
-      const auto row = std::span<const double>(rows).subspan(2 * i * stride, stride);
+      const auto row = std::span<const double>(rows).subspan(i * kMostLanes * stride, stride);
       const auto target = layout.in(row, Column::hand_target);
       all.emplace_back(loop.drained_from() + i, Vec3(target[0], target[1], target[2]));
     }
@@ -192,13 +192,13 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
   const SceneDocument table = test::omni_document("table.toml");
   LiveLoop loop({});
   Controls controls;
-  loop.open(arm, table.scene, controls.parameters, kHome);
+  loop.open(arm, table.scene, controls.parameters(), kHome);
   // The arm is in motion when the recording begins.
   controls.grab = true;
   controls.goal = kHome + Vec3(0.02, 0.03, 0.01);
   loop.set(controls);
   let_live(loop, 100);
-  loop.record(recorder(dir / "a.h5", arm, table, controls.parameters));
+  loop.record(recorder(dir / "a.h5", arm, table, controls.parameters()));
   bool armed = true;
   for (int i = 0; i < 25; ++i) {
     controls.goal = kHome + Vec3(0.001 * i, -0.002 * i, -0.0025 * i);
@@ -207,11 +207,11 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
       armed = now;
       armed ? loop.arm() : loop.cut();
     }
-    controls.parameters.kind = static_cast<CouplingKind>(i % 5 == 4 ? 0 : 1 + i / 5 % 2);
-    controls.parameters.eta = 0.7 + 0.1 * i;
-    if (i == 10) controls.parameters.velocity = VelocitySource::lowpass;
-    if (i == 12) controls.parameters.damping = 0.02;
-    if (i == 16) controls.parameters.damping = kFromArm;
+    controls.parameters().kind = static_cast<CouplingKind>(i % 5 == 4 ? 0 : 1 + i / 5 % 2);
+    controls.parameters().eta = 0.7 + 0.1 * i;
+    if (i == 10) controls.parameters().velocity = VelocitySource::lowpass;
+    if (i == 12) controls.parameters().damping = 0.02;
+    if (i == 16) controls.parameters().damping = kFromArm;
     loop.set(controls);
     let_live(loop, 40);
   }
@@ -231,7 +231,8 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
 std::int64_t arm_ticks(LiveLoop& loop) {
   let_live(loop, 20);
   loop.update();
-  const double t = loop.layout().in(std::span<const double>(loop.snapshot().row), Column::time)[0];
+  const double t =
+      loop.layout().in(std::span<const double>(loop.snapshot().rows[kMainLane]), Column::time)[0];
   return std::llround(t * 1e3);
 }
 
@@ -239,7 +240,7 @@ TEST(LiveLoop, StandsStillWhilePausedAndGoesOnByAsManyTicksAsAreAskedFor) {
   LiveLoop loop({});
   Controls controls;
   const SceneDocument table = test::omni_document("table.toml");
-  loop.open(test::omni(), table.scene, controls.parameters, kHome);
+  loop.open(test::omni(), table.scene, controls.parameters(), kHome);
   let_live(loop, 50);
   controls.paused = true;
   loop.set(controls);
@@ -269,7 +270,8 @@ TEST(LiveLoop, DoesNotStandStillForADevice) {
   LiveLoop loop({});
   Controls controls;
   const SceneDocument table = test::omni_document("table.toml");
-  loop.open(test::omni(), table.scene, controls.parameters, std::make_unique<test::FakeDevice>(3));
+  loop.open(test::omni(), table.scene, controls.parameters(),
+            std::make_unique<test::FakeDevice>(3));
   controls.paused = true;
   controls.slow = 100;
   loop.set(controls);
@@ -324,18 +326,18 @@ TEST(LiveLoop, MeetsNoPageFaultFromItsFirstTickOnWhateverItTouches) {
   const std::int64_t before = page_faults();
   ASSERT_GT(before, 0);
   Controls controls;
-  loop.open(arm, leaf.scene, controls.parameters, kHome);
+  loop.open(arm, leaf.scene, controls.parameters(), kHome);
   double contact = 0;
   controls.grab = true;
   for (const CouplingKind kind :
        {CouplingKind::predictive, CouplingKind::proposed, CouplingKind::standard}) {
-    controls.parameters.kind = kind;
+    controls.parameters().kind = kind;
     for (int i = 0; i < 20; ++i) {
       controls.goal = kHome + Vec3(0.002 * (i % 10), 0.001 * i, -0.005 * i);
       loop.set(controls);
       let_live(loop, 20);
       loop.update();
-      const std::span<const double> row(loop.snapshot().row);
+      const std::span<const double> row(loop.snapshot().rows[kMainLane]);
       const auto f2 = loop.layout().in(row, Column::contact_torque);
       for (const double torque : f2) contact += std::abs(torque);
     }
@@ -344,54 +346,52 @@ TEST(LiveLoop, MeetsNoPageFaultFromItsFirstTickOnWhateverItTouches) {
   EXPECT_EQ(page_faults() - before, 0);
 }
 
-TEST(LiveLoop, RunsATwinOnTheSameHandAndRecordsBoth) {
+TEST(LiveLoop, RunsThreeLanesOnTheSameHandAndRecordsAll) {
   const test::TempDir dir;
   LiveLoop loop({});
   Controls controls;
   RunPlan plan = test::plan("table.toml", "touch.csv", 1);
-  controls.twin = true;
-  controls.twin_parameters.kind = CouplingKind::standard;
+  controls.lane_count = kMostLanes;
+  controls.lanes[kTwinLane].kind = CouplingKind::standard;
+  controls.lanes[2].kind = CouplingKind::predictive;
   controls.grab = true;
   controls.goal = kHome + Vec3(0, 0.02, -0.05);
-  loop.open(plan.arm, plan.document.scene, controls.parameters, kHome);
+  loop.open(plan.arm, plan.document.scene, controls.parameters(), kHome);
   loop.set(controls);
   let_live(loop, 50);
-  plan.parameters = controls.parameters;
-  plan.beside.push_back({controls.twin_parameters, {}});
-  loop.record(std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters, false,
-                                         Recorder::kLiveRoom, plan.twin()));
+  plan.parameters = controls.parameters();
+  for (std::size_t i = 1; i < kMostLanes; ++i) plan.beside.push_back({controls.lanes[i], {}});
+  loop.record(std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.settings(), false));
   let_live(loop, 300);
-  controls.twin_parameters.k_vc = 7;
+  controls.lanes[kTwinLane].k_vc = 7;
   loop.set(controls);
   let_live(loop, 200);
   loop.finish_recording();
   loop.close();
 
   const Session session = read_session(dir / "a.h5");
-  ASSERT_TRUE(session.twin);
+  ASSERT_EQ(session.lanes(), kMostLanes);
   ASSERT_GE(session.size(), 400u);
-  ASSERT_EQ(session.twin->size(), session.size());
   const std::size_t last = session.size() - 1;
-  EXPECT_EQ(session.at(last, Column::kind)[0], 1);
-  EXPECT_EQ(session.twin->at(last, Column::kind)[0], 0);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    EXPECT_EQ(session.at(last, Column::hand_target)[axis],
-              session.twin->at(last, Column::hand_target)[axis]);
-  }
-  ASSERT_EQ(session.twin->changes.size(), 1u);
-  EXPECT_EQ(session.twin->changes[0].key(), "coupling.k_vc");
-  EXPECT_TRUE(session.changes.empty());
-  // Both runs come again.
-  const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
-  test::Rows first(session.layout), twin(session.layout);
   const auto stride = static_cast<std::size_t>(session.layout.stride());
-  simulate(again, {}, [&](std::span<const double> rows, const auto&) {
-    first.add(rows.first(stride));
-    twin.add(rows.subspan(stride));
+  std::vector<test::Rows> rows(kMostLanes, test::Rows(session.layout));
+  const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  simulate(again, {}, [&](std::span<const double> all, const auto&) {
+    for (std::size_t i = 0; i < kMostLanes; ++i) rows[i].add(all.subspan(i * stride, stride));
     return true;
   });
-  EXPECT_EQ(test::first_difference(test::rows_of(session), first), -1);
-  EXPECT_EQ(test::first_difference(test::rows_of(*session.twin), twin), -1);
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    const Session& lane = session.lane(i);
+    ASSERT_EQ(lane.size(), session.size());
+    EXPECT_EQ(lane.at(last, Column::kind)[0], static_cast<double>(controls.lanes[i].kind));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(session.at(last, Column::hand_target)[axis],
+                lane.at(last, Column::hand_target)[axis]);
+    }
+    ASSERT_EQ(lane.changes.size(), i == kTwinLane ? 1u : 0u);
+    EXPECT_EQ(test::first_difference(test::rows_of(lane), rows[i]), -1) << "comes again: " << i;
+  }
+  EXPECT_EQ(session.lane(kTwinLane).changes[0].key(), "coupling.k_vc");
 }
 
 TEST(LiveLoop, RecordsWhatTheTwinWasSetToWhileItsFileWasOpened) {
@@ -399,15 +399,15 @@ TEST(LiveLoop, RecordsWhatTheTwinWasSetToWhileItsFileWasOpened) {
   LiveLoop loop({});
   Controls controls;
   RunPlan plan = test::plan("table.toml", "touch.csv", 1);
-  controls.twin = true;
-  loop.open(plan.arm, plan.document.scene, controls.parameters, kHome);
+  controls.lane_count = 2;
+  loop.open(plan.arm, plan.document.scene, controls.parameters(), kHome);
   loop.set(controls);
   let_live(loop, 50);
-  plan.parameters = controls.parameters;
-  plan.beside.push_back({controls.twin_parameters, {}});
-  auto recorder = std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.parameters,
-                                             false, Recorder::kLiveRoom, plan.twin());
-  controls.twin_parameters.k_vc = 7;
+  plan.parameters = controls.parameters();
+  plan.beside.push_back({controls.lanes[kTwinLane], {}});
+  auto recorder =
+      std::make_unique<Recorder>(dir / "a.h5", session_info(plan), plan.settings(), false);
+  controls.lanes[kTwinLane].k_vc = 7;
   loop.set(controls);
   let_live(loop, 50);
   loop.record(std::move(recorder));
@@ -415,33 +415,34 @@ TEST(LiveLoop, RecordsWhatTheTwinWasSetToWhileItsFileWasOpened) {
   loop.finish_recording();
   loop.close();
   const Session session = read_session(dir / "a.h5");
-  ASSERT_TRUE(session.twin);
-  ASSERT_EQ(session.twin->changes.size(), 1u);
-  EXPECT_EQ(session.twin->changes[0].row, 0u);
-  EXPECT_EQ(session.twin->changes[0].key(), "coupling.k_vc");
+  ASSERT_EQ(session.lanes(), 2u);
+  ASSERT_EQ(session.lane(kTwinLane).changes.size(), 1u);
+  EXPECT_EQ(session.lane(kTwinLane).changes[0].row, 0u);
+  EXPECT_EQ(session.lane(kTwinLane).changes[0].key(), "coupling.k_vc");
 }
 
 TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
   LiveLoop loop({});
   Controls controls;
-  loop.open(test::omni(), test::omni_scene("table.toml"), controls.parameters, kHome);
+  loop.open(test::omni(), test::omni_scene("table.toml"), controls.parameters(), kHome);
   loop.set(controls);
   let_live(loop, 200);
   loop.close();
   const RowLayout layout(3);
   const auto stride = static_cast<std::size_t>(layout.stride());
-  std::vector<double> rows(10000 * 2 * stride);
+  std::vector<double> rows(10000 * kMostLanes * stride);
   const std::size_t count = loop.drain(rows);
   ASSERT_GE(count, 200u);
   EXPECT_EQ(loop.trace_dropped(), 0u);
   for (std::size_t k = 0; k < count; ++k) {
-    const auto both = std::span<const double>(rows).subspan(2 * k * stride, 2 * stride);
+    const auto both =
+        std::span<const double>(rows).subspan(k * kMostLanes * stride, kMostLanes * stride);
     ASSERT_NEAR(layout.in(both.first(stride), Column::time)[0], static_cast<double>(k) * 1e-3,
                 1e-9);
-    ASSERT_TRUE(std::isnan(both[stride]));  // there is no twin
+    ASSERT_TRUE(std::isnan(both[stride]) && std::isnan(both[2 * stride]));  // one lane
   }
   EXPECT_TRUE(loop.update());
-  EXPECT_NEAR(layout.in(std::span<const double>(loop.snapshot().row), Column::time)[0],
+  EXPECT_NEAR(layout.in(std::span<const double>(loop.snapshot().rows[kMainLane]), Column::time)[0],
               static_cast<double>(count - 1) * 1e-3, 1e-9);
   EXPECT_FALSE(loop.update());
 }
@@ -449,7 +450,7 @@ TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
 TEST(LiveLoop, StartsOverWhenAsked) {
   LiveLoop loop({});
   Controls controls;
-  loop.open(test::omni(), Scene{}, controls.parameters, kHome);
+  loop.open(test::omni(), Scene{}, controls.parameters(), kHome);
   controls.grab = true;
   controls.goal = kHome + Vec3(0, 0.05, 0);
   loop.set(controls);
@@ -461,7 +462,7 @@ TEST(LiveLoop, StartsOverWhenAsked) {
   loop.close();
   ASSERT_TRUE(loop.update());
   const RowLayout layout(3);
-  const auto row = std::span<const double>(loop.snapshot().row);
+  const auto row = std::span<const double>(loop.snapshot().rows[kMainLane]);
   const auto start = rest_at(test::omni(), kHome).x1;
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(layout.in(row, Column::device_position)[i], start[static_cast<int>(i)], 1e-4);
@@ -514,15 +515,15 @@ TEST(LiveLoop, KeepsTheForceOfTheVirtualArmWhileARealDeviceTakesItsPlace) {
 TEST(LiveLoop, StaysOffWhenItStartsOverAfterAnInstability) {
   LiveLoop loop({});
   Controls controls;
-  loop.open(test::omni(), Scene{}, controls.parameters, kHome);
+  loop.open(test::omni(), Scene{}, controls.parameters(), kHome);
   let_live(loop, 5);
-  controls.parameters.k_vc = std::numeric_limits<double>::infinity();
+  controls.parameters().k_vc = std::numeric_limits<double>::infinity();
   loop.set(controls);
   do {
     let_live(loop, 1);
     loop.update();
   } while (!loop.snapshot().diverged);
-  controls.parameters = {};
+  controls.parameters() = {};
   controls.resets = 1;
   loop.set(controls);
   let_live(loop, 20);
@@ -602,7 +603,7 @@ class Cap final : public Device {
 
 struct LedLoop : testing::Test {
   LedLoop() {
-    loop.open(test::omni(), Scene{}, controls.parameters, kHome);
+    loop.open(test::omni(), Scene{}, controls.parameters(), kHome);
     loop.plug(std::make_unique<Cap>(push));
   }
   void live(int ticks) {
@@ -612,7 +613,7 @@ struct LedLoop : testing::Test {
   }
   // Largest deviation of a joint from the arm's rest [rad].
   double away() const {
-    const auto row = std::span<const double>(loop.snapshot().row);
+    const auto row = std::span<const double>(loop.snapshot().rows[kMainLane]);
     const auto x = RowLayout(3).in(row, Column::device_position);
     return (Eigen::Map<const Eigen::Vector3d>(x.data()) - rest_at(test::omni(), kHome).x1)
         .cwiseAbs()
@@ -627,12 +628,12 @@ struct LedLoop : testing::Test {
 TEST_F(LedLoop, IsTakenHoldOfWhereTheTipIs) {
   controls.grab = true;
   controls.goal = kHome + Vec3(0, 0.03, 0);
-  controls.parameters.hand_stiffness = 1e-3;
+  controls.parameters().hand_stiffness = 1e-3;
   live(100);
   controls.grab = false;
   live(100);
   const double before = away();
-  controls.parameters = {};
+  controls.parameters() = {};
   *push = 0.07;  // a very weak push
   live(500);
   EXPECT_NEAR(away(), before, 0.02);
@@ -672,7 +673,7 @@ TEST(LiveLoop, DoesNotBeginWhereItsDeviceCannotBe) {
     loop.update();
     EXPECT_EQ(loop.snapshot().force_state, ForceState::wrong);
     const RowLayout layout(3);
-    const std::span<const double> row(loop.snapshot().row);
+    const std::span<const double> row(loop.snapshot().rows[kMainLane]);
     for (const Column at : {Column::device_position, Column::proxy_position}) {
       for (const double x : layout.in(row, at)) EXPECT_LT(std::abs(x), 4);
     }

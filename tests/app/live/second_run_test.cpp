@@ -1,7 +1,7 @@
 // The second run beside the loop's, tick by tick.
 #include <gtest/gtest.h>
 
-#include "app/live/twin.h"
+#include "app/live/further_lane.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {
@@ -15,7 +15,7 @@ TEST(SecondRun, BeginsWithTheForceThatTheFirstHas) {
     Rig first(plan.arm, scene);
     RigStart start = rest_at(plan.arm, target);
     first.start(plan.parameters, start);
-    Twin second;
+    FurtherLane second;
     second.open(std::make_unique<Rig>(plan.arm, scene), start);
     test::Rows one(first.layout()), other(first.layout());
     RigInput input{.hand = {target + Vec3(0.01, 0.01, 0), 1}};

@@ -115,22 +115,25 @@ TEST(EnergyAccount, AddsUpToAllThatWasGiven) {
   EXPECT_NEAR(a.forgiven(), 0.2, kRound);
 }
 
-// Each of two runs has its own account: a change in one does not excuse the other.
-TEST(EnergyAccount, OfATwinIsItsOwn) {
+// Each lane has its own account: a change in one does not excuse another.
+TEST(EnergyAccount, OfAFurtherLaneIsItsOwn) {
   const TraceChannels channels{RowLayout(3)};
   const int one = channels.count();
-  History history({.channels = 2 * one, .seconds = 10});
-  EnergyAccount first, second;
+  History history({.channels = 3 * one, .seconds = 10});
+  EnergyAccount first, second, third;
   const auto go_on = [&](int from, int to, double of_second) {
     for (int k = from; k < to; ++k) {
-      std::vector<double> values(static_cast<std::size_t>(2 * one), 0.0);
+      std::vector<double> values(static_cast<std::size_t>(3 * one), 0.0);
       values[static_cast<std::size_t>(Channel::energy_total)] = -1e-4 * k;
-      values[static_cast<std::size_t>(one) + static_cast<std::size_t>(Channel::energy_total)] =
-          of_second;
+      for (const int lane : {1, 2}) {
+        values[static_cast<std::size_t>(lane * one) +
+               static_cast<std::size_t>(Channel::energy_total)] = of_second;
+      }
       history.append(1e-3 * k, values);
     }
     first.follow(history, history.end());
-    second.follow(history, history.end(), {one, true});
+    second.follow(history, history.end(), {one, kTwinLane});
+    third.follow(history, history.end(), {2 * one, 2});
   };
   go_on(0, 100, std::nan(""));
   go_on(100, 200, 0);
@@ -139,13 +142,16 @@ TEST(EnergyAccount, OfATwinIsItsOwn) {
   EXPECT_NEAR(first.own(), -0.0299, kRound);
   EXPECT_NEAR(second.own(), 0.3, kRound);
   EXPECT_EQ(second.by_changes(), 0);
-  history.mark(0.299, "twin: eta 1", std::string(kTwinMark) + "coupling.eta");
+  history.mark(0.299, "twin: eta 1", lane_mark(kTwinLane) + "coupling.eta");
   go_on(300, 400, 0.5);
   EXPECT_NEAR(second.by_changes(), 0.2, kRound);
   EXPECT_EQ(first.by_changes(), 0);
-  history.mark(0.399, "grip", "hand.stiffness");  // changes both runs
+  EXPECT_EQ(third.by_changes(), 0);
+  EXPECT_NEAR(third.own(), 0.5, kRound);
+  history.mark(0.399, "grip", "hand.stiffness");  // changes all runs
   go_on(400, 450, 0.6);
   EXPECT_NEAR(second.by_changes(), 0.3, kRound);
+  EXPECT_NEAR(third.by_changes(), 0.1, kRound);
 }
 
 TEST(EnergyAccount, BooksWhatIsGainedAtTheMotorsLimitApart) {

@@ -204,9 +204,11 @@ TEST(TraceChannels, FitIntoAHistoryHoweverManyMove) {
   for (const ChannelInfo& info : channels.infos()) {
     EXPECT_TRUE(keys.insert(info.key).second) << info.key;
   }
-  History history({.channels = 2 * channels.count(), .seconds = 0.01});
+  History history({.channels = static_cast<int>(kMostLanes) * channels.count(), .seconds = 0.01});
   const std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.5);
-  channels.append(history, row, row);
+  std::array<std::span<const double>, kMostLanes> lanes;
+  lanes.fill(row);
+  channels.append(history, lanes);
   int last = 0;  // number of the bodies' last channel
   for (int i = 0; i < channels.count(); ++i) {
     if (channels.infos()[static_cast<std::size_t>(i)].key.ends_with("turning")) last = i;

@@ -27,13 +27,12 @@ class RemoteTest : public testing::Test {
   RemoteTest() : row(static_cast<std::size_t>(layout.stride()), 1.0) {
     host.kind = "test";
     host.state = [] { return json{{"arm", "none"}}; };
-    host.parameters = [this]() -> const Parameters& { return parameters; };
-    host.twin = [this]() -> const Parameters* { return twin ? &*twin : nullptr; };
+    host.lanes = [this] { return lanes.size(); };
+    host.parameters = [this](std::size_t lane) -> const Parameters& { return lanes[lane]; };
     host.highest = [this] { return highest; };
-    host.set = [this](const Parameters& p, bool of_twin) { (of_twin ? *twin : parameters) = p; };
+    host.set = [this](const Parameters& p, std::size_t lane) { lanes[lane] = p; };
     host.channels = [this]() -> const TraceChannels& { return channels; };
-    host.row = [this]() -> std::span<const double> { return row; };
-    host.twin_row = [] { return std::span<const double>(); };
+    host.rows = [this] { return std::vector<std::span<const double>>{row}; };
     host.tick = [] { return std::uint64_t{7}; };
     host.actions["record"] = [this](const Keys&, LineServer::Client) {
       return Answer::Later([this]() -> std::optional<json> {
@@ -78,6 +77,10 @@ class RemoteTest : public testing::Test {
     received.erase(0, at + 1);
     return line;
   }
+  void pass(std::uint64_t tick) {
+    const std::span<const double> first(row);
+    remote->row(LaneRows(&first, 1), tick);
+  }
   json ask(const std::string& line) {
     say(line);
     return hear();
@@ -88,8 +91,8 @@ class RemoteTest : public testing::Test {
   RowLayout layout{3};
   TraceChannels channels{layout};
   std::vector<double> row;
-  Parameters parameters, highest;
-  std::optional<Parameters> twin;
+  std::vector<Parameters> lanes = std::vector<Parameters>(1);
+  Parameters highest;
   RemoteHost host;
   std::unique_ptr<Remote> remote;
   int file = -1, cuts = 0, gone = 0, turns_left = 3;
@@ -111,27 +114,40 @@ TEST_F(RemoteTest, SetsAllOrNothing) {
   start();
   EXPECT_EQ(ask(R"({"do":"set","values":{"coupling.eta":0.5,"coupling.kind":"standard"}})")["ok"],
             json({{"values", {{"coupling.eta", 0.5}, {"coupling.kind", "standard"}}}}));
-  EXPECT_EQ(parameters.eta, 0.5);
+  EXPECT_EQ(lanes[kMainLane].eta, 0.5);
   const json error = ask(R"({"do":"set","values":{"coupling.eta":0.7,"coupling.k_vc":"much"}})");
   EXPECT_THAT(error["error"].get<std::string>(), HasSubstr("coupling.k_vc"));
-  EXPECT_EQ(parameters.eta, 0.5);
+  EXPECT_EQ(lanes[kMainLane].eta, 0.5);
   EXPECT_TRUE(ask(R"({"do":"set","twin":true,"values":{"coupling.eta":2}})").contains("error"));
-  twin.emplace();
+  lanes.resize(2);
   EXPECT_TRUE(ask(R"({"do":"set","twin":true,"values":{"coupling.eta":2}})").contains("ok"));
-  EXPECT_EQ(twin->eta, 2);
+  EXPECT_EQ(lanes[kTwinLane].eta, 2);
+  EXPECT_NE(lanes[kMainLane].eta, 2);
+  const std::string third = R"({"do":"set","lane":2,"values":{"coupling.eta":3}})";
+  EXPECT_TRUE(ask(third).contains("error")) << "there is none";
+  EXPECT_TRUE(ask(R"({"do":"set","lane":1.5,"values":{}})").contains("error"));
+  EXPECT_TRUE(ask(R"({"do":"set","lane":3,"values":{}})").contains("error"));
+  lanes.resize(3);
+  EXPECT_TRUE(ask(third).contains("ok"));
+  EXPECT_EQ(lanes[2].eta, 3);
+  EXPECT_EQ(lanes[kTwinLane].eta, 2);
+  const json all = ask(R"({"do":"get","keys":["coupling.eta"]})")["ok"];
+  EXPECT_EQ(all["values"]["coupling.eta"], lanes[kMainLane].eta);
+  EXPECT_EQ(all["twin"]["coupling.eta"], 2);
+  EXPECT_EQ(all["lane3"]["coupling.eta"], 3);
 }
 
 TEST_F(RemoteTest, SetsAllOthersAsTheyUsuallyAreWhenThatIsAskedFor) {
-  parameters.eta = 0.5;
-  parameters.hand_stiffness = 900;
+  lanes[kMainLane].eta = 0.5;
+  lanes[kMainLane].hand_stiffness = 900;
   host.usual = [] { return Parameters{}; };
   start();
   EXPECT_TRUE(ask(R"({"do":"set","reset":true,"values":{"coupling.eta":-1}})").contains("error"));
-  EXPECT_EQ(parameters.hand_stiffness, 900) << "what is refused changes nothing";
+  EXPECT_EQ(lanes[kMainLane].hand_stiffness, 900) << "what is refused changes nothing";
   EXPECT_TRUE(ask(R"({"do":"set","reset":true,"values":{"coupling.k_vc":8}})").contains("ok"));
-  EXPECT_EQ(parameters.k_vc, 8);
-  EXPECT_EQ(parameters.eta, Parameters{}.eta);
-  EXPECT_EQ(parameters.hand_stiffness, Parameters{}.hand_stiffness);
+  EXPECT_EQ(lanes[kMainLane].k_vc, 8);
+  EXPECT_EQ(lanes[kMainLane].eta, Parameters{}.eta);
+  EXPECT_EQ(lanes[kMainLane].hand_stiffness, Parameters{}.hand_stiffness);
 }
 
 TEST(UsualSettings, StayWithinLimitsAndLeaveADeviceWhatIsItsOwn) {
@@ -157,14 +173,14 @@ TEST(UsualSettings, StayWithinLimitsAndLeaveADeviceWhatIsItsOwn) {
 
 // Broken passivity puts temporary settings in place; a request must not keep these.
 TEST_F(RemoteTest, SetsOnTopOfWhatIsThereOnceWhatIsForAWhileHasEnded) {
-  parameters.hand_stiffness = 3000;
-  host.before_set = [this](LineServer::Client) { parameters.hand_stiffness = 300; };
+  lanes[kMainLane].hand_stiffness = 3000;
+  host.before_set = [this](LineServer::Client) { lanes[kMainLane].hand_stiffness = 300; };
   start();
   EXPECT_TRUE(ask(R"({"do":"set","values":{"coupling.eta":-1}})").contains("error"));
-  EXPECT_EQ(parameters.hand_stiffness, 3000) << "what is refused ends nothing";
+  EXPECT_EQ(lanes[kMainLane].hand_stiffness, 3000) << "what is refused ends nothing";
   EXPECT_TRUE(ask(R"({"do":"set","values":{"coupling.eta":0.5}})").contains("ok"));
-  EXPECT_EQ(parameters.hand_stiffness, 300);
-  EXPECT_EQ(parameters.eta, 0.5);
+  EXPECT_EQ(lanes[kMainLane].hand_stiffness, 300);
+  EXPECT_EQ(lanes[kMainLane].eta, 0.5);
 }
 
 TEST_F(RemoteTest, GivesSettingsAsTheyAreSet) {
@@ -175,8 +191,8 @@ TEST_F(RemoteTest, GivesSettingsAsTheyAreSet) {
     const json& value = values[info.key];
     if (value.is_null() || !info.live) continue;
     Parameters again;
-    EXPECT_NO_THROW(set_by_remote(again, info.key, value, parameters)) << info.key;
-    EXPECT_TRUE(again == parameters) << info.key;
+    EXPECT_NO_THROW(set_by_remote(again, info.key, value, lanes[kMainLane])) << info.key;
+    EXPECT_TRUE(again == lanes[kMainLane]) << info.key;
   }
   EXPECT_TRUE(ask(R"({"do":"get","keys":["no.such"]})").contains("error"));
 }
@@ -204,12 +220,29 @@ TEST_F(RemoteTest, SendsRowsAtTheirRateAndCountsThoseThatAreMissing) {
   const json ok =
       ask(R"({"do":"follow","channels":["coupling/eta","twin/coupling/eta"],"rate":500})")["ok"];
   EXPECT_EQ(ok["every"], 2);
-  for (const std::uint64_t tick : {10u, 11u, 12u, 13u, 20u}) remote->row(row, {}, tick);
+  for (const std::uint64_t tick : {10u, 11u, 12u, 13u, 20u}) pass(tick);
   EXPECT_EQ(hear(), json({{"rows", {{10, 1.0, nullptr}, {12, 1.0, nullptr}, {20, 1.0, nullptr}}},
                           {"dropped", 3}}));
   EXPECT_TRUE(ask(R"({"do":"follow"})").contains("ok"));
-  remote->row(row, {}, 30);
+  pass(30);
   EXPECT_EQ(ask(R"({"id":5,"do":"get","keys":[]})")["id"], 5);
+}
+
+// Rows of further runs come by their names, and are null while no such run is there.
+TEST_F(RemoteTest, SendsTheRowsOfEachRun) {
+  start();
+  ask(R"({"do":"follow","channels":["coupling/eta","twin/coupling/eta","lane3/coupling/eta"]})");
+  std::array<std::vector<double>, kMostLanes> all;
+  std::array<std::span<const double>, kMostLanes> rows;
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    all[i].assign(row.size(), 1.0 + static_cast<double>(i));
+    rows[i] = all[i];
+  }
+  remote->row(rows, 0);
+  EXPECT_EQ(hear()["rows"], json({{0, 1.0, 2.0, 3.0}}));
+  all[2][0] = std::nan("");  // no third run
+  remote->row(rows, 10);
+  EXPECT_EQ(hear()["rows"], json({{10, 1.0, 2.0, nullptr}}));
 }
 
 // A channel has the same name live and recorded.
@@ -229,7 +262,7 @@ TEST_F(RemoteTest, KnowsTheNamesThatSessionsHave) {
       ask(R"({"do":"follow","channels":["hand/torque","contact/total_force","twin/hand/torque"]})")
           ["ok"];
   EXPECT_EQ(follows["units"], json({"N m", "N", "N m"}));
-  remote->row(row, {}, 0);
+  pass(0);
   EXPECT_EQ(hear()["rows"], json({{0, {1.0, 2.0, 3.0}, {0.0, 0.0, 7.0}, nullptr}}));
   for (const ColumnInfo& column : kColumnInfo) {
     if (layout.width(column.column) == 0) continue;  // of bodies, which are absent
@@ -247,12 +280,12 @@ TEST_F(RemoteTest, KnowsTheNamesThatSessionsHave) {
 TEST_F(RemoteTest, DropsRowsOfOneThatDoesNotReadAndSaysHowMany) {
   start();
   ask(R"({"do":"follow","channels":["coupling/eta"],"rate":1000})");
-  for (std::uint64_t tick = 0; tick < 400'000; ++tick) remote->row(row, {}, tick);
+  for (std::uint64_t tick = 0; tick < 400'000; ++tick) pass(tick);
   std::uint64_t seen = 0, dropped = 0;
   for (json line = hear(); dropped == 0 && line.contains("rows"); line = hear()) {
     seen += line["rows"].size();
     dropped = line["dropped"].get<std::uint64_t>();
-    remote->row(row, {}, 400'000 + seen);
+    pass(400'000 + seen);
   }
   EXPECT_GT(dropped, 0u);
 }
@@ -268,7 +301,7 @@ TEST_F(RemoteTest, ForgetsAClientThatIsGone) {
     remote->wait_until(std::chrono::steady_clock::now() + 1ms);
   }
   EXPECT_EQ(gone, 1);
-  remote->row(row, {}, 1);
+  pass(1);
   remote->turn();
 }
 

@@ -10,8 +10,7 @@
 namespace limpid::test {
 
 inline Session recorded(const RunPlan& plan, const std::filesystem::path& out) {
-  Recorder recorder(out, session_info(plan), plan.parameters, false, Recorder::kWaitingRoom,
-                    plan.twin());
+  Recorder recorder(out, session_info(plan), plan.settings(), false, Recorder::kWaitingRoom);
   simulate(plan, {}, [&](std::span<const double> rows, LaneChanges changed) {
     for (std::size_t lane = 0; lane < changed.size(); ++lane) {
       if (changed[lane] != nullptr) recorder.changed(*changed[lane], lane);

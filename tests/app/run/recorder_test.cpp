@@ -84,9 +84,8 @@ TEST(Recorder, WritesWhatBodiesBeginWithBeforeTheFirstRow) {
   const test::TempDir dir;
   SessionInfo info = sample_info(3);
   info.bodies = {"die"};
-  info.twin = "";
-  const Parameters p;
-  Recorder recorder(dir / "a.h5", info, p, false, Recorder::kLiveRoom, &p);
+  info.beside = {""};
+  Recorder recorder(dir / "a.h5", info, std::vector<Parameters>(2), false);
   const std::vector<double> world{1, 2, 3}, other{4, 5};
   recorder.begins(world);
   recorder.begins(other, kTwinLane);
@@ -98,7 +97,7 @@ TEST(Recorder, WritesWhatBodiesBeginWithBeforeTheFirstRow) {
   EXPECT_EQ(recorder.dropped(), 0u);
   const Session session = read_session(dir / "a.h5");
   EXPECT_EQ(session.world, world);
-  EXPECT_EQ(session.twin->world, other);
+  EXPECT_EQ(session.lane(kTwinLane).world, other);
   EXPECT_EQ(session.info.bodies, info.bodies);
 }
 

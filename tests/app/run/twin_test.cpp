@@ -1,4 +1,4 @@
-// Two runs on one hand: each as if it ran alone, in one file, and both again from it.
+// Runs on one hand: each as if it ran alone, in one file, and all again from it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,9 +6,9 @@
 #include <fstream>
 #include <string_view>
 
+#include "app/run/lane_settings.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
-#include "app/run/twin_settings.h"
 #include "devices/files/session/session_csv.h"
 #include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
@@ -85,11 +85,16 @@ TEST(Twin, GivesEachRunWhatItGivesAlone) {
   EXPECT_EQ(first_difference(both.twin, rows_of(alone(plan))), -1);
 }
 
-TEST(Lanes, AreAsManyAsThePlanHasAndEachIsAsIfItRanAlone) {
+RunPlan three() {
   RunPlan plan = pair();
   Lane& third = plan.beside.emplace_back(plan.lane(0));
   third.parameters.kind = CouplingKind::predictive;
   third.changes = {{300, "coupling.eta = 0.3"}, {900, "coupling.kind = standard"}};
+  return plan;
+}
+
+TEST(Lanes, AreAsManyAsThePlanHasAndEachIsAsIfItRanAlone) {
+  const RunPlan plan = three();
   const auto stride = static_cast<std::size_t>(RowLayout(plan.arm.dof()).stride());
   std::vector<Rows> lanes(plan.lanes(), Rows(RowLayout(plan.arm.dof())));
   std::vector<int> changes(plan.lanes());
@@ -109,15 +114,61 @@ TEST(Lanes, AreAsManyAsThePlanHasAndEachIsAsIfItRanAlone) {
   }
 }
 
+TEST(Lanes, AreOneFileFromWhichAllComeAgain) {
+  const test::TempDir dir;
+  const RunPlan plan = three();
+  const Session session = recorded(plan, dir / "a.h5");
+  ASSERT_EQ(session.lanes(), 3u);
+  const RunPlan again = replay(session, "a.h5", session_parameters(session, "a.h5"));
+  ASSERT_EQ(again.lanes(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    RunPlan one = again;
+    static_cast<Lane&>(one) = again.lane(i);
+    one.beside.clear();
+    EXPECT_EQ(first_difference(rows_of(session.lane(i)), rows_of(one)), -1) << i;
+    EXPECT_EQ(session.lane(i).changes.size(), plan.lane(i).changes.size());
+  }
+  write_csv(session, dir / "a.csv", false);
+  std::ifstream file(dir / "a.csv");
+  std::string header;
+  std::getline(file, header);
+  EXPECT_NE(header.find(",lane3_time_s,"), std::string::npos);
+}
+
+TEST(Lanes, AreNamedByTheirLawsOrByWhatTheyDifferIn) {
+  using enum CouplingKind;
+  const auto of = [](CouplingKind kind, double eta) {
+    Parameters p;
+    p.kind = kind;
+    p.eta = eta;
+    return p;
+  };
+  using Names = std::vector<std::string>;
+  const auto names = [](std::vector<Parameters> lanes) { return lane_names(lanes); };
+  EXPECT_EQ(names({of(standard, 1), of(predictive, 1)}), (Names{"standard", "predictive"}));
+  EXPECT_EQ(names({of(standard, 1), of(standard, 1)}), (Names{"standard 1", "standard 2"}));
+  const std::string eta = find_parameter("coupling.eta")->label;
+  EXPECT_EQ(names({of(predictive, 1), of(predictive, 0.5)}), (Names{eta + " 1.0", eta + " 0.5"}));
+  EXPECT_EQ(names({of(predictive, 1), of(standard, 1), of(predictive, 0.5)}),
+            (Names{"predictive, " + eta + " 1.0", "standard", "predictive, " + eta + " 0.5"}));
+  for (const CouplingKind first : {standard, proposed, predictive, tank}) {
+    const std::vector<Parameters> one{of(first, 1)};
+    EXPECT_NE(law_beside(one), first);
+    const std::vector<Parameters> two{one[0], of(law_beside(one), 1)};
+    EXPECT_NE(law_beside(two), first);
+    EXPECT_NE(law_beside(two), two[1].kind);
+  }
+}
+
 TEST(Twin, IsOneFileFromWhichBothComeAgain) {
   const test::TempDir dir;
   const RunPlan plan = pair();
   const Session session = recorded(plan, dir / "a.h5");
-  ASSERT_TRUE(session.twin);
+  ASSERT_EQ(session.lanes(), 2u);
   const Both both = run_both(plan);
   EXPECT_EQ(first_difference(rows_of(session), both.first), -1);
-  EXPECT_EQ(first_difference(rows_of(*session.twin), both.twin), -1);
-  EXPECT_EQ(session.twin->changes.size(), 1u);
+  EXPECT_EQ(first_difference(rows_of(session.lane(kTwinLane)), both.twin), -1);
+  EXPECT_EQ(session.lane(kTwinLane).changes.size(), 1u);
   const Both again = run_both(replay(session, "a.h5", session_parameters(session, "a.h5")));
   EXPECT_EQ(first_difference(again.first, both.first), -1);
   EXPECT_EQ(first_difference(again.twin, both.twin), -1);
@@ -160,9 +211,9 @@ TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
   }
   const Recovered saved = recover_session(dir / "a.h5.part", false);
   const Session session = read_session(saved.file);
-  ASSERT_TRUE(session.twin);
+  ASSERT_EQ(session.lanes(), 2u);
   EXPECT_EQ(session.size(), 512u);  // the smaller number of whole blocks
-  EXPECT_EQ(session.twin->size(), 512u);
+  EXPECT_EQ(session.lane(kTwinLane).size(), 512u);
 }
 
 TEST(Twin, EndsWhereItsSecondRunBecomesUnstable) {

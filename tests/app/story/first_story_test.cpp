@@ -25,7 +25,8 @@ class TheFirstStory : public testing::Test {
   static std::array<StepNumbers, 2> step(const std::string& words) {
     const auto all = measure(story_->steps, run_->session);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (story_->steps[i].caption.find(words) != std::string::npos) return all[i];
+      if (story_->steps[i].caption.find(words) != std::string::npos)
+        return {all[i].at(0), all[i].at(1)};
     }
     ADD_FAILURE() << "no step says: " << words;
     return {};
@@ -39,7 +40,7 @@ TEST_F(TheFirstStory, IsToldToItsEndWithinAMinute) {
   EXPECT_FALSE(run_->end.diverged);
   EXPECT_LT(story_->seconds(), 60);
   EXPECT_EQ(run_->session.size(), story_->plan.rows);
-  EXPECT_EQ(run_->session.twin->size(), story_->plan.rows);
+  EXPECT_EQ(run_->session.lane(kTwinLane).size(), story_->plan.rows);
 }
 
 TEST_F(TheFirstStory, ShowsDeviceAndProxyDriftApartUnderTheStandardCouplingAlone) {
@@ -74,9 +75,9 @@ TEST_F(TheFirstStory, ShowsEnergyThatClimbsInAStiffGripAndThePredictiveLawThatKe
 }
 
 TEST_F(TheFirstStory, EndsAtRest) {
-  const Session& session = run_->session;
-  for (const Session* run : {&session, session.twin.get()}) {
-    for (const double v : run->at(run->size() - 1, Column::device_velocity)) {
+  for (const std::size_t i : {kMainLane, kTwinLane}) {
+    const Session& run = run_->session.lane(i);
+    for (const double v : run.at(run.size() - 1, Column::device_velocity)) {
       EXPECT_LT(std::abs(v), 1e-3);
     }
   }
@@ -86,8 +87,9 @@ TEST_F(TheFirstStory, IsTheSameEachTimeToTheLastBit) {
   const StoryRun again = run_story(*story_, false, [](double) {});
   const Session& session = run_->session;
   EXPECT_EQ(test::first_difference(test::rows_of(session), test::rows_of(again.session)), -1);
-  EXPECT_EQ(
-      test::first_difference(test::rows_of(*session.twin), test::rows_of(*again.session.twin)), -1);
+  EXPECT_EQ(test::first_difference(test::rows_of(session.lane(kTwinLane)),
+                                   test::rows_of(again.session.lane(kTwinLane))),
+            -1);
 }
 
 }  // namespace

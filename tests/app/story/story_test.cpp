@@ -151,7 +151,7 @@ TEST(StoryNumbers, AreOfOneStepEach) {
     put(k, Column::hand_torque, k < 2500 ? 0 : k % 2 == 0 ? 3 : -4);
     put(k, Column::energy_total, k < 2500 ? 0 : k == 3000 ? -1 : -2);
   }
-  session.twin = std::make_shared<Session>(session);
+  session.beside = {Session(session)};
   const auto all = measure(story.steps, session);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_DOUBLE_EQ(all[0][0].largest_error, 0.3);

@@ -103,12 +103,12 @@ TEST(Layout, RoundTrips) {
   s.plot_choices = {{.title = "tremor", .kind = PlotKind::spectrum, .channels = {"hand/torque.1"}},
                     {.kind = PlotKind::cross, .across = "a", .channels = {"b", "c"}}};
   Settings other;
-  other.parameters.eta = 0.7;
+  other.parameters().eta = 0.7;
   apply_layout(other, layout_text(s), "here");
   EXPECT_EQ(other.plot_choices, s.plot_choices);
   EXPECT_EQ(other.show_right, false);
   EXPECT_EQ(other.left, 333.25);
-  EXPECT_EQ(other.parameters.eta, 0.7) << "a layout has no settings of the loop";
+  EXPECT_EQ(other.parameters().eta, 0.7) << "a layout has no settings of the loop";
 }
 
 TEST(Layout, ThatIsWrongSaysWhereAndChangesNothing) {

@@ -37,16 +37,16 @@ double given_while_held(const Parameters& p) {
 TEST(PassivityBreak, MakesTheLoopGiveEnergyUntilItEnds) {
   const ArmDescription arm = test::omni();
   Settings s;
-  s.parameters = {};
+  s.parameters() = {};
   EXPECT_FALSE(passivity_broken(s));
   break_passivity(s, arm);
   EXPECT_TRUE(passivity_broken(s));
-  EXPECT_LT(s.parameters.eta,
-            analyze(arm, rest_pose(arm), s.parameters, std::nullopt).eta_min_grip);
-  EXPECT_GT(given_while_held(s.parameters), 1e-2) << "ten times what the panel calls a fault";
+  EXPECT_LT(s.parameters().eta,
+            analyze(arm, rest_pose(arm), s.parameters(), std::nullopt).eta_min_grip);
+  EXPECT_GT(given_while_held(s.parameters()), 1e-2) << "ten times what the panel calls a fault";
   end_passivity_break(s);
   EXPECT_FALSE(passivity_broken(s));
-  EXPECT_LT(given_while_held(s.parameters), 1e-3);
+  EXPECT_LT(given_while_held(s.parameters()), 1e-3);
 }
 
 // The predictive law holds in the grip in which the proposed one gives energy.
@@ -56,58 +56,59 @@ TEST(PassivityBreak, IsMendedByThePredictiveLawToo) {
   EXPECT_LT(given_while_held(p), 1e-3);
 }
 
-Settings of_a_twin(bool edited) {
+// All lanes run, with settings of their own.
+Settings of_lanes(std::size_t edited) {
   Settings s;
-  s.parameters.kind = CouplingKind::standard;
-  s.parameters.eta = 2;
-  s.parameters.hand_stiffness = 123;
-  s.parameters.hand_damping = 4;
-  s.twin.on = true;
-  s.twin.edited = edited;
-  s.twin.parameters.kind = CouplingKind::predictive;
-  s.twin.parameters.eta = 0.4;
-  s.twin.parameters.hand_stiffness = 123;
-  s.twin.parameters.hand_damping = 4;
+  s.lanes.count = kMostLanes;
+  s.lanes.edited = edited;
+  using enum CouplingKind;
+  constexpr std::array kKinds{standard, predictive, tank};
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    Parameters& p = s.lanes.parameters[i];
+    p.kind = kKinds[i];
+    p.eta = 0.4 + static_cast<double>(i);
+    p.hand_stiffness = 123;
+    p.hand_damping = 4;
+  }
   return s;
 }
 
-TEST(PassivityBreak, PutsEverythingOfBothRunsBackWhateverWasMovedMeanwhile) {
-  for (const bool twin : {false, true}) {
-    const Settings before = of_a_twin(twin);
+TEST(PassivityBreak, PutsEverythingOfAllLanesBackWhateverWasMovedMeanwhile) {
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+    const Settings before = of_lanes(lane);
     Settings s = before;
     break_passivity(s, test::omni());
-    Parameters& run = twin ? s.twin.parameters : s.parameters;
+    Parameters& run = s.lanes.parameters[lane];
     EXPECT_EQ(run.kind, CouplingKind::proposed);
-    EXPECT_EQ(s.parameters.hand_stiffness, 3000) << "one hand holds both";
-    EXPECT_EQ(s.twin.parameters.hand_stiffness, 3000);
-    EXPECT_EQ(twin ? s.parameters.kind : s.twin.parameters.kind,
-              twin ? before.parameters.kind : before.twin.parameters.kind);
+    for (std::size_t i = 0; i < kMostLanes; ++i) {
+      EXPECT_EQ(s.lanes.parameters[i].hand_stiffness, 3000) << "one hand holds all";
+      if (i == lane) continue;
+      EXPECT_EQ(s.lanes.parameters[i].kind, before.lanes.parameters[i].kind);
+    }
     run.alpha = 0.02;
     run.eta = 0.3;
-    s.parameters.hand_mass = 0.1;
+    s.parameters().hand_mass = 0.1;
     break_passivity(s, test::omni());  // like another press of the button
     end_passivity_break(s);
-    EXPECT_TRUE(s.parameters == before.parameters);
-    EXPECT_TRUE(s.twin.parameters == before.twin.parameters);
+    EXPECT_EQ(s.lanes, before.lanes);
   }
 }
 
 TEST(PassivityBreak, EndsWithTheLawThatIsChosenInItsPlace) {
-  for (const bool twin : {false, true}) {
-    const Settings before = of_a_twin(twin);
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+    const Settings before = of_lanes(lane);
     Settings s = before;
     break_passivity(s, test::omni());
     EXPECT_FALSE(end_break_by_law(s));
-    Parameters& run = twin ? s.twin.parameters : s.parameters;
+    Parameters& run = s.lanes.parameters[lane];
     run.eta = 0.3;
     EXPECT_FALSE(end_break_by_law(s)) << "its limit may be looked for";
     run.kind = CouplingKind::predictive;
     EXPECT_TRUE(end_break_by_law(s));
     EXPECT_FALSE(passivity_broken(s));
     EXPECT_EQ(run.kind, CouplingKind::predictive);
-    run.kind = twin ? before.twin.parameters.kind : before.parameters.kind;
-    EXPECT_TRUE(s.parameters == before.parameters);
-    EXPECT_TRUE(s.twin.parameters == before.twin.parameters);
+    run.kind = before.lanes.parameters[lane].kind;
+    EXPECT_EQ(s.lanes, before.lanes);
   }
 }
 

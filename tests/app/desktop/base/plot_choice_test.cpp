@@ -8,7 +8,8 @@
 namespace limpid {
 namespace {
 
-const RunNames kTwin{"standard", "predictive", true}, kRerun{"", "re-run", false};
+const RunNames kTwin{{"standard", "predictive"}, true}, kRerun{{"", "re-run"}, false},
+    kThree{{"standard", "predictive", "proposed"}, true, {0, 2, 1}};
 
 class PlotChoiceOfJoints : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Arms, PlotChoiceOfJoints, testing::Values(1, 2, 3, 7, 32));
@@ -18,8 +19,8 @@ TEST_P(PlotChoiceOfJoints, ShowsOnlyChannelsThatThereAre) {
   std::vector<PlotChoice> choices = default_plots();
   choices.push_back({.channels = {"device/position.7", "no/such", "device/position.1"}});
   choices.push_back({.kind = PlotKind::cross, .across = "no/such", .channels = {"coupling/eta"}});
-  for (const RunNames& names : {RunNames{}, kTwin, kRerun}) {
-    const int runs = names.second.empty() ? 1 : 2;
+  for (const RunNames& names : {RunNames{}, kTwin, kRerun, kThree}) {
+    const int runs = std::max(1, static_cast<int>(names.names.size()));
     for (const PlotChoice& choice : choices) {
       const PlotSpec spec = plot_spec(choice, channels, names);
       EXPECT_FALSE(spec.title.empty());
@@ -40,7 +41,7 @@ TEST_P(PlotChoiceOfJoints, ShowsOnlyChannelsThatThereAre) {
 // Without force a plot is not what it seems, with any content and number of runs.
 TEST(PlotChoice, MarksWhereTheForceWasOffInEveryPlot) {
   const TraceChannels channels{RowLayout(3)};
-  for (const RunNames& names : {RunNames{}, kTwin, kRerun}) {
+  for (const RunNames& names : {RunNames{}, kTwin, kRerun, kThree}) {
     for (const PlotChoice& choice : default_plots()) {
       const PlotSpec spec = plot_spec(choice, channels, names);
       const auto marked = std::ranges::find_if(spec.bands, &Band::striped);
@@ -50,6 +51,29 @@ TEST(PlotChoice, MarksWhereTheForceWasOffInEveryPlot) {
       EXPECT_EQ(marked->names.at(1), "force off: not armed");
       EXPECT_EQ(marked->names.at(6), "force held back: the device moves too fast");
       for (std::size_t i = 1; i < marked->names.size(); ++i) EXPECT_NE(marked->names[i], "");
+    }
+  }
+}
+
+// Three runs differ in more than their laws' colours, wherever a plot has several curves of each.
+TEST(PlotChoice, TellsThreeRunsApartByColourAndSign) {
+  const TraceChannels channels{RowLayout(3)};
+  for (const std::vector<int>& laws : {std::vector{0, 2, 1}, std::vector{2, 2, 2}}) {
+    RunNames names = kThree;
+    names.laws = laws;
+    for (const PlotChoice& choice : default_plots()) {
+      const PlotSpec spec = plot_spec(choice, channels, names);
+      ASSERT_EQ(spec.curves.size(), 3 * choice.channels.size());
+      for (std::size_t a = 0; a < spec.curves.size(); ++a) {
+        for (std::size_t b = 0; b < a; ++b) {
+          const Curve &one = spec.curves[a], &other = spec.curves[b];
+          EXPECT_NE(one.channel, other.channel);
+          EXPECT_NE(one.label, other.label);
+          EXPECT_FALSE(colour_of(kDarkPalette, one) == colour_of(kDarkPalette, other) &&
+                       one.sign == other.sign)
+              << one.label << " and " << other.label;
+        }
+      }
     }
   }
 }

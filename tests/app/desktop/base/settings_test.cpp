@@ -57,7 +57,7 @@ TEST_F(SettingsFile, ThatIsMissingMeansDefaults) {
   const Settings s = load();
   EXPECT_EQ(complaint_, "");
   EXPECT_EQ(s.width, Settings{}.width);
-  EXPECT_EQ(s.parameters, Settings{}.parameters);
+  EXPECT_EQ(s.parameters(), Settings{}.parameters());
 }
 
 TEST_F(SettingsFile, KeepsTheFilesOpenedLastTheNewestFirstAndEachOnce) {
@@ -93,10 +93,10 @@ TEST_F(SettingsFile, GivesEverythingBack) {
                      .across = "hand/torque.1",
                      .channels = {"device/position.2", "no such channel"}},
                     {.kind = PlotKind::spectrum, .channels = {"coordination/error"}}};
-  s.parameters.kind = CouplingKind::proposed;
-  s.parameters.eta = 0.1 + 0.2;
-  s.parameters.damping = 0.017;
-  s.parameters.velocity = VelocitySource::adaptive;
+  s.parameters().kind = CouplingKind::proposed;
+  s.parameters().eta = 0.1 + 0.2;
+  s.parameters().damping = 0.017;
+  s.parameters().velocity = VelocitySource::adaptive;
   EXPECT_EQ(save_settings(s, {}), "");
   const Settings again = load();
   EXPECT_EQ(complaint_, "");
@@ -114,7 +114,7 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   EXPECT_EQ(again.plot_length, s.plot_length);
   EXPECT_EQ(again.device, s.device);
   EXPECT_EQ(again.scene, s.scene);
-  EXPECT_EQ(again.parameters, s.parameters);
+  EXPECT_EQ(again.parameters(), s.parameters());
   EXPECT_EQ(again.plot_choices, s.plot_choices);
 }
 
@@ -135,7 +135,7 @@ TEST_F(SettingsFile, GivesEverySwitchBackByItself) {
   for (const Switch one :
        {&Settings::show_left, &Settings::show_right, &Settings::show_plots, &Settings::show_ghost,
         &Settings::show_trail, &Settings::show_forces, &Settings::show_grid, &Settings::show_lens,
-        &Settings::show_joints, &Settings::twin_overlaid, &Settings::hold_on_release,
+        &Settings::show_joints, &Settings::overlaid, &Settings::hold_on_release,
         &Settings::hint_seen, &Settings::your_turn}) {
     Settings s;
     s.*one = !(s.*one);
@@ -175,7 +175,7 @@ TEST_F(SettingsFile, WithABadPlotNamesItAndKeepsEverythingElse) {
   EXPECT_THAT(complaint_, testing::HasSubstr("settings.toml:4: plot.kind: \"pie\""));
   EXPECT_THAT(complaint_, testing::HasSubstr("allowed: \"time\", \"cross\", \"spectrum\""));
   EXPECT_EQ(s.plot_choices, default_plots());
-  EXPECT_EQ(s.parameters.eta, 2);
+  EXPECT_EQ(s.parameters().eta, 2);
 }
 
 TEST_F(SettingsFile, ThatIsNoTomlIsComplainedAboutAndLeftAlone) {
@@ -196,7 +196,7 @@ TEST_F(SettingsFile, WithAParameterOutOfRangeNamesIt) {
   write("[parameters]\ncoupling.eta = -4\n");
   const Settings s = load();
   EXPECT_THAT(complaint_, testing::HasSubstr("coupling.eta"));
-  EXPECT_EQ(s.parameters.eta, 1);
+  EXPECT_EQ(s.parameters().eta, 1);
 }
 
 // A person has lowered the motors' limit; a newer program has added a key.
@@ -206,13 +206,13 @@ TEST_F(SettingsFile, WithAKeyThatIsUnknownKeepsALoweredLimitAndEverythingElse) {
       "[parameters.device]\ntorque_limit = 0.1\n");
   const Settings s = load();
   EXPECT_THAT(complaint_, testing::HasSubstr("settings.toml:2: coupling.later: no such key"));
-  EXPECT_EQ(s.parameters.torque_limit, 0.1);
-  EXPECT_EQ(s.parameters.energy, 0.001);
-  EXPECT_EQ(s.parameters.alpha, 0.02);
+  EXPECT_EQ(s.parameters().torque_limit, 0.1);
+  EXPECT_EQ(s.parameters().energy, 0.001);
+  EXPECT_EQ(s.parameters().alpha, 0.02);
   Settings changed = s;
   changed.width = 1001;
   EXPECT_EQ(save_settings(changed, s), "");
-  EXPECT_EQ(load().parameters.torque_limit, 0.1) << "and is written again";
+  EXPECT_EQ(load().parameters().torque_limit, 0.1) << "and is written again";
 }
 
 // Nobody knows how low the limit was: the strictest is 1e-6 N m.
@@ -224,48 +224,49 @@ TEST_F(SettingsFile, WithALimitThatCannotBeUnderstoodHasTheStrictestOne) {
         "[parameters.device]\ntorque_limit = 0.1\n[window\n", "[parameters.device]\ntorque_lim"}) {
     write(wrong);
     complaint_.clear();
-    EXPECT_EQ(load().parameters.torque_limit, 1e-6) << wrong;
+    EXPECT_EQ(load().parameters().torque_limit, 1e-6) << wrong;
     EXPECT_THAT(complaint_, testing::HasSubstr("settings.toml:")) << wrong;
   }
   write("[parameters]\ntank.energy = true\ndevice.torque_limit = 0.2\n");
   const Settings s = load();
-  EXPECT_EQ(s.parameters.torque_limit, 0.2) << "each limit by itself";
-  EXPECT_LT(s.parameters.tank_energy, 1e-3);
+  EXPECT_EQ(s.parameters().torque_limit, 0.2) << "each limit by itself";
+  EXPECT_LT(s.parameters().tank_energy, 1e-3);
 }
 
 TEST_F(SettingsFile, ThatIsTooLongToBeReadHasTheStrictestLimits) {
   write("[parameters.device]\ntorque_limit = 0.1\n" + std::string(1 << 20, '#'));
-  EXPECT_EQ(load().parameters.torque_limit, 1e-6);
+  EXPECT_EQ(load().parameters().torque_limit, 1e-6);
   EXPECT_NE(complaint_, "");
 }
 
 // Both windows started with the same file; each knows only its own changes.
 TEST_F(SettingsFile, OfTwoWindowsHasWhatWasChangedInEither) {
   Settings began;
-  began.parameters.eta = 0.7;
-  began.twin.parameters.damping = 0.02;
+  began.parameters().eta = 0.7;
+  began.lanes.parameters[kMostLanes - 1].damping = 0.02;
   began.recent = {"/a/old.h5"};
   ASSERT_EQ(save_settings(began, {}), "");
   began = load();
   Settings first = began, second = began;
   first.theme = Theme::light;
-  first.parameters.alpha = 0.05;
+  first.parameters().alpha = 0.05;
   first.plot_choices.clear();
   remember_recent(first, "/a/first.h5");
   second.width = 1555;
-  second.parameters.eta = 1;
-  second.twin.parameters.damping = std::numeric_limits<double>::quiet_NaN();  // the arm's own value
+  second.parameters().eta = 1;
+  second.lanes.parameters[kMostLanes - 1].damping =
+      std::numeric_limits<double>::quiet_NaN();  // the arm's own value
   remember_recent(second, "/a/second.h5");
   ASSERT_EQ(save_settings(first, began), "");
   ASSERT_EQ(save_settings(second, began), "");
   const Settings both = load();
   EXPECT_EQ(complaint_, "");
   EXPECT_EQ(both.theme, Theme::light);
-  EXPECT_EQ(both.parameters.alpha, 0.05);
+  EXPECT_EQ(both.parameters().alpha, 0.05);
   EXPECT_TRUE(both.plot_choices.empty());
   EXPECT_EQ(both.width, 1555);
-  EXPECT_EQ(both.parameters.eta, 1);
-  EXPECT_TRUE(std::isnan(both.twin.parameters.damping));
+  EXPECT_EQ(both.parameters().eta, 1);
+  EXPECT_TRUE(std::isnan(both.lanes.parameters[kMostLanes - 1].damping));
   EXPECT_EQ(both.recent, (std::vector<std::string>{"/a/second.h5", "/a/first.h5", "/a/old.h5"}));
 }
 
@@ -318,14 +319,14 @@ TEST_F(SettingsFile, StandsBesideAFolderForSessions) {
 TEST_F(SettingsFile, HasWhatWasChangedOnceThatStands) {
   KeptSettings kept(load());
   Settings now = kept.kept();
-  now.parameters.eta = 0.5;
+  now.parameters().eta = 0.5;
   EXPECT_EQ(kept.follow(now), "");
   EXPECT_FALSE(fs::exists(file())) << "it may still move";
-  now.parameters.eta = 0.4;
+  now.parameters().eta = 0.4;
   EXPECT_EQ(kept.follow(now), "");
   EXPECT_FALSE(fs::exists(file()));
   EXPECT_EQ(kept.follow(now), "");
-  EXPECT_EQ(load().parameters.eta, 0.4);
+  EXPECT_EQ(load().parameters().eta, 0.4);
 }
 
 TEST_F(SettingsFile, HasWhatWasChangedBack) {

@@ -18,26 +18,25 @@ TEST(RecordedSettings, TellLawGripAndWhatIsNotAsUsual) {
   p.kind = CouplingKind::proposed;
   p.eta = 0.25;
   p.hand_stiffness = 450;
-  const auto plain = recorded_settings(p, nullptr);
+  const auto plain = recorded_settings(std::span(&p, 1));
   ASSERT_NE(find(plain, "Coupling"), nullptr);
-  EXPECT_EQ(find(plain, "Coupling")->value, "proposed");
+  EXPECT_EQ(find(plain, "Coupling")->values, std::vector<std::string>{"proposed"});
   ASSERT_NE(find(plain, "Impedance scaling"), nullptr);
-  EXPECT_NE(find(plain, "Impedance scaling")->value.find("0.25"), std::string::npos);
+  EXPECT_NE(find(plain, "Impedance scaling")->values.at(0).find("0.25"), std::string::npos);
   EXPECT_TRUE(std::ranges::any_of(plain, [](const RecordedSetting& each) {
-    return each.value.find("450") != std::string::npos;
+    return each.values.at(0).find("450") != std::string::npos;
   }));
   p.encoder_step = 1e-4;  // listed only if it is not the default
-  EXPECT_EQ(recorded_settings(p, nullptr).size(), plain.size() + 1);
+  EXPECT_EQ(recorded_settings(std::span(&p, 1)).size(), plain.size() + 1);
 }
 
 TEST(RecordedSettings, OfTwoRunsStandSideBySide) {
-  Parameters p, twin;
-  p.kind = CouplingKind::standard;
-  twin.kind = CouplingKind::predictive;
-  const auto both = recorded_settings(p, &twin);
+  std::vector<Parameters> lanes(2);
+  lanes[0].kind = CouplingKind::standard;
+  lanes[1].kind = CouplingKind::predictive;
+  const auto both = recorded_settings(lanes);
   ASSERT_NE(find(both, "Coupling"), nullptr);
-  EXPECT_EQ(find(both, "Coupling")->value, "standard");
-  EXPECT_EQ(find(both, "Coupling")->of_twin, "predictive");
+  EXPECT_EQ(find(both, "Coupling")->values, (std::vector<std::string>{"standard", "predictive"}));
   for (const std::string_view key : info(CouplingKind::predictive).sliders) {
     const ParameterInfo& slider = *find_parameter(std::string(key));
     const auto there = std::ranges::any_of(

@@ -43,6 +43,8 @@ const Case kCases[] = {
     {"C", GLFW_KEY_C, 0, "coupling.next", "coupling.next"},
     {"B", GLFW_KEY_B, 0, "session.twin", "session.twin"},
     {"Shift+B", GLFW_KEY_B, kShift, "view.overlay", "view.overlay"},
+    {"Ctrl+B", GLFW_KEY_B, kControl, "session.add_run", "session.add_run"},
+    {"Ctrl+Shift+B", GLFW_KEY_B, kControl | kShift, "session.drop_run", "session.drop_run"},
     {"[", GLFW_KEY_LEFT_BRACKET, 0, "coupling.smaller_eta", "coupling.smaller_eta", true},
     {"]", GLFW_KEY_RIGHT_BRACKET, 0, "coupling.larger_eta", "coupling.larger_eta", true},
     {"Shift+[", GLFW_KEY_LEFT_BRACKET, kShift, "observer.smaller_alpha", "observer.smaller_alpha",

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "app/base/folders.h"
@@ -200,7 +201,7 @@ TEST_F(ADesktop, LeavesARealDeviceOffWhateverElseIsDone) {
   expect_off("another scene");
   desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
-  desktop->playback.start_rerun(desktop->settings.parameters);
+  desktop->playback.start_rerun(desktop->settings.parameters());
   ASSERT_TRUE(until([&] { return desktop->playback.shown()->has_rerun(); }));
   expect_off("playback and re-run");
   desktop->playback.close();
@@ -287,14 +288,14 @@ TEST_F(ADesktop, PicksUpWithTheMagnetAndLetsGoOfIt) {
   desktop->world.open_scene(file);
   ASSERT_TRUE(until([&] { return said("Scene:"); }));
   const auto held = [&] { return loop().layout().in(desktop->live.row(), Column::magnet)[0] == 1; };
-  const CouplingKind law = desktop->settings.parameters.kind;
+  const CouplingKind law = desktop->settings.parameters().kind;
   run("hand.magnet");
   EXPECT_TRUE(until(held));
   run("hand.magnet");
   EXPECT_TRUE(until([&] { return !held(); }));
   desktop->pick_up_or_next_law();
   EXPECT_TRUE(until(held)) << "so does a device's first button";
-  EXPECT_EQ(desktop->settings.parameters.kind, law);
+  EXPECT_EQ(desktop->settings.parameters().kind, law);
   desktop->live.start_over();
   EXPECT_TRUE(until([&] { return !held(); }));
 }
@@ -423,7 +424,7 @@ TEST_F(ADesktop, HoldsADeviceToItsLimitsAndRecordsThem) {
 
 // The law follows the device's resolution; the setting for the virtual arm comes back afterwards.
 TEST_F(ADesktop, TakesTheEncodersOfADeviceThatIsInTheLoop) {
-  Parameters& p = desktop->settings.parameters;
+  Parameters& p = desktop->settings.parameters();
   p.encoder_step = 2e-3;
   plug_in(3);
   const double step = test::pushing(3).resolution.front();
@@ -438,14 +439,14 @@ TEST_F(ADesktop, TakesTheEncodersOfADeviceThatIsInTheLoop) {
     if (change.row == 0) apply_change(recorded, change);
   }
   EXPECT_EQ(recorded.encoder_step, step) << "however little is set";
-  EXPECT_EQ(desktop->lead.settings_to_keep().parameters.encoder_step, 2e-3);
+  EXPECT_EQ(desktop->lead.settings_to_keep().parameters().encoder_step, 2e-3);
   desktop->world.close_device();
   EXPECT_EQ(p.encoder_step, 2e-3);
 }
 
 // A program leads, as on the control socket.
 TEST_F(ADesktop, CutsTheForceOfADeviceWhenAProgramHasEndedAndSettingsComeBack) {
-  Parameters& p = desktop->settings.parameters;
+  Parameters& p = desktop->settings.parameters();
   p.eta = 0.8;
   pushed();
   desktop->lead.begin();
@@ -476,7 +477,7 @@ TEST_F(ADesktop, RemembersNothingOfADeviceThatAProgramHasSet) {
   desktop->devices.hub().use("device");
   desktop->devices.hub().notes("device").compensation.friction_share = 0.3;
   plug_in(3);
-  Parameters& p = desktop->settings.parameters;
+  Parameters& p = desktop->settings.parameters();
   ASSERT_EQ(p.friction_share, 0.3);
   desktop->lead.begin();
   p.friction_share = 0.9;
@@ -491,7 +492,7 @@ TEST_F(ADesktop, RemembersNothingOfADeviceThatAProgramHasSet) {
 }
 
 TEST_F(ADesktop, KeepsForTheNextStartWhatThePersonHasChosenWhileAProgramLeads) {
-  Parameters& p = desktop->settings.parameters;
+  Parameters& p = desktop->settings.parameters();
   desktop->settings.recent = {"/own.h5"};
   p.eta = 0.8;
   desktop->lead.begin();
@@ -501,8 +502,8 @@ TEST_F(ADesktop, KeepsForTheNextStartWhatThePersonHasChosenWhileAProgramLeads) {
   p.hand_stiffness = 222;  // the person's setting
   desktop->lead.follow_person();
   const Settings kept = desktop->lead.settings_to_keep();
-  EXPECT_EQ(kept.parameters.eta, 0.8);
-  EXPECT_EQ(kept.parameters.hand_stiffness, 222);
+  EXPECT_EQ(kept.parameters().eta, 0.8);
+  EXPECT_EQ(kept.parameters().hand_stiffness, 222);
   EXPECT_EQ(kept.recent, std::vector<std::string>{"/own.h5"});
   EXPECT_TRUE(desktop->lead.end(false));
   EXPECT_EQ(p.eta, 0.8);
@@ -529,7 +530,7 @@ TEST_F(ADesktop, GoesBackToTheSceneWhenWhatIsRecordedIsComplete) {
 // A damping set for the virtual arm is not the device's: verdict and recording follow the loop's
 // values.
 TEST_F(ADesktop, JudgesAndRecordsARealDeviceByWhatTheLoopTakes) {
-  Parameters& p = desktop->settings.parameters;
+  Parameters& p = desktop->settings.parameters();
   plug_in(2);
   p.k_vc = 20;
   frames(2);
@@ -805,46 +806,64 @@ TEST_F(ADesktop, MarksAChangeWhereItActsHoweverLongAFrameTakes) {
   EXPECT_NEAR(mark.time, history.time(first), 0.05);
 }
 
-TEST_F(ADesktop, RunsATwinWhoseSettingsAreItsOwnAndWhoseWorldIsNot) {
+TEST_F(ADesktop, RunsLanesWhoseSettingsAreTheirOwnAndWhoseWorldIsNot) {
   frames(5);
-  desktop->tuning.toggle_twin();
+  LaneSettings& lanes = desktop->settings.lanes;
+  run("session.twin");
+  run("session.add_run");
+  EXPECT_NE(run_command("session.add_run", *desktop), "") << "three are the most";
   frames(20);
-  EXPECT_FALSE(desktop->shown.twin_row().empty());
-  TwinSettings& twin = desktop->settings.twin;
-  EXPECT_NE(twin.parameters.kind, desktop->settings.parameters.kind);
-  twin.edited = true;
-  EXPECT_EQ(&desktop->tuning.edited(), &twin.parameters);
-  const CouplingKind first = desktop->settings.parameters.kind;
-  desktop->tuning.next_law();  // changes the twin's law
-  EXPECT_EQ(desktop->settings.parameters.kind, first);
-  desktop->settings.parameters.hand_stiffness = 432;
+  EXPECT_EQ(desktop->shown.rows().size(), 3u);
+  std::set<CouplingKind> kinds;
+  for (const Parameters& p : lanes.parameters) kinds.insert(p.kind);
+  EXPECT_EQ(kinds.size(), kMostLanes) << "each has a law of its own at first";
+  for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
+    lanes.edited = lane;
+    EXPECT_EQ(&desktop->tuning.edited(), &lanes.parameters[lane]);
+    const LaneParameters before = lanes.parameters;
+    desktop->tuning.next_law();
+    for (std::size_t i = 0; i < kMostLanes; ++i) {
+      EXPECT_EQ(lanes.parameters[i].kind != before[i].kind, i == lane);
+    }
+  }
+  desktop->settings.parameters().hand_stiffness = 432;
   frames(20);
-  EXPECT_EQ(twin.parameters.hand_stiffness, 432);
-  EXPECT_EQ(desktop->live.stage().names().second, name(twin.parameters.kind));
-  desktop->tuning.toggle_twin();
+  const RunNames& names = desktop->live.stage().names();
+  EXPECT_TRUE(names.beside);
+  ASSERT_EQ(names.laws.size(), kMostLanes);
+  for (std::size_t i = 0; i < kMostLanes; ++i) {
+    EXPECT_EQ(lanes.parameters[i].hand_stiffness, 432);
+    EXPECT_EQ(names.law(i), static_cast<int>(lanes.parameters[i].kind));
+    const RowLayout& layout = desktop->live.loop().layout();
+    EXPECT_EQ(layout.in(desktop->shown.rows()[i], Column::kind)[0],
+              static_cast<double>(lanes.parameters[i].kind));
+  }
+  run("session.drop_run");
   frames(20);
-  EXPECT_TRUE(desktop->shown.twin_row().empty());
-  EXPECT_EQ(&desktop->tuning.edited(), &desktop->settings.parameters);
-  EXPECT_TRUE(desktop->live.stage().names().second.empty());
+  EXPECT_EQ(desktop->shown.rows().size(), 2u);
+  EXPECT_EQ(&desktop->tuning.edited(), &desktop->settings.parameters());
+  run("session.twin");
+  frames(20);
+  EXPECT_EQ(desktop->shown.rows().size(), 1u);
+  EXPECT_FALSE(desktop->live.stage().names().several());
+  EXPECT_NE(run_command("session.drop_run", *desktop), "") << "one is left";
 }
 
-TEST_F(ADesktop, TakesBackAPresetOfEitherRunOfATwin) {
+TEST_F(ADesktop, TakesBackAPresetOfAnyLane) {
   frames(5);
-  desktop->tuning.toggle_twin();
-  frames(5);
-  Settings& settings = desktop->settings;
-  for (const bool second : {false, true}) {
-    settings.twin.edited = second;
-    Parameters& edited = second ? settings.twin.parameters : settings.parameters;
-    const Parameters before = edited;
-    const Parameters other = second ? settings.parameters : settings.twin.parameters;
+  LaneSettings& lanes = desktop->settings.lanes;
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+    if (lane > 0) run("session.add_run");
+    frames(5);
+    lanes.edited = lane;
+    const LaneParameters before = lanes.parameters;
     desktop->tuning.use_preset("Light hand");
+    const Parameters& edited = lanes.parameters[lane];
     EXPECT_EQ(edited.eta, 0.3);
     EXPECT_EQ(edited.kind, CouplingKind::predictive);
     frames(5);
     desktop->document.undo();
-    EXPECT_EQ(edited, before);
-    EXPECT_EQ(second ? settings.parameters : settings.twin.parameters, other);
+    EXPECT_EQ(lanes.parameters, before);
     frames(5);
     desktop->document.redo();
     EXPECT_EQ(edited.eta, 0.3);
@@ -867,7 +886,7 @@ TEST_F(ADesktop, RunsCommandsByTheirIdsAndSaysWhyOneCannotBeRun) {
   desktop->dialog.close();
   record_something();
   EXPECT_THAT(run_command("session.twin", *desktop), testing::HasSubstr("Stop the recording"));
-  EXPECT_FALSE(desktop->settings.twin.on);
+  EXPECT_EQ(desktop->settings.lanes.count, 1u);
 }
 
 // A desktop with ImGui, whose menus and text fields may use Esc.
@@ -968,8 +987,8 @@ TEST_F(ADesktop, SaysNothingOverADialogThatHasTheWholeWindow) {
 TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
   Controls& controls = desktop->live.controls();
   const auto chatters = [&] {
-    desktop->settings.parameters.kind = CouplingKind::proposed;
-    desktop->settings.parameters.eta = 1;
+    desktop->settings.parameters().kind = CouplingKind::proposed;
+    desktop->settings.parameters().eta = 1;
     Object table = document().scene().objects[0];
     table.material.stiffness = 5000;
     document().editor().set(0, table, "stiffness");
@@ -1000,7 +1019,7 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
     EXPECT_FALSE(desktop->chatter.found());
     const bool softened = std::string(way) == "scene.soften_wall";
     EXPECT_EQ(document().scene().objects[0].material.stiffness, softened ? 1500 : 5000);
-    EXPECT_EQ(desktop->settings.parameters.kind,
+    EXPECT_EQ(desktop->settings.parameters().kind,
               softened ? CouplingKind::proposed : CouplingKind::predictive);
     frames(150);
     EXPECT_FALSE(desktop->chatter.found()) << "it is mended: " << way;
@@ -1011,19 +1030,19 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
 // After any further action the settings are the former ones.
 TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   Settings& settings = desktop->settings;
-  settings.parameters.hand_stiffness = 222;
-  settings.parameters.eta = 0.8;
+  settings.parameters().hand_stiffness = 222;
+  settings.parameters().eta = 0.8;
   frames(2);
-  const Parameters before = settings.parameters;
+  const Parameters before = settings.parameters();
   const auto broken = [&] {
     desktop->tuning.break_passivity();
     frames(2);
-    EXPECT_EQ(settings.parameters.hand_stiffness, 3000);
-    EXPECT_EQ(settings.parameters.hand_damping, 0);
+    EXPECT_EQ(settings.parameters().hand_stiffness, 3000);
+    EXPECT_EQ(settings.parameters().hand_damping, 0);
     EXPECT_STREQ(desktop->banners().back().buttons.at(0).command, "coupling.end_break");
   };
   const auto expect_whole = [&](const char* after) {
-    EXPECT_TRUE(settings.parameters == before) << after;
+    EXPECT_TRUE(settings.parameters() == before) << after;
     EXPECT_FALSE(settings.before_break) << after;
   };
   broken();
@@ -1038,16 +1057,16 @@ TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   frames(2);
   broken();
   desktop->tuning.use_preset("Light hand");
-  EXPECT_EQ(settings.parameters.hand_stiffness, 222);
+  EXPECT_EQ(settings.parameters().hand_stiffness, 222);
   frames(2);
   document().undo();
   expect_whole("a preset, and what was before it");
   frames(2);
   broken();
-  settings.parameters.kind = CouplingKind::standard;  // by a click on the law
+  settings.parameters().kind = CouplingKind::standard;  // by a click on the law
   frames(2);
-  EXPECT_EQ(settings.parameters.kind, CouplingKind::standard);
-  settings.parameters.kind = before.kind;
+  EXPECT_EQ(settings.parameters().kind, CouplingKind::standard);
+  settings.parameters().kind = before.kind;
   frames(2);
   expect_whole("another law");
   broken();
@@ -1058,22 +1077,22 @@ TEST_F(ADesktop, PutsEverythingBackWhenBrokenPassivityEnds) {
   desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   frames(1);
-  EXPECT_TRUE(settings.parameters == before) << "a recording";
+  EXPECT_TRUE(settings.parameters() == before) << "a recording";
   desktop->playback.close();
   broken();
   plug_in(3);
-  EXPECT_EQ(settings.parameters.hand_stiffness, 222) << "a device";
+  EXPECT_EQ(settings.parameters().hand_stiffness, 222) << "a device";
   desktop->world.close_device();
   frames(2);
   broken();
-  EXPECT_EQ(desktop->lead.settings_to_keep().parameters.hand_stiffness, 222) << "the next start";
-  EXPECT_EQ(desktop->lead.settings_to_keep().parameters.eta, 0.8);
+  EXPECT_EQ(desktop->lead.settings_to_keep().parameters().hand_stiffness, 222) << "the next start";
+  EXPECT_EQ(desktop->lead.settings_to_keep().parameters().eta, 0.8);
   EXPECT_FALSE(desktop->lead.settings_to_keep().before_break);
 }
 
 TEST_F(ADesktop, CountsBrokenPassivityAsNoStepOfUndo) {
   frames(2);
-  const Parameters first = desktop->settings.parameters;
+  const Parameters first = desktop->settings.parameters();
   desktop->tuning.edited().eta = 0.77;
   frames(60);  // a separate step of undo
   desktop->tuning.break_passivity();
@@ -1084,23 +1103,23 @@ TEST_F(ADesktop, CountsBrokenPassivityAsNoStepOfUndo) {
   EXPECT_EQ(desktop->tuning.edited().eta, 0.77);
   frames(5);
   document().undo();
-  EXPECT_TRUE(desktop->settings.parameters == first);
+  EXPECT_TRUE(desktop->settings.parameters() == first);
 }
 
 TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   Settings& settings = desktop->settings;
-  settings.parameters.kind = CouplingKind::proposed;
-  settings.parameters.eta = 0.9;
+  settings.parameters().kind = CouplingKind::proposed;
+  settings.parameters().eta = 0.9;
   frames(3);
   record_something();
-  settings.parameters.eta = 0.5;
+  settings.parameters().eta = 0.5;
   frames(20);
-  settings.parameters.kind = CouplingKind::standard;
+  settings.parameters().kind = CouplingKind::standard;
   frames(20);
   desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
-  settings.parameters.eta = 3;
-  settings.parameters.hand_stiffness = 99;
+  settings.parameters().eta = 3;
+  settings.parameters().hand_stiffness = 99;
   run("session.play");
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   PlayedSession& session = *desktop->playback.shown();
@@ -1126,11 +1145,11 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
 
 TEST_F(ADesktop, NamesTheRunsOfARecordedTwinAsTheyAreAtTheCursor) {
   run("session.twin");
-  desktop->settings.parameters.kind = CouplingKind::standard;
-  desktop->settings.twin.parameters.kind = CouplingKind::tank;
+  desktop->settings.parameters().kind = CouplingKind::standard;
+  desktop->settings.lanes.parameters[kTwinLane].kind = CouplingKind::tank;
   frames(20);
   record_something();
-  desktop->settings.parameters.kind = CouplingKind::proposed;
+  desktop->settings.parameters().kind = CouplingKind::proposed;
   frames(30);
   desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
@@ -1144,9 +1163,9 @@ TEST_F(ADesktop, NamesTheRunsOfARecordedTwinAsTheyAreAtTheCursor) {
   };
   using enum CouplingKind;
   const int second = static_cast<int>(tank);
-  EXPECT_EQ(laws_at(0), (std::array{static_cast<int>(standard), second}));
-  EXPECT_EQ(laws_at(played.player().duration()), (std::array{static_cast<int>(proposed), second}));
-  EXPECT_EQ(laws_at(0), (std::array{static_cast<int>(standard), second}));
+  EXPECT_EQ(laws_at(0), (std::vector{static_cast<int>(standard), second}));
+  EXPECT_EQ(laws_at(played.player().duration()), (std::vector{static_cast<int>(proposed), second}));
+  EXPECT_EQ(laws_at(0), (std::vector{static_cast<int>(standard), second}));
 }
 
 TEST_F(ADesktop, OffersASceneThatWasKeptUntilItIsTakenOrNot) {
@@ -1214,15 +1233,15 @@ TEST_F(ADesktop, ChoosesTheViewUntilSomebodyDoes) {
 TEST_F(ADesktop, AccountsForTheEnergyOfItsLoop) {
   const int energy = static_cast<int>(Channel::energy_total);
   const auto stage = [&]() -> const Stage& { return desktop->live.stage(); };
-  desktop->settings.parameters.eta = 0.3;  // not passive, so that energy is given
+  desktop->settings.parameters().eta = 0.3;  // not passive, so that energy is given
   Controls& controls = desktop->live.controls();
   controls.goal = Vec3(0.17, 0.04, 0.03);
   controls.grab = true;
-  EXPECT_TRUE(until([&] { return std::abs(stage().energy.total()) > 1e-4; }));
+  EXPECT_TRUE(until([&] { return std::abs(stage().energy[kMainLane].total()) > 1e-4; }));
   controls.grab = false;
   frames(5);
   const History& history = stage().history;
-  EXPECT_NEAR(stage().energy.total(), history.value(energy, history.end() - 1), 1e-6);
+  EXPECT_NEAR(stage().energy[kMainLane].total(), history.value(energy, history.end() - 1), 1e-6);
 }
 
 }  // namespace

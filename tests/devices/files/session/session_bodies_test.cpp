@@ -99,7 +99,7 @@ TEST(SessionWithBodies, ComesBackBitForBit) {
 TEST(SessionWithBodies, OfATwinHasThoseOfBothRuns) {
   const test::TempDir dir;
   SessionInfo info = info_of({"die", "key"});
-  info.twin = "";
+  info.beside = {""};
   const std::vector<double> first = rows_of(info, 700);
   const auto stride = static_cast<std::size_t>(info.layout().stride());
   std::vector<double> second = first;
@@ -116,11 +116,11 @@ TEST(SessionWithBodies, OfATwinHasThoseOfBothRuns) {
     writer.close();
   }
   const Session session = read_session(dir / "a.h5");
-  ASSERT_NE(session.twin, nullptr);
+  ASSERT_EQ(session.lanes(), 2u);
   EXPECT_TRUE(same_bits(session.rows, first));
-  EXPECT_TRUE(same_bits(session.twin->rows, second));
+  EXPECT_TRUE(same_bits(session.lane(kTwinLane).rows, second));
   EXPECT_TRUE(same_bits(session.world, world));
-  EXPECT_TRUE(same_bits(session.twin->world, other));
+  EXPECT_TRUE(same_bits(session.lane(kTwinLane).world, other));
 }
 
 TEST(SessionWithBodies, NeedNotSayWithWhatTheyBegin) {

@@ -418,22 +418,26 @@ TEST(Session, KeepsABlockWithoutASingleNumber) {
   }
 }
 
-// Reading takes both runs side by side, a few thousand rows at a time, at any length.
-TEST(Session, IsReadInPieces) {
+// Reading takes all runs side by side, a few thousand rows at a time, at any length.
+TEST(Session, OfAsManyRunsAsThereCanBeIsReadInPieces) {
   const test::TempDir dir;
   SessionInfo info = sample_info();
-  info.twin = "coupling.eta = 0.5\n";
-  const std::vector<double> rows = sample_rows(RowLayout(3), 0, 20'000);
-  std::vector<double> others = rows;
-  for (std::size_t i = 1; i < others.size(); i += RowLayout(3).stride()) others[i] = 7;
+  std::vector<std::vector<double>> rows{sample_rows(RowLayout(3), 0, 20'000)};
+  for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
+    info.beside.push_back("coupling.eta = 0." + std::to_string(lane) + "\n");
+    rows.push_back(rows[0]);
+    for (std::size_t i = 1; i < rows[lane].size(); i += RowLayout(3).stride()) {
+      rows[lane][i] = static_cast<double>(lane);
+    }
+  }
   SessionWriter writer(dir / "a.h5", info, false);
-  writer.append(rows, kMainLane);
-  writer.append(others, kTwinLane);
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) writer.append(rows[lane], lane);
   writer.append(SettingChange{12'345, "coupling.k_vc = 8"});
+  writer.append(SettingChange{54, "coupling.k_vc = 9"}, kMostLanes - 1);
   writer.append(Mark{19'999, "last"});
   writer.close();
 
-  std::vector<double> got, got_twin;
+  std::vector<std::vector<double>> got(kMostLanes);
   std::size_t largest = 0;
   std::string config;
   std::vector<SettingChange> changes;
@@ -443,13 +447,13 @@ TEST(Session, IsReadInPieces) {
         config = about.info.config;
         changes = about.changes;
       },
-      [&](std::span<const double> some, std::span<const double> twin) {
-        largest = std::max(largest, some.size());
-        got.insert(got.end(), some.begin(), some.end());
-        got_twin.insert(got_twin.end(), twin.begin(), twin.end());
+      [&](LaneRows some) {
+        ASSERT_EQ(some.size(), kMostLanes);
+        largest = std::max(largest, some[0].size());
+        for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+          got[lane].insert(got[lane].end(), some[lane].begin(), some[lane].end());
+        }
       });
-  EXPECT_TRUE(same_bits(got, rows));
-  EXPECT_TRUE(same_bits(got_twin, others));
   EXPECT_LE(largest, 4096 * static_cast<std::size_t>(RowLayout(3).stride()));
   EXPECT_EQ(config, info.config);
   ASSERT_EQ(changes.size(), 1u) << "who takes rows in turn has to know what changes at them";
@@ -457,10 +461,26 @@ TEST(Session, IsReadInPieces) {
   EXPECT_EQ(rest.size(), 0u);
   EXPECT_EQ(rest.changes.at(0).row, 12'345u);
   EXPECT_EQ(rest.marks.at(0).tick, 19'999u);
-  EXPECT_EQ(rest.twin->info.config, "coupling.eta = 0.5\n");
+  EXPECT_EQ(rest.lane(kMostLanes - 1).changes.at(0).row, 54u);
   const Session whole = read_session(dir / "a.h5");
-  EXPECT_TRUE(same_bits(whole.rows, rows));
-  EXPECT_TRUE(same_bits(whole.twin->rows, others));
+  ASSERT_EQ(whole.lanes(), kMostLanes);
+  EXPECT_EQ(whole.info.beside, info.beside);
+  for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+    EXPECT_TRUE(same_bits(got[lane], rows[lane])) << lane;
+    EXPECT_TRUE(same_bits(whole.lane(lane).rows, rows[lane])) << lane;
+  }
+  for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
+    EXPECT_EQ(whole.lane(lane).info.config, info.beside[lane - 1]);
+  }
+}
+
+TEST(Session, OfMoreRunsThanThereCanBeIsNotWritten) {
+  const test::TempDir dir;
+  SessionInfo info = sample_info();
+  info.beside.resize(kMostLanes);
+  EXPECT_THAT(test::refusal([&] { SessionWriter(dir / "a.h5", info, false); }),
+              HasSubstr("a.h5: 4 runs; allowed: 1 to 3"));
+  EXPECT_TRUE(fs::is_empty(dir / "."));
 }
 
 }  // namespace

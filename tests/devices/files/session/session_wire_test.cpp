@@ -34,8 +34,12 @@ class SessionWire : public testing::Test {
     Session twin = session_;
     twin.info.config = "coupling.eta = 0.25\n";
     twin.rows[1] = -0.0;
-    session_.info.twin = twin.info.config;
-    session_.twin = std::make_shared<const Session>(std::move(twin));
+    Session third = twin;
+    third.info.config = "coupling.eta = 0.5\n";
+    third.rows[2] = -7;
+    third.changes.clear();
+    session_.info.beside = {twin.info.config, third.info.config};
+    session_.beside = {std::move(twin), std::move(third)};
     session_.marks = {{0, "first"}, {39, "\xCE\xB7 last"}};
   }
 
@@ -84,11 +88,14 @@ TEST_F(SessionWire, CarriesEverything) {
   EXPECT_EQ(back.changes[0].row, 3u);
   EXPECT_EQ(back.changes[0].setting, "coupling.k_vc = 8");
   EXPECT_EQ(back.marks, session_.marks);
-  ASSERT_TRUE(back.twin);
-  expect_same_bits(back.twin->rows, session_.twin->rows);
-  EXPECT_EQ(back.info.twin, "coupling.eta = 0.25\n");
-  EXPECT_EQ(back.twin->info.config, "coupling.eta = 0.25\n");
-  EXPECT_FALSE(back.twin->info.twin);
+  ASSERT_EQ(back.lanes(), 3u);
+  EXPECT_EQ(back.info.beside, session_.info.beside);
+  for (const std::size_t lane : {1, 2}) {
+    expect_same_bits(back.lane(lane).rows, session_.lane(lane).rows);
+    EXPECT_EQ(back.lane(lane).info.config, session_.info.beside[lane - 1]);
+    EXPECT_TRUE(back.lane(lane).info.beside.empty());
+    EXPECT_EQ(back.lane(lane).changes.size(), lane == 1 ? 2u : 0u);
+  }
 }
 
 // A leftover claims rows that are not whole; its changes are told before that is known.
@@ -98,13 +105,15 @@ TEST_F(SessionWire, LosesTheChangesAtRowsThatALeftoverHasLost) {
   wire::Writer to(*file_);
   put_about(to, session_, 40);
   const std::size_t whole = 30 * static_cast<std::size_t>(session_.layout.stride());
-  put_rows(to, std::span(session_.rows).first(whole), std::span(session_.twin->rows).first(whole));
+  std::vector<std::span<const double>> rows = session_.lane_rows();
+  for (std::span<const double>& lane : rows) lane = lane.first(whole);
+  put_rows(to, rows);
   put_rest(to, session_);
   const Session back = take();
   EXPECT_EQ(back.size(), 30u);
   ASSERT_EQ(back.changes.size(), 1u);
   EXPECT_EQ(back.changes[0].row, 3u);
-  ASSERT_EQ(back.twin->changes.size(), 1u) << "the other change of the twin is at row 40";
+  ASSERT_EQ(back.lane(kTwinLane).changes.size(), 1u) << "the other change of the twin is at row 40";
 }
 
 TEST_F(SessionWire, ThatIsCutOffAnywhereIsNoSession) {

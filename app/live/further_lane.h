@@ -1,5 +1,5 @@
-// A second run beside the loop's: another simulated device in the same world, on the same hand,
-// with settings of its own.
+// A further lane beside the loop's first: another simulated device in the same world, on the same
+// hand, with settings of its own.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace limpid {
 
-class Twin {
+class FurtherLane {
  public:
   // For threads other than the loop's: they allocate. `rig`: a simulated device with the loop's arm
   // and scene.

@@ -1,4 +1,4 @@
-// Live session: the running loop with its controls, force, plots and recording.
+// The live session on its stage: force, time, plots and recording, as the window has them.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,18 @@
 #include "app/base/tasks.h"
 #include "app/desktop/base/notices.h"
 #include "app/desktop/base/stage.h"
-#include "app/live/live_loop.h"
+#include "app/live/live_session.h"
 #include "app/plot/plot_menu.h"
 #include "app/run/simulate.h"
 
 namespace limpid {
 
-class LiveSession {
+class LiveStage {
  public:
-  LiveSession(Notices& notices, AskForPriority ask)
-      : notices_(notices), loop_(std::move(ask), [this](std::unique_ptr<Device> device) {
-          let_go(std::move(device));
-        }) {}
-  ~LiveSession();  // completes a recording
-  LiveSession(const LiveSession&) = delete;
-  LiveSession& operator=(const LiveSession&) = delete;
+  LiveStage(Notices& notices, AskForPriority ask);
+  ~LiveStage();
+  LiveStage(const LiveStage&) = delete;
+  LiveStage& operator=(const LiveStage&) = delete;
 
   // Opens another world and its loop, with `device` or, if null, the virtual arm. `shown` as
   // Stage's. Errors: as Stage and LiveLoop::open(); the world of before goes on then.
@@ -39,24 +36,27 @@ class LiveSession {
   // Gives another state of the scene to the loop.
   void touch(const Scene& scene);
 
-  LiveLoop& loop() { return loop_; }
-  const LiveLoop& loop() const { return loop_; }
-  Controls& controls() { return controls_; }
-  const Controls& controls() const { return controls_; }
+  LiveSession& session() { return session_; }
+  const LiveSession& session() const { return session_; }
+  LiveLoop& loop() { return session_.loop(); }
+  const LiveLoop& loop() const { return session_.loop(); }
+  Controls& controls() { return session_.controls(); }
+  const Controls& controls() const { return session_.controls(); }
   Stage& stage() { return *stage_; }
   const Stage& stage() const { return *stage_; }
-  std::span<const double> row() const;       // the newest row
-  std::span<const double> twin_row() const;  // the newest row of the twin; empty without one
-  // Returns why the twin cannot come or go now; empty if it can.
-  std::string why_twin_is_fixed() const;
+  std::span<const double> row() const { return rows().front(); }  // the newest row
+  // Returns the newest rows of all lanes that run.
+  std::vector<std::span<const double>> rows() const { return session_.rows(); }
+  // Returns why further lanes cannot come or go now; empty if they can.
+  std::string why_lanes_are_fixed() const;
 
-  bool force_armed() const { return loop_.snapshot().armed(); }
-  void toggle_force() { force_armed() ? loop_.cut() : loop_.arm(); }
+  bool force_armed() const { return loop().snapshot().armed(); }
+  void toggle_force() { force_armed() ? loop().cut() : loop().arm(); }
   // Controls the virtual arm's time. Returns why it cannot be changed, for people; empty if it can.
   std::string why_time_is_fixed() const;
-  bool paused() const { return controls_.paused && why_time_is_fixed().empty(); }
-  void pause(bool paused) { controls_.paused = paused; }
-  void step(std::uint32_t ticks) { controls_.steps += ticks; }
+  bool paused() const { return controls().paused && why_time_is_fixed().empty(); }
+  void pause(bool paused) { controls().paused = paused; }
+  void step(std::uint32_t ticks) { controls().steps += ticks; }
   // Returns "paused" or "1/10 speed"; empty at the usual pace.
   std::string pace_text() const;
   // Returns why the tip cannot pick anything up, for people; empty if it can.
@@ -67,28 +67,22 @@ class LiveSession {
   void start_over();
 
   // Returns whether a recording runs or is being opened: its world must not change.
-  bool recording() const { return loop_.recording() || opening_.valid(); }
+  bool recording() const { return session_.recording(); }
   // Returns false while the last recording is still being opened or closed.
   bool may_record();
   // Begins a recording to `file`. `replaces`: the complete recording may replace an existing file.
   void record(const RunPlan& plan, const std::filesystem::path& file, bool replaces = false);
-  void stop_recording() { loop_.stop_recording(); }
+  void stop_recording() { session_.stop_recording(); }
   // Returns whether a stopped recording is not complete yet.
-  bool closing() const { return loop_.recorder() != nullptr || closing_.valid(); }
-  struct Recorded {
-    std::filesystem::path file;
-    std::uint64_t rows = 0, dropped = 0;  // dropped: rows for which there was no room
-    bool complete = false;
-    std::string trouble = {};  // why it ended by itself, for people; empty: it did not
-  };
-  const Recorded& last_recording() const { return last_; }
+  bool closing() const { return session_.closing(); }
+  const Recorded& last_recording() const { return session_.last_recording(); }
   // Completes the recording after the loop has been closed; waits. Errors: FileError.
-  void complete_recording();
+  void complete_recording() { session_.complete_recording(); }
   // Returns the file of a recording that has just ended, once.
   std::optional<std::filesystem::path> take_recorded() { return std::exchange(recorded_, {}); }
 
-  // Receives every row of the loop, the twin's row beside it, and the number of their tick.
-  std::function<void(std::span<const double>, std::span<const double>, std::uint64_t)> on_row;
+  // Receives the rows of every tick of the loop, and the tick's number.
+  LiveSession::TakeTick on_row;
 
   // Queue for work on devices, which may hang. Files have another queue, so they never wait for it.
   TaskQueue& device_tasks() { return device_tasks_; }
@@ -99,9 +93,9 @@ class LiveSession {
   // Returns the last file that save_beside() wrote, once; empty: none.
   std::filesystem::path take_written() { return std::exchange(written_, {}); }
 
-  // Sends the controls with these parameters to the loop, and its rows to the plots; to be called
-  // once a frame. `twin`: parameters of the second run; null: none.
-  void update(const Parameters& p, const Parameters* twin);
+  // Sends the controls with the parameters of these lanes to the loop, and its rows to the plots;
+  // to be called once a frame.
+  void update(std::span<const Parameters> lanes);
   // Returns true once after the loop has become unstable.
   bool became_unstable();
   // Marks in the plots that a setting changes with the next update().
@@ -123,26 +117,20 @@ class LiveSession {
                                     const MeshModels& models, const Parameters& p,
                                     double shown) const;
   void take_stage(std::unique_ptr<Stage> fresh);
-  void follow_recording();
+  void tell(const RecordingNews& news);
   void follow_saving();
-  void take_rows();
   void set_marks();
   void watch_loop();
 
   Notices& notices_;
-  Controls controls_;
   TaskQueue device_tasks_, file_tasks_;
-  LiveLoop loop_;
+  LiveSession session_;
   std::unique_ptr<Stage> stage_;
-  std::vector<double> rows_;
   std::vector<PlotMark> changes_;  // marks whose time is not known yet
   bool was_diverged_ = false, was_running_ = false;
-  std::future<std::unique_ptr<Recorder>> opening_;
-  std::future<Notice> closing_;
   std::vector<std::future<PlotNotice>> saving_;
   std::filesystem::path written_;
   std::optional<std::filesystem::path> recorded_;
-  Recorded last_;
 };
 
 }  // namespace limpid

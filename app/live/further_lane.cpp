@@ -1,18 +1,18 @@
-#include "app/live/twin.h"
+#include "app/live/further_lane.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace limpid {
 
-void Twin::open(std::unique_ptr<Rig> rig, const RigStart& sizes) {
+void FurtherLane::open(std::unique_ptr<Rig> rig, const RigStart& sizes) {
   rig_ = std::move(rig);
   start_ = sizes;
   running_ = false;
 }
 
-void Twin::step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
-                std::span<double> row) noexcept {
+void FurtherLane::step(bool on, const Parameters& p, const Rig& first, const RigInput& input,
+                       std::span<double> row) noexcept {
   changed_ = running_ && !(p == parameters_);
   parameters_ = p;
   if (!on) {
@@ -30,7 +30,7 @@ void Twin::step(bool on, const Parameters& p, const Rig& first, const RigInput& 
   rig_->step(parameters_, input, row);
 }
 
-void Twin::restart_here(const Vec3& target) noexcept {
+void FurtherLane::restart_here(const Vec3& target) noexcept {
   if (running_) rig_->restart_here(parameters_, start_, target);
 }
 

@@ -1,0 +1,20 @@
+// Settings that all lanes of a run share, and names of lanes by those that differ.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/tick/parameters.h"
+
+namespace limpid {
+
+// Copies to another lane all settings but its own ControllerSettings.
+void share_world(const Parameters& first, Parameters& other);
+// Returns the law that a further lane begins with, beside those that are there already: the first
+// of standard, predictive and proposed that none of them has.
+CouplingKind law_beside(std::span<const Parameters> lanes);
+// Names lanes by what they differ in: their laws, or else a setting.
+std::vector<std::string> lane_names(std::span<const Parameters> lanes);
+
+}  // namespace limpid
