@@ -470,16 +470,16 @@ std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPic
   return with_metadata(canvas.end(), provenance("", std::nullopt));
 }
 
-Rgb draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
-              PlotCanvas& canvas) {
-  PlotDrawing drawing(spec, history, picture);
-  drawing.draw(canvas);
-  return paper_of(drawing.colours());
+Rgb paper_of(const PlotPicture& picture) { return paper_of(palette(picture.theme)); }
+
+void draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
+               PlotCanvas& canvas) {
+  PlotDrawing(spec, history, picture).draw(canvas);
 }
 
 Raster plot_raster(const PlotSpec& spec, const History& history, const PlotPicture& picture,
                    double scale) {
-  RasterCanvas canvas(picture.width, picture.height, scale, paper_of(palette(picture.theme)));
+  RasterCanvas canvas(picture.width, picture.height, scale, paper_of(picture));
   draw_plot(spec, history, picture, canvas);
   return canvas.take();
 }

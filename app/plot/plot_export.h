@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "app/plot/axis.h"
+#include "app/plot/cairo_canvas.h"
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
-#include "app/plot/raster_canvas.h"
 
 namespace limpid {
 
@@ -39,9 +39,11 @@ struct PlotPicture {
 };
 // Returns a complete SVG document, `width` x `height` [px].
 std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture);
-// Draws the same picture on another canvas; returns the colour of its paper.
-Rgb draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
-              PlotCanvas& canvas);
+// Returns the colour of a picture's paper.
+Rgb paper_of(const PlotPicture& picture);
+// Draws the same picture on another canvas.
+void draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
+               PlotCanvas& canvas);
 // Draws the same picture in pixels, `scale` of them for one of the layout.
 Raster plot_raster(const PlotSpec& spec, const History& history, const PlotPicture& picture,
                    double scale);

@@ -29,7 +29,8 @@ constexpr int kLeastDpi = 72, kMostDpi = 1200;
 
 const char* ending(const ExportOrder& order) {
   if (order.what == What::table) return "csv";
-  return order.what == What::plot && order.format == Format::svg ? "svg" : "png";
+  constexpr std::array kEndings{"png", "svg", "pdf"};
+  return order.what == What::plot ? kEndings[static_cast<std::size_t>(order.format)] : "png";
 }
 
 // Returns a free name for the file.
@@ -77,6 +78,7 @@ void ExportDialog::draw_size() {
   };
   choice("PNG, pixels", order_.format, Format::png);
   choice("SVG, lines", order_.format, Format::svg);
+  choice("PDF, a page", order_.format, Format::pdf);
   ImGui::NewLine();
   choice("light, for paper", order_.theme, Theme::light);
   choice("dark, for slides", order_.theme, Theme::dark);
@@ -87,7 +89,7 @@ void ExportDialog::draw_size() {
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble("printed", &order_.height, 0, 0, "%.0f mm");
-  if (order_.format == Format::svg) return;
+  if (order_.format != Format::png) return;
   ImGui::SetNextItemWidth(number);
   ImGui::InputInt("dpi", &order_.dpi, 0);
   const double inch = 25.4;

@@ -12,7 +12,7 @@ namespace limpid {
 
 struct ExportOrder {
   enum class What : std::uint8_t { plot, table, window, video };
-  enum class Format : std::uint8_t { png, svg };
+  enum class Format : std::uint8_t { png, svg, pdf };
 
   What what = What::plot;
   std::size_t plot = 0;

@@ -11,6 +11,7 @@
 #include "app/desktop/base/open_elsewhere.h"
 #include "app/plot/canvas_tape.h"
 #include "app/plot/plot_export.h"
+#include "app/run/provenance.h"
 #include "devices/files/atomic_file.h"
 #include "render/gl/offscreen.h"
 
@@ -66,11 +67,20 @@ fs::path Exporter::carry_out(const ExportOrder& order, const Stage& stage) {
     return {};
   }
   const auto tape = std::make_shared<CanvasTape>();
-  const Rgb paper = draw_plot(plot.spec(), stage.history, picture, *tape);
+  draw_plot(plot.spec(), stage.history, picture, *tape);
+  if (order.format == ExportOrder::Format::pdf) {
+    live_.save_beside(said([tape, picture, file = order.file] {
+      // Provenance names no settings, as they may have changed within the plot's time.
+      PdfCanvas canvas(picture.width, picture.height, 72 / 25.4 / kLayoutPerMillimetre,
+                       paper_of(picture), provenance("", std::nullopt));
+      tape->play(canvas);
+      return written_as(file, bytes_of(canvas.end()));
+    }));
+    return {};
+  }
   const double scale = order.dpi / 25.4 / kLayoutPerMillimetre;
-  live_.save_beside(said([tape, paper, scale, width = picture.width, height = picture.height,
-                          dpi = order.dpi, file = order.file] {
-    RasterCanvas canvas(width, height, scale, paper);
+  live_.save_beside(said([tape, picture, scale, dpi = order.dpi, file = order.file] {
+    RasterCanvas canvas(picture.width, picture.height, scale, paper_of(picture));
     tape->play(canvas);
     const Raster raster = canvas.take();
     const auto per_metre = static_cast<unsigned>(std::lround(dpi / 0.0254));

@@ -1,5 +1,5 @@
 // Pixels against known areas, and the picture of a plot against the same at another size.
-#include "app/plot/raster_canvas.h"
+#include "app/plot/cairo_canvas.h"
 
 #include <gtest/gtest.h>
 
@@ -113,6 +113,17 @@ TEST_P(Pixels, SetsTextWhereItsAnchorIs) {
   const double half = middle_of(PlotCanvas::Anchor::start) - 100;
   EXPECT_GT(half, 12) << "five letters of 12 px";
   EXPECT_NEAR(middle_of(PlotCanvas::Anchor::end), 100 - half, 0.5);
+}
+
+TEST(PageOfPdf, HasItsSizeInPointsAndSaysWhoMadeIt) {
+  PdfCanvas canvas(400, 200, 0.75, kWhite, "limpid, a test");
+  canvas.rect({10, 10, 50, 50}, kBlack, 0.5);
+  canvas.text({100, 100}, PlotCanvas::Anchor::middle, kBlack, "\xCE\xB7 = 0.5", true);
+  const std::string document = canvas.end();
+  EXPECT_TRUE(document.starts_with("%PDF-"));
+  EXPECT_NE(document.find("%%EOF"), std::string::npos);
+  EXPECT_NE(document.find("/MediaBox [ 0 0 300 150 ]"), std::string::npos) << document;
+  EXPECT_NE(document.find("(limpid, a test)"), std::string::npos);
 }
 
 // Both sizes look the same to a person.
