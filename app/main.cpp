@@ -16,6 +16,7 @@
 #include "app/cli/complete.h"
 #include "app/cli/options.h"
 #include "app/make_video.h"
+#include "app/open_window.h"
 #include "devices/files/toml_reader.h"
 
 using namespace limpid;

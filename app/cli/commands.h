@@ -28,11 +28,5 @@ Command declare_doctor(CLI::App& app);
 // Hidden: writes what is installed beside the program, from the other commands.
 Command declare_share(CLI::App& app);
 Command declare_story(CLI::App& app, MakeVideo make_video);
-// The window: `limpid` without a command, and `limpid play`. Both take the options of the app
-// itself.
-struct WindowCommands {
-  Command desktop, play;
-};
-WindowCommands declare_window(CLI::App& app, MakeVideo make_video);
 
 }  // namespace limpid

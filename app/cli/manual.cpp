@@ -11,7 +11,7 @@
 #include "app/base/version.h"
 #include "app/cli/commands.h"
 #include "app/cli/complete.h"
-#include "app/desktop/shell/icon.h"
+#include "app/style/icon.h"
 #include "devices/files/text_file.h"
 #include "render/gl/offscreen.h"
 

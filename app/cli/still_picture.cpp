@@ -1,7 +1,7 @@
 #include "app/cli/still_picture.h"
 
 #include "app/base/folders.h"
-#include "app/desktop/base/row_view.h"
+#include "app/stage/row_view.h"
 #include "render/gl/offscreen.h"
 #include "render/scene_view.h"
 

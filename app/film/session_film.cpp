@@ -7,12 +7,12 @@
 #include <cmath>
 #include <utility>
 
-#include "app/desktop/base/picture_signs.h"
 #include "app/plot/plot_frame.h"
 #include "app/plot/plot_row.h"
 #include "app/run/lane_settings.h"
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
+#include "app/stage/picture_signs.h"
 #include "app/style/picture_legend.h"
 #include "core/coupling/laws.h"
 #include "core/tick/arming.h"

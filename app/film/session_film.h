@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/base/stage.h"
 #include "app/film/video_file.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/stage.h"
 #include "app/story/story.h"
 #include "app/style/imgui_gl.h"
 #include "devices/files/session/session.h"

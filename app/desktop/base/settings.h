@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/base/plot_choice.h"
+#include "app/stage/plot_choice.h"
 #include "core/base/lanes.h"
 #include "core/tick/parameters.h"
 #include "render/theme.h"

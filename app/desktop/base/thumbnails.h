@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "app/desktop/base/stage.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "app/desktop/base/notices.h"
-#include "app/desktop/base/stage.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "app/desktop/base/stage.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

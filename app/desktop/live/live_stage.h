@@ -11,10 +11,10 @@
 
 #include "app/base/tasks.h"
 #include "app/desktop/base/notices.h"
-#include "app/desktop/base/stage.h"
 #include "app/live/live_session.h"
 #include "app/plot/plot_menu.h"
 #include "app/run/simulate.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "app/base/tasks.h"
-#include "app/desktop/base/stage.h"
 #include "app/desktop/playback/player.h"
 #include "app/run/simulate.h"
+#include "app/stage/stage.h"
 #include "app/story/story.h"
 
 namespace limpid {

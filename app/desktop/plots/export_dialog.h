@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "app/desktop/base/stage.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "app/desktop/base/stage.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

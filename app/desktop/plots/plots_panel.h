@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "app/desktop/base/stage.h"
 #include "app/desktop/playback/player.h"
 #include "app/plot/plot_menu.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

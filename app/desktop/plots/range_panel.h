@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "app/desktop/base/stage.h"
 #include "app/desktop/playback/player.h"
 #include "app/plot/plot_menu.h"
 #include "app/plot/range_figures.h"
+#include "app/stage/stage.h"
 
 namespace limpid {
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "app/desktop/base/picture_signs.h"
 #include "app/desktop/scene/picking.h"
+#include "app/stage/picture_signs.h"
 #include "app/style/theme.h"
 
 namespace limpid {

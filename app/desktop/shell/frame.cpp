@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "app/desktop/base/passivity_break.h"
-#include "app/desktop/base/picture_signs.h"
 #include "app/desktop/coupling/lanes_panel.h"
 #include "app/desktop/playback/recorded_panel.h"
 #include "app/desktop/playback/transport.h"
@@ -15,6 +14,7 @@
 #include "app/desktop/scene/picking.h"
 #include "app/desktop/view/over_view.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/stage/picture_signs.h"
 #include "app/style/theme.h"
 
 namespace limpid {

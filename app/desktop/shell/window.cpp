@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "app/base/window_system.h"
-#include "app/desktop/shell/icon.h"
 #include "app/desktop/shell/input.h"
 #include "app/desktop/shell/pacing.h"
+#include "app/style/icon.h"
 #include "app/style/imgui_gl.h"
 #include "app/style/imgui_input.h"
 #include "app/style/palette.h"

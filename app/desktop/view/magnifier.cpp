@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/desktop/base/picture_signs.h"
+#include "app/stage/picture_signs.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 

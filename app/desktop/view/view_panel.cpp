@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "app/desktop/base/first_steps.h"
-#include "app/desktop/base/picture_signs.h"
 #include "app/desktop/device/pad_hand.h"
 #include "app/desktop/scene/object_signs.h"
 #include "app/desktop/scene/picking.h"
+#include "app/stage/picture_signs.h"
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"
 #include "app/style/theme.h"

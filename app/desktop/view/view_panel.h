@@ -9,11 +9,11 @@
 #include <span>
 
 #include "app/desktop/base/settings.h"
-#include "app/desktop/base/stage.h"
 #include "app/desktop/scene/scene_editor.h"
 #include "app/desktop/view/magnifier.h"
 #include "app/live/live_loop.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/stage.h"
 #include "render/camera.h"
 
 namespace limpid {

@@ -4,9 +4,9 @@
 #include <cstring>
 #include <functional>
 
-#include "app/desktop/base/row_view.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
+#include "app/stage/row_view.h"
 #include "render/gl/offscreen.h"
 #include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"

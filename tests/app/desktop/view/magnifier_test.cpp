@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/desktop/base/picture_signs.h"
+#include "app/stage/picture_signs.h"
 #include "tests/app/plot/imgui_frames.h"
 
 namespace limpid {

@@ -1,4 +1,4 @@
-#include "app/desktop/base/row_view.h"
+#include "app/stage/row_view.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "app/desktop/base/plot_choice.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/plot_choice.h"
 #include "render/camera.h"
 #include "render/view_state.h"
 

@@ -1,5 +1,5 @@
 // The 3D view of a row, live or recorded.
-#include "app/desktop/base/row_view.h"
+#include "app/stage/row_view.h"
 
 #include <gtest/gtest.h>
 

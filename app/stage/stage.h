@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
-#include "app/desktop/base/plot_choice.h"
-#include "app/desktop/base/row_view.h"
 #include "app/plot/history.h"
 #include "app/plot/plot.h"
 #include "app/plot/trace_channels.h"
 #include "app/run/scene_meshes.h"
+#include "app/stage/plot_choice.h"
+#include "app/stage/row_view.h"
 #include "render/camera.h"
 #include "render/scene_view.h"
 

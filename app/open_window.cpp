@@ -1,9 +1,10 @@
+#include "app/open_window.h"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "app/cli/commands.h"
 #include "app/cli/complete.h"
 #include "app/cli/options.h"
 #include "app/cli/video_options.h"

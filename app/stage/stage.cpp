@@ -1,9 +1,9 @@
-#include "app/desktop/base/stage.h"
+#include "app/stage/stage.h"
 
 #include <algorithm>
 
 #include "app/base/folders.h"
-#include "app/desktop/base/row_view.h"
+#include "app/stage/row_view.h"
 #include "render/arm_look.h"
 
 namespace limpid {

@@ -1,4 +1,4 @@
-#include "app/desktop/base/picture_signs.h"
+#include "app/stage/picture_signs.h"
 
 #include <fmt/format.h>
 

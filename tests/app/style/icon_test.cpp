@@ -1,4 +1,4 @@
-#include "app/desktop/shell/icon.h"
+#include "app/style/icon.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/desktop/base/plot_choice.h"
+#include "app/stage/plot_choice.h"
 
 #include <algorithm>
 #include <array>
