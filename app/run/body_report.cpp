@@ -191,7 +191,9 @@ double most_weight_energy(const Scene& scene, const ArmDescription& arm) {
   for (const Object& object : scene.objects) {
     if (!object.body) continue;
     const Vec3 center = object.pose * mass_properties(object).center;
-    double sinks = std::max(0.0, up.dot(center) - floor - half_width(object.shape));
+    // The middle of a body of several parts may come down to the floor, and lie outside of them.
+    const double rests = object.parts.empty() ? half_width(object.shape) : 0;
+    double sinks = std::max(0.0, up.dot(center) - floor - rests);
     if (object.body->joint && object.body->joint->to.empty()) {
       sinks = std::min(sinks, sinks_on(*object.body->joint, object, center, up));
     }

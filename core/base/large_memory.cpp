@@ -44,11 +44,6 @@ std::string folder() {
   return wanted != nullptr && *wanted != '\0' ? wanted : "/var/tmp";
 }
 
-std::size_t physical_memory() {
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
-
 // A file without a name; -1: the folder has none, or does not let this user write.
 int nameless_file(const std::string& in) {
   const int file = ::open(in.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
@@ -154,6 +149,11 @@ std::size_t large_bytes_on_disk() {
   std::size_t sum = 0;
   for (const auto& [block, bytes] : all.on_disk) sum += bytes;
   return sum;
+}
+
+std::size_t physical_memory() {
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 void forget_large_blocks() {

@@ -30,9 +30,25 @@ void give_back_large_block(void* block, std::size_t bytes) noexcept;
 // Bytes of the large blocks that are files now.
 std::size_t large_bytes_on_disk();
 // Lets the kernel drop pages whose content the file has; a later access reads them again. Plain
-// blocks stay. Code that fills or reads blocks from end to end calls it every kForgetAfter bytes.
+// blocks stay.
 void forget_large_blocks();
-inline constexpr std::size_t kForgetAfter = std::size_t{64} << 20;
+
+// Forgetting for code that fills or reads blocks from end to end: every 64 MiB.
+class ForgetBehind {
+ public:
+  void passed(std::size_t bytes) {
+    since_ += bytes;
+    if (since_ < kAfter) return;
+    since_ = 0;
+    forget_large_blocks();
+  }
+
+ private:
+  static constexpr std::size_t kAfter = std::size_t{64} << 20;
+  std::size_t since_ = 0;
+};
+
+std::size_t physical_memory();  // of this computer [bytes]
 // Undoes mlockall() for blocks that are files.
 void unlock_large_blocks();
 

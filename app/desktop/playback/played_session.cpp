@@ -21,11 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr double kOfStory = 12;  // time that the plots of a story show: about a step [s]
 
-// Rows of a layout that fill kForgetAfter bytes.
-std::size_t rows_between_forgetting(const RowLayout& layout) {
-  return kForgetAfter / (static_cast<std::size_t>(layout.stride()) * sizeof(double)) + 1;
-}
-
 // Returns the history of the whole recording, and of runs beside it. It marks a story's
 // steps, or else every change of a setting.
 History history_of(const Session& session, const std::string& where, const ArmDescription& arm,
@@ -38,7 +33,7 @@ History history_of(const Session& session, const std::string& where, const ArmDe
                    .seconds = length + 1,
                    .tick = session.info.tick});
   const auto stride = static_cast<std::size_t>(session.layout.stride());
-  const std::size_t forget_every = rows_between_forgetting(session.layout);
+  ForgetBehind forget;
   auto change = session.changes.begin();
   for (std::size_t k = 0; k < session.size(); ++k) {
     for (; change != session.changes.end() && change->row <= k; ++change) {
@@ -55,7 +50,7 @@ History history_of(const Session& session, const std::string& where, const ArmDe
     std::vector<std::span<const double>> rows{session.row(k)};
     for (const auto& run : beside) rows.push_back(run.subspan(k * stride, stride));
     channels.append(history, rows);
-    if (k % forget_every == 0) forget_large_blocks();
+    forget.passed(rows.size() * stride * sizeof(double));
   }
   forget_large_blocks();
   return history;
@@ -119,11 +114,11 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
   LargeVector<double> rows;
   rows.reserve(session.rows.size());
   std::uint64_t count = 0;
-  const std::size_t forget_every = rows_between_forgetting(session.layout);
+  ForgetBehind forget;
   const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
                               [&](std::span<const double> row, LaneChanges) {
                                 rows.insert(rows.end(), row.begin(), row.end());
-                                if (count % forget_every == 0) forget_large_blocks();
+                                forget.passed(row.size_bytes());
                                 progress.part =
                                     static_cast<double>(++count) / static_cast<double>(plan.rows);
                                 return true;

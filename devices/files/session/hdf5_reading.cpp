@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -378,11 +377,6 @@ Group open_group(hid_t root, const std::string& path, const fs::path& file) {
   Group group(reached(root, path, file) ? H5Gopen2(root, inside, H5P_DEFAULT) : H5I_INVALID_HID);
   if (!group) refuse(file, path, "not a group that can be read");
   return group;
-}
-
-std::uint64_t physical_memory() {
-  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 Claims::Claims(fs::path file, std::uint64_t most)

@@ -14,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/large_memory.h"
+
 namespace limpid::hdf5 {
 
 // Owns one identifier; `Close` is its H5?close.
@@ -115,8 +117,6 @@ bool has(hid_t root, const std::string& path, const std::filesystem::path& file)
 // reached by hard links, or is stored outside of this file; for filters that do not belong to HDF5.
 Dataset open_dataset(hid_t root, const std::string& path, const std::filesystem::path& file);
 Group open_group(hid_t root, const std::string& path, const std::filesystem::path& file);
-
-std::uint64_t physical_memory();  // [bytes]
 
 // Memory claimed by all that is read of one file, limited by what the file stores.
 class Claims {

@@ -42,7 +42,7 @@ void answer(std::string_view what, const char* file, limpid::wire::Writer& to) {
         [&](limpid::LaneRows rows) { put_rows(to, rows); });
     put_rest(to, rest);
   } else if (what == "marks") {
-    limpid::wire::Reader from(STDIN_FILENO, limpid::hdf5::physical_memory());
+    limpid::wire::Reader from(STDIN_FILENO, limpid::physical_memory());
     limpid::write_marks_here(file, limpid::kCopyToChange, limpid::wire::take_order(from));
     to.number(Answer::contents);
     to.number(std::uint8_t{0});

@@ -164,7 +164,7 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
   }
   other_end.close();
   try {
-    wire::Reader from(*answers, hdf5::physical_memory());
+    wire::Reader from(*answers, physical_memory());
     if (from.number<wire::Answer>() != wire::Answer::contents) throw FileError(from.text());
     return take(from);
   } catch (const wire::Broken& broken) {
@@ -263,7 +263,7 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
 Session take_session(Reader& from) {
   constexpr std::uint64_t kMostRows = std::uint64_t{1} << 40;  // more than 30 years of ticks
   std::array<LargeVector<double>, kMostLanes> rows;
-  std::size_t since = 0;
+  ForgetBehind forget;
   Session session = take_session(
       from,
       [&](const Session& about, std::uint64_t count) {
@@ -274,11 +274,8 @@ Session take_session(Reader& from) {
       [&](LaneRows some) {
         for (std::size_t i = 0; i < some.size(); ++i) {
           rows[i].insert(rows[i].end(), some[i].begin(), some[i].end());
-          since += some[i].size_bytes();
+          forget.passed(some[i].size_bytes());
         }
-        if (since < kForgetAfter) return;
-        since = 0;
-        forget_large_blocks();
       });
   for (std::size_t i = 0; i < session.lanes(); ++i) session.lane(i).rows = std::move(rows[i]);
   return session;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/dynamics/farthest_tip.h"
+#include "core/touch/mass_properties.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -42,6 +43,18 @@ TEST(BodyReport, WeighsHowFarABodyFallsToTheFloor) {
   Scene scene = on_a_floor({body("a", Sphere{0.02}, Vec3(0, 0, 0.1))});
   scene.gravity.setZero();
   EXPECT_EQ(most_weight_energy(scene, arm()), 0);
+}
+
+// Flat on its plate the body's centre is nearer to the floor than the ball, its first part, is
+// wide.
+TEST(BodyReport, WeighsNoLessThanABodyOfPartsCanGive) {
+  constexpr double kPlate = 0.002, kUp = 0.06;
+  Object object = body("a", Sphere{0.05}, Vec3(0, 0, 0.3));
+  object.parts.push_back({pose_at(Vec3(0, 0, -kUp)), Box{Vec3(0.4, 0.4, kPlate)}});
+  const double center = mass_properties(object).center.z();  // from the ball's middle
+  ASSERT_LT(kUp + center, 0.05);
+  const double lying = kUp + kPlate / 2 + center;
+  EXPECT_GE(energy(object), 0.1 * kG * (0.3 + center + 0.1 - lying));
 }
 
 TEST(BodyReport, WithoutAFloorItFallsAsFarAsTheTipGets) {

@@ -68,11 +68,6 @@ bool disk_has_room() {
   return free > (std::uint64_t{5} << 28) && ::fallocate(*file, 0, 0, 1 << 20) == 0;
 }
 
-std::size_t physical_memory() {
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-}
-
 TEST(LargeMemory, IsPlainAsLongAsThereIsLittleOfIt) {
   const LargeVector<double> some(32 * kMebibyte / sizeof(double), 1.5);
   EXPECT_EQ(large_bytes_on_disk(), 0u);
