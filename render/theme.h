@@ -10,7 +10,8 @@ namespace limpid {
 
 // Shades of what belongs to each lane: above 0 towards the text's colour, below 0 towards the
 // background.
-inline constexpr std::array<float, kMostLanes> kLaneShades{0, 0.55f, -0.4f};
+inline constexpr std::array kLaneShades{0.0f, 0.55f, -0.4f};
+static_assert(kLaneShades.size() == kMostLanes);
 
 enum class Theme : std::uint8_t { dark, light };
 

@@ -1,4 +1,4 @@
-// Canvas for a plot's picture: the lines of an SVG document, or pixels.
+// Canvas for a plot's picture: the lines of an SVG document, a page of PDF, or pixels.
 #pragma once
 
 #include <cstdint>

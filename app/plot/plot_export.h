@@ -1,4 +1,4 @@
-// Plots as tables, SVG documents and pixels.
+// Plots as tables and pictures: SVG documents, or drawn on a canvas.
 #pragma once
 
 #include <string>

@@ -20,7 +20,8 @@ inline std::string lane_name(std::size_t lane) {
 
 // Returns a lane's number as a word: "first", "second", "third".
 inline const char* lane_ordinal(std::size_t lane) {
-  constexpr std::array<const char*, kMostLanes> kOrdinals{"first", "second", "third"};
+  constexpr std::array kOrdinals{"first", "second", "third"};
+  static_assert(kOrdinals.size() == kMostLanes);
   return kOrdinals.at(lane);
 }
 

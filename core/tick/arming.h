@@ -39,7 +39,7 @@ inline std::string force_text(ForceState state) {
 }
 
 // Whether the motors may push, and how much: the one state machine between a request for force and
-// the motors. Nothing else arms, fades in or trips.
+// the motors. Nothing else in the loop arms, fades in or trips.
 enum class Arming : std::uint8_t {
   off,
   waiting,  // armed; the hand does not hold the device
