@@ -116,7 +116,7 @@ struct Ghost {
   std::vector<float> outline;  // strength for each link, 0 to 1
 };
 
-// Bodies of a second run or re-run that are elsewhere than those of the first.
+// Bodies of a further run or re-run that are elsewhere than those of the first.
 struct BodyGhosts {
   Links links;
   std::vector<bool> shown;  // of each body

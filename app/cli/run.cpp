@@ -160,7 +160,9 @@ class RunLog {
       watches_[lane].add(rows.subspan(lane * stride_, stride_));
     }
     ++rows_;
+    const bool was_wild = runs_[0].watch().wild();
     const bool memorable = runs_[0].add(rows.first(stride_));
+    if (runs_[0].watch().wild() && !was_wild) stable_ = memorable_;
     for (std::size_t lane = 1; lane < runs_.size(); ++lane) {
       runs_[lane].add(rows.subspan(lane * stride_, stride_));
     }
@@ -190,8 +192,11 @@ class RunLog {
     return all;
   }
   double time() const { return runs_[0].time(); }
-  // Rows of all lanes when the first one's contact was strongest.
-  std::span<const double> memorable() const { return memorable_; }
+  // Rows of all lanes when the first one's contact was strongest; of a run that became unstable,
+  // before that.
+  std::span<const double> memorable() const {
+    return runs_[0].watch().lost() && !stable_.empty() ? stable_ : memorable_;
+  }
   std::string text(const RunPlan& plan) const {
     if (plan.beside.empty()) return runs_[0].text();
     std::vector<std::string> names;
@@ -210,7 +215,7 @@ class RunLog {
   std::vector<Summary> runs_;
   std::deque<RunWatch> watches_;
   std::uint64_t rows_ = 0;
-  std::vector<double> memorable_;
+  std::vector<double> memorable_, stable_;  // stable_: before the present wild rows began
   Recorder* recorder_;
   bool waits_;
 };
@@ -275,7 +280,8 @@ void say_about(const RunPlan& plan) {
 int live(const RunOptions& options) {
   for (const auto& [given, what] : {std::pair(!options.input.hand.empty(), "--hand"),
                                     std::pair(options.input.variation.has_value(), "--variation"),
-                                    std::pair(options.beside[0].has_value(), "--twin")}) {
+                                    std::pair(options.beside[0].has_value(), "--twin"),
+                                    std::pair(options.beside[1].has_value(), "--lane3")}) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
   }
   if (options.json) throw UsageError("--json: not beside --live");

@@ -5,9 +5,8 @@
 
 namespace limpid {
 
-void FurtherLane::open(std::unique_ptr<Rig> rig, const RigStart& sizes) {
+void FurtherLane::open(std::unique_ptr<Rig> rig) {
   rig_ = std::move(rig);
-  start_ = sizes;
   running_ = false;
 }
 

@@ -13,8 +13,9 @@ class FurtherLane {
  public:
   // For threads other than the loop's: they allocate. `rig`: a simulated device with the loop's arm
   // and scene.
-  void open(std::unique_ptr<Rig> rig, const RigStart& sizes);
-  void room_for(const RigStart& sizes) { start_ = sizes; }
+  void open(std::unique_ptr<Rig> rig);
+  // Makes room for all that `first`, the loop's own rig, may ever begin this lane with.
+  void room_for(const Rig& first) { first.present(start_); }
   void close() {
     rig_.reset();
     running_ = changed_ = false;
@@ -29,6 +30,7 @@ class FurtherLane {
   void restart_here(const Vec3& target) noexcept;
   const RigStart& start() const { return start_; }  // of the last restart_here()
   void exchange(TouchWorld& world) noexcept { rig_->exchange(world); }
+  bool runs() const { return running_; }  // since an earlier step
   const Parameters& parameters() const { return parameters_; }
   // Whether the parameters changed at the last step.
   bool changed() const { return changed_; }

@@ -37,7 +37,7 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
   for (auto& each : beside) each = std::make_unique<Rig>(arm, scene);
   close();
   rig_ = std::move(rig);
-  for (std::size_t i = 0; i < beside.size(); ++i) beside_[i].open(std::move(beside[i]), start);
+  for (std::size_t i = 0; i < beside.size(); ++i) beside_[i].open(std::move(beside[i]));
   start.armed = virtual_armed_;
   begin(std::move(start), p);
 }
@@ -72,7 +72,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   limits_ = {};  // as in a new rig; the first tick lowers them again
   rig_->start(p, home_);
   rig_->present(rebase_);  // makes room for all sizes needed from now on
-  for (FurtherLane& lane : beside_) lane.room_for(rebase_);
+  for (FurtherLane& lane : beside_) lane.room_for(*rig_);
   hand_.reset(home_.target);
   guided_.reset(home_.target);
   led_ = false;
@@ -272,16 +272,20 @@ void LiveLoop::tick(const TickTiming& timing) {
 void LiveLoop::step_beside(const Controls& controls, const RigInput& input) {
   for (std::size_t i = 1; i < kMostLanes; ++i) {
     FurtherLane& lane = beside_[i - 1];
-    lane.step(i < controls.lane_count, controls.lanes[i], *rig_, input, row(i));
-    if (lane.changed() && recording_to_ != nullptr && i < recording_to_->lanes()) {
-      recording_to_->changed(lane.parameters(), i);
-    }
+    const bool recorded = recording_to_ != nullptr && i < recording_to_->lanes();
+    lane.step(recorded || i < controls.lane_count, controls.lanes[i], *rig_, input, row(i));
+    if (lane.changed() && recorded) recording_to_->changed(lane.parameters(), i);
   }
 }
 
 std::span<double> LiveLoop::row(std::size_t lane) {
   const std::size_t stride = rows_.size() / kMostLanes;
   return std::span(rows_).subspan(lane * stride, stride);
+}
+
+bool LiveLoop::lanes_run(std::size_t count) const {
+  const auto beside = std::span(beside_).first(count - 1);
+  return std::ranges::all_of(beside, [](const FurtherLane& lane) { return lane.runs(); });
 }
 
 // Takes up or releases the recorder. A recording restarts the rig where it stands, so that its
@@ -291,7 +295,8 @@ void LiveLoop::follow_recorder(const Vec3& target) {
     recording_to_ = nullptr;
     has_let_go_.store(true, std::memory_order_release);
   }
-  if (offered_recorder_.load(std::memory_order_relaxed) == nullptr || !rig_->steady()) return;
+  if (offered_recorder_.load(std::memory_order_acquire) == nullptr || !rig_->steady()) return;
+  if (!lanes_run(offered_lanes_.load(std::memory_order_relaxed))) return;
   // Null if the window has withdrawn it meanwhile.
   Recorder* offered = offered_recorder_.exchange(nullptr, std::memory_order_acq_rel);
   if (offered == nullptr) return;
@@ -316,9 +321,7 @@ void LiveLoop::publish(const TickTiming& timing) {
     recording_to_->push(std::span(rows_).first(recording_to_->stride()));
   }
   Snapshot& snapshot = snapshots_.back();
-  for (std::size_t i = 0; i < kMostLanes; ++i) {
-    std::ranges::copy(row(i), snapshot.rows[i].begin());
-  }
+  std::ranges::copy(row(kMainLane), snapshot.row.begin());
   snapshot.diverged = rig_->diverged();
   snapshot.recording = recording_to_ != nullptr;
   snapshot.arming = rig_->force().state();
@@ -333,10 +336,14 @@ void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
   if (recorder->stride() / recorder->lanes() * kMostLanes != trace_->stride()) {
     throw std::invalid_argument("the recording was begun for an arm of other joints");
   }
+  if (in_place_ && recorder->lanes() > 1) {
+    throw std::invalid_argument("the recording was begun for several runs on a virtual arm");
+  }
   recorder_ = std::move(recorder);
   stopping_ = false;
   let_go_.store(false, std::memory_order_relaxed);
   has_let_go_.store(false, std::memory_order_relaxed);
+  offered_lanes_.store(recorder_->lanes(), std::memory_order_relaxed);
   offered_recorder_.store(recorder_.get(), std::memory_order_release);
 }
 

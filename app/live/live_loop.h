@@ -53,7 +53,7 @@ struct TouchWorlds {
 
 // From the loop to the window; the newest wins.
 struct Snapshot {
-  std::array<std::array<double, kMaxStride>, kMostLanes> rows{};  // NaN where no lane runs
+  std::array<double, kMaxStride> row{};  // of the first lane
   bool diverged = false;
   bool recording = false;
   Arming arming = Arming::off;
@@ -162,8 +162,9 @@ class LiveLoop {
   const RowLayout& layout() const { return rig_->layout(); }
 
   // Begins recording at the next tick without fading; its first row is time zero. Preconditions:
-  // the loop runs, with rows as wide as the recorder's, and is not recording. The lanes that the
-  // recorder is of run and go on running.
+  // the loop runs, with rows as wide as the recorder's, and is not recording. The recording begins
+  // once all lanes that the recorder is of run, and keeps them running. Errors:
+  // std::invalid_argument for several lanes with a device in the arm's place.
   void record(std::unique_ptr<Recorder> recorder);
   bool recording() const { return recorder_ && !stopping_; }
   const Recorder* recorder() const { return recorder_.get(); }
@@ -192,6 +193,7 @@ class LiveLoop {
   ForceRequest wish();                                                  // the loop's
   void step_beside(const Controls& controls, const RigInput& input);    // the loop's
   std::span<double> row(std::size_t lane);                              // a part of rows_
+  bool lanes_run(std::size_t count) const;                              // the loop's
   void publish(const TickTiming& timing);
   void take_in();                                  // the loop's
   HandInput hand_input(const Controls& controls);  // the loop's
@@ -226,6 +228,7 @@ class LiveLoop {
   std::unique_ptr<Recorder> recorder_;
   bool stopping_ = false;
   std::atomic<Recorder*> offered_recorder_{nullptr};
+  std::atomic<std::size_t> offered_lanes_{1};  // of the recorder that is offered
   std::atomic<bool> let_go_{false}, has_let_go_{false};
 
   // Used by the loop alone.

@@ -53,9 +53,7 @@ std::uint64_t LiveRun::finish_recording() {
       recorder != nullptr ? recorder->dropped() : session_.last_recording().dropped;
   session_.complete_recording();
   // A recording that ended by itself was finished beside the loop.
-  if (const std::string& why = session_.last_recording().failure; !why.empty()) {
-    throw FileError(why);
-  }
+  if (const std::string why = session_.take_failure(); !why.empty()) throw FileError(why);
   return dropped;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/base/tasks.h"
@@ -85,13 +86,15 @@ class LiveSession {
   bool closing() const { return loop_.recorder() != nullptr || closing_.valid(); }
   // Begins a recording to `file`, opened beside the loop, of lanes with these parameters.
   // `replaces`: the complete recording may replace an existing file. Preconditions: none is
-  // recording or closing; the lanes run, or do so from the next turn on.
+  // recording or closing. The first row comes once these lanes run.
   void record(SessionInfo about, std::vector<Parameters> lanes, const std::filesystem::path& file,
               bool replaces);
   // Begins a recording that is open already.
   void record(std::unique_ptr<Recorder> recorder);
   void stop_recording() { loop_.stop_recording(); }
   const Recorded& last_recording() const { return last_; }
+  // Returns why the last recording could not be completed, once.
+  std::string take_failure() { return std::exchange(last_.failure, {}); }
   // Completes the recording, and waits for that. Errors: FileError.
   void complete_recording();
 

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "app/style/theme.h"
+#include "core/base/utf8.h"
 
 namespace limpid {
 namespace {
@@ -31,26 +34,40 @@ FontFace face_of(const std::string& file) {
   const std::unique_ptr<FcPattern, Frees<FcPatternDestroy>> pattern(FcPatternCreate());
   FcPatternAddString(pattern.get(), FC_FILE, reinterpret_cast<const FcChar8*>(file.c_str()));
   FcPatternAddInteger(pattern.get(), FC_INDEX, 0);
-  return FontFace(cairo_ft_font_face_create_for_pattern(pattern.get()));
+  FontFace face(cairo_ft_font_face_create_for_pattern(pattern.get()));
+  return cairo_font_face_status(face.get()) == CAIRO_STATUS_SUCCESS ? std::move(face) : nullptr;
 }
 
-cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) {
-  static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
-  return CAIRO_STATUS_SUCCESS;
+cairo_status_t append(void* to, const unsigned char* bytes, unsigned count) noexcept {
+  try {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  } catch (const std::bad_alloc&) {
+    return CAIRO_STATUS_NO_MEMORY;
+  }
+}
+
+// Cairo draws nothing more after an error. Errors: std::runtime_error.
+void check(cairo_status_t status) {
+  if (status == CAIRO_STATUS_SUCCESS) return;
+  throw std::runtime_error(std::string("the picture cannot be drawn: ") +
+                           cairo_status_to_string(status));
 }
 
 }  // namespace
 
 struct CairoCanvas::Impl {
+  std::string document;  // bytes of PDF until now; the surface writes there to its end
   Surface surface;
   Context cairo;
   std::array<FontFace, 2> faces;  // regular, semibold
-  std::string document;           // bytes of PDF until now
 
   // Begins to draw on the surface, whose paper is filled.
   void begin(cairo_surface_t* on, double scale, Rgb paper) {
     surface.reset(on);
+    check(cairo_surface_status(on));
     cairo.reset(cairo_create(on));
+    check(cairo_status(cairo.get()));
     faces = {face_of(font_file(Face::regular)), face_of(font_file(Face::semibold))};
     use(paper);
     cairo_paint(cairo.get());
@@ -162,16 +179,17 @@ void CairoCanvas::ring(Point middle, double radius, Rgb edge, Rgb fill) {
 void CairoCanvas::text(Point at, Anchor anchor, Rgb rgb, const std::string& what, bool bold) {
   cairo_font_face_t* face = impl_->faces[bold ? 1 : 0].get();
   if (face == nullptr) return;
+  const std::string valid = utf8_of(what);  // bytes that are none would spoil all that follows
   cairo_t* cairo = impl_->cairo.get();
   cairo_set_font_face(cairo, face);
   cairo_set_font_size(cairo, kCanvasFont);
   cairo_text_extents_t size{};
-  cairo_text_extents(cairo, what.c_str(), &size);
+  cairo_text_extents(cairo, valid.c_str(), &size);
   constexpr std::array kBefore{0.0, 0.5, 1.0};  // part of the width before the anchor
   const double before = kBefore[static_cast<std::size_t>(anchor)] * size.x_advance;
   cairo_move_to(cairo, at.x - before, at.y);
   impl_->use(rgb);
-  cairo_show_text(cairo, what.c_str());
+  cairo_show_text(cairo, valid.c_str());
   cairo_new_path(cairo);
 }
 
@@ -192,6 +210,7 @@ RasterCanvas::RasterCanvas(double width, double height, double scale, Rgb paper)
 }
 
 Raster RasterCanvas::take() {
+  check(cairo_status(impl_->cairo.get()));
   cairo_surface_t* surface = impl_->surface.get();
   cairo_surface_flush(surface);
   Raster raster{
@@ -223,8 +242,10 @@ PdfCanvas::PdfCanvas(double width, double height, double scale, Rgb paper,
 }
 
 std::string PdfCanvas::end() {
+  check(cairo_status(impl_->cairo.get()));
   impl_->cairo.reset();
   cairo_surface_finish(impl_->surface.get());
+  check(cairo_surface_status(impl_->surface.get()));
   return std::move(impl_->document);
 }
 

@@ -1,5 +1,6 @@
 // Canvases of cairo: the pixels of a picture, or a page of PDF. They need no window and no graphics
-// card, and may be used on any thread.
+// card, and may be used on any thread. Errors of constructors, take() and end(): std::runtime_error
+// if cairo has no memory or cannot draw.
 #pragma once
 
 #include <memory>

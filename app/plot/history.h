@@ -42,7 +42,7 @@ using SampleIndex = std::uint64_t;
 //
 // Blocks of 8, 64, 512 and 4096 samples are summed up as soon as they are full. So the extent of
 // any stretch costs a few dozen comparisons however long it is. A channel that has never had a
-// number is only counted: those of a second run that does not exist.
+// number is only counted: those of a further run that does not exist.
 class MinMaxRing {
  public:
   static constexpr int kFanBits = 3;

@@ -214,7 +214,9 @@ json Remote::get(const Keys& keys) const {
 }
 
 json Remote::set(const Keys& keys, Client client) {
-  const std::size_t lane = asked_lane(keys, keys.flag_or("twin", false) ? kTwinLane : kMainLane);
+  const bool of_twin = keys.flag_or("twin", false);
+  const std::size_t lane = asked_lane(keys, of_twin ? kTwinLane : kMainLane);
+  if (of_twin && lane != kTwinLane) throw keys.error("lane", "is not the twin's, which is 1");
   const bool reset = keys.flag_or("reset", false);
   if (lane >= host_.lanes()) {
     throw keys.error(keys.has("lane") ? "lane" : "twin", "there is none");

@@ -6,6 +6,7 @@
 #include <bit>
 #include <chrono>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include "devices/files/atomic_file.h"
@@ -20,6 +21,14 @@ constexpr int kMostNaps = 10;             // of 2 ms, for a block to come togeth
 std::size_t ring_rows(std::size_t room, std::size_t stride) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;
   return std::min(room, std::bit_floor(kBytes / (stride * sizeof(double))));
+}
+
+// Returns `out`. Errors: std::invalid_argument where file and loop would have other lanes.
+const std::filesystem::path& of_as_many_lanes(const std::filesystem::path& out,
+                                              const SessionInfo& info, std::size_t lanes) {
+  if (info.lanes() == lanes && lanes <= kMostLanes) return out;
+  throw std::invalid_argument(
+      fmt::format("{}: {} runs, and settings of {}", out.string(), info.lanes(), lanes));
 }
 
 std::size_t row_size(const SessionInfo& info) {
@@ -49,7 +58,7 @@ std::deque<RunWatch> watches_of(const SessionInfo& info, std::span<const Paramet
 
 Recorder::Recorder(const std::filesystem::path& out, const SessionInfo& info,
                    std::span<const Parameters> initial, bool force, std::size_t room)
-    : out_(out),
+    : out_(of_as_many_lanes(out, info, initial.size())),
       // Packing costs nobody time where a clock sets the pace.
       writer_(out, info, force, room > kWaitingRoom ? Packing::yes : Packing::no),
       ring_(ring_rows(room, initial.size() * row_size(info)), initial.size() * row_size(info)),

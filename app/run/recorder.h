@@ -21,7 +21,7 @@ namespace limpid {
 class Recorder {
  public:
   // Room for rows that wait to be written. Live: half a minute at 1 kHz where a clock sets the
-  // pace. Waiting: little, which stays in the processor's cache, for push_waiting().
+  // pace, or 64 MiB. Waiting: little, which stays in the processor's cache, for push_waiting().
   static constexpr std::size_t kLiveRoom = 1 << 15;
   static constexpr std::size_t kWaitingRoom = 1 << 13;
 

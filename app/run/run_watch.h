@@ -75,7 +75,7 @@ class SessionWatch {
   // `about` is the recording with its changes, whether it has its rows or not. Errors: FileError
   // and ParameterError where its settings cannot be read.
   SessionWatch(const Session& about, const std::string& file);
-  // Takes whole rows in turn, and as many of the second run's, if there is one.
+  // Takes whole rows of all lanes in turn.
   void take(LaneRows rows);
   std::vector<std::string> warnings() const;
 

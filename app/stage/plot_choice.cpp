@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <set>
+#include <span>
 
 #include "core/tick/arming.h"
 #include "render/theme.h"
@@ -85,9 +86,8 @@ Curve of_run(std::size_t run, const Curve& first, std::size_t number, const Trac
   if (curve.across >= 0) curve.across += offset;
   if (names.beside) {
     curve.sign = sign_of_lane(run);
-    const auto before = names.laws.begin() + static_cast<std::ptrdiff_t>(run);
-    const bool another =
-        curve.law >= 0 && std::find(names.laws.begin(), before, names.law(run)) == before;
+    const auto before = std::span(names.laws).first(std::min(run, names.laws.size()));
+    const bool another = curve.law >= 0 && std::ranges::count(before, names.law(run)) == 0;
     if (curve.law >= 0) curve.law = names.law(run);
     if (!another) curve.shade = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
   } else {

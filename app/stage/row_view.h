@@ -66,7 +66,7 @@ class RowView {
   std::vector<Vec3> centers_;  // of mass of each body, in the body's frame [m]
 };
 
-// Puts a second run's view into the first one's picture.
+// Puts a further run's view into the first one's picture.
 void lay_over(ViewState& view, const ViewState& other);
 
 // Remembers when each contact began and where the tips were in the last second.

@@ -73,6 +73,9 @@ void Stage::choose_plots(const std::vector<PlotChoice>& choices) {
 void Stage::name_runs(const RunNames& names) {
   if (names == names_) return;
   names_ = names;
+  // The history may know fewer runs.
+  const auto known = static_cast<std::size_t>(history.channels() / channels_.count());
+  names_.names.resize(std::min(names_.names.size(), known));
   for (std::size_t i = 0; i < plots.size(); ++i) {
     plots[i].show(plot_spec(choices_[i], channels_, names_));
   }

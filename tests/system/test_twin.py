@@ -63,6 +63,18 @@ class Headless(WithAnArm):
         self.assertEqual(result.status, 2, result)
         self.assertIn("--lane3: needs --twin beside it", result.err)
 
+    def test_the_picture_of_an_unstable_run_is_of_before(self) -> None:
+        image = self.out(".png")
+        result = limpid("run", *self.arm, "--twin", "--k-vc", "100000", "--picture", image)
+        self.assertEqual(result.status, 1, result)
+        self.assertTrue(image.exists(), result)
+
+    def test_a_device_has_no_further_runs(self) -> None:
+        for option in ("--twin", "--lane3"):
+            result = limpid("run", "--live", "--yes", option)
+            self.assertEqual(result.status, 2, result)
+            self.assertIn(f"{option}: not beside --live", result.err)
+
     def test_what_is_no_setting_is_refused_before_anything_is_written(self) -> None:
         for wrong in ("coupling.etta=1", "coupling.eta=-1", "loop.tick=0.002"):
             with self.subTest(wrong):

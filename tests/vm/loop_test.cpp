@@ -152,8 +152,8 @@ TEST(SpaceMouse, LeadsTheHandOfAVirtualArm) {
   loop.plug(open_device(find_device("space_mouse")));
   const auto tip = [&] {
     loop.update();
-    const auto target = loop.layout().in(std::span<const double>(loop.snapshot().rows[kMainLane]),
-                                         Column::hand_target);
+    const auto target =
+        loop.layout().in(std::span<const double>(loop.snapshot().row), Column::hand_target);
     return Vec3(target[0], target[1], target[2]);
   };
   EXPECT_TRUE(wait_until([&] { return loop.update() && loop.snapshot().connected; }));

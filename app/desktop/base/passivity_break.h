@@ -15,7 +15,7 @@ void break_passivity(Settings& settings, const ArmDescription& arm);
 inline constexpr const char* kBreakEnded =
     "Passivity is whole again: all settings are what they were before it was broken.";
 inline bool passivity_broken(const Settings& settings) { return settings.before_break.has_value(); }
-// Puts back all settings of both runs from before; does nothing if passivity is not broken.
+// Puts back all settings of all lanes from before; does nothing if passivity is not broken.
 void end_passivity_break(Settings& settings);
 // Ends the break if another law was chosen for the broken run, and keeps that law. Returns whether
 // it ended.

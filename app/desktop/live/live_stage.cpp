@@ -24,11 +24,22 @@ LiveStage::LiveStage(Notices& notices, AskForPriority ask)
       }) {}
 
 LiveStage::~LiveStage() {
-  loop().close();
-  for (std::future<PlotNotice>& saving : saving_) {
-    if (const PlotNotice notice = saving.get(); notice.bad) {
-      std::fputs(fmt::format("limpid: {}\n", notice.text).c_str(), stderr);
+  const auto say = [](const std::string& why) {
+    std::fputs(fmt::format("limpid: {}\n", why).c_str(), stderr);  // the terminal may be gone
+  };
+  const auto attempt = [&say](auto&& work) {
+    try {
+      work();
+    } catch (const std::exception& e) {
+      say(e.what());
     }
+  };
+  loop().close();
+  attempt([this] { session_.complete_recording(); });
+  for (std::future<PlotNotice>& saving : saving_) {
+    attempt([&] {
+      if (const PlotNotice notice = saving.get(); notice.bad) say(notice.text);
+    });
   }
 }
 

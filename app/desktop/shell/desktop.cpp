@@ -42,7 +42,8 @@ void Shown::follow_story() {
   if (step == step_) return;
   step_ = step;
   if (step == nullptr) return reset_view();
-  playback_.shown()->stage().name_runs(playback_.shown()->names_in(*step));
+  PlayedSession& played = *playback_.shown();
+  if (!played.has_rerun()) played.stage().name_runs(played.names_in(*step));
   const StoryCamera aim = camera_in(playback_.shown()->steps(), *step);
   reset_view();
   if (!aim.of && aim.view == Camera::View::iso) return;

@@ -533,7 +533,8 @@ void World::start_recording(fs::path file, bool replaces) {
   plan.document.toml = d_.document.toml();
   plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
   plan.parameters = d_.live.loop().taken(d_.settings.parameters());
-  for (std::size_t i = 1; i < d_.settings.lanes.count; ++i) {
+  const std::size_t lanes = d_.live.loop().device_in_place() ? 1 : d_.settings.lanes.count;
+  for (std::size_t i = 1; i < lanes; ++i) {
     plan.beside.push_back({d_.settings.lanes.parameters[i], {}});
   }
   hand_scene_over(true);

@@ -192,7 +192,7 @@ class Client:
 
     def twin(self, values: Optional[Mapping[str, Any]] = None, on: bool = True, lane: int = 1) -> None:
         """A second run on the same hand, or a third one (`lane` 2), with these settings of its own; or
-        none any more."""
+        neither it nor those behind it any more."""
         asked: Dict[str, Any] = {} if values is None else {"values": settings_of(values, name="values")}
         if lane != 1:
             asked["lane"] = lane

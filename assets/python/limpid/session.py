@@ -180,7 +180,7 @@ class Session:
     @property
     def twin(self) -> "Optional[Session]":
         """The second run on the same hand; None where there is none."""
-        return next((run for run in self.lanes[1:]), None)
+        return self._of(TWIN) if self._lane == MAIN and TWIN in self._recording.lanes else None
 
     def _of(self, lane: str) -> "Session":
         run = Session.__new__(Session)

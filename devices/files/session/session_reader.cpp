@@ -175,6 +175,10 @@ std::vector<hdf5::Group> groups_beside(hid_t root, const fs::path& file) {
     }
     groups.push_back(hdf5::open_group(root, lane_name(i), file));
   }
+  for (std::size_t i = groups.size() + 2; i <= kMostLanes; ++i) {
+    if (!hdf5::has(root, lane_name(i), file)) continue;
+    refuse(file, fmt::format("/{}: there, but /{} is not", lane_name(i), lane_name(i - 1)));
+  }
   return groups;
 }
 

@@ -231,8 +231,7 @@ TEST(LiveLoop, IsReplayedBitForBitWhateverTheControlsDidMeanwhile) {
 std::int64_t arm_ticks(LiveLoop& loop) {
   let_live(loop, 20);
   loop.update();
-  const double t =
-      loop.layout().in(std::span<const double>(loop.snapshot().rows[kMainLane]), Column::time)[0];
+  const double t = loop.layout().in(std::span<const double>(loop.snapshot().row), Column::time)[0];
   return std::llround(t * 1e3);
 }
 
@@ -337,7 +336,7 @@ TEST(LiveLoop, MeetsNoPageFaultFromItsFirstTickOnWhateverItTouches) {
       loop.set(controls);
       let_live(loop, 20);
       loop.update();
-      const std::span<const double> row(loop.snapshot().rows[kMainLane]);
+      const std::span<const double> row(loop.snapshot().row);
       const auto f2 = loop.layout().in(row, Column::contact_torque);
       for (const double torque : f2) contact += std::abs(torque);
     }
@@ -442,7 +441,7 @@ TEST(LiveLoop, ShowsTheNewestRowAndHandsOverEveryOne) {
     ASSERT_TRUE(std::isnan(both[stride]) && std::isnan(both[2 * stride]));  // one lane
   }
   EXPECT_TRUE(loop.update());
-  EXPECT_NEAR(layout.in(std::span<const double>(loop.snapshot().rows[kMainLane]), Column::time)[0],
+  EXPECT_NEAR(layout.in(std::span<const double>(loop.snapshot().row), Column::time)[0],
               static_cast<double>(count - 1) * 1e-3, 1e-9);
   EXPECT_FALSE(loop.update());
 }
@@ -462,7 +461,7 @@ TEST(LiveLoop, StartsOverWhenAsked) {
   loop.close();
   ASSERT_TRUE(loop.update());
   const RowLayout layout(3);
-  const auto row = std::span<const double>(loop.snapshot().rows[kMainLane]);
+  const auto row = std::span<const double>(loop.snapshot().row);
   const auto start = rest_at(test::omni(), kHome).x1;
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(layout.in(row, Column::device_position)[i], start[static_cast<int>(i)], 1e-4);
@@ -613,7 +612,7 @@ struct LedLoop : testing::Test {
   }
   // Largest deviation of a joint from the arm's rest [rad].
   double away() const {
-    const auto row = std::span<const double>(loop.snapshot().rows[kMainLane]);
+    const auto row = std::span<const double>(loop.snapshot().row);
     const auto x = RowLayout(3).in(row, Column::device_position);
     return (Eigen::Map<const Eigen::Vector3d>(x.data()) - rest_at(test::omni(), kHome).x1)
         .cwiseAbs()
@@ -673,7 +672,7 @@ TEST(LiveLoop, DoesNotBeginWhereItsDeviceCannotBe) {
     loop.update();
     EXPECT_EQ(loop.snapshot().force_state, ForceState::wrong);
     const RowLayout layout(3);
-    const std::span<const double> row(loop.snapshot().rows[kMainLane]);
+    const std::span<const double> row(loop.snapshot().row);
     for (const Column at : {Column::device_position, Column::proxy_position}) {
       for (const double x : layout.in(row, at)) EXPECT_LT(std::abs(x), 4);
     }

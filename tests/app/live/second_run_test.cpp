@@ -16,7 +16,7 @@ TEST(SecondRun, BeginsWithTheForceThatTheFirstHas) {
     RigStart start = rest_at(plan.arm, target);
     first.start(plan.parameters, start);
     FurtherLane second;
-    second.open(std::make_unique<Rig>(plan.arm, scene), start);
+    second.open(std::make_unique<Rig>(plan.arm, scene));
     test::Rows one(first.layout()), other(first.layout());
     RigInput input{.hand = {target + Vec3(0.01, 0.01, 0), 1}};
     input.force = armed ? ForceRequest::as_it_is : ForceRequest::cut;

@@ -115,6 +115,12 @@ TEST_P(Pixels, SetsTextWhereItsAnchorIs) {
   EXPECT_NEAR(middle_of(PlotCanvas::Anchor::end), 100 - half, 0.5);
 }
 
+TEST_P(Pixels, DrawsOnBehindATextThatIsNoUtf8) {
+  canvas.text({-500, 0}, PlotCanvas::Anchor::start, kBlack, "\xff\xfe \xc3", false);
+  canvas.rect({10, 10, 40, 20}, kBlack, 1);
+  EXPECT_NEAR(area(), 800, 1);
+}
+
 TEST(PageOfPdf, HasItsSizeInPointsAndSaysWhoMadeIt) {
   PdfCanvas canvas(400, 200, 0.75, kWhite, "limpid, a test");
   canvas.rect({10, 10, 50, 50}, kBlack, 0.5);
@@ -124,6 +130,11 @@ TEST(PageOfPdf, HasItsSizeInPointsAndSaysWhoMadeIt) {
   EXPECT_NE(document.find("%%EOF"), std::string::npos);
   EXPECT_NE(document.find("/MediaBox [ 0 0 300 150 ]"), std::string::npos) << document;
   EXPECT_NE(document.find("(limpid, a test)"), std::string::npos);
+}
+
+TEST(PageOfPdf, MayBeLeftUnfinished) {
+  PdfCanvas canvas(40, 20, 1, kWhite, "");
+  canvas.line({0, 0}, {40, 20}, kBlack, 1, 0, 0);
 }
 
 // Both sizes look the same to a person.

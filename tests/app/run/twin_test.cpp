@@ -216,6 +216,28 @@ TEST(Twin, KilledWhileRecordingKeepsAsManyRowsOfBoth) {
   EXPECT_EQ(session.lane(kTwinLane).size(), 512u);
 }
 
+TEST(Lanes, KilledWhileRecordingKeepAsManyRowsOfEach) {
+  const test::TempDir dir;
+  const RunPlan plan = three();
+  {
+    SessionWriter writer(dir / "a.h5", session_info(plan), false);
+    const Both both = run_both(plan);
+    for (std::size_t k = 0; k < 1400; ++k) writer.append(both.first.row(k));
+    for (std::size_t k = 0; k < 1300; ++k) writer.append(both.first.row(k), kTwinLane);
+    for (std::size_t k = 0; k < 900; ++k) writer.append(both.first.row(k), 2);
+  }
+  const Session session = read_session(recover_session(dir / "a.h5.part", false).file);
+  ASSERT_EQ(session.lanes(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(session.lane(i).size(), 512u) << i;
+}
+
+TEST(Lanes, AreRecordedAsManyAsTheFileSays) {
+  const test::TempDir dir;
+  const RunPlan plan = three();
+  EXPECT_THROW(Recorder(dir / "a.h5", session_info(plan), plan.parameters, false),
+               std::invalid_argument);
+}
+
 TEST(Twin, EndsWhereItsSecondRunBecomesUnstable) {
   RunPlan plan = test::plan("free.toml", "free.csv", 8);
   Lane& wild = plan.beside.emplace_back();

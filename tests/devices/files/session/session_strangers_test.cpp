@@ -118,6 +118,15 @@ TEST_F(StrangersSession, DoesNotBringAVirtualDataset) {
   EXPECT_THAT(said(), AllOf(HasSubstr("/models/0"), HasSubstr("other datasets")));
 }
 
+// Runs follow each other: a run that were left out in silence would be lost when the file is saved
+// anew.
+TEST_F(StrangersSession, HasNoRunWithoutTheOneBefore) {
+  change([](hid_t file) {
+    H5Gclose(H5Gcreate2(file, "/lane3", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  });
+  EXPECT_THAT(said(), HasSubstr("a.h5: /lane3: there, but /twin is not"));
+}
+
 // HDF5 opens the other file when it checks whether the link's target exists: a pipe would make it
 // wait for ever.
 TEST_F(StrangersSession, FollowsNoLinkToAnotherFile) {

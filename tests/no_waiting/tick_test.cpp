@@ -1,9 +1,5 @@
-// A tick without allocations and locks: malloc and its family, and the mutexes, are watched in the
-// whole program while a flag of the thread is up.
-#include <dlfcn.h>
-#include <errno.h>
+// Ticks of a rig, and of the check of axes, without allocations and locks.
 #include <gtest/gtest.h>
-#include <pthread.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +12,7 @@
 #include "devices/hid/axis_check.h"
 #include "devices/simulated/hands.h"
 #include "devices/simulated/rig.h"
+#include "tests/no_waiting/watch.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/wisher.h"
@@ -26,21 +23,6 @@ namespace {
 using test::Random;
 using test::random_arm;
 
-thread_local bool watching = false;
-thread_local int allocations = 0;
-thread_local int locks = 0;
-
-void count_allocation() { allocations += watching ? 1 : 0; }
-
-class Watch {
- public:
-  Watch() {
-    allocations = locks = 0;
-    watching = true;
-  }
-  ~Watch() { watching = false; }
-};
-
 TEST(Watch, SeesAllocationsAndLocks) {
   std::mutex mutex;
   int seen = 0, locked = 0;
@@ -48,8 +30,8 @@ TEST(Watch, SeesAllocationsAndLocks) {
     const Watch watch;
     const std::vector<double> vector(1000, 1.0);
     const std::lock_guard lock(mutex);
-    seen = allocations + (vector[7] > 2 ? 1 : 0);
-    locked = locks;
+    seen = watched.allocations + (vector[7] > 2 ? 1 : 0);
+    locked = watched.locks;
   }
   EXPECT_GE(seen, 1);
   EXPECT_GE(locked, 1);
@@ -145,8 +127,8 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
       }
     }
   }
-  EXPECT_EQ(allocations, 0);
-  EXPECT_EQ(locks, 0);
+  EXPECT_EQ(watched.allocations, 0);
+  EXPECT_EQ(watched.locks, 0);
   EXPECT_GT(touched, 100u);
   EXPECT_FALSE(crowded.diverged());
 }
@@ -219,8 +201,8 @@ TEST_P(NoWaiting, NeitherAllocatesNorLocksWithBodiesThatMove) {
       if (k % 333 == 332) heaped.restart_here(p, present, input.hand.target);
     }
   }
-  EXPECT_EQ(allocations, 0);
-  EXPECT_EQ(locks, 0);
+  EXPECT_EQ(watched.allocations, 0);
+  EXPECT_EQ(watched.locks, 0);
   EXPECT_EQ(moved, 12);
   EXPECT_GT(held, 0);
 }
@@ -240,55 +222,10 @@ TEST(NoWaiting, NeitherAllocatesNorLocksWhileAxesAreChecked) {
       x = {0.6 * torque[0], -0.6 * torque[1]};
     }
   }
-  EXPECT_EQ(allocations, 0);
-  EXPECT_EQ(locks, 0);
+  EXPECT_EQ(watched.allocations, 0);
+  EXPECT_EQ(watched.locks, 0);
   EXPECT_TRUE(check.passed());
 }
 
 }  // namespace
 }  // namespace limpid
-
-extern "C" {
-void* __libc_malloc(size_t);
-void* __libc_calloc(size_t, size_t);
-void* __libc_realloc(void*, size_t);
-void* __libc_memalign(size_t, size_t);
-void __libc_free(void*);
-
-void* malloc(size_t size) {
-  limpid::count_allocation();
-  return __libc_malloc(size);
-}
-void* calloc(size_t count, size_t size) {
-  limpid::count_allocation();
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, size_t size) {
-  limpid::count_allocation();
-  return __libc_realloc(old, size);
-}
-void* memalign(size_t alignment, size_t size) {
-  limpid::count_allocation();
-  return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(size_t alignment, size_t size) {
-  limpid::count_allocation();
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** result, size_t alignment, size_t size) {
-  limpid::count_allocation();
-  *result = __libc_memalign(alignment, size);
-  return *result != nullptr ? 0 : ENOMEM;
-}
-void free(void* memory) {
-  if (memory != nullptr) limpid::count_allocation();
-  __libc_free(memory);
-}
-
-int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
-  using Lock = int (*)(pthread_mutex_t*);
-  static const Lock lock = reinterpret_cast<Lock>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
-  limpid::locks += limpid::watching ? 1 : 0;
-  return lock(mutex);
-}
-}
