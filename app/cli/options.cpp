@@ -57,12 +57,10 @@ CLI::Validator whole_number() {
 }
 
 // Allowed values of a parameter, as in the help.
-std::string allowed_values(const ParameterInfo& info) {
-  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
-    return fmt::format("{}", fmt::join(choice->words, ", "));
-  }
-  if (std::holds_alternative<bool Parameters::*>(info.field)) return "true, false";
-  const std::string unit = std::string(info.unit) == "-" ? "" : std::string(" ") + info.unit;
+std::string allowed_values(const FieldInfo& info) {
+  if (!info.words.empty()) return fmt::format("{}", fmt::join(info.words, ", "));
+  if (info.kind == FieldInfo::Kind::flag) return "true, false";
+  const std::string unit = info.has_unit() ? std::string(" ") + info.unit : "";
   return fmt::format("{} to {}{}", info.minimum, info.maximum, unit);
 }
 
@@ -337,13 +335,10 @@ std::vector<HelpWord> parameter_words() {
   std::vector<HelpWord> words;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string key = std::string(info.key) + "=";
-    if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
-      for (const auto& word : choice->words) words.push_back({key + std::string(word), ""});
-    } else if (std::holds_alternative<bool Parameters::*>(info.field)) {
-      for (const char* word : {"true", "false"}) words.push_back({key + word, ""});
-    } else {
-      words.push_back({key, allowed_values(info)});
-    }
+    if (info.is_number()) words.push_back({key, allowed_values(info)});
+    for (const char* word : info.words) words.push_back({key + word, ""});
+    if (info.kind != FieldInfo::Kind::flag) continue;
+    for (const char* word : {"true", "false"}) words.push_back({key + word, ""});
   }
   return words;
 }

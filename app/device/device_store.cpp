@@ -1,7 +1,6 @@
 #include "app/device/device_store.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "app/base/folders.h"
 #include "devices/files/atomic_file.h"
+#include "devices/files/field_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -20,101 +20,31 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = 1 << 20;  // of the store
 
-// Reads an entry; absent keys keep their defaults. A key that cannot be understood is an error: a
-// default in its place might let the device push harder, or the wrong way.
-class Entry {
- public:
-  Entry(const toml::table& table, const std::string& file, const std::string& path)
-      : table_(table), reader_(table, file, path), file_(file), path_(path) {}
-
-  void take(const char* key, double least, double most, double& value) const {
-    value = reader_.number(key, {least, most}).value_or(value);
+// Calls `use` for each element of a list, one a joint, at most as many as a device can have.
+template <class Use>
+void each_joint(const TomlTable& entry, const char* key, const char* allowed, const Use& use) {
+  const toml::node* node = entry.find(key);
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() > kMaxDof) entry.refuse(key, allowed);
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    if (!use(i, *list->get(i))) entry.refuse(key, allowed);
   }
-  void take(const char* key, std::string& value) const {
-    value = reader_.text(key).value_or(value);
-  }
-  void take(const char* key, bool& value) const {
-    const toml::node* node = reader_.find(key);
-    if (node == nullptr) return;
-    if (!node->is_boolean()) reader_.refuse(key, "true or false");
-    value = *node->value<bool>();
-  }
-  void take_one_of(const char* key, std::span<const char* const> names, std::size_t& value) const {
-    const std::optional<std::string> text = reader_.text(key);
-    if (!text) return;
-    const auto found = std::ranges::find(names, *text);
-    if (found == names.end()) reader_.refuse(key, fmt::format("{}", fmt::join(names, ", ")));
-    value = static_cast<std::size_t>(found - names.begin());
-  }
-  // The table at this key, if there is one.
-  std::optional<Entry> below(const char* key) const {
-    const toml::node* node = reader_.find(key);
-    if (node == nullptr) return std::nullopt;
-    if (!node->is_table()) reader_.refuse(key, "a table");
-    return Entry(*node->as_table(), file_, fmt::format("{}.{}", path_, key));
-  }
-  // Calls `use` for each element of a list, one a joint, at most as many as a device can have.
-  template <class Use>
-  void each(const char* key, const char* allowed, const Use& use) const {
-    const toml::node* node = reader_.find(key);
-    if (node == nullptr) return;
-    const toml::array* list = node->as_array();
-    if (list == nullptr || list->size() > kMaxDof) reader_.refuse(key, allowed);
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      if (!use(i, *list->get(i))) reader_.refuse(key, allowed);
-    }
-  }
-  // Refuses keys that are nearly one of `known`, likely slips; other unknown keys stay.
-  void no_slips(const std::vector<std::string>& known) const {
-    for (const auto& [key, node] : table_) {
-      const std::string word(key.str());
-      if (std::ranges::find(known, word) != known.end()) continue;
-      if (const auto meant = nearest(word, known)) {
-        reader_.refuse(word.c_str(), fmt::format("the key \"{}\"", *meant));
-      }
-    }
-  }
-  void only(const std::vector<const char*>& known) const { reader_.allow_only(known); }
-  Entry element(const char* key, std::size_t i, const toml::table& table) const {
-    return {table, file_, fmt::format("{}.{}[{}]", path_, key, i)};
-  }
-
- private:
-  const toml::table& table_;
-  TomlTable reader_;
-  std::string file_, path_;
-};
-
-OwnForces read_compensation(const Entry& entry) {
-  OwnForces c;
-  auto down = static_cast<std::size_t>(c.down);
-  entry.take("gravity", c.holds_weight);
-  entry.take("springs", c.holds_springs);
-  entry.take("friction", 0, CompensationSettings::kMostShare, c.friction_share);
-  entry.take_one_of("down", kDowns, down);
-  c.down = static_cast<Down>(down);
-  return c;
 }
 
-toml::table write_compensation(const OwnForces& c) {
-  return toml::table{{"gravity", c.holds_weight},
-                     {"down", kDowns[static_cast<std::size_t>(c.down)]},
-                     {"friction", c.friction_share},
-                     {"springs", c.holds_springs}};
-}
-
-void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
-  entry.each("axis", "a list of tables, one a joint", [&](std::size_t i, const toml::node& node) {
-    if (!node.is_table()) return false;
-    const Entry each = entry.element("axis", i, *node.as_table());
-    each.no_slips({"zero", "scale", "inverted"});
-    AxisAdjustment& axis = axes.emplace_back();
-    each.take("zero", -100, 100, axis.zero);
-    each.take("scale", 0.1, 10, axis.scale);
-    each.take("inverted", axis.inverted);
-    return true;
-  });
-  entry.each("reverse", "a list of true or false, one a joint",
+void read_axes(const TomlTable& entry, std::vector<AxisAdjustment>& axes) {
+  each_joint(entry, "axis", "a list of tables, one a joint",
+             [&](std::size_t i, const toml::node& node) {
+               if (!node.is_table()) return false;
+               const TomlTable each = entry.element("axis", i, *node.as_table());
+               AxisAdjustment& axis = axes.emplace_back();
+               std::vector<const char*> keys;
+               add_keys(kAxisFields, axis, keys);
+               each.refuse_slips(keys);
+               read_fields(each, kAxisFields, axis);
+               return true;
+             });
+  each_joint(entry, "reverse", "a list of true or false, one a joint",
              [&](std::size_t i, const toml::node& node) {
                if (!node.is_boolean()) return false;
                if (axes.size() <= i) axes.resize(i + 1);
@@ -123,68 +53,48 @@ void read_axes(const Entry& entry, std::vector<AxisAdjustment>& axes) {
              });
 }
 
-// Errors: FileError.
-DeviceNotes read_notes(const Entry& entry) {
+// Reads an entry; absent keys keep their defaults. A key that cannot be understood is an error: a
+// default in its place might let the device push harder, or the wrong way. Errors: FileError.
+DeviceNotes read_notes(const TomlTable& entry) {
   DeviceNotes notes;
-  entry.no_slips({"range", "effort", "reverse", "limits", "checked", "checked_as", "arm",
-                  "taken_for", "taken_for_tip", "taken_as", "delay", "torque_scale", "compensation",
-                  "axis"});
-  entry.take("range", 0.01, 3.2, notes.pid.range);
-  entry.take("effort", 0.01, 50, notes.pid.effort);
-  if (const std::optional<Entry> limits = entry.below("limits")) {
+  std::vector<const char*> known{"reverse", "limits", "compensation", "axis"};
+  add_keys(kNotesFields, notes, known);
+  add_keys(kPidFields, notes.pid, known);
+  entry.refuse_slips(known);
+  read_fields(entry, kNotesFields, notes);
+  read_fields(entry, kPidFields, notes.pid);
+  if (const auto limits = entry.table("limits")) {
     std::vector<const char*> keys;
-    keys.reserve(kSafetyLimitInfo.size());
-    for (const SafetyLimitInfo& info : kSafetyLimitInfo) keys.emplace_back(info.key);
-    limits->only(keys);  // an unknown key would leave its limit at the widest
-    for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
-      double& value = notes.limits.*info.field;
-      limits->take(info.key, info.least, value, value);
-    }
+    add_keys(kSafetyLimits, notes.limits, keys);
+    limits->allow_only(keys);  // an unknown key would leave its limit at the widest
+    read_fields(*limits, kSafetyLimits, notes.limits);
   }
-  entry.take("checked", notes.checked);
-  entry.take("checked_as", notes.checked_as);
-  entry.take("arm", notes.arm);
-  entry.take("taken_for", notes.taken_for);
-  entry.take("taken_for_tip", notes.taken_for_tip);
-  entry.take("taken_as", notes.taken_as);
-  entry.take("delay", 0, 1, notes.delay);
-  entry.take("torque_scale", kLeastTorqueScale, kMostTorqueScale, notes.torque_scale);
-  if (const std::optional<Entry> forces = entry.below("compensation")) {
-    notes.compensation = read_compensation(*forces);
+  if (const auto forces = entry.table("compensation")) {
+    read_fields(*forces, kOwnForcesFields, notes.compensation);
   }
   read_axes(entry, notes.axes);
   return notes;
 }
 
-toml::table write_limits(const SafetyLimits& limits) {
+template <class Table, class Owner>
+toml::table table_of(const Table& fields, const Owner& owner) {
   toml::table table;
-  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
-    table.insert(info.key, limits.*info.field);
-  }
+  insert_fields(table, fields, owner);
   return table;
 }
 
 toml::table write_notes(const DeviceNotes& notes) {
   toml::array axes, reverse;
   for (const AxisAdjustment& axis : notes.axes) {
-    axes.push_back(
-        toml::table{{"zero", axis.zero}, {"scale", axis.scale}, {"inverted", axis.inverted}});
+    axes.push_back(table_of(kAxisFields, axis));
     reverse.push_back(axis.reversed);
   }
-  toml::table table{{"range", notes.pid.range},
-                    {"effort", notes.pid.effort},
-                    {"reverse", reverse},
-                    {"limits", write_limits(notes.limits)},
-                    {"checked", notes.checked},
-                    {"checked_as", notes.checked_as},
-                    {"arm", notes.arm},
-                    {"taken_for", notes.taken_for},
-                    {"taken_for_tip", notes.taken_for_tip},
-                    {"taken_as", notes.taken_as},
-                    {"torque_scale", notes.torque_scale},
-                    {"compensation", write_compensation(notes.compensation)},
-                    {"axis", axes}};
-  if (notes.delay >= 0) table.insert("delay", notes.delay);
+  toml::table table = table_of(kNotesFields, notes);
+  insert_fields(table, kPidFields, notes.pid);
+  table.insert("reverse", reverse);
+  table.insert("limits", table_of(kSafetyLimits, notes.limits));
+  table.insert("compensation", table_of(kOwnForcesFields, notes.compensation));
+  table.insert("axis", axes);
   return table;
 }
 
@@ -253,7 +163,7 @@ bool remember_check(const AxisCheck& check, DeviceNotes& notes) {
 
 std::string limits_text(const SafetyLimits& limits) {
   std::ostringstream text;
-  text << write_limits(limits) << '\n';
+  text << table_of(kSafetyLimits, limits) << '\n';
   return text.str();
 }
 
@@ -272,7 +182,7 @@ DeviceStore load_device_store(const fs::path& file) {
   try {
     const toml::table table = parse_store(file);
     store.in_use = TomlTable(table, file.string(), "").text("in_use").value_or("");
-    Entry(table, file.string(), "").no_slips({"in_use", "device"});
+    TomlTable(table, file.string(), "").refuse_slips({"in_use", "device"});
     const toml::table* devices = devices_in(table, file);
     if (devices == nullptr) return store;
     for (const auto& [key, node] : *devices) {

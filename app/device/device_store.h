@@ -1,7 +1,9 @@
 // Notes on each device between two starts, and the one in use.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -44,13 +46,54 @@ struct DeviceNotes {
   // Arm chosen by a person, kBuiltInArm or a URDF, and the tip in it; empty: none.
   std::string taken_for, taken_for_tip;
   std::string taken_as;  // what_it_is() at the choice; empty: the device was not there
-  // Found at the identification, from a reading to its torque, beyond the tick [s]; below 0: not
-  // known.
-  double delay = -1;
+  // Found at the identification, from a reading to its torque, beyond the tick [s]; NaN: not known.
+  double delay = std::numeric_limits<double>::quiet_NaN();
   double torque_scale = 1;  // real over commanded torque of its motors
   OwnForces compensation;   // while it is in the loop
   std::string refusal;      // why its entry cannot be understood; it is then not used
 };
+
+// Fields of a device's entry. Beside them it has `reverse`, `axis`, `limits` and `compensation`.
+inline constexpr std::array kNotesFields{
+    Field<DeviceNotes>("checked", "axes checked", &DeviceNotes::checked, {0, 1}, ""),
+    Field<DeviceNotes>("checked_as", "checked as", &DeviceNotes::checked_as, {}, ""),
+    Field<DeviceNotes>("arm", "arm", &DeviceNotes::arm, {}, ""),
+    Field<DeviceNotes>("taken_for", "taken for", &DeviceNotes::taken_for, {}, ""),
+    Field<DeviceNotes>("taken_for_tip", "its tip", &DeviceNotes::taken_for_tip, {}, ""),
+    Field<DeviceNotes>("taken_as", "taken as", &DeviceNotes::taken_as, {}, ""),
+    Field<DeviceNotes>("delay", "delay", &DeviceNotes::delay, {0, 1, false, "s"}, ""),
+    Field<DeviceNotes>("torque_scale", "torque scale", &DeviceNotes::torque_scale,
+                       {kLeastTorqueScale, kMostTorqueScale}, ""),
+};
+inline constexpr std::array kPidFields{
+    Field<PidSettings>("range", "range", &PidSettings::range, {0.01, 3.2, false, "rad"},
+                       "How far the stick tilts to each side.", {0.0873, 1.047}),
+    Field<PidSettings>(
+        "effort", "full force", &PidSettings::effort, {0.01, 50, false, "N m"},
+        "The joystick's own torque at full force, measured or from its data sheet: USB gives "
+        "forces without a unit. Too low a value here makes it push too hard.",
+        {0.05, 10, true}),
+};
+inline constexpr std::array kAxisFields{
+    Field<AxisAdjustment>("zero", "zero", &AxisAdjustment::zero, {-100, 100, false, "rad"}, ""),
+    Field<AxisAdjustment>(
+        "scale", "scale", &AxisAdjustment::scale, {0.1, 10},
+        "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
+        "the hand stays the power in the loop.",
+        {0.1, 10, true}),
+    Field<AxisAdjustment>("inverted", "invert", &AxisAdjustment::inverted, {0, 1},
+                          "Turns the axis round, its torque with it."),
+};
+// The settings of the same names, without their tables.
+inline constexpr auto kOwnForcesFields = [] {
+  auto fields =
+      joined<OwnForces>(CompensationSettings::settings<OwnForces>(),
+                        std::array{Field<OwnForces>("device.down", "Down, seen from the base",
+                                                    choice<OwnForces, &OwnForces::down>(kDowns),
+                                                    {0, kDowns.size() - 1}, "")});
+  for (auto& field : fields) field.key += std::string_view(field.key).find('.') + 1;
+  return fields;
+}();
 
 // Description of a device without a serial number; tells another one in its place from the device
 // that was checked.

@@ -113,8 +113,9 @@ class Recording {
 }  // namespace
 
 ExcitationPlan within(ExcitationPlan plan, const SafetyLimits& limits) {
-  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
-    plan.limits.*info.field = std::min(plan.limits.*info.field, limits.*info.field);
+  for (const auto& limit : kSafetyLimits) {
+    set_number(limit, plan.limits,
+               std::min(number_of(limit, plan.limits), number_of(limit, limits)));
   }
   // Overshoot stays within the limit as well.
   plan.range = std::min(plan.range, ExcitationPlan{}.range * plan.limits.range);

@@ -196,7 +196,7 @@ json Remote::get(const Keys& keys) const {
   std::vector<json> lanes(host_.lanes(), json::object());
   const auto add = [&](const ParameterInfo& info) {
     for (std::size_t i = 0; i < lanes.size(); ++i) {
-      lanes[i][info.key] = value_of(host_.parameters(i), info);
+      lanes[i][info.key] = json_of(value_of(info, host_.parameters(i)));
     }
   };
   if (wanted) {
@@ -233,7 +233,7 @@ json Remote::set(const Keys& keys, Client client) {
   host_.set(p, lane);
   json now = json::object();
   for (const auto& [key, value] : keys.of("values").items()) {
-    now[key] = value_of(p, *find_parameter(key));
+    now[key] = json_of(value_of(*find_parameter(key), p));
   }
   return {{"values", now}};
 }

@@ -12,7 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-ParameterValue parameter_value(const std::string& key, const json& value) {
+bool is_vector(const json& value) {
+  return value.is_array() && value.size() == 3 &&
+         std::ranges::all_of(value, [](const json& each) { return each.is_number(); });
+}
+
+}  // namespace
+
+FieldValue field_value(const std::string& key, const json& value) {
   if (value.is_boolean()) return value.get<bool>();
   if (value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{1} << 53) {
     return value.get<double>();
@@ -20,27 +27,30 @@ ParameterValue parameter_value(const std::string& key, const json& value) {
   if (value.is_number_integer()) return value.get<std::int64_t>();
   if (value.is_number()) return value.get<double>();
   if (value.is_string()) return value.get<std::string>();
+  if (is_vector(value)) return Vec3(value[0], value[1], value[2]);
   throw RemoteError(fmt::format(
       "set: {}: {} is not allowed; allowed: a number, a text, true or false", key, shown(value)));
 }
 
-}  // namespace
-
-json value_of(const Parameters& p, const ParameterInfo& info) {
-  if (parameter_text(p, info).empty()) return nullptr;  // left to the arm, or to eta
-  const double x = parameter_number(p, info);
-  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
-    return choice->words[static_cast<std::size_t>(x)];
-  }
-  if (std::holds_alternative<bool Parameters::*>(info.field)) return x != 0;
-  if (std::holds_alternative<int Parameters::*>(info.field)) return static_cast<std::int64_t>(x);
-  return std::isfinite(x) ? json(x) : json();
+json json_of(const std::optional<FieldValue>& value) {
+  if (!value) return nullptr;
+  return std::visit(
+      []<class T>(const T& x) -> json {
+        if constexpr (std::is_same_v<T, Vec3>) {
+          return {x[0], x[1], x[2]};
+        } else if constexpr (std::is_same_v<T, double>) {
+          return std::isfinite(x) ? json(x) : json();
+        } else {
+          return x;
+        }
+      },
+      *value);
 }
 
 void set_by_remote(Parameters& p, const std::string& key, const json& value,
                    const Parameters& highest) {
   const Parameters before = p;
-  set_parameter(p, key, parameter_value(key, value));
+  set_parameter(p, key, field_value(key, value));
   const ParameterInfo& info = *find_parameter(key);
   if (!info.live && parameter_text(before, info) != parameter_text(p, info)) {
     p = before;

@@ -30,7 +30,9 @@ void hold_limits(Parameters& p, const Parameters& chosen, const ArmDescription& 
 // take off the hand.
 Parameters usual_settings(const Parameters& now, const Parameters& chosen,
                           const ArmDescription& arm, bool with_device);
-// Value of a setting; null if it is left to the arm, or to another setting.
-nlohmann::json value_of(const Parameters& p, const ParameterInfo& info);
+// A field's value in JSON; null if it is left open: to the arm, or to another setting.
+nlohmann::json json_of(const std::optional<FieldValue>& value);
+// Inverse of json_of(). Errors: RemoteError for a value of no kind that a field has.
+FieldValue field_value(const std::string& key, const nlohmann::json& value);
 
 }  // namespace limpid

@@ -169,7 +169,7 @@ void apply_change(Parameters& p, const SettingChange& change) {
   if (!change.setting.ends_with("= ")) return apply_setting(p, change.setting);
   const ParameterInfo* info = find_parameter(change.key());
   if (info == nullptr) throw ParameterError(std::string(change.key()) + ": no such key");
-  if (const auto* field = std::get_if<double Parameters::*>(&info->field)) p.** field = kFromArm;
+  if (info->kind == FieldInfo::Kind::number) set_parameter_number(p, *info, kFromArm);
 }
 
 RunEnd end_of(const Session& session) {

@@ -22,13 +22,13 @@ namespace {
 
 constexpr const char* kSliderId = "##slider";  // below the key, which the caller pushes
 
-double slider_low(const ParameterInfo& info) {
+double slider_low(const FieldInfo& info) {
   if (!info.logarithmic || info.slider_minimum > 0) return info.slider_minimum;
   return 1e-6 * info.slider_maximum;
 }
 
-void draw_track(const ImRect& track, const ParameterInfo& info, double value, double usual,
-                bool broken, bool hovered, bool held) {
+void draw_track(const ImRect& track, const FieldInfo& info, double value, double usual, bool broken,
+                bool hovered, bool held) {
   const Palette& p = current_palette();
   const float scale = current_scale();
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -54,12 +54,11 @@ void draw_track(const ImRect& track, const ParameterInfo& info, double value, do
 }
 
 // Draws label and value above the track; shortens the value first if the panel is narrow.
-void draw_caption(const ImRect& box, const ParameterInfo& info, double value, bool broken) {
+void draw_caption(const ImRect& box, const FieldInfo& info, double value, bool broken) {
   const Palette& p = current_palette();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const char* words = caption(info);
-  list.AddText(box.Min, colour(p.text), words);
-  const float room = box.GetWidth() - ImGui::CalcTextSize(words).x - ImGui::GetFontSize();
+  list.AddText(box.Min, colour(p.text), info.caption);
+  const float room = box.GetWidth() - ImGui::CalcTextSize(info.caption).x - ImGui::GetFontSize();
   std::string text = with_unit(info, value);
   if (ImGui::CalcTextSize(text.c_str()).x > room) text = text.substr(0, text.find(' '));
   const float width = ImGui::CalcTextSize(text.c_str()).x;
@@ -83,7 +82,7 @@ bool parse_number(std::string text, double& value) {
 
 // Takes a number typed over the slider; returns true while the input is open. The value changes
 // when typing is done, not with every key: nobody wants to feel the 0 on the way to 0.6.
-bool typing(const ImRect& box, ImGuiID id, const ParameterInfo& info, bool begin, double& value,
+bool typing(const ImRect& box, ImGuiID id, const FieldInfo& info, bool begin, double& value,
             bool& changed) {
   if (!begin && !ImGui::TempInputIsActive(id)) return false;
   const double from = std::isnan(value) ? slider_value(info, 0.5) : value;
@@ -138,7 +137,7 @@ class TrackMouse {
   ImGuiID place_, since_;
 };
 
-void show_tooltip(const ParameterInfo& info, double usual, const char* broken) {
+void show_tooltip(const FieldInfo& info, double usual, const char* broken) {
   begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (broken != nullptr) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().broken));
@@ -149,8 +148,7 @@ void show_tooltip(const ParameterInfo& info, double usual, const char* broken) {
   ImGui::TextUnformatted(info.meaning);
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
-  const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
-  if (number) {
+  if (info.is_number()) {
     const std::string range = three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
     ImGui::Text("%s, %s", info.key, range.c_str());
     ImGui::Text("%s: %s (right click). Double click to type.", of_paper(info) ? "Paper" : "Usual",
@@ -179,10 +177,10 @@ void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered)
   list.PopClipRect();
 }
 
-// Draws radio buttons side by side, of which one is pressed in.
-bool choices(const ParameterInfo& info, const Choice<Parameters>& choice, Parameters& p) {
-  ImGui::TextUnformatted(caption(info));
-  const int count = static_cast<int>(choice.words.size());
+// Draws radio buttons side by side, of which one is pressed in; `place`: its place.
+bool choices(const FieldInfo& info, double& place) {
+  ImGui::TextUnformatted(info.caption);
+  const int count = static_cast<int>(info.words.size());
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
@@ -190,28 +188,23 @@ bool choices(const ParameterInfo& info, const Choice<Parameters>& choice, Parame
                                             ImGui::GetStyle().FrameRounding);
   bool changed = false;
   for (int i = 0; i < count; ++i) {
-    const char* word = choice.words[static_cast<std::size_t>(i)];
-    const bool chosen = choice.get(p) == i;
+    const char* word = info.words[static_cast<std::size_t>(i)];
     const float left = std::round(size.x * static_cast<float>(i) / static_cast<float>(count));
     const float right = std::round(size.x * static_cast<float>(i + 1) / static_cast<float>(count));
     ImGui::SetCursorScreenPos({at.x + left, at.y});
     if (ImGui::InvisibleButton(word, {right - left, size.y})) {
-      changed = !chosen;
-      choice.set(p, static_cast<std::uint8_t>(i));
+      changed = place != i;
+      place = i;
     }
     const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
-    draw_choice(box, word, choice.get(p) == i, ImGui::IsItemHovered());
+    draw_choice(box, word, place == i, ImGui::IsItemHovered());
   }
   return changed;
 }
 
 }  // namespace
 
-bool is_int(const ParameterInfo& info) {
-  return std::holds_alternative<int Parameters::*>(info.field);
-}
-
-double slider_place(const ParameterInfo& info, double value) {
+double slider_place(const FieldInfo& info, double value) {
   const double low = slider_low(info);
   const double high = info.slider_maximum;
   const double inside = std::clamp(value, low, high);
@@ -219,15 +212,15 @@ double slider_place(const ParameterInfo& info, double value) {
   return std::log(inside / low) / std::log(high / low);
 }
 
-double slider_value(const ParameterInfo& info, double place) {
+double slider_value(const FieldInfo& info, double place) {
   const double low = slider_low(info);
   const double high = info.slider_maximum;
   const double at = std::clamp(place, 0.0, 1.0);
   const double value = info.logarithmic ? low * std::pow(high / low, at) : low + (high - low) * at;
-  return is_int(info) ? std::round(value) : value;
+  return info.kind == FieldInfo::Kind::whole ? std::round(value) : value;
 }
 
-double slider_step(const ParameterInfo& info, double value, double usual, int direction) {
+double slider_step(const FieldInfo& info, double value, double usual, int direction) {
   constexpr double kStep = 1.1;
   value = std::clamp(value, slider_low(info), info.slider_maximum);
   // Remains of rounding must not count as a step.
@@ -251,7 +244,7 @@ void draw_broken_frame(ImVec2 from, ImVec2 to) {
                                       ImGui::GetStyle().FrameRounding, 0, current_scale());
 }
 
-bool number_slider(const ParameterInfo& info, double& value, double usual, bool broken) {
+bool number_slider(const FieldInfo& info, double& value, double usual, bool broken) {
   ImGuiWindow* window = ImGui::GetCurrentWindow();
   const float text = ImGui::GetTextLineHeight();
   const float scale = current_scale();
@@ -293,11 +286,12 @@ bool number_slider(const ParameterInfo& info, double& value, double usual, bool 
   return changed;
 }
 
-bool value_slider(const ParameterInfo& info, double& value, double usual) {
+bool value_slider(const FieldInfo& info, double& value, double usual) {
   ImGui::PushID(info.key);
   const bool changed = number_slider(info, value, usual, false);
-  if (changed) value = std::clamp(value, info.minimum, info.maximum);
+  if (changed) value = std::clamp(value, info.least(), info.maximum);
   ImGui::PopID();
+  tooltip(info.meaning);
   return changed;
 }
 
@@ -306,26 +300,26 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
   ImGui::PushID(info.key);
   ImGui::BeginGroup();
   bool changed = false;
-  if (const auto* flag = std::get_if<bool Parameters::*>(&info.field)) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * current_scale(), 2 * current_scale()});
-    changed = ImGui::Checkbox(caption(info), &(parameters.**flag));
-    ImGui::PopStyleVar();
-  } else if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
-    changed = choices(info, *choice, parameters);
-  } else {
-    double value = parameter_number(parameters, info);
+  double value = parameter_number(parameters, info);
+  if (info.is_number()) {
     changed = number_slider(info, value, usual, broken != nullptr);
-    if (changed) set_parameter_number(parameters, info, value);
+  } else if (info.kind == FieldInfo::Kind::choice) {
+    changed = choices(info, value);
+  } else {
+    bool on = value != 0;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2 * current_scale(), 2 * current_scale()});
+    changed = ImGui::Checkbox(info.caption, &on);
+    ImGui::PopStyleVar();
+    value = on ? 1 : 0;
   }
   ImGui::EndGroup();
-  const bool is_choice = !std::holds_alternative<double Parameters::*>(info.field) && !is_int(info);
-  if (is_choice && broken != nullptr) {
+  if (!info.is_number() && broken != nullptr) {
     draw_broken_frame(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   }
   if (ImGui::IsItemHovered()) {
-    if (is_choice && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-      changed = parameter_number(parameters, info) != usual;
-      set_parameter_number(parameters, info, usual);
+    if (!info.is_number() && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+      changed = value != usual;
+      value = usual;
     }
     const bool busy = ImGui::IsAnyItemActive();
     if (!busy && ImGui::GetCurrentContext()->HoveredIdTimer > 0.5f) {
@@ -333,6 +327,7 @@ bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double 
     }
   }
   ImGui::PopID();
+  if (changed) set_parameter_number(parameters, info, value);
   return changed;
 }
 

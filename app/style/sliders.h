@@ -1,4 +1,4 @@
-// Widgets of one parameter: a slider, a check box or a row of choices.
+// Widgets of one field: a slider, a check box or a row of choices.
 #pragma once
 
 #include <imgui.h>
@@ -7,20 +7,18 @@
 
 namespace limpid {
 
-bool is_int(const ParameterInfo& info);
-
 // Return the place of a value on the slider of `info`, 0 to 1, and back; beyond the ends it is held
 // there. A logarithmic slider whose range begins at zero begins at a millionth of its end.
-double slider_place(const ParameterInfo& info, double value);
-double slider_value(const ParameterInfo& info, double place);
+double slider_place(const FieldInfo& info, double value);
+double slider_value(const FieldInfo& info, double place);
 
 // Returns the next value of a grid of steps of about a tenth, of two digits each, with `usual` on
 // it; `direction`: 1 up, -1 down. Held within the slider's range, as slider_value() is.
-double slider_step(const ParameterInfo& info, double value, double usual, int direction);
+double slider_step(const FieldInfo& info, double value, double usual, int direction);
 
 // Draws a number as a slider at ImGui's cursor over the width left, below an ID of its own; returns
 // whether `value` was changed. `usual` is marked, and can be gone back to; `broken`: in red.
-bool number_slider(const ParameterInfo& info, double& value, double usual, bool broken);
+bool number_slider(const FieldInfo& info, double& value, double usual, bool broken);
 
 // Draws the frame round a widget whose value breaks a promise.
 void draw_broken_frame(ImVec2 from, ImVec2 to);
@@ -33,8 +31,7 @@ void draw_broken_frame(ImVec2 from, ImVec2 to);
 bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double usual,
                       const char* broken = nullptr);
 
-// Draws the same for a number that is no parameter, described like one of type double, without a
-// tooltip. `usual` is marked, and can be gone back to.
-bool value_slider(const ParameterInfo& info, double& value, double usual);
+// Draws the same for the number of another field, and its meaning as a tooltip.
+bool value_slider(const FieldInfo& info, double& value, double usual);
 
 }  // namespace limpid

@@ -16,16 +16,12 @@ void end_tooltip();
 // Shows a tooltip of ImGui's last item, while the mouse is over it.
 void tooltip(const char* text);
 
-// Returns the words beside a slider: "Impedance scaling η". A parameter without words of its own
-// has its label.
-const char* caption(const ParameterInfo& info);
-
 // Writes the number with its unit, as a slider shows it; a value that is not a number means the
 // arm's own.
-std::string with_unit(const ParameterInfo& info, double value);
+std::string with_unit(const FieldInfo& info, double value);
 
 // Returns whether the usual value is the one that the paper gives, in section 4.
-bool of_paper(const ParameterInfo& info);
+bool of_paper(const FieldInfo& info);
 
 // Returns the text of a plot's mark where the parameter has changed: "η 0.909".
 std::string mark_text(const ParameterInfo& info, const Parameters& p);

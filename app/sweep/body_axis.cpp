@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "devices/files/scene/scene_fields.h"
+
 namespace limpid {
 
 namespace {
-
-using namespace scene_limits;
-using Of = BodyProperty::Of;
 
 // Sets the mass by the density: moments, if given, scale with it.
 void set_mass(Object& object, double mass) {
@@ -19,35 +18,51 @@ void set_mass(Object& object, double mass) {
   body.mass = mass;
 }
 
-JointForce& force_of(Object& object) { return object.body->joint->force; }
+void set_friction(Object& object, double x) {
+  object.material.friction_static = object.material.friction_kinetic = x;
+}
 
-constexpr BodyProperty kProperties[] = {
-    {"mass", kMass, Of::any_body, set_mass},
-    {"stiffness", kStiffness, Of::any_body,
-     [](Object& object, double x) { object.material.stiffness = x; }},
-    {"friction", kFriction, Of::any_body,
-     [](Object& object, double x) {
-       object.material.friction_static = object.material.friction_kinetic = x;
-     }},
-    {"friction_static", kFriction, Of::any_body,
-     [](Object& object, double x) { object.material.friction_static = x; }},
-    {"friction_kinetic", kFriction, Of::any_body,
-     [](Object& object, double x) { object.material.friction_kinetic = x; }},
-    {"contact_stiffness", kStiffness, Of::any_body,
-     [](Object& object, double x) { object.body->contact_stiffness = x; }},
-    {"restitution", kFriction, Of::any_body,
-     [](Object& object, double x) { object.body->restitution = x; }},
-    {"joint.damping", kDamping, Of::any_joint,
-     [](Object& object, double x) { object.body->joint->damping = x; }},
-    {"joint.friction", kJointForce, Of::any_joint,
-     [](Object& object, double x) { object.body->joint->friction = x; }},
-    {"joint.spring", kJointSpring, Of::slider_or_hinge,
-     [](Object& object, double x) { force_of(object).spring = x; }},
-    {"joint.detent.force", kJointForce, Of::slider_or_hinge,
-     [](Object& object, double x) { force_of(object).detent_force = x; }},
-    {"joint.detent.period", kPeriod, Of::slider_or_hinge,
-     [](Object& object, double x) { force_of(object).detent_period = x; }},
-};
+bool on_joint(const Object& object) { return object.body->joint.has_value(); }
+bool on_axis(const Object& object) { return on_joint(object) && has_axis(*object.body->joint); }
+
+std::vector<BodyProperty> all_properties() {
+  const auto every = [](const Object&) { return true; };
+  static constexpr FieldInfo kFriction = kMaterialFields.back();
+  std::vector<BodyProperty> all{{kBodyMass.key, &kBodyMass, every, set_mass},
+                                {"friction", &kFriction, every, set_friction}};
+  // Adds the numbers of a table; `part` is the body's part that it describes.
+  const auto add = [&](const char* prefix, const auto& fields, const auto& has, const auto& part) {
+    for (const auto& field : fields) {
+      if (!field.is_number()) continue;
+      all.push_back(
+          {std::string(prefix) + field.key, &field, has,
+           [&field, part](Object& object, double x) { set_number(field, part(object), x); }});
+    }
+  };
+  const auto joint = [](Object& object) -> BodyJoint& { return *object.body->joint; };
+  const auto force = [](Object& object) -> JointForce& { return object.body->joint->force; };
+  add("", kMaterialFields, every, [](Object& object) -> Material& { return object.material; });
+  add("", kBodyFields, every, [](Object& object) -> Body& { return *object.body; });
+  add("joint.", kJointFields, on_joint, joint);
+  add("joint.", kStopFields, on_axis, joint);
+  add("joint.", kForceFields, on_axis, force);
+  add("joint.detent.", kDetentFields, on_axis, force);
+  return all;
+}
+
+const std::vector<BodyProperty>& properties() {
+  static const std::vector<BodyProperty> all = all_properties();
+  return all;
+}
+
+template <class Which>
+std::string names_of(const Which& which) {
+  std::vector<std::string> names;
+  for (const BodyProperty& each : properties()) {
+    if (which(each)) names.push_back(each.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
 
 }  // namespace
 
@@ -55,11 +70,11 @@ std::optional<BodyAxis> body_axis(std::string_view key) {
   if (!key.starts_with(kBodyKey)) return std::nullopt;
   key.remove_prefix(std::string_view(kBodyKey).size());
   BodyAxis axis;
-  for (const BodyProperty& each : kProperties) {
-    const std::string end = std::string(".") + each.name;
+  for (const BodyProperty& each : properties()) {
+    const std::string end = "." + each.name;
     if (!key.ends_with(end) || key.size() == end.size()) continue;
     // Prefers joint.friction to friction of a body called "lid.joint".
-    if (axis.property != nullptr && std::string_view(axis.property->name).size() > end.size() - 1) {
+    if (axis.property != nullptr && axis.property->name.size() > end.size() - 1) {
       continue;
     }
     axis = {std::string(key.substr(0, key.size() - end.size())), &each};
@@ -68,9 +83,8 @@ std::optional<BodyAxis> body_axis(std::string_view key) {
 }
 
 std::string body_properties() {
-  std::vector<std::string> names;
-  for (const BodyProperty& each : kProperties) names.emplace_back(each.name);
-  return fmt::format("{}NAME. and one of {}", kBodyKey, fmt::join(names, ", "));
+  return fmt::format("{}NAME. and one of {}", kBodyKey,
+                     names_of([](const BodyProperty&) { return true; }));
 }
 
 std::string why_not(const BodyAxis& axis, const Scene& scene) {
@@ -82,17 +96,10 @@ std::string why_not(const BodyAxis& axis, const Scene& scene) {
                        names.empty() ? "none, nothing moves in this scene"
                                      : fmt::format("{}", fmt::join(names, ", ")));
   }
-  const auto& joint = found->body->joint;
-  if (axis.property->of != Of::any_body && !joint) {
-    return fmt::format("'{}' is on no joint; allowed: what does not begin with joint.", axis.body);
-  }
-  if (axis.property->of == Of::slider_or_hinge && joint->kind == BodyJoint::Kind::ball) {
-    return fmt::format(
-        "'{}' is on a ball joint; allowed: joint.damping, joint.friction, and what does not begin "
-        "with joint.",
-        axis.body);
-  }
-  return "";
+  if (axis.property->has(*found)) return "";
+  return fmt::format("'{}' is on {} joint; allowed: {}", axis.body,
+                     on_joint(*found) ? "a ball" : "no",
+                     names_of([&](const BodyProperty& each) { return each.has(*found); }));
 }
 
 void set_of_body(const BodyAxis& axis, double value, SceneDocument& document) {
@@ -100,7 +107,7 @@ void set_of_body(const BodyAxis& axis, double value, SceneDocument& document) {
     if (!object.body || object.name != axis.body) continue;
     axis.property->set(object, value);
     // A mass replaces the density that the scene's file gives.
-    if (std::string_view(axis.property->name) == "mass") document.densities.erase(axis.body);
+    if (axis.property->field == &kBodyMass) document.densities.erase(axis.body);
   }
 }
 

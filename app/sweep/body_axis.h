@@ -1,7 +1,7 @@
 // Axes of sweeps that are properties of bodies: scene.body.NAME.mass and the like.
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,14 +13,12 @@ namespace limpid {
 // Prefix of a body's keys; the body's name follows.
 inline constexpr const char* kBodyKey = "scene.body.";
 
+// A number among the fields of a scene's file (devices/files/scene/scene_fields.h).
 struct BodyProperty {
-  // Bodies that have the property.
-  enum class Of : std::uint8_t { any_body, any_joint, slider_or_hinge };
-
-  const char* name;  // end of the key
-  Range range;
-  Of of;
-  void (*set)(Object&, double);
+  std::string name;  // end of the key: "joint.damping"
+  const FieldInfo* field;
+  std::function<bool(const Object&)> has;  // whether this body has it
+  std::function<void(Object&, double)> set;
 };
 
 // An axis' key taken apart: scene.body.NAME.PROPERTY, where NAME may have dots.

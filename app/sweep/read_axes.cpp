@@ -9,7 +9,6 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "app/sweep/body_axis.h"
@@ -29,33 +28,19 @@ constexpr std::size_t kLongestName = 40;
 constexpr std::uint64_t kMostValues = 1'000'000;
 constexpr Range kAnything{-1e300, 1e300};
 
-// A key that names neither a parameter nor a file.
-struct OwnKey {
-  const char* key;
-  const char* unit;
-  double low, high;
-  bool whole;
-  const char* allowed;
-};
-constexpr OwnKey kOwnKeys[] = {{kStiffnessKey, "N/m", std::numeric_limits<double>::min(), 1e9,
-                                false, "numbers above 0 up to 1e9 N/m"},
-                               {kArmJointsKey, "-", 1, kMaxDof, true, "whole numbers from 1 to 32"},
-                               {kArmMassKey, "kg", 1e-3, 1e3, false, "numbers from 1e-3 to 1e3 kg"},
-                               {kArmSeedKey, "-", 0, 1e6, true, "whole numbers from 0 to 1e6"}};
+// Keys that name neither a parameter nor a file.
+using Kind = FieldInfo::Kind;
+constexpr FieldInfo kOwnKeys[] = {{{0, 1e9, true, "N/m"}, kStiffnessKey},
+                                  {{1, kMaxDof}, kArmJointsKey, "", "", "", Kind::whole},
+                                  {{1e-3, 1e3, false, "kg"}, kArmMassKey},
+                                  {{0, 1e6}, kArmSeedKey, "", "", "", Kind::whole}};
 
-const OwnKey* own_key(const std::string& key) {
-  const auto* found = std::ranges::find(kOwnKeys, key, &OwnKey::key);
-  return found == std::end(kOwnKeys) ? nullptr : found;
-}
-
-// The property of a body that a key names, or null.
-const BodyProperty* body_property(const std::string& key) {
-  const auto axis = body_axis(key);
-  return axis ? axis->property : nullptr;
-}
-
-const char* unit_of(const BodyProperty& property) {
-  return *property.range.unit != 0 ? property.range.unit : "-";
+// The field of a key, of whatever it is; null if there is none.
+const FieldInfo* field_of(const std::string& key) {
+  if (const ParameterInfo* parameter = find_parameter(key)) return parameter;
+  if (const FieldInfo* own = find_field(kOwnKeys, key)) return own;
+  const auto of_body = body_axis(key);
+  return of_body && of_body->property ? of_body->property->field : nullptr;
 }
 
 constexpr const char* kScales[] = {"linear", "log"};
@@ -98,36 +83,18 @@ void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis)
 
 // Returns x. Refuses numbers that the axis' parameter does not allow.
 double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
-  if (const OwnKey* own = own_key(axis.key)) {
-    const bool allowed = x >= own->low && x <= own->high && !(own->whole && x != std::floor(x));
-    if (!allowed) table.refuse(key, own->allowed);
-    return x;
-  }
-  if (const BodyProperty* property = body_property(axis.key)) {
-    const Range& range = property->range;
-    if (!(x >= range.minimum && x <= range.maximum &&
-          !(range.exclusive_minimum && x == range.minimum))) {
-      table.refuse(key,
-                   fmt::format("numbers {} {} to {} {}", range.exclusive_minimum ? "above" : "from",
-                               range.minimum, range.maximum, range.unit));
-    }
-    return x;
-  }
-  Parameters p;
-  try {
-    set_parameter(p, axis.key, x);
-  } catch (const ParameterError& error) {
-    table.refuse(key, error.what());
-  }
-  return x;
+  const FieldInfo& field = *field_of(axis.key);
+  const bool whole = field.kind == Kind::whole;
+  if (field.holds(x) && !(whole && x != std::floor(x))) return x;
+  table.refuse(key,
+               fmt::format("{}numbers {} {} to {}{}", whole ? "whole " : "",
+                           field.exclusive_minimum ? "above" : "from", field.minimum, field.maximum,
+                           field.has_unit() ? std::string(" ") + field.unit : ""));
 }
 
-std::vector<const char*> words_of(const ParameterInfo& info) {
-  if (const auto* choice = std::get_if<Choice<Parameters>>(&info.field)) {
-    return {choice->words.begin(), choice->words.end()};
-  }
-  if (std::holds_alternative<bool Parameters::*>(info.field)) return {"false", "true"};
-  return {};
+std::vector<const char*> words_of(const FieldInfo& info) {
+  if (info.kind == Kind::flag) return {"false", "true"};
+  return {info.words.begin(), info.words.end()};
 }
 
 void read_words(const TomlTable& table, SweepAxis& axis) {
@@ -173,7 +140,7 @@ double scaled(const AxisRange& range, double part, bool logarithmic) {
 void refuse_key(const TomlTable& table, const std::string& key) {
   if (key.starts_with(kBodyKey)) table.refuse("key", body_properties());
   std::vector<std::string> keys{"device", "scene", "hand"};
-  for (const OwnKey& own : kOwnKeys) keys.emplace_back(own.key);
+  for (const FieldInfo& own : kOwnKeys) keys.emplace_back(own.key);
   for (const ParameterInfo& info : parameter_table()) keys.emplace_back(info.key);
   const auto meant = nearest(key, keys);
   table.refuse(
@@ -268,21 +235,19 @@ ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
     const std::string key = table.need(table.text("key"), "key");
     const std::string last = key == kStiffnessKey ? "wall" : key.substr(key.rfind('.') + 1);
     axis.name = table.text("name").value_or(last);
-    const ParameterInfo* info = find_parameter(key);
+    const FieldInfo* field = field_of(key);
     if (key == "device") {
       read_files(table, &SweepWorld::device, axis);
     } else if (key == "scene") {
       read_files(table, &SweepWorld::scene, axis);
     } else if (key == "hand") {
       read_files(table, &SweepWorld::hand, axis);
-    } else if (info == nullptr && own_key(key) == nullptr && body_property(key) == nullptr) {
+    } else if (field == nullptr) {
       refuse_key(table, key);
     } else {
       axis.key = key;
-      axis.unit = info                 ? info->unit
-                  : body_property(key) ? unit_of(*body_property(key))
-                                       : own_key(key)->unit;
-      if (info) std::ranges::copy(words_of(*info), std::back_inserter(axis.words));
+      axis.unit = field->unit;
+      std::ranges::copy(words_of(*field), std::back_inserter(axis.words));
       axis.words.empty() ? read_numbers(table, read) : read_words(table, axis);
     }
   }
@@ -306,8 +271,8 @@ void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t se
     const UnitSamples drawn = draw(these.size(), samples, seed);
     for (std::size_t d = 0; d < these.size(); ++d) {
       SweepAxis& axis = these[d]->axis;
-      const ParameterInfo* info = find_parameter(axis.key);
-      const bool whole = info && std::holds_alternative<int Parameters::*>(info->field);
+      const FieldInfo* field = field_of(axis.key);
+      const bool whole = field != nullptr && field->kind == Kind::whole;
       for (const double part : drawn[d]) {
         const double x = scaled(these[d]->range, part, axis.logarithmic);
         axis.values.push_back(whole ? std::round(x) : x);

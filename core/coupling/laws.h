@@ -10,53 +10,10 @@
 #include <span>
 #include <string_view>
 #include <tuple>
-#include <variant>
+
+#include "core/base/field.h"
 
 namespace limpid {
-
-// A setting with a few words as values: an enumeration's 0, 1, ...
-template <class Owner>
-struct Choice {
-  std::span<const char* const> words;
-  std::uint8_t (*get)(const Owner&);
-  void (*set)(Owner&, std::uint8_t);
-};
-
-template <class Owner, auto field>
-constexpr Choice<Owner> choice(std::span<const char* const> words) {
-  return {words, [](const Owner& o) { return static_cast<std::uint8_t>(o.*field); },
-          [](Owner& o, std::uint8_t i) {
-            o.*field = static_cast<std::remove_reference_t<decltype(o.*field)>>(i);
-          }};
-}
-
-// Description of one setting, for the command line, configuration files, sliders, tooltips and
-// help. Settings are described beside their owners. Owner: the class with all settings, which
-// inherits the parts of the laws.
-template <class Owner>
-struct Setting {
-  using Field = std::variant<double Owner::*, int Owner::*, bool Owner::*, Choice<Owner>>;
-  const char* key;    // "coupling.eta"
-  const char* label;  // short, for a slider
-  Field field;
-  const char* unit;  // "-" for none
-  double minimum;    // least allowed
-  double maximum;
-  double slider_minimum;  // range of the slider
-  double slider_maximum;
-  bool logarithmic;     // whether the slider is
-  bool live;            // may change while the loop runs
-  const char* meaning;  // one or two sentences with the equation's number
-};
-
-// Joins descriptions of several owners.
-template <class P, std::size_t... Size>
-constexpr auto joined(const std::array<Setting<P>, Size>&... parts) {
-  std::array<Setting<P>, (Size + ...)> all{};
-  std::size_t at = 0;
-  ((std::copy(parts.begin(), parts.end(), all.begin() + at), at += Size), ...);
-  return all;
-}
 
 // Texts about a law for people, and properties of it.
 struct LawInfo {
@@ -85,14 +42,17 @@ struct SpringDamper {
   double b_v = 0.012;   // [N m s/rad]
 
   template <class P>
-  static constexpr std::array<Setting<P>, 3> settings() {
-    return {{{"coupling.k_vc", "k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1, 100, true, true,
+  static constexpr std::array<Field<P>, 3> settings() {
+    return {{{"coupling.k_vc", "k_vc", "Coupling spring k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1,
+              100, true, true,
               "Spring between device and proxy, (1)-(2). Stiffer keeps them closer, until "
               "condition (3) breaks: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2."},
-             {"coupling.b_vc", "b_vc", &P::b_vc, "N m s/rad", 0, 100, 1e-5, 0.1, true, true,
+             {"coupling.b_vc", "b_vc", "Coupling damper b_vc", &P::b_vc, "N m s/rad", 0, 100, 1e-5,
+              0.1, true, true,
               "Damper between device and proxy, (1)-(2). It acts on a delayed velocity, so it "
               "costs device damping twice: condition (3)."},
-             {"coupling.b_v", "b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1, true, true,
+             {"coupling.b_v", "b_v", "Proxy damper b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1,
+              true, true,
               "Damping of the proxy, (2). Felt through the coupling; condition (3) asks for "
               "at least k_vc T / 2."}}};
   }
@@ -112,20 +72,20 @@ struct LinkSettings {
   int oldest() const { return link_delay + link_jitter; }
 
   template <class P>
-  static constexpr std::array<Setting<P>, 4> settings() {
+  static constexpr std::array<Field<P>, 4> settings() {
     return {
-        {{"link.delay", "link delay", &P::link_delay, "ticks", 0, kMostLinkDelay, 0, 100, false,
-          true,
+        {{"link.delay", "link delay", "Link delay, each way", &P::link_delay, "ticks", 0,
+          kMostLinkDelay, 0, 100, false, true,
           "Delay between device and proxy, each way, as if the world were far away. The predictive "
           "coupling solves both at once and knows no link."},
-         {"link.jitter", "link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter, 0, 20, false,
-          true,
+         {"link.jitter", "link jitter", "Link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter,
+          0, 20, false, true,
           "Each packet between device and proxy takes up to so many ticks more, at random; each "
           "side goes by the packet that was sent last of those that it has."},
-         {"link.loss", "link loss", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
+         {"link.loss", "link loss", "Packets lost", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
           "Share of the packets between device and proxy that never arrive; what has nothing new "
           "keeps the last one."},
-         {"link.seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
+         {"link.seed", "link seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
           "Whole number from which the random numbers of link.jitter and link.loss follow."}}};
   }
 };
@@ -202,8 +162,9 @@ struct ProposedLaw {
     double eta = 1;  // [-]
 
     template <class P>
-    static constexpr std::array<Setting<P>, 1> settings() {
-      return {{{"coupling.eta", "\xCE\xB7", &P::eta, "-", 0.01, 100, 0.1, 10, true, true,
+    static constexpr std::array<Field<P>, 1> settings() {
+      return {{{"coupling.eta", "\xCE\xB7", "Impedance scaling \xCE\xB7", &P::eta, "-", 0.01, 100,
+                0.1, 10, true, true,
                 "Impedance scaling: what the hand feels of free motion. Predictive coupling: eta "
                 "times the inertia "
                 "M1 + M2, up to coupling.band. Proposed coupling: eta times the damping, and so "
@@ -256,26 +217,30 @@ struct PredictorSettings {
   }
 
   template <class P>
-  static constexpr std::array<Setting<P>, 6> settings() {
+  static constexpr std::array<Field<P>, 6> settings() {
     return {
-        {{"predictor.preset", "predictor", choice<P, &P::preset>(kPredictorPresets), "-", 0, 2, 0,
-          2, false, true,
+        {{"predictor.preset", "predictor", "Predictor", choice<P, &P::preset>(kPredictorPresets),
+          "-", 0, 2, 0, 2, false, true,
           "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
           "(walls up to 2000 N/m); auto goes by device.encoder_step."},
-         {"predictor.p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
+         {"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
           "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
           "none. More is quieter and later. Default: the preset's, 0.2 or 0.45, and up to 0.85 "
           "where a step of the encoder would shake a heavy arm on the scene's stiffest wall."},
-         {"predictor.mu", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3, true, true,
+         {"predictor.mu", "inertia \xCE\xBC", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3,
+          true, true,
           "Predictive coupling: factor on the device's inertia in the predictor. Default: "
           "the preset's, 1 or 0.5."},
-         {"predictor.hand_mass", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1, false, true,
+         {"predictor.hand_mass", "hand mass m_h", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1,
+          false, true,
           "Predictive coupling: mass of hand and handle in the second predictor, which takes "
           "over when it is the better one. 0 does without."},
-         {"model.delay", "known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
+         {"model.delay", "known delay", "Delay that is known", &P::delay, "ticks", 0, 20, 0, 5,
+          false, true,
           "Predictive coupling: delay between command and motor that it reckons with, in "
           "ticks."},
-         {"model.delay_most", "possible delay", &P::delay_most, "ticks", 0, 20, 0, 5, false, true,
+         {"model.delay_most", "possible delay", "possible delay", &P::delay_most, "ticks", 0, 20, 0,
+          5, false, true,
           "Predictive coupling: the most that the delay between command and motor may be, in "
           "ticks. The energy given is accounted for every delay from model.delay to this one, and "
           "eta above 1 is felt in a narrower band. Default: of the virtual arm device.delay; of a "
@@ -287,9 +252,9 @@ struct LedgerSettings {
   double energy = 0.005;  // E0, the most that the human may be given [J]
 
   template <class P>
-  static constexpr std::array<Setting<P>, 1> settings() {
-    return {{{"ledger.energy", "ledger E\xE2\x82\x80", &P::energy, "J", 1e-4, 0.02, 1e-3, 0.02,
-              true, true,
+  static constexpr std::array<Field<P>, 1> settings() {
+    return {{{"ledger.energy", "ledger E\xE2\x82\x80", "Energy allowed E\xE2\x82\x80", &P::energy,
+              "J", 1e-4, 0.02, 1e-3, 0.02, true, true,
               "Predictive coupling: the human is given at most this energy beyond what came in, "
               "since the loop was started, and at most four times of it in any part of that time. "
               "When the reserve runs low the contact force, the cancelled damping and the added "
@@ -333,12 +298,13 @@ struct PredictiveLaw {
 
     template <class P>
     static constexpr auto settings() {
-      constexpr std::array<Setting<P>, 2> own{
-          {{"coupling.damping", "damping", &P::felt_damping, "-", kLeastDamping, 1, kLeastDamping,
-            1, false, true,
+      constexpr std::array<Field<P>, 2> own{
+          {{"coupling.damping", "damping", "Damping felt", &P::felt_damping, "-", kLeastDamping, 1,
+            kLeastDamping, 1, false, true,
             "Predictive coupling: share of the damping b_d + b_v that stays felt in free motion. "
             "Default: falls with eta, from 1 at eta 1 to 1/3 at eta 0.5 and below."},
-           {"coupling.band", "band", &P::band, "Hz", 0.5, 20, 1, 10, true, true,
+           {"coupling.band", "band", "Band of the inertia", &P::band, "Hz", 0.5, 20, 1, 10, true,
+            true,
             "Predictive coupling: up to this frequency the inertia felt is eta times the natural "
             "one; a wider band costs more damping."}}};
       return joined<P>(own, PredictorSettings::settings<P>(), LedgerSettings::settings<P>());
@@ -377,19 +343,22 @@ struct TankLaw {
     double tank_damping = 100;   // damper of an empty tank, over the device's inertia [1/s]
 
     template <class P>
-    static constexpr std::array<Setting<P>, 4> settings() {
+    static constexpr std::array<Field<P>, 4> settings() {
       return {
-          {{"tank.energy", "tanks E\xE2\x82\x80", &P::tank_energy, "J", 1e-4, 1, 1e-3, 0.02, true,
-            true,
+          {{"tank.energy", "tanks E\xE2\x82\x80", "Energy of both tanks", &P::tank_energy, "J",
+            1e-4, 1, 1e-3, 0.02, true, true,
             "Tank coupling: what both tanks hold at the start, half of it each. Coupling and "
             "device never give more than this beyond what came in."},
-           {"tank.most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1, true, true,
+           {"tank.most", "tank's most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1, true,
+            true,
             "Tank coupling: the most that each tank keeps of what came in. So much may be given in "
             "any part of the time."},
-           {"tank.share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1, true, true,
+           {"tank.share", "tank's share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1,
+            true, true,
             "Tank coupling: share of what a tank holds above its half of tank.energy that it sends "
             "to the other one in a tick."},
-           {"tank.damping", "refill", &P::tank_damping, "1/s", 0, 200, 0, 200, false, true,
+           {"tank.damping", "refill", "Refilling damper", &P::tank_damping, "1/s", 0, 200, 0, 200,
+            false, true,
             "Tank coupling: where the device's tank holds less than its half of tank.energy, a "
             "damper of up to this rate times the device's inertia fills it from the hand."}}};
     }
@@ -408,15 +377,17 @@ struct ObserverSettings {
   VelocitySource velocity = VelocitySource::raw;
 
   template <class P>
-  static constexpr std::array<Setting<P>, 3> settings() {
-    return {{{"observer.alpha", "\xCE\xB1", &P::alpha, "N m s/rad", 1e-6, 1e3, 1e-3, 1, true, true,
+  static constexpr std::array<Field<P>, 3> settings() {
+    return {{{"observer.alpha", "\xCE\xB1", "Observer gain \xCE\xB1", &P::alpha, "N m s/rad", 1e-6,
+              1e3, 1e-3, 1, true, true,
               "Gain of the human force observer, L = alpha M^-1, (17)-(18). Larger follows the "
               "hand faster (w_f = alpha / m) and raises eta_min."},
-             {"observer.anti_windup", "anti-windup", &P::anti_windup, "-", 0, 1, 0, 1, false, true,
+             {"observer.anti_windup", "anti-windup", "Observer knows the motors' limit",
+              &P::anti_windup, "-", 0, 1, 0, 1, false, true,
               "Feed the observer with the torque the motors really gave (section 3.1). Without "
               "it a saturated contact winds the estimate up and the proxy lurks."},
-             {"observer.velocity", "velocity", choice<P, &P::velocity>(kVelocitySources), "-", 0, 2,
-              0, 2, false, true,
+             {"observer.velocity", "velocity", "Velocity estimate",
+              choice<P, &P::velocity>(kVelocitySources), "-", 0, 2, 0, 2, false, true,
               "Velocity estimate: raw difference of positions, low-pass, or adaptive window "
               "(for coarse encoders)."}}};
   }

@@ -8,10 +8,8 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <variant>
 
 #include "core/coupling/laws.h"
 
@@ -34,16 +32,18 @@ struct CompensationSettings {
   friend bool operator==(const CompensationSettings&, const CompensationSettings&) = default;
 
   template <class P>
-  static constexpr std::array<Setting<P>, 3> settings() {
+  static constexpr std::array<Field<P>, 3> settings() {
     return {
-        {{"model.gravity", "hold the weight", &P::holds_weight, "-", 0, 1, 0, 1, false, true,
+        {{"model.gravity", "hold the weight", "Hold the weight", &P::holds_weight, "-", 0, 1, 0, 1,
+          false, true,
           "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
           "device does it by itself, as by counterweights."},
-         {"model.friction", "friction taken off", &P::friction_share, "-", 0, kMostShare, 0,
-          kMostShare, false, true,
+         {"model.friction", "friction taken off", "Friction taken off", &P::friction_share, "-", 0,
+          kMostShare, 0, kMostShare, false, true,
           "Share of the Coulomb friction that the motors take off the hand. Passive while that is "
           "less than the friction that there is: leave what it may be wrong by."},
-         {"model.springs", "hold the springs", &P::holds_springs, "-", 0, 1, 0, 1, false, true,
+         {"model.springs", "hold the springs", "Hold the springs", &P::holds_springs, "-", 0, 1, 0,
+          1, false, true,
           "The motors hold against the device's own springs, as its file has them."}}};
   }
 };
@@ -55,12 +55,13 @@ struct ControllerSettings : LawSettings, ObserverSettings, CompensationSettings 
 
   template <class P>
   static constexpr auto settings() {
-    constexpr std::array<Setting<P>, 1> kKind{
-        {{"coupling.kind", "coupling", choice<P, &P::kind>(kLawKeys), "-", 0, kLaws - 1, 0,
-          kLaws - 1, false, true, kLawMeanings.data()}}};
-    constexpr std::array<Setting<P>, 1> kBelief{
-        {{"model.inertia_error", "inertia error", &P::inertia_error, "-", 0.01, 100, 0.1, 10, true,
-          true, "Factor on the device inertia that the controller believes (section 3.2)."}}};
+    constexpr std::array<Field<P>, 1> kKind{
+        {{"coupling.kind", "coupling", "Coupling", choice<P, &P::kind>(kLawKeys), "-", 0, kLaws - 1,
+          0, kLaws - 1, false, true, kLawMeanings.data()}}};
+    constexpr std::array<Field<P>, 1> kBelief{
+        {{"model.inertia_error", "inertia error", "Error of the model's inertia", &P::inertia_error,
+          "-", 0.01, 100, 0.1, 10, true, true,
+          "Factor on the device inertia that the controller believes (section 3.2)."}}};
     return joined(kKind, law_settings<P>(), ObserverSettings::settings<P>(), kBelief,
                   CompensationSettings::settings<P>());
   }
@@ -73,11 +74,11 @@ struct LoopSettings : LinkSettings {
 
   template <class P>
   static constexpr auto settings() {
-    constexpr std::array<Setting<P>, 2> kOwn{
-        {{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-", 1e-8, 100,
-          1e-5, 1, true, true,
-          "Inertia of the proxy as a part of the device's (section 4.1: 1e-4)."},
-         {"loop.tick", "tick T", &P::tick, "s", 1e-5, 0.1, 1e-4, 0.01, true, false,
+    constexpr std::array<Field<P>, 2> kOwn{
+        {{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81",
+          "Proxy inertia M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-", 1e-8, 100, 1e-5, 1,
+          true, true, "Inertia of the proxy as a part of the device's (section 4.1: 1e-4)."},
+         {"loop.tick", "tick T", "tick T", &P::tick, "s", 1e-5, 0.1, 1e-4, 0.01, true, false,
           "Time between two ticks of the loop, T."}}};
     return joined(LinkSettings::settings<P>(), kOwn);
   }
@@ -89,13 +90,14 @@ struct HandSettings {
   double hand_mass_at_tip = 0;  // mass of hand and handle, at the tip [kg]
 
   template <class P>
-  static constexpr std::array<Setting<P>, 3> settings() {
-    return {{{"hand.stiffness", "grip stiffness", &P::hand_stiffness, "N/m", 0, 1e5, 10, 3000, true,
-              true, "Spring between the hand's target and the tip of the device."},
-             {"hand.damping", "grip damping", &P::hand_damping, "N s/m", 0, 1e3, 0, 20, false, true,
-              "Damper between the hand's target and the tip of the device."},
-             {"hand.mass", "hand mass", &P::hand_mass_at_tip, "kg", 0, 2, 0, 0.5, false, true,
-              "Point mass of hand and handle at the tip of the virtual device."}}};
+  static constexpr std::array<Field<P>, 3> settings() {
+    return {
+        {{"hand.stiffness", "grip stiffness", "Grip stiffness", &P::hand_stiffness, "N/m", 0, 1e5,
+          10, 3000, true, true, "Spring between the hand's target and the tip of the device."},
+         {"hand.damping", "grip damping", "Grip damping", &P::hand_damping, "N s/m", 0, 1e3, 0, 20,
+          false, true, "Damper between the hand's target and the tip of the device."},
+         {"hand.mass", "hand mass", "Hand mass", &P::hand_mass_at_tip, "kg", 0, 2, 0, 0.5, false,
+          true, "Point mass of hand and handle at the tip of the virtual device."}}};
   }
 };
 
@@ -113,31 +115,36 @@ struct DeviceSettings {
   Down down = Down::as_file;
 
   template <class P>
-  static constexpr std::array<Setting<P>, 9> settings() {
+  static constexpr std::array<Field<P>, 9> settings() {
     return {
-        {{"device.substeps", "substeps", &P::substeps, "-", 1, 1000, 1, 100, true, false,
-          "Integration steps of the virtual device per tick, motor torque held."},
-         {"device.delay", "delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5, false, true,
+        {{"device.substeps", "substeps", "substeps", &P::substeps, "-", 1, 1000, 1, 100, true,
+          false, "Integration steps of the virtual device per tick, motor torque held."},
+         {"device.delay", "delay", "Device delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5,
+          false, true,
           "Ticks between a command and the torque of the virtual device's motors. The predictive "
           "coupling reckons with model.delay of them."},
-         {"device.encoder_step", "encoder step", &P::encoder_step, "rad", 0, kMostEncoderStep, 0,
-          2e-3, false, true,
+         {"device.encoder_step", "encoder step", "Encoder step", &P::encoder_step, "rad", 0,
+          kMostEncoderStep, 0, 2e-3, false, true,
           "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4. Of a real device no "
           "less than what that says of itself."},
-         {"device.friction", "friction", &P::friction, "N m", 0, 100, 0, 0.05, false, true,
-          "Coulomb friction of every joint; default: the arm's file."},
-         {"device.damping", "b_d", &P::damping, "N m s/rad", 0, 100, 1e-4, 0.1, true, true,
+         {"device.friction", "friction", "Device friction", &P::friction, "N m", 0, 100, 0, 0.05,
+          false, true, "Coulomb friction of every joint; default: the arm's file."},
+         {"device.damping", "b_d", "Device damping b_d", &P::damping, "N m s/rad", 0, 100, 1e-4,
+          0.1, true, true,
           "The device's own viscous damping, b_d of (1): not commanded by the motors. Condition "
           "(3) asks for at least 2 b_vc + k_vc T. Default: the arm's file."},
-         {"device.torque_limit", "torque limit", &P::torque_limit, "N m", 1e-6, 1e4, 0.01, 5, true,
-          true, "Largest torque of every motor (section 3.1); default: the arm's file."},
-         {"device.gravity", "weight", &P::weighs, "-", 0, 1, 0, 1, false, true,
+         {"device.torque_limit", "torque limit", "Motors' largest torque", &P::torque_limit, "N m",
+          1e-6, 1e4, 0.01, 5, true, true,
+          "Largest torque of every motor (section 3.1); default: the arm's file."},
+         {"device.gravity", "weight", "The arm weighs", &P::weighs, "-", 0, 1, 0, 1, false, true,
           "The virtual arm has the weight of its file and would fall; off: as if a counterweight "
           "held it. model.gravity has the motors hold it."},
-         {"device.springs", "springs", &P::springy, "-", 0, 1, 0, 1, false, true,
+         {"device.springs", "springs", "The arm has its springs", &P::springy, "-", 0, 1, 0, 1,
+          false, true,
           "The virtual arm has the springs of its file, as one that was identified has; "
           "model.springs has the motors hold against them."},
-         {"device.down", "down", choice<P, &P::down>(kDowns), "-", 0, 6, 0, 6, false, true,
+         {"device.down", "down", "Down, seen from the base", choice<P, &P::down>(kDowns), "-", 0, 6,
+          0, 6, false, true,
           "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "
           "side; file: as its file says, else -z."}}};
   }
@@ -151,7 +158,7 @@ struct Parameters : ControllerSettings, LoopSettings, HandSettings, DeviceSettin
 // real device one tick more than `identified` [s], or 3.
 int most_delay(const Parameters& p, std::optional<double> identified, bool real);
 
-using ParameterInfo = Setting<Parameters>;
+using ParameterInfo = Field<Parameters>;
 
 std::span<const ParameterInfo> parameter_table();
 
@@ -166,20 +173,20 @@ inline const char* name(VelocitySource source) {
   return kVelocitySources[static_cast<std::size_t>(source)];
 }
 
-// A parameter's value as configuration files and `--set` give it.
-using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
-
-// Error: a key does not exist or a value is not allowed; what() names the key, the value found and
-// what is allowed.
-struct ParameterError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using ParameterValue = FieldValue;
+// Thrown if a key does not exist or a value is not allowed; what() names the key, the value found
+// and what is allowed.
+using ParameterError = FieldError;
 
 void set_parameter(Parameters& p, std::string_view key, const ParameterValue& value);
 // A parameter as a number: choices by their place, bool as 0 or 1, kFromArm for the arm's own.
-double parameter_number(const Parameters& p, const ParameterInfo& info);
+inline double parameter_number(const Parameters& p, const ParameterInfo& info) {
+  return number_of(info, p);
+}
 // Inverse of parameter_number(); clamps to the allowed range.
-void set_parameter_number(Parameters& p, const ParameterInfo& info, double number);
+inline void set_parameter_number(Parameters& p, const ParameterInfo& info, double number) {
+  set_number(info, p, number);
+}
 // A parameter in TOML's spelling; empty where the value is left to the arm.
 std::string parameter_text(const Parameters& p, const ParameterInfo& info);
 

@@ -52,11 +52,7 @@ const char* explain(ForceState state) {
 }
 
 SafetyLimits allowed(SafetyLimits wanted) {
-  const SafetyLimits most;
-  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
-    double& value = wanted.*info.field;
-    value = std::isnan(value) ? most.*info.field : std::clamp(value, info.least, most.*info.field);
-  }
+  hold_fields(kSafetyLimits, wanted);
   return wanted;
 }
 

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "core/base/field.h"
+
 namespace limpid {
 
 struct SafetyLimits {
@@ -30,22 +32,21 @@ struct SafetyLimits {
   friend bool operator==(const SafetyLimits&, const SafetyLimits&) = default;
 };
 
-// Limits that can be lowered for a device, for files and panels. Their defaults are the largest
-// values allowed.
-struct SafetyLimitInfo {
-  const char* key;
-  const char* label;
-  const char* unit;
-  double SafetyLimits::*field;
-  double least;
-};
-inline constexpr std::array<SafetyLimitInfo, 5> kSafetyLimitInfo{{
-    {"joint_speed", "joint speed", "rad/s", &SafetyLimits::joint_speed, 0.5},
-    {"tip_speed", "tip speed", "m/s", &SafetyLimits::tip_speed, 0.05},
-    {"tip_force", "tip force", "N", &SafetyLimits::tip_force, 0.1},
-    {"energy", "energy in a second", "J", &SafetyLimits::energy, 0.02},
-    {"range", "part of the range", "", &SafetyLimits::range, 0.1},
-}};
+// Limits that can be lowered for a device. Their defaults are the largest values allowed.
+inline constexpr auto kSafetyLimits = [] {
+  using L = SafetyLimits;
+  const auto limit = [](const char* key, const char* caption, double L::*member, double least,
+                        const char* unit, const char* meaning) {
+    return Field<L>(key, caption, member, {least, L{}.*member, false, unit}, meaning);
+  };
+  return std::array{
+      limit("joint_speed", "joint speed", &L::joint_speed, 0.5, "rad/s", "Of the fastest joint."),
+      limit("tip_speed", "tip speed", &L::tip_speed, 0.05, "m/s", "Of the device's tip."),
+      limit("tip_force", "tip force", &L::tip_force, 0.1, "N", "Of the motors at the tip."),
+      limit("energy", "energy in a second", &L::energy, 0.02, "J", "That the motors put out."),
+      limit("range", "part of the range", &L::range, 0.1, "-", "Of each joint, about its middle."),
+  };
+}();
 // Clamps to the allowed range; NaN becomes the default.
 SafetyLimits allowed(SafetyLimits wanted);
 

@@ -13,7 +13,7 @@ namespace limpid {
 namespace {
 
 std::string allowed_text(const Range& range) {
-  const std::string unit = *range.unit ? fmt::format(" {}", range.unit) : "";
+  const std::string unit = range.has_unit() ? fmt::format(" {}", range.unit) : "";
   return fmt::format("a number {} {} up to {}{}", range.exclusive_minimum ? "above" : "from",
                      range.minimum, range.maximum, unit);
 }
@@ -21,8 +21,7 @@ std::string allowed_text(const Range& range) {
 std::optional<double> number_in(const toml::node& node, const Range& range) {
   if (!node.is_number()) return std::nullopt;
   const double x = *node.value<double>();
-  const bool inside = range.exclusive_minimum ? x > range.minimum : x >= range.minimum;
-  return inside && x <= range.maximum ? std::optional(x) : std::nullopt;
+  return range.holds(x) ? std::optional(x) : std::nullopt;
 }
 
 // A list of exactly `count` numbers in range; nothing if the node is anything else.
@@ -108,6 +107,16 @@ void TomlTable::allow_only(const std::vector<const char*>& keys) const {
     throw FileError(fmt::format(
         "{}:{}: {}: no such key{} allowed: {}", where_, key.source().begin.line, full(key.str()),
         meant ? fmt::format("; did you mean {}?", *meant) : ";", fmt::join(keys, ", ")));
+  }
+}
+
+void TomlTable::refuse_slips(const std::vector<const char*>& known) const {
+  for (const auto& [key, node] : table_) {
+    const std::string word(key.str());
+    if (std::ranges::find(known, word) != known.end()) continue;
+    if (const auto meant = nearest(word, {known.begin(), known.end()})) {
+      refuse(word.c_str(), fmt::format("the key \"{}\"", *meant));
+    }
   }
 }
 
@@ -212,6 +221,10 @@ std::optional<TomlTable> TomlTable::table(const char* key) const {
   if (node == nullptr) return std::nullopt;
   if (!node->is_table()) refuse(key, fmt::format("a table under [{}]", full(key)));
   return TomlTable(*node->as_table(), where_, full(key));
+}
+
+TomlTable TomlTable::element(const char* key, std::size_t i, const toml::table& table) const {
+  return {table, where_, fmt::format("{}[{}]", full(key), i)};
 }
 
 std::vector<TomlTable> TomlTable::tables(const char* key) const {

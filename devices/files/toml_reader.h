@@ -4,35 +4,16 @@
 
 #include <toml++/toml.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/math/sizes.h"
+#include "core/base/field.h"
 
 namespace limpid {
-
-// Numbers that a file may have for a key.
-struct Range {
-  double minimum;
-  double maximum;
-  bool exclusive_minimum = false;
-  const char* unit = "";
-
-  // The allowed number nearest to x; `otherwise` if x is no number.
-  double hold(double x, double otherwise) const {
-    if (std::isnan(x)) return otherwise;
-    const double least =
-        exclusive_minimum ? std::max(minimum, std::numeric_limits<double>::min()) : minimum;
-    return std::clamp(x, least, maximum);
-  }
-};
 
 // Parses TOML. Errors: FileError "WHERE:LINE: ..." for text that is not TOML.
 toml::table parse_toml(std::string_view text, const std::string& where);
@@ -52,6 +33,8 @@ class TomlTable {
       : table_(table), where_(std::move(where)), path_(std::move(path)) {}
 
   void allow_only(const std::vector<const char*>& keys) const;
+  // Refuses keys that are nearly one of `known`, likely slips; other unknown keys stay.
+  void refuse_slips(const std::vector<const char*>& known) const;
   std::optional<std::string> text(const char* key) const;
   std::optional<double> number(const char* key, const Range& range) const;
   std::optional<std::uint64_t> count(const char* key, std::uint64_t least,
@@ -66,6 +49,8 @@ class TomlTable {
   std::optional<std::vector<std::array<double, 2>>> pairs(const char* key, const Range& each) const;
   std::optional<TomlTable> table(const char* key) const;  // under [key], or { ... }
   std::vector<TomlTable> tables(const char* key) const;   // of [[key]]
+  // A table in the list at `key`, named by its place there.
+  TomlTable element(const char* key, std::size_t i, const toml::table& table) const;
   const toml::node* find(const char* key) const { return table_.get(key); }
 
   template <class T>

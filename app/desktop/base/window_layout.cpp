@@ -12,6 +12,7 @@
 #include "app/desktop/base/settings.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/config_file.h"
+#include "devices/files/field_file.h"
 #include "devices/files/text_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -28,29 +29,17 @@ std::string text_of(const toml::table& table) {
   return text.str();
 }
 
-constexpr double kLeastPanel = 100, kMostPanel = 1000;  // [px at scale 1]
+constexpr Range kPanel{100, 1000};  // [px at scale 1]
 
-// Visits every setting of a layout but its plots, for reading and for writing.
-template <class S, class Visit>
-void each_of_layout(S& s, Visit&& visit) {
-  visit("show_left", s.show_left);
-  visit("show_right", s.show_right);
-  visit("show_plots", s.show_plots);
-  visit("left", s.left);
-  visit("right", s.right);
-  visit("plots", s.plots);
-}
-
-void read_layout(const TomlTable& table, const char* key, bool& value) {
-  const toml::node* node = table.find(key);
-  if (node == nullptr) return;
-  if (!node->is_boolean()) table.refuse(key, "true, false");
-  value = *node->value<bool>();
-}
-
-void read_layout(const TomlTable& table, const char* key, double& value) {
-  value = table.number(key, {kLeastPanel, kMostPanel}).value_or(value);
-}
+// Settings of a layout but its plots.
+constexpr std::array kLayoutFields{
+    Field<Settings>("show_left", "left panel", &Settings::show_left, {0, 1}, ""),
+    Field<Settings>("show_right", "right panel", &Settings::show_right, {0, 1}, ""),
+    Field<Settings>("show_plots", "plots", &Settings::show_plots, {0, 1}, ""),
+    Field<Settings>("left", "its width", &Settings::left, kPanel, ""),
+    Field<Settings>("right", "its width", &Settings::right, kPanel, ""),
+    Field<Settings>("plots", "their height", &Settings::plots, kPanel, ""),
+};
 
 bool of_preset(const ParameterInfo& info) {
   const std::string_view key = info.key;
@@ -153,7 +142,7 @@ std::string NamedTexts::change(const std::function<void(Tables&)>& what) {
 
 std::string layout_text(const Settings& settings) {
   toml::table table;
-  each_of_layout(settings, [&](const char* key, const auto& value) { table.insert(key, value); });
+  insert_fields(table, kLayoutFields, settings);
   table.insert("plot", plots_toml(settings.plot_choices));
   std::ostringstream text;
   text << toml::toml_formatter(table);
@@ -164,7 +153,7 @@ void apply_layout(Settings& settings, const std::string& text, const std::string
   const toml::table table = parse_toml(text, where);
   Settings changed = settings;
   const TomlTable whole(table, where, "");
-  each_of_layout(changed, [&](const char* key, auto& value) { read_layout(whole, key, value); });
+  read_fields(whole, kLayoutFields, changed);
   changed.plot_choices = plots_of(table, where);
   settings = std::move(changed);
 }

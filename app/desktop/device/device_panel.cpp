@@ -124,7 +124,7 @@ bool knowledge(DeviceController& devices, const LiveStage& live, Parameters& p) 
   }
   const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
   tooltip("Moves it by itself and finds inertia, friction, weight and delay.");
-  if (notes.delay < 0) {
+  if (std::isnan(notes.delay)) {
     read_out("delay", "not measured", {}, "Identifying the device finds it.");
     return wanted;
   }
@@ -188,10 +188,33 @@ void compensation(const ArmDescription& arm, Parameters& p) {
   if (p.holds_weight) draw_parameters(p, arm, {"device.down"});
   const auto where_there = [&](const char* key, bool there, const char* none) {
     if (there) return draw_parameters(p, arm, {key});
-    read_out(caption(*find_parameter(key)), none, {}, "limpid identify finds what there is.");
+    read_out(find_parameter(key)->caption, none, {}, "limpid identify finds what there is.");
   };
   where_there("model.springs", spring > 0, "none known");
   where_there("model.friction", friction > 0, "no friction known");
+}
+
+// Draws a number's slider, with room for `letters` behind it; returns true once it was changed.
+template <class Owner>
+bool settled_slider(const Field<Owner>& field, Owner& owner, float letters) {
+  const double shown = std::string_view(field.unit) == "rad" ? kDegrees : 1;
+  const std::string format = shown != 1
+                                 ? "\xC2\xB1%.0f\xC2\xB0"
+                                 : fmt::format("%.3g {}", field.has_unit() ? field.unit : "");
+  const bool own = field.slider_maximum > field.slider_minimum;
+  const double least = own ? field.slider_minimum : field.minimum,
+               most = own ? field.slider_maximum : field.maximum;
+  auto value = static_cast<float>(shown * number_of(field, owner));
+  ImGui::SetNextItemWidth(-letters * ImGui::GetFontSize());
+  if (ImGui::SliderFloat(
+          field.caption, &value, static_cast<float>(shown * least),
+          static_cast<float>(shown * most), format.c_str(),
+          (field.logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp)) {
+    set_number(field, owner, static_cast<double>(value) / shown);
+  }
+  const bool settled = ImGui::IsItemDeactivatedAfterEdit();
+  tooltip(field.meaning);
+  return settled;
 }
 
 // Draws a joint of the arm, or an axis of a cap, which has no joint: angle, direction, travel and
@@ -225,42 +248,18 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
     changed = true;
   }
   tooltip("Where it is now becomes zero.");
-  auto scale = static_cast<float>(axis.scale);
-  ImGui::SetNextItemWidth(-4.5f * ImGui::GetFontSize());
-  if (ImGui::SliderFloat("scale", &scale, 0.1f, 10, "%.2f",
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
-    axis.scale = static_cast<double>(scale);
-  }
-  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
-  tooltip(
-      "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
-      "the hand stays the power in the loop.");
+  changed = settled_slider(*find_field(kAxisFields, "scale"), axis, 4.5f) || changed;
   ImGui::PopID();
   return changed;
 }
 
 // Returns true once the settings were changed.
 bool joystick_settings(DeviceNotes& notes) {
+  const double effort = notes.pid.effort;
   bool changed = false;
-  auto effort = static_cast<float>(notes.pid.effort);
-  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
-  if (ImGui::SliderFloat("full force", &effort, 0.05f, 10, "%.2f N m",
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
-    notes.pid.effort = static_cast<double>(effort);
-    notes.torque_scale = 1;  // the old scale was found with the other effort
-  }
-  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
-  tooltip(
-      "The joystick's own torque at full force, measured or from its data sheet: USB gives "
-      "forces without a unit. Too low a value here makes it push too hard.");
-  auto range = static_cast<float>(notes.pid.range * kDegrees);
-  ImGui::SetNextItemWidth(-7 * ImGui::GetFontSize());
-  if (ImGui::SliderFloat("range", &range, 5, 60, "\xC2\xB1%.0f\xC2\xB0",
-                         ImGuiSliderFlags_AlwaysClamp)) {
-    notes.pid.range = static_cast<double>(range) / kDegrees;
-  }
-  changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
-  tooltip("How far the stick tilts to each side.");
+  for (const auto& field : kPidFields) changed = settled_slider(field, notes.pid, 7) || changed;
+  if (notes.pid.effort != effort)
+    notes.torque_scale = 1;  // the old one was found with the other effort
   return changed;
 }
 
@@ -269,19 +268,7 @@ bool limit_sliders(SafetyLimits& limits) {
   if (!ImGui::TreeNode("Limits of force")) return false;
   tooltip("They can be lowered for this device; as they are at first is the most they can be.");
   bool changed = false;
-  const SafetyLimits most;
-  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {
-    auto value = static_cast<float>(limits.*info.field);
-    ImGui::SetNextItemWidth(-9 * ImGui::GetFontSize());
-    const std::string format = fmt::format("%.3g {}", info.unit);
-    if (ImGui::SliderFloat(info.label, &value, static_cast<float>(info.least),
-                           static_cast<float>(most.*info.field), format.c_str(),
-                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
-      limits.*info.field = static_cast<double>(value);
-      limits = allowed(limits);
-    }
-    changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
-  }
+  for (const auto& limit : kSafetyLimits) changed = settled_slider(limit, limits, 9) || changed;
   ImGui::TreePop();
   return changed;
 }

@@ -14,8 +14,7 @@ namespace limpid {
 namespace {
 
 std::string value_of(const ParameterInfo& info, const Parameters& p) {
-  const bool number = std::holds_alternative<double Parameters::*>(info.field) || is_int(info);
-  if (number) return with_unit(info, parameter_number(p, info));
+  if (info.is_number()) return with_unit(info, parameter_number(p, info));
   std::string text = parameter_text(p, info);
   std::erase(text, '"');
   return text == "true" ? "on" : text == "false" ? "off" : text;
@@ -55,8 +54,7 @@ std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes
   for (const ParameterInfo& each : parameter_table()) {
     const auto has_line = [&](const Parameters& p) { return told(each, p); };
     if (std::ranges::none_of(lanes, has_line)) continue;
-    RecordedSetting& setting = all.emplace_back(RecordedSetting{
-        each.key == std::string("coupling.kind") ? "Coupling" : caption(each), {}, each.meaning});
+    RecordedSetting& setting = all.emplace_back(RecordedSetting{each.caption, {}, each.meaning});
     for (const Parameters& p : lanes) setting.values.push_back(value_of(each, p));
   }
   return all;

@@ -17,6 +17,7 @@
 #include "app/style/theme.h"
 #include "core/touch/mass_properties.h"
 #include "devices/files/scene/body_file.h"
+#include "devices/files/scene/scene_fields.h"
 
 namespace limpid {
 namespace {
@@ -26,51 +27,6 @@ using namespace scene_limits;
 
 constexpr double kWood = 600;  // density of a new body [kg/m^3]
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Units in which numbers along a joint are shown: mm for slides, degrees for turns.
-struct JointUnit {
-  double of_one;  // shown number for one m or rad
-  const char* format;
-  const char* force;
-  const char* stiffness;
-  const char* damping;
-};
-JointUnit unit_of(Kind kind) {
-  if (kind == Kind::slider) return {1e3, "%.2f mm", "%.3g N", "%.6g N/m", "%.4g N s/m"};
-  return {180 / std::numbers::pi, "%.1f\xC2\xB0", "%.3g N m", "%.6g N m/rad", "%.4g N m s/rad"};
-}
-
-// Returns a drag's step as a part of the value.
-double pace(double value, double least) { return std::max(least, 0.005 * std::abs(value)); }
-
-bool drag_scaled(const char* label, double& value, double per_one, const Range& range,
-                 const char* format, const char* help) {
-  double shown = per_one * value;
-  const double least = range.exclusive_minimum ? 1e-6 : range.minimum;
-  if (!drag_number(label, shown, pace(shown, 0.01), per_one * least,
-                   per_one * std::min(range.maximum, 1e9), format, help)) {
-    return false;
-  }
-  value = shown / per_one;
-  return true;
-}
-
-bool share_slider(const char* label, double& value, const char* help) {
-  const ParameterInfo info{.key = label,
-                           .label = label,
-                           .field = &Parameters::eta,
-                           .unit = "-",
-                           .minimum = 0,
-                           .maximum = 1,
-                           .slider_minimum = 0,
-                           .slider_maximum = 1,
-                           .logarithmic = false,
-                           .live = true,
-                           .meaning = ""};
-  const bool changed = value_slider(info, value, 0);
-  tooltip(help);
-  return changed;
-}
 
 // Lets choose among the bodies that `allowed` takes, and the world with its empty name.
 template <class Allowed>
@@ -108,7 +64,7 @@ bool may_hang_on(const Scene& scene, std::size_t place, const std::string& name)
 bool choose_kind(Body& body) {
   constexpr const char* kKinds = "nothing, it is free\0a slider\0a hinge\0a ball joint\0";
   int kind = body.joint ? 1 + static_cast<int>(body.joint->kind) : 0;
-  caption("Hangs on", "A slider moves along a line, a hinge turns, a ball joint turns any way.");
+  caption(kJointFields[0].caption, kJointFields[0].meaning);
   if (!ImGui::Combo("##kind", &kind, kKinds)) return false;
   if (kind == 0) {
     body.joint.reset();
@@ -128,59 +84,45 @@ bool choose_kind(Body& body) {
   return true;
 }
 
-std::string_view edit_limits(BodyJoint& joint, const JointUnit& unit) {
+std::string_view edit_limits(BodyJoint& joint) {
   std::string_view what;
   bool limited = std::isfinite(joint.low) || std::isfinite(joint.high);
   if (ImGui::Checkbox("has stops", &limited)) {
-    const double room = joint.kind == Kind::slider ? 0.01 : 0.5;
+    const double room = turns(joint) ? 0.5 : 0.01;
     joint.low = limited ? -room : -kInfinity;
     joint.high = limited ? room : kInfinity;
     what = "stops";
   }
   tooltip("Where its way ends on both sides; 0 is where it starts.");
   if (!limited) return what;
-  constexpr double kLeast = 1e-4;  // distance of the stops [m or rad]
+  constexpr double kApart = 1e-4;  // least distance of the stops [m or rad]
   const double far = 100;
   double low = std::max(joint.low, -far), high = std::min(joint.high, far);
-  if (drag_scaled("From", low, unit.of_one, {-far, high - kLeast}, unit.format,
-                  "The stop on the side against the axis.")) {
+  const FieldInfo from{{-far, high - kApart, false, kTravel.unit},
+                       "from",
+                       "From",
+                       "",
+                       "The stop on the side against the axis."};
+  const FieldInfo to{{low + kApart, far, false, kTravel.unit},
+                     "to",
+                     "To",
+                     "",
+                     "The stop on the side of the axis."};
+  if (edit_value(from, low, 0, turns(joint))) {
     joint.low = low;
-    what = "from";
+    what = from.key;
   }
-  if (drag_scaled("To", high, unit.of_one, {low + kLeast, far}, unit.format,
-                  "The stop on the side of the axis.")) {
+  if (edit_value(to, high, 0, turns(joint))) {
     joint.high = high;
-    what = "to";
+    what = to.key;
   }
-  if (drag_scaled("Stops' stiffness", joint.stop_stiffness, 1, kStiffness, unit.stiffness,
-                  "How hard a stop pushes back.")) {
-    what = "stop stiffness";
-  }
-  if (share_slider("Stops' bounce", joint.stop_restitution,
-                   "The part of its speed that it keeps when it hits a stop.")) {
-    what = "stop restitution";
-  }
-  return what;
+  const auto stops = edit_fields(kStopFields, joint, turns(joint));
+  return stops.empty() ? what : stops;
 }
 
-std::string_view edit_force(JointForce& force, const JointUnit& unit) {
-  std::string_view what;
-  if (drag_scaled("Spring", force.spring, 1, kJointSpring, unit.stiffness,
-                  "Pulls it towards its place of rest.")) {
-    what = "spring";
-  }
-  if (drag_scaled("Rest", force.rest, unit.of_one, kTravel, unit.format,
-                  "Where the spring pulls nothing; 0 is where it starts.")) {
-    what = "rest";
-  }
-  if (drag_scaled("Detent", force.detent_force, 1, kJointForce, unit.force,
-                  "The largest force of steps that it clicks into; 0: it does not click.")) {
-    what = "detent";
-  }
-  if (drag_scaled("Detent's period", force.detent_period, unit.of_one, kPeriod, unit.format,
-                  "From one step to the next.")) {
-    what = "detent period";
-  }
+std::string_view edit_force(JointForce& force, bool turns) {
+  std::string_view what = edit_fields(kForceFields, force, turns);
+  if (const auto detent = edit_fields(kDetentFields, force, turns); !detent.empty()) what = detent;
   if (!force.travel.empty()) {
     read_out("force over travel", fmt::format("{} points", force.travel.size()), {},
              "From the scene's file; it adds to spring and detent.");
@@ -193,33 +135,28 @@ std::string_view edit_joint(Body& body, const Scene& scene, std::size_t place) {
   if (choose_kind(body)) what = "joint";
   if (!body.joint) return what;
   BodyJoint& joint = *body.joint;
-  const JointUnit unit = unit_of(joint.kind);
-  if (choose_body("of", joint.to, scene, "What the joint's other half is fixed to.",
+  if (choose_body(kJointFields[1].caption, joint.to, scene, kJointFields[1].meaning,
                   [&](const std::string& name) { return may_hang_on(scene, place, name); })) {
     what = "to";
   }
-  if (joint.kind != Kind::ball && drag3("Axis x, y, z", joint.axis, 0.01, -1, 1, "%.3f",
-                                        "Along it, or about it; in the world, at the start.")) {
+  if (has_axis(joint) && drag3("Axis x, y, z", joint.axis, 0.01, -1, 1, "%.3f",
+                               "Along it, or about it; in the world, at the start.")) {
     what = "axis";
   }
   Vec3 point = 1e3 * joint.point;
-  if (joint.kind != Kind::slider &&
+  if (turns(joint) &&
       drag3("Joint at x, y, z [mm]", point, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
             "%.1f", "From the object's own middle, along its own axes.")) {
     joint.point = 1e-3 * point;
     what = "point";
   }
-  if (drag_scaled("Damping", joint.damping, 1, kDamping, unit.damping,
-                  "What it takes up, by how fast the joint moves.")) {
-    what = "joint damping";
-  }
-  if (drag_scaled("Dry friction", joint.friction, 1, kJointForce, unit.force,
-                  "What it takes to move the joint at all.")) {
-    what = "joint friction";
-  }
-  if (joint.kind == Kind::ball) return what;
-  if (const auto stops = edit_limits(joint, unit); !stops.empty()) what = stops;
-  if (const auto force = edit_force(joint.force, unit); !force.empty()) what = force;
+  const auto take = [&](std::string_view key) {
+    if (!key.empty()) what = key;
+  };
+  take(edit_fields(kJointFields, joint, turns(joint)));
+  if (!has_axis(joint)) return what;
+  take(edit_limits(joint));
+  take(edit_force(joint.force, turns(joint)));
   return what;
 }
 
@@ -244,23 +181,7 @@ bool edit_spring(BodySpring& spring, const Scene& scene, std::string_view& what)
       what = i == 0 ? "first point" : "second point";
     }
   }
-  if (drag_scaled("Length", spring.length, 1e3, kSpringLength, "%.1f mm",
-                  "While it pulls nothing.")) {
-    what = "length";
-  }
-  if (drag_scaled("Stiffness", spring.stiffness, 1, kJointSpring, "%.6g N/m", "Per metre.")) {
-    what = "stiffness";
-  }
-  if (drag_scaled("Damping", spring.damping, 1, kDamping, "%.4g N s/m",
-                  "While its length changes.")) {
-    what = "damping";
-  }
-  double breaks = std::isfinite(spring.breaks_at) ? spring.breaks_at : 0;
-  if (drag_scaled("Breaks at", breaks, 1, {0, 1e6}, breaks > 0 ? "%.4g N" : "never",
-                  "The pull that tears it; 0: it never does.")) {
-    spring.breaks_at = breaks > 0 ? breaks : kInfinity;
-    what = "breaks at";
-  }
+  if (const auto key = edit_fields(kSpringFields, spring); !key.empty()) what = key;
   return !what.empty();
 }
 
@@ -330,9 +251,9 @@ std::string_view edit_moments(Object& object) {
   if (!body.inertia) return what;
   constexpr double kShown = 1e7;  // g cm^2 in a kg m^2
   Vec3 shown = kShown * *body.inertia;
-  if (drag3("Inertia about x, y, z [g cm\xC2\xB2]", shown, pace(shown.maxCoeff(), 1e-4), 1e-4,
-            kShown * kInertia.maximum, "%.5g",
-            "About axes through the centre of mass, along the object's own.")) {
+  const double pace = std::max(1e-4, 0.005 * shown.maxCoeff());
+  if (drag3("Inertia about x, y, z [g cm\xC2\xB2]", shown, pace, 1e-4, kShown * kInertia.maximum,
+            "%.5g", "About axes through the centre of mass, along the object's own.")) {
     body.inertia = shown / kShown;
     what = "inertia";
   }
@@ -357,17 +278,8 @@ std::string_view edit_body(Object& object, const Scene& scene, std::size_t place
   tooltip("It can be pushed, and falls. It begins with the mass of wood.");
   if (!moves) return what;
   Body& body = *object.body;
-  if (drag_scaled("Mass", body.mass, 1e3, kMass, "%.4g g", "Up to 100 kg.")) what = "mass";
-  if (ImGui::Checkbox("a magnet picks it up", &body.magnet)) what = "magnet";
-  tooltip("While the device's button, or its key, is held and the tip is at it.");
-  if (share_slider("Bounce", body.restitution,
-                   "The part of its speed that it keeps when it hits something. 0: none.")) {
-    what = "restitution";
-  }
-  if (drag_scaled("Contact stiffness", body.contact_stiffness, 1, kStiffness, "%.6g N/m",
-                  "Against other objects; what the tip feels is the stiffness above.")) {
-    what = "contact stiffness";
-  }
+  what = edit_fields(std::array{kBodyMass}, body);
+  if (const auto key = edit_fields(kBodyFields, body); !key.empty()) what = key;
   if (const auto moments = edit_moments(object); !moments.empty()) what = moments;
   if (const auto joint = edit_joint(body, scene, place); !joint.empty()) what = joint;
   return what;

@@ -51,13 +51,7 @@ bool choose_part_shape(Shape& shape) {
 std::string_view edit_part(BodyPart& part, RotationField& rotation) {
   std::string_view what;
   if (choose_part_shape(part.shape)) what = "shape";
-  std::visit(
-      [&]<class S>(S& shape) {
-        if constexpr (requires { edit_size(shape); }) {
-          if (const auto size = edit_size(shape); !size.empty()) what = size;
-        }
-      },
-      part.shape);
+  if (const auto size = edit_size(part.shape); !size.empty()) what = size;
   Vec3 place = 1e3 * part.pose.translation();
   if (drag3("Position x, y, z [mm]", place, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
             "%.1f", "From the object's own middle, along its own axes.")) {

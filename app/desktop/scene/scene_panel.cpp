@@ -5,7 +5,6 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "app/desktop/scene/body_editor.h"
@@ -16,8 +15,8 @@
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
 #include "core/touch/triangle_mesh.h"
-#include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_document.h"
+#include "devices/files/scene/scene_fields.h"
 
 namespace limpid {
 
@@ -47,9 +46,10 @@ bool drag3(const char* label, Vec3& values, double speed, double least, double m
 namespace {
 
 using namespace scene_limits;
-constexpr double kDegree = std::numbers::pi / 180;
 
-bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
+constexpr const char* kPositionLabel = "Position x, y, z [mm]";
+
+bool position(Pose& pose, const char* label,
               const char* help = "Forward, left and up from the arm's base.") {
   Vec3 millimetres = 1e3 * pose.translation();
   if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
@@ -58,27 +58,6 @@ bool position(Pose& pose, const char* label = "Position x, y, z [mm]",
   }
   pose.translation() = 1e-3 * millimetres;
   return true;
-}
-
-bool slider(double& value, const ParameterInfo& info, double usual, const char* help) {
-  const bool changed = value_slider(info, value, usual);
-  tooltip(help);
-  return changed;
-}
-
-ParameterInfo slider_of(const MaterialKey& each) {
-  constexpr double kAboveZero = 1e-3;  // least value if zero is not allowed
-  return {.key = each.key,
-          .label = each.label,
-          .field = &Parameters::eta,
-          .unit = *each.range.unit != '\0' ? each.range.unit : "-",
-          .minimum = each.range.exclusive_minimum ? kAboveZero : each.range.minimum,
-          .maximum = each.range.maximum,
-          .slider_minimum = each.slider_minimum,
-          .slider_maximum = each.slider_maximum,
-          .logarithmic = each.logarithmic,
-          .live = true,
-          .meaning = ""};
 }
 
 bool choose_material(Material& material) {
@@ -99,20 +78,8 @@ bool choose_material(Material& material) {
 std::string_view edit_material(Material& material) {
   std::string_view what;
   if (choose_material(material)) what = "material";
-  for (const MaterialKey& each : kMaterialKeys) {
-    const double usual = Material{}.*each.field;
-    if (slider(material.*each.field, slider_of(each), usual, each.meaning)) what = each.key;
-  }
+  if (const auto key = edit_fields(kMaterialFields, material); !key.empty()) what = key;
   return what;
-}
-
-bool joint_stiffness(double& value) {
-  const MaterialKey& of_material = kMaterialKeys.front();
-  ParameterInfo info = slider_of(of_material);
-  info.unit = "N m/rad";
-  info.slider_minimum = 0.1;
-  info.slider_maximum = 1e3;
-  return slider(value, info, JointStop::kUsualStiffness, of_material.meaning);
 }
 
 // Edits unit and axes of the model's file.
@@ -267,37 +234,14 @@ std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
   return what;
 }
 
-std::string_view ObjectEditor::edit(Object& object, Sphere& sphere) {
-  std::string_view what = edit_material(object.material);
-  if (position(object.pose, "Centre x, y, z [mm]")) {
-    what = "place";
-  }
-  if (object.body && rotation_.edit(object.pose)) what = "rotation";
-  if (const auto size = edit_size(sphere); !size.empty()) what = size;
-  return what;
-}
-
-// Edits an object's material, place and rotation.
+// Edits an object's material, place, rotation and size.
 std::string_view ObjectEditor::edit_placed(Object& object) {
   std::string_view what = edit_material(object.material);
-  if (position(object.pose)) what = "place";
-  if (rotation_.edit(object.pose)) what = "rotation";
+  const bool ball = has_shape<Sphere>(object);
+  if (position(object.pose, ball ? "Centre x, y, z [mm]" : kPositionLabel)) what = "place";
+  if ((!ball || object.body) && rotation_.edit(object.pose)) what = "rotation";
+  if (const auto size = edit_size(object.shape); !size.empty()) what = size;
   return what;
-}
-
-std::string_view ObjectEditor::edit(Object& object, Box& box) {
-  const std::string_view what = edit_placed(object), size = edit_size(box);
-  return size.empty() ? what : size;
-}
-
-std::string_view ObjectEditor::edit(Object& object, Cylinder& cylinder) {
-  const std::string_view what = edit_placed(object), size = edit_size(cylinder);
-  return size.empty() ? what : size;
-}
-
-std::string_view ObjectEditor::edit(Object& object, Capsule& capsule) {
-  const std::string_view what = edit_placed(object), size = edit_size(capsule);
-  return size.empty() ? what : size;
 }
 
 std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
@@ -324,7 +268,8 @@ std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
 
 std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
   std::string_view what;
-  if (joint_stiffness(object.material.stiffness)) what = "stiffness";
+  double& stiffness = object.material.stiffness;
+  if (edit_value(kStopStiffness, stiffness, JointStop::kUsualStiffness)) what = "stiffness";
   const auto name = [this](int i) { return arm_->joints[static_cast<std::size_t>(i)].name; };
   if (ImGui::BeginCombo("joint", name(stop.joint).c_str())) {
     for (int i = 0; i < arm_->dof(); ++i) {
@@ -335,11 +280,7 @@ std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
     }
     ImGui::EndCombo();
   }
-  double angle = stop.angle / kDegree;
-  if (drag_number("Angle", angle, kDegreeSpeed, -360, 360, "%.1f\xC2\xB0", "Where it stops")) {
-    stop.angle = angle * kDegree;
-    what = "angle";
-  }
+  if (const auto key = edit_fields(kJointStopFields, stop); !key.empty()) what = key;
   bool above = stop.direction > 0;
   if (ImGui::Checkbox("stops what goes above", &above)) {
     stop.direction = above ? 1 : -1;

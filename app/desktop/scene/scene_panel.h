@@ -32,12 +32,12 @@ class ObjectEditor {
   void draw_name(Document& document, std::size_t place);
   // Edits its shape. Returns the name of the change, "" for none, as all edit...() do.
   std::string_view edit(Object& object, Plane& plane);
-  std::string_view edit(Object& object, Sphere& sphere);
-  std::string_view edit(Object& object, Box& box);
-  std::string_view edit(Object& object, Cylinder& cylinder);
-  std::string_view edit(Object& object, Capsule& capsule);
   std::string_view edit(Object& object, Mesh& mesh);
   std::string_view edit(Object& object, JointStop& stop);
+  template <class S>
+  std::string_view edit(Object& object, S&) {
+    return edit_placed(object);
+  }
   std::string_view edit_placed(Object& object);
 
   std::string name_;     // while it is typed

@@ -1,5 +1,6 @@
 #include "app/desktop/scene/shape_fields.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <array>
@@ -8,6 +9,7 @@
 
 #include "app/desktop/scene/scene_panel.h"
 #include "app/desktop/widgets/modal.h"
+#include "app/style/sliders.h"
 #include "app/style/words.h"
 #include "devices/files/rpy.h"
 
@@ -16,40 +18,66 @@ namespace {
 
 const Vec3 kFirstColor = Vec3::Constant(0.6);
 
-}  // namespace
+// A unit in which people write the numbers of another.
+struct ShownUnit {
+  std::string_view unit;
+  double of_one;  // shown number for one of `unit`
+  const char* format;
+};
+constexpr std::array kShownUnits{ShownUnit{"m", 1e3, "%.2f mm"}, ShownUnit{"kg", 1e3, "%.4g g"},
+                                 ShownUnit{"rad", 180 / std::numbers::pi, "%.1f\xC2\xB0"}};
 
-bool drag_length(const char* label, double& value, const char* help) {
-  double millimetres = 1e3 * value;
-  if (!drag_number(label, millimetres, kMillimetreSpeed, 0.1, 1e3, "%.1f mm", help)) return false;
-  value = 1e-3 * millimetres;
+std::string_view unit_of(const FieldInfo& field, bool turns) {
+  constexpr std::string_view kOr = " or ";
+  const std::string_view unit = field.unit;
+  const std::size_t at = unit.find(kOr);
+  if (at == unit.npos) return unit;
+  return turns ? unit.substr(at + kOr.size()) : unit.substr(0, at);
+}
+
+bool drag_value(const FieldInfo& field, double& value, bool turns) {
+  const std::string_view unit = unit_of(field, turns);
+  const auto* known = std::ranges::find(kShownUnits, unit, &ShownUnit::unit);
+  const double of_one = known == kShownUnits.end() ? 1 : known->of_one;
+  std::string format = known == kShownUnits.end() ? fmt::format("%.6g {}", unit) : known->format;
+  // A number without an upper end may be left out, which is shown as 0.
+  const bool endless = std::isinf(field.maximum);
+  double shown = endless && std::isinf(value) ? 0 : of_one * value;
+  if (endless && shown == 0) format = "never";
+  const double pace = std::max(0.01, 0.005 * std::abs(shown));
+  if (!drag_number(field.caption, shown, pace, endless ? 0 : of_one * field.least(),
+                   of_one * std::min(field.maximum, 1e9), format.c_str(), field.meaning)) {
+    return false;
+  }
+  value = endless && shown == 0 ? field.maximum : shown / of_one;
   return true;
 }
 
-std::string_view edit_size(Sphere& sphere) {
-  return drag_length("Radius", sphere.radius, "Of the ball") ? "radius" : "";
-}
+}  // namespace
 
-std::string_view edit_size(Box& box) {
-  Vec3 size = 1e3 * box.size;
-  if (!drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
-    return {};
+bool edit_value(const FieldInfo& field, double& value, double usual, bool turns) {
+  if (field.kind == FieldInfo::Kind::flag) {
+    bool on = value != 0;
+    const bool changed = ImGui::Checkbox(field.caption, &on);
+    tooltip(field.meaning);
+    value = on ? 1 : 0;
+    return changed;
   }
-  box.size = 1e-3 * size;
-  return "size";
+  if (field.slider_maximum > field.slider_minimum) return value_slider(field, value, usual);
+  return drag_value(field, value, turns);
 }
 
-std::string_view edit_size(Cylinder& cylinder) {
-  std::string_view what;
-  if (drag_length("Radius", cylinder.radius, "Of its faces")) what = "radius";
-  if (drag_length("Length", cylinder.length, "From face to face")) what = "length";
-  return what;
-}
-
-std::string_view edit_size(Capsule& capsule) {
-  std::string_view what;
-  if (drag_length("Radius", capsule.radius, "Of its round ends")) what = "radius";
-  if (drag_length("Length", capsule.length, "Between the middles of its ends")) what = "length";
-  return what;
+std::string_view edit_size(Shape& shape) {
+  if (std::holds_alternative<Mesh>(shape)) return {};
+  if (auto* box = std::get_if<Box>(&shape)) {
+    Vec3 size = 1e3 * box->size;
+    if (!drag3("Size x, y, z [mm]", size, kMillimetreSpeed, 0.1, 1e4, "%.1f", "Full edges")) {
+      return {};
+    }
+    box->size = 1e-3 * size;
+    return "size";
+  }
+  return std::visit([](auto& s) { return edit_fields(fields_of(s), s); }, shape);
 }
 
 bool edit_color(std::optional<Vec3>& color, const char* otherwise) {

@@ -9,8 +9,9 @@
 #include <span>
 
 #include "core/touch/mass_properties.h"
+#include "devices/files/field_file.h"
 #include "devices/files/rpy.h"
-#include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/scene_fields.h"
 #include "devices/files/scene/scene_reading.h"
 #include "devices/files/text_file.h"
 
@@ -18,17 +19,6 @@ namespace limpid {
 namespace {
 
 using namespace scene_limits;
-using Kind = BodyJoint::Kind;
-
-struct KindName {
-  Kind kind;
-  const char* name;
-};
-constexpr std::array kKinds{KindName{Kind::slider, "slider"}, KindName{Kind::hinge, "hinge"},
-                            KindName{Kind::ball, "ball"}};
-
-const char* name_of(Kind kind) { return std::ranges::find(kKinds, kind, &KindName::kind)->name; }
-
 // Keys of shapes; a body and each of its parts has one of them.
 constexpr std::array kShapeKeys{"box", "sphere", "cylinder", "capsule"};
 
@@ -86,13 +76,11 @@ std::vector<std::array<double, 2>> travel_of(const TomlTable& t) {
 }
 
 void read_force(const TomlTable& t, JointForce& force) {
-  force.spring = t.number("spring", kJointSpring).value_or(force.spring);
-  force.rest = t.number("rest", kTravel).value_or(force.rest);
+  read_fields(t, kForceFields, force);
   force.travel = travel_of(t);
   if (const auto detent = t.table("detent")) {
     detent->allow_only({"force", "period"});
-    force.detent_force = detent->need(detent->number("force", kJointForce), "force");
-    force.detent_period = detent->need(detent->number("period", kPeriod), "period");
+    read_fields(*detent, kDetentFields, force);
   }
 }
 
@@ -102,16 +90,6 @@ void read_limits(const TomlTable& t, BodyJoint& joint) {
     joint.high = (*limits)[1];
     if (!(joint.low < joint.high)) t.refuse("limits", "[from, to], the first less than the second");
   }
-  joint.stop_stiffness = t.number("stop_stiffness", kStiffness).value_or(joint.stop_stiffness);
-  joint.stop_restitution = t.number("stop_restitution", kFriction).value_or(joint.stop_restitution);
-}
-
-Kind kind_of(const TomlTable& t) {
-  const std::string wanted = t.need(t.text("kind"), "kind");
-  for (const KindName& each : kKinds) {
-    if (each.name == wanted) return each.kind;
-  }
-  t.refuse("kind", "\"slider\", \"hinge\", \"ball\"");
 }
 
 Vec3 axis_of(const TomlTable& t) {
@@ -124,19 +102,18 @@ Vec3 axis_of(const TomlTable& t) {
 
 BodyJoint joint_of(const TomlTable& t) {
   BodyJoint joint;
-  joint.kind = kind_of(t);
-  std::vector<const char*> keys{"kind", "to", "damping", "friction"};
-  if (joint.kind != Kind::slider) keys.push_back("point");
-  if (joint.kind != Kind::ball) {
-    keys.insert(keys.end(), {"axis", "limits", "stop_stiffness", "stop_restitution", "spring",
-                             "rest", "detent", "travel"});
+  read_field(t, kJointFields.front(), joint, true);
+  std::vector<const char*> keys;
+  add_keys(kJointFields, joint, keys);
+  add_keys(kStopFields, joint, keys);
+  if (has_axis(joint)) {
+    add_keys(kForceFields, joint.force, keys);
+    keys.insert(keys.end(), {"axis", "limits", "detent", "travel"});
   }
   t.allow_only(keys);
-  joint.to = t.text("to").value_or("");
-  joint.point = place_of(t, "point");
-  joint.damping = t.number("damping", kDamping).value_or(joint.damping);
-  joint.friction = t.number("friction", kJointForce).value_or(joint.friction);
-  if (joint.kind == Kind::ball) return joint;
+  read_fields(t, kJointFields, joint);
+  read_fields(t, kStopFields, joint);
+  if (!has_axis(joint)) return joint;
   joint.axis = axis_of(t);
   read_limits(t, joint);
   read_force(t, joint.force);
@@ -148,34 +125,34 @@ std::string mass_text(double mass) {
                      kMass.minimum, kMass.maximum, mass);
 }
 
-bool within(double mass) { return mass >= kMass.minimum && mass <= kMass.maximum; }
-
 // Reads mass or density. A mesh has no volume until it is built: its density is kept until then.
 void read_mass(const TomlTable& t, Object& object, SceneDocument& out) {
   const auto density = t.number("density", kDensity);
-  const auto mass = t.number("mass", kMass);
+  const bool mass = t.find(kBodyMass.key) != nullptr;
+  read_field(t, kBodyMass, *object.body, false);
   if (mass && density) t.refuse_as("density", "density beside mass", "one of them");
   if (!mass && !density) t.refuse_missing("mass (or density)");
-  object.body->mass = mass.value_or(object.body->mass);
   if (!density) return;
   if (has_shape<Mesh>(object)) {
     out.densities[object.name] = *density;
     return;
   }
   object.body->mass = *density * volume(object);
-  if (!within(object.body->mass)) t.refuse("density", mass_text(object.body->mass));
+  if (!kMass.holds(object.body->mass)) t.refuse("density", mass_text(object.body->mass));
 }
 
 void allow_keys(const TomlTable& t, bool mesh) {
   std::vector<const char*> keys{"name", "box", "sphere", "cylinder", "capsule", "file"};
   if (mesh) {
-    keys.insert(keys.end(), {"scale", "unit", "up"});
+    keys.insert(keys.end(), {"unit", "up"});
+    add_keys(kMeshFields, Mesh{}, keys);
   } else {
     keys.emplace_back("color");
   }
-  keys.insert(keys.end(), {"mass", "density", "center", "inertia", "position", "rotation"});
-  for (const MaterialKey& each : kMaterialKeys) keys.push_back(each.key);
-  keys.insert(keys.end(), {"contact_stiffness", "restitution", "magnet", "part", "joint"});
+  keys.insert(keys.end(), {kBodyMass.key, "density", "position", "rotation"});
+  add_keys(kMaterialFields, Material{}, keys);
+  add_keys(kBodyFields, Body{}, keys);
+  keys.insert(keys.end(), {"part", "joint"});
   t.allow_only(keys);
 }
 
@@ -185,15 +162,10 @@ Object body_of(const TomlTable& t, SceneDocument& out) {
   if (object.name.empty()) t.refuse("name", "text that is not empty");
   Body& body = *object.body;
   object.pose = pose_of(t, point_of(t, "position"), "rotation");
-  object.material = material_of(t, false);
+  read_fields(t, kMaterialFields, object.material, false);
   for (const TomlTable& each : t.tables("part")) object.parts.push_back(part(each));
   read_mass(t, object, out);
-  body.center = t.vector("center", kPosition);
-  body.inertia = t.vector("inertia", kInertia);
-  body.contact_stiffness =
-      t.number("contact_stiffness", kStiffness).value_or(body.contact_stiffness);
-  body.restitution = t.number("restitution", kFriction).value_or(body.restitution);
-  body.magnet = t.flag("magnet").value_or(body.magnet);
+  read_fields(t, kBodyFields, body);
   object.color = t.vector("color", kColor);
   if (const auto joint = t.table("joint")) body.joint = joint_of(*joint);
   return object;
@@ -222,8 +194,10 @@ void check_joints(const std::vector<TomlTable>& tables, const Scene& scene) {
 }
 
 BodySpring spring_of(const TomlTable& t, const std::vector<std::string>& names) {
-  t.allow_only({"between", "points", "length", "stiffness", "damping", "breaks_at"});
   BodySpring spring;
+  std::vector<const char*> keys{"between", "points"};
+  add_keys(kSpringFields, spring, keys);
+  t.allow_only(keys);
   const std::vector<std::string> between = t.texts("between");
   if (t.find("between") == nullptr) t.refuse_missing("between");
   if (between.empty() || between.size() > 2) t.refuse("between", "one or two names of bodies");
@@ -238,19 +212,8 @@ BodySpring spring_of(const TomlTable& t, const std::vector<std::string>& names) 
     if (points->size() != 2) t.refuse("points", "a list of 2, each [x, y, z]");
     std::ranges::copy(*points, spring.points.begin());
   }
-  spring.length = t.number("length", kSpringLength).value_or(spring.length);
-  spring.stiffness = t.number("stiffness", kJointSpring).value_or(spring.stiffness);
-  spring.damping = t.number("damping", kDamping).value_or(spring.damping);
-  spring.breaks_at = t.number("breaks_at", kBreaking).value_or(spring.breaks_at);
+  read_fields(t, kSpringFields, spring);
   return spring;
-}
-
-// Writes a value unless it is the usual one.
-void put_unless(SceneText& text, const char* key, double value, double usual) {
-  if (value != usual) text.put(key, value);
-}
-void put_unless(SceneText& text, const char* key, const Vec3& value) {
-  if (value != Vec3::Zero()) text.put(key, value);
 }
 
 void put_shape(SceneText& text, const Shape& shape) {
@@ -261,28 +224,22 @@ void put_shape(SceneText& text, const Shape& shape) {
   if (const auto* c = std::get_if<Capsule>(&shape)) text.put_raw("capsule", tube(*c));
   if (const auto* mesh = std::get_if<Mesh>(&shape)) {
     put_model(text, *mesh);
-    put_unless(text, "scale", mesh->scale, 1);
+    put_fields(text, kMeshFields, *mesh);
   }
 }
 
 void put_joint(SceneText& text, const BodyJoint& joint) {
   const BodyJoint usual;
   text.only_table("body.joint");
-  text.put("kind", std::string(name_of(joint.kind)));
-  if (!joint.to.empty()) text.put("to", joint.to);
-  if (joint.kind != Kind::ball) text.put("axis", joint.axis);
-  if (joint.kind != Kind::slider) put_unless(text, "point", joint.point);
-  put_unless(text, "damping", joint.damping, 0);
-  put_unless(text, "friction", joint.friction, 0);
-  if (joint.kind == Kind::ball) return;
+  put_fields(text, kJointFields, joint);
+  if (has_axis(joint)) text.put("axis", joint.axis);
+  put_fields(text, kStopFields, joint);
+  if (!has_axis(joint)) return;
   if (joint.low != usual.low || joint.high != usual.high) {
     text.put_raw("limits", toml_numbers(std::array{joint.low, joint.high}));
   }
-  put_unless(text, "stop_stiffness", joint.stop_stiffness, usual.stop_stiffness);
-  put_unless(text, "stop_restitution", joint.stop_restitution, usual.stop_restitution);
   const JointForce& force = joint.force;
-  put_unless(text, "spring", force.spring, 0);
-  put_unless(text, "rest", force.rest, 0);
+  put_fields(text, kForceFields, force);
   if (force.detent_force != 0 || force.detent_period != JointForce{}.detent_period) {
     text.put_raw("detent",
                  fmt::format("{{ force = {}, period = {} }}", toml_number(force.detent_force),
@@ -304,19 +261,15 @@ void put_body(SceneText& text, const Object& object, const SceneDocument& docume
   } else {
     text.put("mass", body.mass);
   }
-  if (body.center) text.put("center", *body.center);
-  if (body.inertia) text.put("inertia", *body.inertia);
   text.put_position("position", object.pose);
   text.put_rotation(object.pose, "rotation");
-  put_material(text, object.material);
+  put_fields(text, kMaterialFields, object.material);
   if (object.color) text.put("color", *object.color);
-  put_unless(text, "contact_stiffness", body.contact_stiffness, Body{}.contact_stiffness);
-  put_unless(text, "restitution", body.restitution, 0);
-  if (body.magnet) text.put("magnet", true);
+  put_fields(text, kBodyFields, body);
   for (const BodyPart& part : object.parts) {
     text.table("body.part");
     put_shape(text, part.shape);
-    put_unless(text, "position", part.pose.translation());
+    if (!part.pose.translation().isZero(0)) text.put_position("position", part.pose);
     text.put_rotation(part.pose, "rotation");
     if (part.color) text.put("color", *part.color);
   }
@@ -333,39 +286,14 @@ void put_spring(SceneText& text, const BodySpring& spring) {
     text.put_raw("points", fmt::format("[{}, {}]", toml_vector(spring.points[0]),
                                        toml_vector(spring.points[1])));
   }
-  put_unless(text, "length", spring.length, 0);
-  text.put("stiffness", spring.stiffness);
-  put_unless(text, "damping", spring.damping, 0);
-  put_unless(text, "breaks_at", spring.breaks_at, usual.breaks_at);
-}
-
-void hold_in(double& x, const Range& range, double otherwise) { x = range.hold(x, otherwise); }
-void hold_in(Vec3& v, const Range& range) {
-  for (double& x : v) hold_in(x, range, 0);
-}
-
-void hold_shape(Shape& shape) {
-  const auto tube = [](auto& s) {
-    hold_in(s.radius, kLength, 0.02);
-    hold_in(s.length, kLength, 0.05);
-  };
-  if (auto* c = std::get_if<Cylinder>(&shape)) tube(*c);
-  if (auto* c = std::get_if<Capsule>(&shape)) tube(*c);
-  if (auto* ball = std::get_if<Sphere>(&shape)) hold_in(ball->radius, kLength, 0.02);
-  if (auto* box = std::get_if<Box>(&shape)) {
-    for (double& edge : box->size) hold_in(edge, kLength, 0.02);
-  }
+  put_fields(text, kSpringFields, spring);
 }
 
 void hold_force(JointForce& force) {
-  const JointForce usual;
-  hold_in(force.spring, kJointSpring, usual.spring);
-  hold_in(force.rest, kTravel, usual.rest);
-  hold_in(force.detent_force, kJointForce, usual.detent_force);
-  hold_in(force.detent_period, kPeriod, usual.detent_period);
-  for (auto& [s, F] : force.travel) {
-    hold_in(s, kTravelPoint, 0);
-    hold_in(F, kTravelPoint, 0);
+  hold_fields(kForceFields, force);
+  hold_fields(kDetentFields, force);
+  for (auto& point : force.travel) {
+    for (double& x : point) x = kTravelPoint.hold(x, 0);
   }
   std::ranges::stable_sort(force.travel, {}, [](const auto& point) { return point[0]; });
   const auto same = std::unique(force.travel.begin(), force.travel.end(),
@@ -379,27 +307,19 @@ void hold_joint(BodyJoint& joint) {
   const bool direction = std::isfinite(length) && length > 1e-9;
   if (!direction) joint.axis = usual.axis;
   if (!(std::abs(joint.axis.squaredNorm() - 1) < 1e-15)) joint.axis /= joint.axis.stableNorm();
-  hold_in(joint.point, kPosition);
-  hold_in(joint.damping, kDamping, 0);
-  hold_in(joint.friction, kJointForce, 0);
+  hold_fields(kJointFields, joint);
+  hold_fields(kStopFields, joint);
   if (!(joint.low < joint.high)) {
     joint.low = usual.low;
     joint.high = usual.high;
   }
-  hold_in(joint.stop_stiffness, kStiffness, usual.stop_stiffness);
-  hold_in(joint.stop_restitution, kFriction, 0);
   hold_force(joint.force);
   // A file cannot say what a kind of joint does not have.
-  if (joint.kind == Kind::slider) joint.point = usual.point;
-  if (joint.kind == Kind::ball) {
-    BodyJoint ball;
-    ball.kind = joint.kind;
-    ball.to = joint.to;
-    ball.point = joint.point;
-    ball.damping = joint.damping;
-    ball.friction = joint.friction;
-    joint = ball;
-  }
+  if (has_axis(joint)) return;
+  joint.axis = usual.axis;
+  joint.low = usual.low;
+  joint.high = usual.high;
+  joint.force = usual.force;
 }
 
 }  // namespace
@@ -465,7 +385,7 @@ void settle_masses(SceneDocument& document) {
     const auto density = document.densities.find(object.name);
     if (!object.body || density == document.densities.end()) continue;
     object.body->mass = density->second * volume(object);
-    if (!within(object.body->mass)) {
+    if (!kMass.holds(object.body->mass)) {
       throw FileError(fmt::format("body {}: density: {} is not allowed; allowed: {}", object.name,
                                   density->second, mass_text(object.body->mass)));
     }
@@ -477,31 +397,23 @@ void hold_body(Object& object) {
   if (has_shape<Plane>(object) || has_shape<JointStop>(object)) object.body.reset();
   if (!object.body) return;
   for (BodyPart& part : object.parts) {
-    for (double& x : part.pose.translation()) hold_in(x, kPosition, 0);
+    for (double& x : part.pose.translation()) x = kPosition.hold(x, 0);
     const Mat3 R = part.pose.linear();
     part.pose.linear() = R.allFinite() ? settled(R) : Mat3::Identity();
-    hold_shape(part.shape);
-    if (part.color) hold_in(*part.color, kColor);
+    hold_size(part.shape);
+    hold_color(part.color);
   }
   Body& body = *object.body;
-  const Body usual;
-  hold_in(body.mass, kMass, usual.mass);
-  if (body.center) hold_in(*body.center, kPosition);
-  if (body.inertia) {
-    for (double& x : *body.inertia) hold_in(x, kInertia, 1e-6);
-  }
-  hold_in(body.contact_stiffness, kStiffness, usual.contact_stiffness);
-  hold_in(body.restitution, kFriction, usual.restitution);
+  body.mass = kBodyMass.hold(body.mass, Body{}.mass);
+  hold_fields(kBodyFields, body);
   if (body.joint) hold_joint(*body.joint);
 }
 
 void hold(BodySpring& spring) {
-  const BodySpring usual;
-  for (Vec3& point : spring.points) hold_in(point, kPosition);
-  hold_in(spring.length, kSpringLength, usual.length);
-  hold_in(spring.stiffness, kJointSpring, usual.stiffness);
-  hold_in(spring.damping, kDamping, usual.damping);
-  hold_in(spring.breaks_at, kBreaking, usual.breaks_at);
+  for (Vec3& point : spring.points) {
+    for (double& x : point) x = kPosition.hold(x, 0);
+  }
+  hold_fields(kSpringFields, spring);
 }
 
 }  // namespace limpid

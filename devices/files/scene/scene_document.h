@@ -30,9 +30,10 @@ inline constexpr Range kLength{0, 10, true, "m"};
 inline constexpr Range kRadius{0, 1, false, "m"};
 inline constexpr Range kStiffness{0, 1e6, true, "N/m"};
 inline constexpr Range kDamping{0, 1000, false, "N s/m"};
-inline constexpr Range kFriction{0, 1, false, ""};
+inline constexpr Range kFriction{0, 1};
+inline constexpr Range kShare{0, 1};
 inline constexpr Range kJointStiffness{0, 1e6, true, "N m/rad"};
-inline constexpr Range kScale{0, 1e4, true, ""};
+inline constexpr Range kScale{0, 1e4, true};
 // Limits of what moves.
 inline constexpr std::size_t kMostSprings = 128;
 inline constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -41,15 +42,18 @@ inline constexpr Range kMass{1e-6, 100, false, "kg"};
 inline constexpr Range kDensity{0, 1e5, true, "kg/m^3"};
 inline constexpr Range kInertia{0, 1000, true, "kg m^2"};
 inline constexpr Range kTravel{-100, 100, false, "m or rad"};
-inline constexpr Range kTravelPoint{-1000, 1000, false, ""};
+inline constexpr Range kTravelPoint{-1000, 1000};
 inline constexpr Range kEndless{-kForever, kForever, false, "m or rad"};
 inline constexpr Range kPeriod{0, 100, true, "m or rad"};
 inline constexpr Range kJointForce{0, 1000, false, "N or N m"};
 inline constexpr Range kJointSpring{0, 1e6, false, "N/m or N m/rad"};
+inline constexpr Range kJointDamping{0, 1000, false, "N s/m or N m s/rad"};
+inline constexpr Range kStopsStiffness{0, 1e6, true, "N/m or N m/rad"};
+inline constexpr Range kSpringStiffness{0, 1e6, false, "N/m"};
 inline constexpr Range kSpringLength{0, 10, false, "m"};
 inline constexpr Range kBreaking{0, kForever, true, "N"};
-inline constexpr Range kDirection{-1e6, 1e6, false, ""};
-inline constexpr Range kColor{0, 1, false, ""};
+inline constexpr Range kDirection{-1e6, 1e6};
+inline constexpr Range kColor{0, 1};
 
 }  // namespace scene_limits
 

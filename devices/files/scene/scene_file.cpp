@@ -6,10 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "devices/files/field_file.h"
 #include "devices/files/rpy.h"
 #include "devices/files/scene/body_file.h"
-#include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_document.h"
+#include "devices/files/scene/scene_fields.h"
 #include "devices/files/scene/scene_reading.h"
 #include "devices/files/scene/scene_text.h"
 #include "devices/files/text_file.h"
@@ -27,143 +28,89 @@ Pose optional_pose(const TomlTable& t) {
   return pose_of(t, t.vector("position", kPosition).value_or(Vec3::Zero()), "rpy");
 }
 
-// Allows these keys, and those of everything that has a surface.
-void allow_with_common(const TomlTable& t, std::vector<const char*> keys) {
-  keys.insert(keys.begin(), "name");
-  for (const MaterialKey& each : kMaterialKeys) keys.push_back(each.key);
-  t.allow_only(keys);
+// Names of a shape in files: of its table, and of the keys of its place.
+struct Form {
+  const char* table;
+  const char* position;
+  const char* rotation;  // null: it cannot be turned
+};
+Form form_of(const Plane&) { return {"plane", "point", nullptr}; }
+Form form_of(const Sphere&) { return {"sphere", "center", nullptr}; }
+Form form_of(const Box&) { return {"box", "center", "rpy"}; }
+Form form_of(const Cylinder&) { return {"cylinder", "position", "rotation"}; }
+Form form_of(const Capsule&) { return {"capsule", "position", "rotation"}; }
+Form form_of(const Mesh&) { return {"mesh", "position", "rpy"}; }
+Form form_of(const JointStop&) { return {"joint_contact", nullptr, nullptr}; }
+
+bool has_color(const Object& object) {
+  return !has_shape<Plane>(object) && !has_shape<Mesh>(object) && !has_shape<JointStop>(object);
 }
 
-void hold(double& x, const Range& range, double otherwise) { x = range.hold(x, otherwise); }
+// Forms of each shape in files, without name, place and material: read_own() reads what is not
+// among its fields, write_own() writes it, hold_own() keeps it within limits.
+template <class S>
+void read_own(const TomlTable&, S&) {}
+template <class S>
+void write_own(const S&, SceneText&) {}
+template <class S>
+void hold_own(Object&, S&) {}
 
-// Allows these keys and those of a simple solid, which may have a color.
-void allow_with_color(const TomlTable& t, Object& object, std::vector<const char*> keys) {
-  keys.emplace_back("color");
-  allow_with_common(t, std::move(keys));
-  object.color = t.vector("color", kColor);
-}
-
-// Forms of each shape in files: table_of() names its table, read() reads it without name and
-// material, write() writes it, hold() keeps it within limits.
-const char* table_of(const Plane&) { return "plane"; }
-
-void read(const TomlTable& t, const ArmDescription&, Object& object, Plane& plane) {
-  allow_with_common(t, {"point", "normal"});
+void read_own(const TomlTable& t, Plane& plane) {
   plane.normal = t.need(t.vector("normal", kDirection), "normal");
   if (!(plane.normal.norm() > 1e-9)) t.refuse("normal", "a direction, not zero");
   // A unit vector stays as it is, so that a written one is read back to the last bit.
   if (!(std::abs(plane.normal.squaredNorm() - 1) < 1e-15)) plane.normal.normalize();
-  object.pose = pose_at(point_of(t, "point"));
 }
-
-void write(const Object& object, const Plane& plane, const ArmDescription&, SceneText& text) {
-  text.put_position("point", object.pose);
-  text.put("normal", plane.normal);
-}
-
-void hold(Object& object, Plane& plane) {
+void write_own(const Plane& plane, SceneText& text) { text.put("normal", plane.normal); }
+void hold_own(Object& object, Plane& plane) {
   object.pose.linear().setIdentity();
   const double length = plane.normal.stableNorm();
   const bool direction = std::isfinite(length) && length > 1e-9;
   plane.normal = direction ? Vec3(plane.normal / length) : Vec3(Vec3::UnitZ());
 }
 
-const char* table_of(const Sphere&) { return "sphere"; }
-
-void read(const TomlTable& t, const ArmDescription&, Object& object, Sphere& sphere) {
-  allow_with_color(t, object, {"center", "radius"});
-  object.pose = pose_at(point_of(t, "center"));
-  sphere.radius = t.need(t.number("radius", kLength), "radius");
-}
-
-void write(const Object& object, const Sphere& sphere, const ArmDescription&, SceneText& text) {
-  text.put_position("center", object.pose);
-  text.put("radius", sphere.radius);
-}
-
-void hold(Object& object, Sphere& sphere) {
+void hold_own(Object& object, Sphere&) {
   if (!object.body) object.pose.linear().setIdentity();
-  hold(sphere.radius, kLength, Sphere{}.radius);
 }
 
-const char* table_of(const Box&) { return "box"; }
-
-void read(const TomlTable& t, const ArmDescription&, Object& object, Box& box) {
-  allow_with_color(t, object, {"center", "size", "rpy"});
-  object.pose = pose_of(t, point_of(t, "center"), "rpy");
-  box.size = t.need(t.vector("size", kLength), "size");
-}
-
-void write(const Object& object, const Box& box, const ArmDescription&, SceneText& text) {
-  text.put_position("center", object.pose);
-  text.put("size", box.size);
-  text.put_rotation(object.pose);
-}
-
-void hold(Object&, Box& box) {
-  for (double& edge : box.size) hold(edge, kLength, Box{}.size.x());
-}
-
-// Reads a cylinder or a capsule.
-template <class S>
-void read_tube(const TomlTable& t, Object& object, S& tube) {
-  allow_with_color(t, object, {"radius", "length", "position", "rotation"});
-  object.pose = pose_of(t, point_of(t, "position"), "rotation");
-  tube.radius = t.need(t.number("radius", kLength), "radius");
-  tube.length = t.need(t.number("length", kLength), "length");
-}
-
-template <class S>
-void write_tube(const Object& object, const S& tube, SceneText& text) {
-  text.put("radius", tube.radius);
-  text.put("length", tube.length);
-  text.put_position("position", object.pose);
-  text.put_rotation(object.pose, "rotation");
-}
-
-template <class S>
-void hold_tube(S& tube) {
-  hold(tube.radius, kLength, S{}.radius);
-  hold(tube.length, kLength, S{}.length);
-}
-
-const char* table_of(const Cylinder&) { return "cylinder"; }
-void read(const TomlTable& t, const ArmDescription&, Object& object, Cylinder& cylinder) {
-  read_tube(t, object, cylinder);
-}
-void write(const Object& object, const Cylinder& cylinder, const ArmDescription&, SceneText& text) {
-  write_tube(object, cylinder, text);
-}
-void hold(Object&, Cylinder& cylinder) { hold_tube(cylinder); }
-
-const char* table_of(const Capsule&) { return "capsule"; }
-void read(const TomlTable& t, const ArmDescription&, Object& object, Capsule& capsule) {
-  read_tube(t, object, capsule);
-}
-void write(const Object& object, const Capsule& capsule, const ArmDescription&, SceneText& text) {
-  write_tube(object, capsule, text);
-}
-void hold(Object&, Capsule& capsule) { hold_tube(capsule); }
-
-const char* table_of(const Mesh&) { return "mesh"; }
-
-void read(const TomlTable& t, const ArmDescription&, Object& object, Mesh& mesh) {
-  allow_with_common(t, {"file", "position", "rpy", "scale", "unit", "up"});
-  read_model_keys(t, mesh);
-  object.pose = optional_pose(t);
-}
-
-void write(const Object& object, const Mesh& mesh, const ArmDescription&, SceneText& text) {
-  put_model(text, mesh);
-  text.put_place(object.pose, mesh.scale);
-}
-
-void hold(Object&, Mesh& mesh) {
-  hold(mesh.scale, kScale, 1);
+void read_own(const TomlTable& t, Mesh& mesh) { read_model_keys(t, mesh); }
+void write_own(const Mesh& mesh, SceneText& text) { put_model(text, mesh); }
+void hold_own(Object&, Mesh& mesh) {
   if (model_unit(mesh.unit) == nullptr) mesh.unit = 1;
 }
 
-const char* table_of(const JointStop&) { return "joint_contact"; }
+template <class S>
+void read(const TomlTable& t, const ArmDescription&, Object& object, S& shape) {
+  const Form form = form_of(shape);
+  std::vector<const char*> keys{"name", form.position};
+  if (form.rotation != nullptr) keys.push_back(form.rotation);
+  if constexpr (std::is_same_v<S, Plane>) keys.emplace_back("normal");
+  if constexpr (std::is_same_v<S, Mesh>) keys.insert(keys.end(), {"file", "unit", "up"});
+  if (has_color(object)) keys.emplace_back("color");
+  add_keys(fields_of(shape), shape, keys);
+  add_keys(kMaterialFields, object.material, keys);
+  t.allow_only(keys);
+  object.color = t.vector("color", kColor);
+  const auto place = t.vector(form.position, kPosition);
+  if (!place && !has_shape<Mesh>(object)) t.refuse_missing(form.position);
+  object.pose = pose_at(place.value_or(Vec3::Zero()));
+  if (form.rotation != nullptr) object.pose = pose_of(t, object.pose.translation(), form.rotation);
+  read_fields(t, fields_of(shape), shape);
+  read_own(t, shape);
+  read_fields(t, kMaterialFields, object.material);
+}
+
+template <class S>
+void write(const Object& object, const S& shape, const ArmDescription&, SceneText& text) {
+  const Form form = form_of(shape);
+  write_own(shape, text);
+  put_fields(text, fields_of(shape), shape);
+  if (!has_shape<Mesh>(object) || !object.pose.translation().isZero(0)) {
+    text.put_position(form.position, object.pose);
+  }
+  if (form.rotation != nullptr) text.put_rotation(object.pose, form.rotation);
+  put_fields(text, kMaterialFields, object.material);
+}
 
 int joint_index(const TomlTable& t, const ArmDescription& arm) {
   std::vector<std::string> names;
@@ -183,13 +130,12 @@ int joint_index(const TomlTable& t, const ArmDescription& arm) {
 }
 
 void read(const TomlTable& t, const ArmDescription& arm, Object& object, JointStop& stop) {
-  t.allow_only({"name", "joint", "angle", "side", "stiffness"});
-  const std::string side = t.need(t.text("side"), "side");
-  if (side != "above" && side != "below") t.refuse("side", "\"above\", \"below\"");
+  std::vector<const char*> keys{"name", "joint", kStopStiffness.key};
+  add_keys(kJointStopFields, stop, keys);
+  t.allow_only(keys);
   stop.joint = joint_index(t, arm);
-  stop.angle = t.need(t.number("angle", kAngle), "angle");
-  stop.direction = side == "above" ? 1 : -1;
-  object.material = {.stiffness = t.need(t.number("stiffness", kJointStiffness), "stiffness")};
+  read_fields(t, kJointStopFields, stop);
+  read_field(t, kStopStiffness, object.material, true);
 }
 
 void put_joint(SceneText& text, const JointStop& stop, const ArmDescription& arm) {
@@ -200,23 +146,22 @@ void put_joint(SceneText& text, const JointStop& stop, const ArmDescription& arm
   if (std::distance(arm.joints.begin(), first) == stop.joint) {
     text.put("joint", first->name);
   } else {
-    text.put("joint", stop.joint + 1);
+    text.put("joint", std::int64_t{stop.joint} + 1);
   }
 }
 
 void write(const Object& object, const JointStop& stop, const ArmDescription& arm,
            SceneText& text) {
   put_joint(text, stop, arm);
-  text.put("angle", stop.angle);
-  text.put("side", std::string(stop.direction > 0 ? "above" : "below"));
-  text.put("stiffness", object.material.stiffness);
+  put_fields(text, kJointStopFields, stop);
+  put_fields(text, std::array{kStopStiffness}, object.material);
 }
 
-void hold(Object& object, JointStop& stop) {
-  hold(stop.angle, kAngle, 0);
+void hold_own(Object& object, JointStop& stop) {
   stop.direction = stop.direction < 0 ? -1 : 1;
   object.pose.setIdentity();
-  hold(object.material.stiffness, kJointStiffness, JointStop::kUsualStiffness);
+  double& stiffness = object.material.stiffness;
+  stiffness = kStopStiffness.hold(stiffness, JointStop::kUsualStiffness);
 }
 
 // A shape of each kind, in the order of files.
@@ -227,7 +172,7 @@ std::array<Shape, sizeof...(I)> every_shape(std::index_sequence<I...>) {
 const auto kShapes = every_shape(std::make_index_sequence<std::variant_size_v<Shape>>());
 
 const char* table_of(const Shape& shape) {
-  return std::visit([](const auto& s) { return table_of(s); }, shape);
+  return std::visit([](const auto& s) { return form_of(s).table; }, shape);
 }
 
 void read_objects(const TomlTable& t, const ArmDescription& arm, const fs::path& base_dir,
@@ -237,7 +182,6 @@ void read_objects(const TomlTable& t, const ArmDescription& arm, const fs::path&
       Object& object = out.scene.objects.emplace_back(Object{.shape = shape});
       std::visit([&](auto& s) { read(each, arm, object, s); }, object.shape);
       object.name = name_of(each);
-      if (has_surface(object)) object.material = material_of(each, true);
       const auto* mesh = std::get_if<Mesh>(&object.shape);
       if (mesh != nullptr) take_model(each, *mesh, base_dir, files, out);
     }
@@ -308,14 +252,6 @@ std::string relative(const std::string& file, const fs::path& folder) {
   return inside.empty() || *inside.begin() == ".." ? file : inside.string();
 }
 
-void hold_color(Object& object) {
-  if (has_shape<Plane>(object) || has_shape<Mesh>(object) || has_shape<JointStop>(object)) {
-    object.color.reset();
-  }
-  if (!object.color) return;
-  for (double& part : *object.color) hold(part, kColor, 0.5);
-}
-
 void check_counts(const Scene& scene, const std::string& where) {
   const std::size_t contacts = scene.objects.size();
   if (contacts > kMostContacts) {
@@ -362,12 +298,14 @@ SceneDocument parse_scene(const std::string& text, const std::string& where,
 }
 
 void hold(Object& object) {
-  for (double& x : object.pose.translation()) hold(x, kPosition, 0);
+  for (double& x : object.pose.translation()) x = kPosition.hold(x, 0);
   const Mat3 R = object.pose.linear();
   object.pose.linear() = R.allFinite() ? settled(R) : Mat3::Identity();
-  if (has_surface(object)) hold(object.material);
-  hold_color(object);
-  std::visit([&](auto& shape) { hold(object, shape); }, object.shape);
+  if (has_surface(object)) hold_fields(kMaterialFields, object.material);
+  if (!has_color(object)) object.color.reset();
+  hold_color(object.color);
+  hold_size(object.shape);
+  std::visit([&](auto& shape) { hold_own(object, shape); }, object.shape);
   hold_body(object);
 }
 
@@ -384,7 +322,6 @@ std::string scene_text(const SceneDocument& document, const ArmDescription& arm,
     text.table(table_of(object.shape));
     text.put("name", object.name);
     std::visit([&](const auto& shape) { write(object, shape, arm, text); }, object.shape);
-    if (has_surface(object)) put_material(text, object.material);
     if (object.color) text.put("color", *object.color);
   }
   put_bodies(text, document);

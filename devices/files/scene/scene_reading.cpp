@@ -6,8 +6,9 @@
 #include <array>
 
 #include "core/base/model_kinds.h"
+#include "devices/files/field_file.h"
 #include "devices/files/rpy.h"
-#include "devices/files/scene/material_keys.h"
+#include "devices/files/scene/scene_fields.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {
@@ -23,17 +24,12 @@ Pose pose_of(const TomlTable& t, const Vec3& position, const char* key) {
 
 Vec3 point_of(const TomlTable& t, const char* key) { return t.need(t.vector(key, kPosition), key); }
 
-std::string name_of(const TomlTable& t) { return t.need(t.text("name"), "name"); }
-
-Material material_of(const TomlTable& t, bool needed) {
-  Material out;
-  for (const MaterialKey& each : kMaterialKeys) {
-    const auto value = t.number(each.key, each.range);
-    out.*each.field =
-        each.required && needed ? t.need(value, each.key) : value.value_or(out.*each.field);
-  }
-  return out;
+void hold_color(std::optional<Vec3>& color) {
+  if (!color) return;
+  for (double& part : *color) part = kColor.hold(part, 0.5);
 }
+
+std::string name_of(const TomlTable& t) { return t.need(t.text("name"), "name"); }
 
 std::string model_of(const TomlTable& t) {
   const std::string file = t.need(t.text("file"), "file");
@@ -72,7 +68,7 @@ double unit_of(const TomlTable& t, const std::string& file) {
 
 void read_model_keys(const TomlTable& t, Mesh& mesh) {
   mesh.model = model_of(t);
-  mesh.scale = t.number("scale", kScale).value_or(1);
+  read_fields(t, kMeshFields, mesh);
   mesh.unit = unit_of(t, mesh.model);
   const std::string up = t.text("up").value_or("z");
   if (up != "y" && up != "z") t.refuse("up", "\"y\", \"z\"");

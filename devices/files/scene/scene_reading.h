@@ -15,8 +15,8 @@ Pose pose_of(const TomlTable& t, const Vec3& position, const char* key);
 Vec3 point_of(const TomlTable& t, const char* key);
 std::string name_of(const TomlTable& t);
 
-// Reads a material. If `needed`, the keys that every material needs have to be there.
-Material material_of(const TomlTable& t, bool needed);
+// Holds a colour, if there is one, within what a file may say.
+void hold_color(std::optional<Vec3>& color);
 
 // Reads the key `file`: a model of a kind that can be read.
 std::string model_of(const TomlTable& t);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "devices/files/rpy.h"
-#include "devices/files/scene/material_keys.h"
 #include "devices/files/scene/scene_document.h"
 
 namespace limpid {
@@ -47,7 +46,7 @@ void SceneText::only_table(const char* kind) { text_ += fmt::format("[{}]\n", ki
 void SceneText::put(const char* key, const std::string& value) { put_raw(key, toml_quoted(value)); }
 void SceneText::put(const char* key, double value) { put_raw(key, toml_number(value)); }
 void SceneText::put(const char* key, const Vec3& value) { put_raw(key, toml_vector(value)); }
-void SceneText::put(const char* key, int value) { put_raw(key, std::to_string(value)); }
+void SceneText::put(const char* key, std::int64_t value) { put_raw(key, std::to_string(value)); }
 void SceneText::put(const char* key, bool value) { put_raw(key, value ? "true" : "false"); }
 void SceneText::put_raw(const char* key, const std::string& value) {
   text_ += fmt::format("{} = {}\n", key, value);
@@ -61,13 +60,6 @@ void SceneText::put_place(const Pose& pose, double scale) {
   if (!pose.translation().isZero(0)) put_position("position", pose);
   put_rotation(pose);
   if (scale != 1) put("scale", scale);
-}
-
-void put_material(SceneText& text, const Material& material) {
-  for (const MaterialKey& each : kMaterialKeys) {
-    const double value = material.*each.field;
-    if (each.required || value != Material{}.*each.field) text.put(each.key, value);
-  }
 }
 
 void put_model(SceneText& text, const Mesh& mesh) {

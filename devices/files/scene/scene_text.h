@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "core/base/field.h"
 #include "core/touch/scene.h"
 
 namespace limpid {
@@ -15,7 +16,7 @@ class SceneText {
   void put(const char* key, const std::string& value);
   void put(const char* key, double value);
   void put(const char* key, const Vec3& value);
-  void put(const char* key, int value);
+  void put(const char* key, std::int64_t value);
   void put(const char* key, bool value);
   // Writes `value` as it is, without quotes.
   void put_raw(const char* key, const std::string& value);
@@ -35,8 +36,17 @@ std::string toml_vector(const Vec3& v);
 std::string toml_numbers(std::span<const double> list);
 std::string toml_quoted(const std::string& text);
 
-// Writes the stiffness, and all else that differs from the default.
-void put_material(SceneText& text, const Material& material);
+// Writes the needed fields, and those that differ from the usual.
+template <class Table, class Owner>
+void put_fields(SceneText& text, const Table& fields, const Owner& owner) {
+  const Owner usual{};
+  for (const Field<Owner>& field : fields) {
+    const std::optional<FieldValue> value = value_of(field, owner);
+    if (!value || !field.of(owner)) continue;
+    if (!field.needed && value == value_of(field, usual)) continue;
+    std::visit([&](const auto& x) { text.put(field.key, x); }, *value);
+  }
+}
 // Writes the model of a mesh, without its place.
 void put_model(SceneText& text, const Mesh& mesh);
 

@@ -14,7 +14,7 @@ TEST(ParameterSlider, PlaceAndValueAreInverse) {
       const double value = slider_value(info, place);
       EXPECT_GE(value, info.slider_minimum) << info.key;
       EXPECT_LE(value, info.slider_maximum * (1 + 1e-12)) << info.key;
-      if (std::holds_alternative<double Parameters::*>(info.field)) {
+      if (info.kind == FieldInfo::Kind::number) {
         EXPECT_NEAR(slider_place(info, value), place, 1e-9) << info.key;
       }
     }

@@ -15,12 +15,12 @@ using testing::HasSubstr;
 TEST(Words, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
   for (std::uint8_t kind = 0; kind < kLaws; ++kind) {
     for (const char* key : info(static_cast<CouplingKind>(kind)).sliders) {
-      const std::string words = caption(*find_parameter(key));
+      const std::string words = find_parameter(key)->caption;
       EXPECT_TRUE(std::isupper(static_cast<unsigned char>(words.front())) != 0) << words;
       EXPECT_NE(words.find(' '), std::string::npos) << words;
     }
   }
-  EXPECT_STREQ(caption(*find_parameter("coupling.eta")), "Impedance scaling \xCE\xB7");
+  EXPECT_STREQ(find_parameter("coupling.eta")->caption, "Impedance scaling \xCE\xB7");
 }
 
 TEST(Words, MarkAChangeAsTheSliderReads) {

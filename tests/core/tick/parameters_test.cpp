@@ -26,11 +26,6 @@ std::string refusal(const char* key, const ParameterValue& value) {
   return "";
 }
 
-bool is_number(const ParameterInfo& info) {
-  return std::holds_alternative<double Parameters::*>(info.field) ||
-         std::holds_alternative<int Parameters::*>(info.field);
-}
-
 TEST(Parameters, DefaultToThePapersValues) {
   const Parameters p;
   EXPECT_EQ(p.k_vc, 10);
@@ -105,8 +100,8 @@ TEST(ParameterTable, IsConsistentAndHoldsTheDefaults) {
       EXPECT_GT(info.slider_minimum, 0) << info.key;
     }
     EXPECT_GT(std::strlen(info.meaning), 20u) << info.key;
-    if (const auto* field = std::get_if<double Parameters::*>(&info.field)) {
-      const double value = defaults.**field;
+    if (info.kind == FieldInfo::Kind::number) {
+      const double value = parameter_number(defaults, info);
       EXPECT_TRUE(std::isnan(value) || (value >= info.minimum && value <= info.maximum))
           << info.key;
     }
@@ -115,7 +110,7 @@ TEST(ParameterTable, IsConsistentAndHoldsTheDefaults) {
 
 TEST(SetParameter, TakesBothEndsOfEveryRangeAndNothingBeyond) {
   for (const ParameterInfo& info : parameter_table()) {
-    if (!is_number(info)) continue;
+    if (!info.is_number()) continue;
     Parameters p;
     EXPECT_NO_THROW(set_parameter(p, info.key, info.minimum)) << info.key;
     EXPECT_NO_THROW(set_parameter(p, info.key, info.maximum)) << info.key;
@@ -127,7 +122,7 @@ TEST(SetParameter, TakesBothEndsOfEveryRangeAndNothingBeyond) {
 
 TEST(SetParameter, RefusesWhatIsNoNumberNamingKeyFoundAndAllowed) {
   for (const ParameterInfo& info : parameter_table()) {
-    if (!is_number(info)) continue;
+    if (!info.is_number()) continue;
     for (const ParameterValue& bad :
          {ParameterValue(std::nan("")), ParameterValue(std::numeric_limits<double>::infinity()),
           ParameterValue(-std::numeric_limits<double>::infinity())}) {
@@ -172,7 +167,7 @@ TEST(SetParameter, TakesWholeNumbersForNumbers) {
 
 TEST(ParameterText, GivesTheSameNumberBackToTheLastBit) {
   for (const ParameterInfo& info : parameter_table()) {
-    if (!std::holds_alternative<double Parameters::*>(info.field)) continue;
+    if (info.kind != FieldInfo::Kind::number) continue;
     for (const double part : {0.0, 1.0 / 3, 0.7310585786300049, 1.0}) {
       Parameters p;
       const double value = info.minimum + part * (info.maximum - info.minimum);
@@ -197,11 +192,11 @@ TEST(Parameters, AreEqualIfEveryOneOfThemIs) {
   EXPECT_EQ(Parameters{}, Parameters{});  // also values left to the arm, which are not numbers
   for (const ParameterInfo& info : parameter_table()) {
     Parameters p;
-    if (std::holds_alternative<int Parameters::*>(info.field)) {
+    if (info.kind == FieldInfo::Kind::whole) {
       set_parameter(p, info.key, std::int64_t{3});
-    } else if (is_number(info)) {
+    } else if (info.is_number()) {
       set_parameter(p, info.key, info.minimum + 0.3 * (info.maximum - info.minimum));
-    } else if (std::holds_alternative<bool Parameters::*>(info.field)) {
+    } else if (info.kind == FieldInfo::Kind::flag) {
       set_parameter(p, info.key, parameter_number(p, info) == 0);
     } else if (info.key == std::string("coupling.kind")) {
       set_parameter(p, info.key, std::string("standard"));

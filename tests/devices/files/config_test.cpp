@@ -75,16 +75,8 @@ TEST(Config, GivesEveryValueBackToTheLastBit) {
     Parameters p;
     for (const ParameterInfo& info : parameter_table()) {
       std::uniform_real_distribution<double> in_range(info.minimum, info.maximum);
-      if (const auto* field = std::get_if<double Parameters::*>(&info.field)) {
-        p.*(*field) = in_range(random);
-      } else if (const auto* whole = std::get_if<int Parameters::*>(&info.field)) {
-        p.*(*whole) = static_cast<int>(in_range(random));
-      } else if (const auto* yes = std::get_if<bool Parameters::*>(&info.field)) {
-        p.*(*yes) = in_range(random) > 0.5;
-      }
+      set_parameter_number(p, info, in_range(random));
     }
-    p.kind = static_cast<CouplingKind>(round % kLaws);
-    p.velocity = static_cast<VelocitySource>(round % 3);
     if (round % 5 == 0) p.friction = kFromArm;
     Parameters again;
     apply_config_text(again, config_text(p), "again");

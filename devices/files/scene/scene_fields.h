@@ -1,0 +1,179 @@
+// Fields of what a scene's file describes, for reader, writer, editor and axes of sweeps.
+#pragma once
+
+#include <array>
+
+#include "core/base/field.h"
+#include "core/touch/scene.h"
+#include "devices/files/scene/scene_document.h"
+
+namespace limpid {
+
+inline constexpr std::array kMaterialFields{
+    Field<Material>("stiffness", "Stiffness", &Material::stiffness, scene_limits::kStiffness,
+                    "How hard it pushes back. Double click to type, right click for the usual "
+                    "value. A hard surface is felt as hard as the coupling lets through.",
+                    {1, 1e4, true}, {.needed = true}),
+    Field<Material>("damping", "Damping", &Material::damping, scene_limits::kDamping,
+                    "What it takes up while it is pressed in or let out; 0 gives all back. "
+                    "Rendered by the predictive coupling, as far as the tick allows.",
+                    {0, 20}),
+    Field<Material>("friction_static", "Friction, sticking", &Material::friction_static,
+                    scene_limits::kFriction,
+                    "Up to this part of the pressing force the tip sticks. Rendered by the "
+                    "predictive coupling.",
+                    {0, 1}),
+    Field<Material>("friction_kinetic", "Friction, slipping", &Material::friction_kinetic,
+                    scene_limits::kFriction,
+                    "The part of the pressing force that holds the tip back while it slips. "
+                    "Rendered by the predictive coupling.",
+                    {0, 1}),
+};
+
+// A stop of a joint has the stiffness alone, in other numbers.
+inline constexpr Field<Material> kStopStiffness("stiffness", "Stiffness", &Material::stiffness,
+                                                scene_limits::kJointStiffness,
+                                                kMaterialFields[0].meaning, {0.1, 1e3, true},
+                                                {.needed = true});
+
+inline constexpr Field<Body> kBodyMass("mass", "Mass", &Body::mass, scene_limits::kMass,
+                                       "Up to 100 kg.");
+inline constexpr std::array kBodyFields{
+    Field<Body>("magnet", "a magnet picks it up", &Body::magnet, scene_limits::kShare,
+                "While the device's button, or its key, is held and the tip is at it."),
+    Field<Body>("restitution", "Bounce", &Body::restitution, scene_limits::kShare,
+                "The part of its speed that it keeps when it hits something. 0: none.", {0, 1}),
+    Field<Body>("contact_stiffness", "Contact stiffness", &Body::contact_stiffness,
+                scene_limits::kStiffness,
+                "Against other objects; what the tip feels is the stiffness above."),
+    Field<Body>("center", "Centre of mass", &Body::center, scene_limits::kPosition,
+                "From the object's own middle, along its own axes."),
+    Field<Body>("inertia", "Inertia", &Body::inertia, scene_limits::kInertia,
+                "About axes through the centre of mass, along the object's own."),
+};
+
+inline constexpr bool turns(const BodyJoint& joint) {
+  return joint.kind != BodyJoint::Kind::slider;
+}
+inline constexpr bool has_axis(const BodyJoint& joint) {
+  return joint.kind != BodyJoint::Kind::ball;
+}
+inline constexpr std::array kJointKinds{"slider", "hinge", "ball"};
+// The kind comes first: it says which others there are. Not here: axis, limits, travel.
+inline constexpr std::array kJointFields{
+    Field<BodyJoint>("kind", "Hangs on", choice<BodyJoint, &BodyJoint::kind>(kJointKinds), {0, 2},
+                     "A slider moves along a line, a hinge turns, a ball joint turns any way.", {},
+                     {.needed = true}),
+    Field<BodyJoint>("to", "of", &BodyJoint::to, {}, "What the joint's other half is fixed to."),
+    Field<BodyJoint>("point", "Joint at", &BodyJoint::point, scene_limits::kPosition,
+                     "From the object's own middle, along its own axes.", {}, {.when = turns}),
+    Field<BodyJoint>("damping", "Damping", &BodyJoint::damping, scene_limits::kJointDamping,
+                     "What it takes up, by how fast the joint moves."),
+    Field<BodyJoint>("friction", "Dry friction", &BodyJoint::friction, scene_limits::kJointForce,
+                     "What it takes to move the joint at all."),
+};
+inline constexpr std::array kStopFields{
+    Field<BodyJoint>("stop_stiffness", "Stops' stiffness", &BodyJoint::stop_stiffness,
+                     scene_limits::kStopsStiffness, "How hard a stop pushes back.", {},
+                     {.when = has_axis}),
+    Field<BodyJoint>(
+        "stop_restitution", "Stops' bounce", &BodyJoint::stop_restitution, scene_limits::kShare,
+        "The part of its speed that it keeps when it hits a stop.", {0, 1}, {.when = has_axis}),
+};
+inline constexpr std::array kForceFields{
+    Field<JointForce>("spring", "Spring", &JointForce::spring, scene_limits::kJointSpring,
+                      "Pulls it towards its place of rest."),
+    Field<JointForce>("rest", "Rest", &JointForce::rest, scene_limits::kTravel,
+                      "Where the spring pulls nothing; 0 is where it starts."),
+};
+// Keys of the table `detent`.
+inline constexpr std::array kDetentFields{
+    Field<JointForce>("force", "Detent", &JointForce::detent_force, scene_limits::kJointForce,
+                      "The largest force of steps that it clicks into; 0: it does not click.", {},
+                      {.needed = true}),
+    Field<JointForce>("period", "Detent's period", &JointForce::detent_period,
+                      scene_limits::kPeriod, "From one step to the next.", {}, {.needed = true}),
+};
+
+inline constexpr std::array kSpringFields{
+    Field<BodySpring>("length", "Length", &BodySpring::length, scene_limits::kSpringLength,
+                      "While it pulls nothing."),
+    Field<BodySpring>("stiffness", "Stiffness", &BodySpring::stiffness,
+                      scene_limits::kSpringStiffness, "Per metre."),
+    Field<BodySpring>("damping", "Damping", &BodySpring::damping, scene_limits::kDamping,
+                      "While its length changes."),
+    Field<BodySpring>("breaks_at", "Breaks at", &BodySpring::breaks_at, scene_limits::kBreaking,
+                      "The pull that tears it; 0: it never does."),
+};
+
+// Sizes of a shape.
+inline constexpr std::array kSphereFields{Field<Sphere>("radius", "Radius", &Sphere::radius,
+                                                        scene_limits::kLength, "Of the ball", {},
+                                                        {.needed = true})};
+inline constexpr std::array kBoxFields{Field<Box>("size", "Size", &Box::size, scene_limits::kLength,
+                                                  "Full edges", {}, {.needed = true})};
+inline constexpr std::array kCylinderFields{
+    Field<Cylinder>("radius", "Radius", &Cylinder::radius, scene_limits::kLength, "Of its faces",
+                    {}, {.needed = true}),
+    Field<Cylinder>("length", "Length", &Cylinder::length, scene_limits::kLength,
+                    "From face to face", {}, {.needed = true})};
+inline constexpr std::array kCapsuleFields{
+    Field<Capsule>("radius", "Radius", &Capsule::radius, scene_limits::kLength, "Of its round ends",
+                   {}, {.needed = true}),
+    Field<Capsule>("length", "Length", &Capsule::length, scene_limits::kLength,
+                   "Between the middles of its ends", {}, {.needed = true})};
+inline constexpr std::array kMeshFields{Field<Mesh>(
+    "scale", "Scale", &Mesh::scale, scene_limits::kScale, "1: as large as its file says.")};
+
+inline constexpr std::array kSides{"above", "below"};
+inline constexpr std::array kJointStopFields{
+    Field<JointStop>("angle", "Angle", &JointStop::angle, scene_limits::kAngle, "Where it stops",
+                     {}, {.needed = true}),
+    Field<JointStop>(
+        "side", "Side",
+        Choice<JointStop>{
+            kSides,
+            [](const JointStop& stop) -> std::uint8_t { return stop.direction > 0 ? 0 : 1; },
+            [](JointStop& stop, std::uint8_t side) { stop.direction = side == 0 ? 1 : -1; }},
+        {0, 1}, "From which it is touched.", {}, {.needed = true})};
+
+constexpr const auto& fields_of(const Sphere&) { return kSphereFields; }
+constexpr const auto& fields_of(const Box&) { return kBoxFields; }
+constexpr const auto& fields_of(const Cylinder&) { return kCylinderFields; }
+constexpr const auto& fields_of(const Capsule&) { return kCapsuleFields; }
+constexpr const auto& fields_of(const Mesh&) { return kMeshFields; }
+constexpr std::array<Field<Plane>, 0> fields_of(const Plane&) { return {}; }
+constexpr const auto& fields_of(const JointStop&) { return kJointStopFields; }
+
+// Holds the sizes of a shape within what a file may say.
+inline void hold_size(Shape& shape) {
+  std::visit([](auto& s) { hold_fields(fields_of(s), s); }, shape);
+}
+
+// A material that everybody knows, as a hand feels it through a device.
+struct UsualMaterial {
+  const char* name;
+  Material material;
+};
+
+// Stiffness and damping of a contact with a fingertip or a small tool, not of the bulk; friction
+// against skin or plastic, dry.
+inline constexpr std::array kUsualMaterials{
+    UsualMaterial{"foam", {100, 2, 0.6, 0.5}},        UsualMaterial{"felt", {150, 1, 0.7, 0.6}},
+    UsualMaterial{"skin", {300, 3, 0.8, 0.6}},        UsualMaterial{"rubber", {500, 2, 1.0, 0.9}},
+    UsualMaterial{"plastic", {1200, 0.5, 0.3, 0.25}}, UsualMaterial{"wood", {1500, 0, 0.4, 0.3}},
+    UsualMaterial{"glass", {4000, 0, 0.1, 0.08}},     UsualMaterial{"brass", {5000, 0, 0.25, 0.2}},
+    UsualMaterial{"ice", {3000, 0, 0.03, 0.02}}};
+
+// The usual material with these values; null if there is none.
+inline const UsualMaterial* usual_material(const Material& material) {
+  for (const UsualMaterial& each : kUsualMaterials) {
+    if (std::ranges::all_of(kMaterialFields, [&](const Field<Material>& field) {
+          return number_of(field, each.material) == number_of(field, material);
+        }))
+      return &each;
+  }
+  return nullptr;
+}
+
+}  // namespace limpid
