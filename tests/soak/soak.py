@@ -160,7 +160,7 @@ class Soak(WindowTest):
             self.wait("being live", lambda s: not s["playing"])
         if self.state()["twin"]:
             self.key("b")
-            self.wait("one coupling", lambda s: not s["twin"])
+            self.wait("one coupling", lambda s: s["shown_lanes"] == 1)
         return self.settled()
 
     def live(self) -> None:

@@ -75,7 +75,7 @@ class Drop(WindowTest):
 
     def test_a_scene_and_then_a_recording(self) -> None:
         self.drop(ASSETS / "scenes/spheres.toml")
-        self.wait("the scene", lambda s: s["scene"].endswith("spheres.toml") and not s["loading"])
+        self.wait("the scene", lambda s: s["file"].endswith("spheres.toml") and not s["loading"])
         session = self.home / "touch.h5"
         subprocess.run([LIMPID, "run", "--duration", "1", "--record", str(session)], check=True,
                        stdout=subprocess.DEVNULL)

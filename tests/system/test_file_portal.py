@@ -85,7 +85,7 @@ class Answers(WithABus):
                 file.write_text(SCENE)
                 self.order(how="choose", uri=f"file://{quote(str(file))}")
                 self.key("ctrl+shift+o")
-                self.wait("the scene", lambda s: s["scene"] == str(file) and s["dialog"] == "")
+                self.wait("the scene", lambda s: s["file"] == str(file) and s["dialog"] == "")
                 self.assertEqual(self.state()["objects"], 1)
         first, *_, last = self.said("OpenFile")
         self.assertEqual(first["parent"], f"x11:{int(self.window):x}")
@@ -117,7 +117,7 @@ class Answers(WithABus):
         file.write_text(SCENE)
         self.portal(how="choose", uri=f"file://{quote(str(file))}", older=True)
         self.key("ctrl+shift+o")
-        self.wait("the scene", lambda s: s["scene"] == str(file) and s["dialog"] == "")
+        self.wait("the scene", lambda s: s["file"] == str(file) and s["dialog"] == "")
 
     def test_a_scene_is_saved_with_its_ending_and_over_no_file_that_nobody_asked_about(self) -> None:
         self.portal(how="choose", uri=f"file://{quote(str(self.files / 'new one'))}")
@@ -149,7 +149,7 @@ class Answers(WithABus):
 
     def test_giving_up_there_closes_here_and_the_other_way_round(self) -> None:
         self.portal(how="give up")
-        scene = self.state()["scene"]
+        scene = self.state()["file"]
         self.key("ctrl+shift+o")
         self.wait_until("it to be asked", lambda: self.said("OpenFile"))
         self.closed()
@@ -162,7 +162,7 @@ class Answers(WithABus):
             self.key("Escape") if way == "Escape" else self.click(*state["closing"]["button"])
             self.closed()
             self.wait_until("the desktop's to be closed", lambda: len(self.said("Close")) == closed + 1)
-        self.assertEqual(self.state()["scene"], scene)
+        self.assertEqual(self.state()["file"], scene)
         self.assertTrue(self.state()["force"])
 
     def test_limpids_own_is_there_for_who_wants_it(self) -> None:
@@ -183,7 +183,7 @@ class Answers(WithABus):
         file = self.files / "gone.toml"  # the file comes back, under the name in the dialog
         file.write_text(SCENE)
         self.key("Return")
-        self.wait("the scene", lambda s: s["scene"] == str(file))
+        self.wait("the scene", lambda s: s["file"] == str(file))
 
 
 class ShowsInItsFolder(WithABus):

@@ -150,27 +150,27 @@ class AxesOfADevice(PaddleWindow):
     SIZE = (1600, 880)  # all of the panel fits
 
     def begin_check(self) -> None:
-        self.wait("the check's button", lambda s: s["device"]["check"])
-        place = self.settled()["device"]["check"]
+        self.wait("the check's button", lambda s: s["device_panel"]["check"])
+        place = self.settled()["device_panel"]["check"]
         if place:  # the device has left the loop
             self.click(*place)
 
     def test_are_checked_before_it_may_push_and_again_after_a_check_that_was_stopped(self) -> None:
         self.begin_check()
-        self.wait("the check", lambda s: s["device"]["checking"])
+        self.wait("the check", lambda s: s["device_panel"]["checking"])
         self.key("Escape")
-        state = self.wait("its end", lambda s: not s["device"]["checking"])
-        self.assertIn("interrupted", state["device"]["problem"])
+        state = self.wait("its end", lambda s: not s["device_panel"]["checking"])
+        self.assertIn("interrupted", state["device_panel"]["problem"])
         self.assertFalse(state["identify"]["plugged"])
         end = time.monotonic() + 60  # a stall of 5 ms ends it
         while "checked = true" not in self.book.read_text() and time.monotonic() < end:
             self.begin_check()
-            self.wait("its end", lambda s: not s["device"]["checking"]
-                      and (s["device"]["check"] or s["identify"]["plugged"]))
+            self.wait("its end", lambda s: not s["device_panel"]["checking"]
+                      and (s["device_panel"]["check"] or s["identify"]["plugged"]))
         self.wait_for_notice("Its axes move as they are pushed.")
         self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
         self.assertFalse(self.state()["force"])
-        self.wait("why it has none", lambda s: s["device"]["explains_force"])
+        self.wait("why it has none", lambda s: s["device_panel"]["explains_force"])
 
 
 class ArmOfADevice(PaddleWindow):
@@ -179,14 +179,14 @@ class ArmOfADevice(PaddleWindow):
 
     def test_is_asked_about_once(self) -> None:
         self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
-        self.wait("the question", lambda s: s["device"]["arm"])
-        place = self.settled()["device"]["arm"]
+        self.wait("the question", lambda s: s["device_panel"]["arm"])
+        place = self.settled()["device_panel"]["arm"]
         self.move(place[0], place[1] - 100)
         for _ in range(3):  # the wheel scrolls the panel's lower edge into view
             self.xdotool("click", "5")
-        self.wait("the question in view", lambda s: s["device"]["arm"][1] < place[1])
-        self.click(*self.settled()["device"]["arm"])
-        self.wait("no question", lambda s: s["device"]["arm"] is None)
+        self.wait("the question in view", lambda s: s["device_panel"]["arm"][1] < place[1])
+        self.click(*self.settled()["device_panel"]["arm"])
+        self.wait("no question", lambda s: s["device_panel"]["arm"] is None)
         self.wait("the device back in the loop", lambda s: s["identify"]["plugged"])
         book = self.book.read_text()
         self.assertRegex(book, "taken_for = .built-in.")

@@ -169,7 +169,7 @@ class InTheWindow(WindowTest):
             self.addCleanup(self.states.close)
             self.words = list(words)
             self.start()
-            self.wait("the second window's device", lambda s: s["device"]["problem"] not in
+            self.wait("the second window's device", lambda s: s["device_panel"]["problem"] not in
                       ("", "not connected"), 60)
             self.go_on(4)  # enough time for another try
             return self.state()
@@ -188,7 +188,7 @@ class InTheWindow(WindowTest):
         for words, why in (((), "Another window has a device already"),
                            ((str(ASSETS / "scenes" / "table.toml"),), "was started with a file")):
             with self.subTest(words=words):
-                device = self.another_window(*words)["device"]
+                device = self.another_window(*words)["device_panel"]
                 self.assertIn(why, device["problem"])
                 self.assertIn("in use by " + holder, device["problem"])
                 self.assertTrue(device["waits_for_choice"])

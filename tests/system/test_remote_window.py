@@ -75,6 +75,13 @@ class TestRemoteWindow(WindowTest):
         self.wait("the next law", lambda s: s["kind"] == 1)
         self.assertEqual(self.loop.get("coupling.kind"), {"coupling.kind": "proposed"})
 
+    def test_prints_the_state_that_it_sends(self) -> None:
+        sent, printed = self.loop.state(), self.settled()
+        self.assertLessEqual(set(sent), set(printed))
+        for key in ("arm", "joints", "device", "scene", "file", "objects", "recording", "trouble", "playing",
+                    "twin", "blind", "hand"):
+            self.assertEqual(printed[key], sent[key], key)
+
     def test_a_person_answers_with_a_key(self) -> None:
         result, thread = self.asked("the first", "the second")
         self.keep_picture("ask")
@@ -161,10 +168,10 @@ class TestRemoteWindow(WindowTest):
 
     def test_twin_and_start_over_are_those_of_their_keys(self) -> None:
         self.loop.twin({"coupling.kind": "predictive"})
-        self.wait("the twin", lambda s: s["twin"])
+        self.wait("the twin", lambda s: s["shown_lanes"] == 2)
         self.assertEqual(self.loop.row(["twin/coupling/kind"])["twin/coupling/kind"], 2)
         self.key("b")
-        self.wait("no twin", lambda s: not s["twin"])
+        self.wait("no twin", lambda s: s["shown_lanes"] == 1)
         self.loop.start_over()
         self.wait_for_notice("Started over")
 
@@ -405,13 +412,13 @@ class TestRemoteWindow(WindowTest):
         other.open(scene="spheres.toml")
         other.set({"coupling.kind": "predictive", "coupling.eta": 0.5, "device.torque_limit": 0.1, "link.delay": 20})
         other.twin({"coupling.kind": "proposed"})
-        self.wait("the program's settings", lambda s: s["led"] and s["kind"] == 2 and s["twin"])
+        self.wait("the program's settings", lambda s: s["led"] and s["kind"] == 2 and s["shown_lanes"] == 2)
         return other
 
     def check_is_back(self, scene: str) -> None:
         self.wait_for_notice("Your settings are back.")
         self.wait("the person's settings", lambda s: not s["led"] and s["kind"] == 0 and s["eta"] == 1
-                  and not s["twin"] and s["scene"] == scene)
+                  and s["shown_lanes"] == 1 and s["file"] == scene)
         values = self.loop.get()
         self.assertEqual((values["device.torque_limit"], values["link.delay"]), (self.limit, 0))
         self.assertEqual(self.loop.state()["file"], scene)
@@ -419,12 +426,12 @@ class TestRemoteWindow(WindowTest):
     def start_of_a_person(self) -> str:
         self.limit = self.loop.get("device.torque_limit")["device.torque_limit"]
         self.assertFalse(self.state()["led"])
-        return self.state()["scene"]
+        return self.state()["file"]
 
     def test_settings_and_scene_come_back_when_the_program_ends(self) -> None:
         scene = self.start_of_a_person()
         other = self.another_leads()
-        self.assertIn("spheres.toml", self.state()["scene"])
+        self.assertIn("spheres.toml", self.state()["file"])
         other.close()
         self.check_is_back(scene)
         self.assertIn("The program that led this window has ended. Your settings are back.", self.notices())
@@ -480,7 +487,7 @@ class TestRemoteWindow(WindowTest):
         from limpid import study
 
         self.key("b")  # a twin, of the person
-        self.wait("the twin", lambda s: s["twin"])
+        self.wait("the twin", lambda s: s["shown_lanes"] == 2)
         other = limpid.Client(self.path)  # somebody else who leads
         self.addCleanup(other.close)
         other.set({"hand.stiffness": 900, "link.delay": 20, "coupling.eta": 0.6})

@@ -64,7 +64,7 @@ class SceneWindow(WindowTest):
         self.key("ctrl+shift+s")
         self.answer(str(path))
         self.wait("the scene to be saved",
-                  lambda s: not s["dirty"] and s["scene"] == str(path) and path.exists())
+                  lambda s: not s["dirty"] and s["file"] == str(path) and path.exists())
 
     def test_a_model_is_added_undone_copied_removed_saved_and_opened_again(self) -> None:
         self.assertFalse(self.state()["dirty"])
@@ -93,7 +93,7 @@ class SceneWindow(WindowTest):
         self.key("ctrl+s")
         self.answer()
         own = self.home / "data/limpid/scenes/table.toml"
-        self.wait("the scene to be saved", lambda s: not s["dirty"] and s["scene"] == str(own))
+        self.wait("the scene to be saved", lambda s: not s["dirty"] and s["file"] == str(own))
         self.assertTrue((own.parent / "pyramid.glb").exists())
         self.assertEqual(own.read_text().count('file = "pyramid.glb"'), 2)
 

@@ -27,7 +27,7 @@ class Story(WindowTest):
 
     def test_it_plays_is_taken_over_given_back_and_ended(self) -> None:
         first = self.play()
-        self.assertTrue(first["twin"], "two runs beside each other")
+        self.assertEqual(first["shown_lanes"], 2, "two runs beside each other")
         self.wait("its next sentence", lambda s: s["told"] != first["told"], 60)
 
         taken = self.state()
@@ -81,7 +81,7 @@ class Overlay(WindowTest):
 
     def test_both_runs_in_one_picture_and_remembered(self) -> None:
         self.key("b")
-        self.wait("the twin", lambda s: s["twin"] and not s["overlaid"])
+        self.wait("the twin", lambda s: s["shown_lanes"] == 2 and not s["overlaid"])
         self.key("shift+b")
         self.wait("one picture", lambda s: s["overlaid"])
         self.press_onto_table()

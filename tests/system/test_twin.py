@@ -90,7 +90,7 @@ class Window(WindowTest):
     def test_b_sets_two_couplings_beside_each_other_and_records_both(self) -> None:
         self.assertFalse(self.state()["twin"])
         self.key("b")
-        self.wait("the twin", lambda s: s["twin"])
+        self.wait("the twin", lambda s: s["shown_lanes"] == 2)
         x, y = self.hold_tip()  # in the left half
         self.key("r")
         self.wait("recording", lambda s: s["recording"])
@@ -112,13 +112,13 @@ class Window(WindowTest):
             self.assertEqual(len(file["twin/time"]), len(file["time"]))
         self.check_rerun_is_the_same(session)
         self.key("p")
-        self.wait("playback of both", lambda s: s["playing"] and s["twin"])
+        self.wait("playback of both", lambda s: s["playing"] and s["shown_lanes"] == 2)
 
     def test_ctrl_b_adds_a_third_coupling_which_is_recorded_and_played(self) -> None:
         self.key("ctrl+b")
-        self.wait("two runs", lambda s: s["lanes"] == 2)
+        self.wait("two runs", lambda s: s["shown_lanes"] == 2)
         self.key("ctrl+b")
-        self.wait("three runs", lambda s: s["lanes"] == 3)
+        self.wait("three runs", lambda s: s["shown_lanes"] == 3)
         self.key("ctrl+b")
         self.wait_for_notice("Three runs are the most")
         x, y = self.hold_tip()
@@ -140,15 +140,15 @@ class Window(WindowTest):
                 numpy.testing.assert_array_equal(file["hand/target"], file[run + "hand/target"])
         self.check_rerun_is_the_same(session)
         self.key("p")
-        self.wait("playback of all", lambda s: s["playing"] and s["lanes"] == 3)
+        self.wait("playback of all", lambda s: s["playing"] and s["shown_lanes"] == 3)
         self.key("shift+b")
         self.wait("one picture", lambda s: s["overlaid"])
         self.key("BackSpace")
-        self.wait("live", lambda s: not s["playing"] and s["lanes"] == 3)
+        self.wait("live", lambda s: not s["playing"] and s["shown_lanes"] == 3)
         self.key("ctrl+shift+b")
-        self.wait("two runs", lambda s: s["lanes"] == 2)
+        self.wait("two runs", lambda s: s["shown_lanes"] == 2)
         self.key("b")
-        self.wait("one run", lambda s: s["lanes"] == 1)
+        self.wait("one run", lambda s: s["shown_lanes"] == 1)
 
 
 if __name__ == "__main__":

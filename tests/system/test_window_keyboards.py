@@ -121,7 +121,7 @@ class Menus(WindowTest):
         self.wait("the space bar to cut the force", lambda s: not s["force"])
         state = self.settled()
         self.assertTrue(state["popup"], "and to take nothing")
-        self.assertEqual((state["scene"], state["dialog"]), (before["scene"], ""))
+        self.assertEqual((state["file"], state["dialog"]), (before["file"], ""))
         self.key("Escape")
         self.wait("no menu", lambda s: not s["popup"])
         self.key("f")

@@ -100,13 +100,13 @@ class Keys(WindowTest):
             self.assertEqual(after[key], before[key], key)
 
     def test_lists_are_chosen_from_by_arrows_and_enter(self) -> None:
-        before = self.settled()["scene"]
+        before = self.settled()["file"]
         self.key("ctrl+g")
         self.wait("the gallery", lambda s: s["dialog"] == "gallery")
         for key in ("Right", "Right", "Right", "Left", "Return"):
             self.key(key)
-        state = self.wait("another scene", lambda s: s["dialog"] == "" and s["scene"] != before)
-        self.assertIn("scenes/", state["scene"])
+        state = self.wait("another scene", lambda s: s["dialog"] == "" and s["file"] != before)
+        self.assertIn("scenes/", state["file"])
         self.key("ctrl+o")
         self.wait("the field", lambda s: s["dialog"] == "open session" and s["typing"])
         self.key("Down")
@@ -247,7 +247,7 @@ class WhatGoesWrong(WindowTest):
         self.assertEqual(state["eta"], eta)
         self.click(*next(b["buttons"]["Open"] for b in state["banners"] if "Open" in b["buttons"]))
         self.wait("the changed scene", lambda s: s["objects"] == 2 and not s["loading"]
-                  and s["scene"].endswith("table-recovered.toml"))
+                  and s["file"].endswith("table-recovered.toml"))
         self.wait("no banner", lambda s: s["banners"] == [])
 
     def test_a_display_that_goes_loses_neither_scene_nor_settings_nor_recording(self) -> None:

@@ -41,14 +41,14 @@ class Energy(WindowTest):
                                      if end in b["buttons"]))
                 self.wait("what was before",
                           lambda s: s["eta"] == before["eta"] and s["kind"] == before["kind"]
-                          and s["hand"] == before["hand"])
+                          and s["hand_settings"] == before["hand_settings"])
                 self.key("BackSpace")
                 self.wait("a new start", lambda s: s["energy_total"] == 0)
 
     def test_what_is_left_broken_is_whole_at_the_next_start(self) -> None:
         before = self.state()
         self.click(*BREAK)
-        self.wait("a stiff grip", lambda s: s["hand"] == {"stiffness": 3000, "damping": 0})
+        self.wait("a stiff grip", lambda s: s["hand_settings"] == {"stiffness": 3000, "damping": 0})
         self.key("ctrl+q", closes=True)
         self.assertEqual(self.app.wait(30), 0)
         self.start()

@@ -78,7 +78,7 @@ class Plots(WindowTest):
         self.assertEqual(len(self.settled()["plots"]), 5)
 
         self.key("b")
-        twin = self.wait("the twin", lambda s: s["twin"] and len(s["plots"][4]["curves"]) == 2)
+        twin = self.wait("the twin", lambda s: s["shown_lanes"] == 2 and len(s["plots"][4]["curves"]) == 2)
         self.assertEqual(len(twin["plots"][3]["curves"]), 2, "two lines of error over torque")
         self.key("b")
         self.restart()

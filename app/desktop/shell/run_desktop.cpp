@@ -15,7 +15,7 @@
 #include "app/desktop/scene/unsaved.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/frame.h"
-#include "app/desktop/shell/print_state.h"
+#include "app/desktop/shell/state.h"
 #include "app/desktop/shell/window.h"
 #include "app/desktop/shell/window_remote.h"
 #include "app/live/rtkit.h"

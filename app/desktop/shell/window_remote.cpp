@@ -9,6 +9,7 @@
 
 #include "app/base/folders.h"
 #include "app/desktop/shell/commands.h"
+#include "app/desktop/shell/state.h"
 #include "app/remote/remote_settings.h"
 #include "app/run/shipped_files.h"
 
@@ -84,7 +85,7 @@ void WindowRemote::saved(std::span<const SavedPicture> pictures) {
 RemoteHost WindowRemote::host() {
   RemoteHost host;
   host.kind = "window";
-  host.state = [this] { return state(); };
+  host.state = [this] { return state_of(d_); };
   host.lanes = [this] { return d_.settings.lanes.count; };
   host.parameters = [this](std::size_t lane) -> const Parameters& {
     return d_.settings.lanes.parameters[lane];
@@ -135,23 +136,6 @@ std::string WindowRemote::last_complaint(const char* otherwise) const {
   const auto& all = d_.notices.all();
   const auto bad = std::find_if(all.rbegin(), all.rend(), [](const Notice& n) { return n.bad; });
   return bad != all.rend() ? bad->text : otherwise;
-}
-
-json WindowRemote::state() const {
-  const Stage& stage = d_.live.stage();
-  const std::string& trouble = d_.live.last_recording().trouble;
-  json state = loop_state(d_.live.loop(), stage.arm());
-  state.update({{"scene", stage.document().title},
-                {"file", d_.document.file()},
-                {"objects", d_.document.scene().objects.size()},
-                {"recording", d_.live.recording()},
-                {"trouble", trouble.empty() ? json() : json(trouble)},
-                {"playing", d_.playback.on()},
-                {"twin", d_.settings.lanes.count > 1},
-                {"lanes", d_.settings.lanes.count},
-                {"blind", d_.blind},
-                {"hand", nullptr}});
-  return state;
 }
 
 void WindowRemote::set(const Parameters& p, std::size_t lane) {
@@ -212,7 +196,7 @@ Answer WindowRemote::open_scene(const fs::path& file) {
     if (d_.document.loader().busy()) return std::nullopt;
     if (&d_.live.stage() == before)
       throw RemoteError(last_complaint("open: the scene did not come"));
-    return state();
+    return state_of(d_);
   });
 }
 
@@ -225,7 +209,7 @@ Answer WindowRemote::open_arm(const fs::path& file, const std::string& tip) {
     hold_limits(d_.settings.parameters(), highest_, d_.live.stage().arm());
     limits_ = limits_of(d_.settings.parameters());
     d_.lead.note_program();
-    return state();
+    return state_of(d_);
   });
 }
 
@@ -236,7 +220,7 @@ Answer WindowRemote::play(const fs::path& file) {
   return Answer::Later([this]() -> std::optional<json> {
     if (d_.playback.loading()) return std::nullopt;
     if (!d_.playback.on()) throw RemoteError(last_complaint("open: the session did not come"));
-    return state();
+    return state_of(d_);
   });
 }
 

@@ -29,7 +29,6 @@ class WindowRemote {
  private:
   RemoteHost host();
   void add_actions(RemoteHost& host);
-  nlohmann::json state() const;
   void set(const Parameters& p, std::size_t lane);
   Answer open(const Keys& keys, LineServer::Client client);
   Answer open_scene(const std::filesystem::path& file);
