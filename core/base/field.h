@@ -246,11 +246,9 @@ void set_number(const Field<Owner>& field, Owner& owner, double number) {
   });
 }
 
-// Holds an owner within what its fields allow. A number that is none becomes the usual one, as does
-// a field that this owner does not have.
+// Holds an owner as below. Never inlined: GCC would take `usual` for uninitialized.
 template <class Table, class Owner>
-void hold_fields(const Table& fields, Owner& owner) {
-  const Owner usual{};
+[[gnu::noinline]] void hold_fields(const Table& fields, Owner& owner, const Owner& usual) {
   for (const Field<Owner>& field : fields) {
     std::visit(
         [&]<class M>(const M& member) {
@@ -271,6 +269,14 @@ void hold_fields(const Table& fields, Owner& owner) {
         },
         field.member);
   }
+}
+
+// Holds an owner within what its fields allow. A number that is none becomes the usual one, as does
+// a field that this owner does not have.
+template <class Table, class Owner>
+void hold_fields(const Table& fields, Owner& owner) {
+  const Owner usual{};
+  hold_fields(fields, owner, usual);
 }
 
 // The entry of a table with this key; null if there is none.
