@@ -174,7 +174,6 @@ class ContactSolve {
 };
 
 extern template class ContactSolve<3>;
-extern template class ContactSolve<7>;
 extern template class ContactSolve<kAnyDof>;
 
 }  // namespace limpid

@@ -208,7 +208,6 @@ class Contacts {
 };
 
 extern template class Contacts<3>;
-extern template class Contacts<7>;
 extern template class Contacts<kAnyDof>;
 
 }  // namespace limpid
