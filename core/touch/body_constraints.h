@@ -55,7 +55,7 @@ struct BodyConstraints {
   }
   auto in_files() const { return std::tie(world_joints, joint_links, springs, joints_between); }
   auto in_files() { return std::tie(world_joints, joint_links, springs, joints_between); }
-  // Those that last, in the order of all().
+  // The order of all() without what comes and goes.
   auto lasting() const { return std::tie(joint_links, springs, world_joints, joints_between); }
 
   static_assert(BodyConstraint<BodyPair> && BodyConstraint<PullLink> &&

@@ -34,7 +34,7 @@ class BodyWorld {
   void begin(double T);
 
   using End = BodyEnd;
-  // As Bodies has them.
+  // Ends of forces on bodies; Bodies says more.
   End end_at(int body, const Vec3& point) const { return bodies_.end_at(body, point); }
   Vec3 velocity(const End& end) const { return bodies_.velocity(end); }
   Mat3 answer(const End& end) const { return bodies_.answer(end); }
