@@ -361,7 +361,6 @@ LawReport PredictiveLaw::Of<N>::report() const {
 }
 
 template class PredictiveLaw::Of<3>;
-template class PredictiveLaw::Of<7>;
 template class PredictiveLaw::Of<kAnyDof>;
 
 }  // namespace limpid

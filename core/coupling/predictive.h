@@ -69,7 +69,6 @@ class PredictiveLaw::Of {
 };
 
 extern template class PredictiveLaw::Of<3>;
-extern template class PredictiveLaw::Of<7>;
 extern template class PredictiveLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -89,7 +89,6 @@ class TankLaw::Of {
 };
 
 extern template class TankLaw::Of<3>;
-extern template class TankLaw::Of<7>;
 extern template class TankLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -47,7 +47,6 @@ class Compensation {
 };
 
 extern template class Compensation<3>;
-extern template class Compensation<7>;
 extern template class Compensation<kAnyDof>;
 
 }  // namespace limpid

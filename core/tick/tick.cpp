@@ -291,7 +291,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
     set(Column::objects_sweeps, world->sweeps());
     set(Column::objects_left_out, world->left_out());
     const auto& magnet = proxy_.contacts().magnet();
-    set(Column::magnet, magnet.on ? magnet.body + 1 : 0);
+    set(Column::magnet, magnet.on() ? magnet.body + 1 : 0);
     set(Column::hand_magnet, in.magnet ? 1 : 0);
     set(Column::hand_pull, in.pull.body + 1);
     std::copy_n(in.pull.point.data(), 3, layout_.in(row, Column::pull_point).begin());
@@ -332,7 +332,6 @@ void Tick<N>::write_contacts(std::span<double> row) const {
 }
 
 template class Tick<3>;
-template class Tick<7>;
 template class Tick<kAnyDof>;
 
 }  // namespace limpid

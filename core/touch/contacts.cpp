@@ -105,7 +105,7 @@ void Contacts<N>::add_mesh_contacts(const Object& mesh, int body, const ArmDescr
 
 template <int N>
 void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, const Vec<N>& x) {
-  magnet_.on = false;
+  magnet_.body = BodyContact::kStill;
   for (MeshContact<N>& contact : meshes_) {
     contact.center = Arm<N>::point(f, contact.link, contact.on_link);
     contact.touch.place(contact.center);
@@ -223,9 +223,8 @@ void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Fram
     if (nearest != BodyContact::kStill) world.attach(nearest, tip);
   }
   magnet_.force.setZero();
-  magnet_.on = world.magnet().body != BodyContact::kStill;
-  if (!magnet_.on) return;
   magnet_.body = world.magnet().body;
+  if (!magnet_.on()) return;
   world.touch(magnet_.body);
   magnet_.at = world.magnet_point();
   magnet_.stretch = tip - magnet_.at;
@@ -246,21 +245,14 @@ void Contacts<N>::follow_bodies() {
 template <int N>
 void Contacts<N>::step_bodies() {
   if (!world_) return;
-  const auto push = [&](int body, const Vec3& point, const Vec3& force) {
-    if (body != BodyContact::kStill) world_->push(world_->end_at(body, point), force);
-  };
-  const auto book = [&](int body, const Vec3& point, const Vec3& force) {
-    if (body != BodyContact::kStill) world_->book(world_->end_at(body, point), force);
-  };
-  const auto all = [&](const auto& each) {
-    for (const Contact<N>& c : list()) each(c.body, c.point, -c.force * c.normal);
-    for (const MeshContact<N>& c : meshes_) each(c.body, c.center, -c.force);
-    if (magnet_.on) each(magnet_.body, magnet_.at, -magnet_.force);
-  };
-  all(push);
+  for_each_of(kinds(), [&](auto& c) {
+    if (c.body != BodyContact::kStill) world_->push(world_->end_at(c.body, c.place()), -c.on_arm());
+  });
   world_->settle();
-  all(book);
-  if (magnet_.on) world_->pulled(magnet_.force);
+  for_each_of(kinds(), [&](auto& c) {
+    if (c.body != BodyContact::kStill) world_->book(world_->end_at(c.body, c.place()), -c.on_arm());
+  });
+  if (magnet_.on()) world_->pulled(magnet_.force);
   world_->finish();
 }
 
@@ -280,93 +272,34 @@ void Contacts<N>::look(MeshContact<N>& contact, const Arm<N>& arm,
   }
   Vec3 x;
   contact.touch.space().project(contact.center, x, contact.active);
-  aim(contact);
-}
-
-// Computes the directions of the planes that push, and the centre's depth along them.
-template <int N>
-void Contacts<N>::aim(MeshContact<N>& contact) {
-  const FreeSpace& space = contact.touch.space();
-  contact.rank = space.basis(contact.active, contact.direction);
-  contact.depth =
-      contact.direction.transpose() * (space.onto(contact.center, contact.active) - contact.center);
+  contact.aim();
 }
 
 template <int N>
 void Contacts<N>::add_to(Mat<N>& A, Vec<N>& b, double T, const ContactShare<N>& share,
                          const Mat<N>& M2) const {
-  const auto spring = [&](const Material& material, double depth, const Vec<N>& gradient) {
-    // Response of tau2 + f2 to a deeper contact, with opposite sign.
-    const Vec<N> answer = material.stiffness * share.of(gradient, M2);
-    A.noalias() += (0.5 * T) * answer * gradient.transpose();
-    b -= depth * answer;
-  };
-  for (const Contact<N>& c : list()) {
-    if (c.touching) spring(c.material, c.depth, c.gradient);
-  }
-  for (const MeshContact<N>& c : meshes_) {
-    for (int i = 0; i < c.rank; ++i) {
-      const Vec<N> gradient = -c.J.transpose() * c.direction.col(i);
-      spring(c.material, c.depth[i], gradient);
-    }
-  }
-  for (int i = 0; magnet_.on && i < 3; ++i) {
-    const Vec<N> gradient = magnet_.J.row(i).transpose();
-    spring(magnet_.material, magnet_.stretch[i], gradient);
-  }
+  for_each_of(kinds(), [&](const auto& c) {
+    c.springs([&](double depth, const Vec<N>& gradient) {
+      // Response of tau2 + f2 to a deeper contact, with opposite sign.
+      const Vec<N> answer = c.material.stiffness * share.of(gradient, M2);
+      A.noalias() += (0.5 * T) * answer * gradient.transpose();
+      b -= depth * answer;
+    });
+  });
 }
 
 template <int N>
 bool Contacts<N>::push(const Vec<N>& vbar, double T, Vec<N>& f2) {
   f2 = Vec<N>::Zero(vbar.size());
   bool settled = true;
-  if (magnet_.on) {
-    const double K = magnet_.material.stiffness;
-    magnet_.force = -K * (magnet_.stretch + 0.5 * T * (magnet_.J * vbar));
-    f2.noalias() += magnet_.J.transpose() * magnet_.force;
-  }
-  for (Contact<N>& c : std::span(contacts_.data(), count_)) {
-    const double depth = c.depth + 0.5 * T * c.gradient.dot(vbar);
-    c.force = c.touching ? c.material.stiffness * depth : 0;
-    f2 -= c.force * c.gradient;
-    settled = settled && (depth > 0) == c.touching;
-  }
-  for (MeshContact<N>& c : meshes_) {
-    c.force.setZero();
-    if (!c.touch.near()) continue;
-    const Vec3 moved = 0.5 * T * (c.J * vbar);
-    for (int i = 0; i < c.rank; ++i) {
-      const Vec3 e = c.direction.col(i);
-      c.force += c.material.stiffness * (c.depth[i] - e.dot(moved)) * e;
-    }
-    if (c.rank > 0) f2.noalias() += c.J.transpose() * c.force;
-    if (c.touch.held()) continue;
-    FreeSpace::Active active;
-    Vec3 x;
-    settled = settled && c.touch.space().project(c.center + moved, x, active) && active == c.active;
-  }
+  for_each_of(magnet_first(), [&](auto& c) { settled = c.press(vbar, T, f2) && settled; });
   return settled;
 }
 
 template <int N>
 bool Contacts<N>::reconsider(const Vec<N>& vbar, double T, bool only_let_go) {
   bool changed = false;
-  for (Contact<N>& c : std::span(contacts_.data(), count_)) {
-    const bool deep = c.depth + 0.5 * T * c.gradient.dot(vbar) > 0;
-    if (deep == c.touching || (deep && only_let_go)) continue;
-    c.touching = deep;
-    changed = true;
-  }
-  for (MeshContact<N>& c : meshes_) {
-    if (!c.touch.near() || c.touch.held()) continue;
-    FreeSpace::Active active;
-    Vec3 x;
-    c.touch.space().project(c.center + 0.5 * T * (c.J * vbar), x, active);
-    if (active == c.active || (only_let_go && active.count >= c.active.count)) continue;
-    c.active = active;
-    aim(c);
-    changed = true;
-  }
+  for_each_of(kinds(), [&](auto& c) { changed = c.reconsider(vbar, T, only_let_go) || changed; });
   return changed;
 }
 
@@ -382,48 +315,38 @@ std::size_t Contacts<N>::forces(std::span<ContactForce> into) const {
       if (hardness(contact) > hardness(weakest)) weakest = contact;
     }
   };
-  for (const Contact<N>& c : list()) {
-    if (c.force > 0 && !c.normal.isZero(0)) take({c.point, c.force * c.normal + c.friction});
-  }
-  for (const MeshContact<N>& c : meshes_) {
-    const double force = c.force.norm();
-    if (force != 0) take({c.touch.anchor() - c.touch.radius() / force * c.force, c.force});
-  }
+  for_each_of(kinds(), [&](const auto& c) {
+    if (const auto felt = c.felt()) take(*felt);
+  });
   return count;
 }
 
 template <int N>
 bool Contacts<N>::engaged() const {
-  if (magnet_.on) return true;
-  const auto pushed = [&](const auto& c) { return !memories_[c.id].push.isZero(0); };
-  return std::ranges::any_of(list(), [&](const auto& c) { return c.depth > 0 || pushed(c); }) ||
-         std::ranges::any_of(meshes_, [&](const auto& c) { return c.rank > 0 || pushed(c); });
+  bool engaged = false;
+  for_each_of(kinds(), [&](const auto& c) {
+    engaged = engaged || c.inside();
+    if constexpr (std::decay_t<decltype(c)>::kRemembers)
+      engaged = engaged || !memories_[c.id].push.isZero(0);
+  });
+  return engaged;
 }
 
 template <int N>
 double Contacts<N>::stored() const {
   double U = 0;
-  if (magnet_.on) U += 0.5 * magnet_.material.stiffness * magnet_.stretch.squaredNorm();
-  const auto friction = [&](const auto& c) {
-    const Vec3& anchor = memories_[c.id].anchor;
-    return 0.5 * friction_stiffness(c.material) * anchor.squaredNorm();
-  };
-  for (const Contact<N>& c : list()) {
-    const double d = std::max(c.depth, 0.0);
-    U += 0.5 * c.material.stiffness * d * d + friction(c);
-  }
-  for (const MeshContact<N>& c : meshes_) {
-    if (!c.touch.near()) continue;
-    Vec3 x = c.touch.anchor();
-    FreeSpace::Active active;
-    if (!c.touch.held()) c.touch.space().project(c.center, x, active);
-    U += 0.5 * c.material.stiffness * (x - c.center).squaredNorm() + friction(c);
-  }
+  for_each_of(magnet_first(), [&](const auto& c) {
+    double in_friction = 0;
+    if constexpr (std::decay_t<decltype(c)>::kRemembers) {
+      const Vec3& anchor = memories_[c.id].anchor;
+      in_friction = 0.5 * friction_stiffness(c.material) * anchor.squaredNorm();
+    }
+    U += c.stored(in_friction);
+  });
   return U;
 }
 
 template class Contacts<3>;
-template class Contacts<7>;
 template class Contacts<kAnyDof>;
 
 }  // namespace limpid

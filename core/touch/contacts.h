@@ -9,8 +9,10 @@
 #include "core/dynamics/arm.h"
 #include "core/math/solve.h"
 #include "core/touch/body_world.h"
-#include "core/touch/mesh_touch.h"
+#include "core/touch/magnet_contact.h"
+#include "core/touch/mesh_contact.h"
 #include "core/touch/scene.h"
+#include "core/touch/wall_contact.h"
 
 namespace limpid {
 
@@ -32,58 +34,6 @@ Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, cons
 Vec3 nearest_on_segment(const Cylinder& cylinder, const Pose& pose, const Vec3& from,
                         const Vec3& to);
 Vec3 nearest_on_segment(const Capsule& capsule, const Pose& pose, const Vec3& from, const Vec3& to);
-
-// A possible contact, linear in the configuration around x2: penetration d(x2 + dx) = depth +
-// gradient . dx, torque -gradient K d where d > 0.
-template <int N>
-struct Contact {
-  double depth = 0;                // [m], or [rad] in joint space; negative: apart
-  Vec<N> gradient;                 // of the depth [m/rad] or [-]
-  Material material;               // in joint space its stiffness is in [N m/rad]
-  Vec3 point = Vec3::Zero();       // on the arm [m]
-  Vec3 normal = Vec3::Zero();      // out of the material; zero in joint space
-  int link = 0;                    // index of the touching link
-  std::size_t id = 0;              // constant for a scene
-  int body = BodyContact::kStill;  // body with this surface
-  bool touching = false;
-  double force = 0;              // over the last tick [N] or [N m]
-  Vec3 friction = Vec3::Zero();  // along the surface, over the last tick [N]
-};
-
-// State of a contact with friction, kept from tick to tick.
-struct ContactMemory {
-  Vec3 push = Vec3::Zero();    // of a wall: its force along x; of a mesh: a vector [N]
-  Vec3 anchor = Vec3::Zero();  // stretch of friction's spring [m]
-  bool slipping = false;
-};
-
-// Largest stiffness of friction's spring [N/m].
-inline constexpr double kStiffestFriction = 2000;
-inline double friction_stiffness(const Material& m) {
-  return std::min(m.stiffness, kStiffestFriction);
-}
-
-// A ball of the arm against a mesh. The nearest x that the mesh leaves free pulls its centre c(x2 +
-// dx) = center + J dx by K (x - c). Within a tick the free places are a room of planes.
-template <int N>
-struct MeshContact {
-  MeshContact(const Object& mesh, double radius, Eigen::Index dof)
-      : touch(mesh, radius), material(mesh.material), J(Jacobian<N>::Zero(3, dof)) {}
-
-  MeshTouch touch;
-  int link = 0;        // index
-  std::size_t id = 0;  // among all contacts
-  int body = BodyContact::kStill;
-  Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
-  Material material;
-  Vec3 center = Vec3::Zero();         // [m]
-  Jacobian<N> J;                      // of the centre
-  FreeSpace::Active active;           // planes that push
-  Mat3 direction = Mat3::Identity();  // orthonormal columns along which it pushes
-  int rank = 0;                       // columns used
-  Vec3 depth = Vec3::Zero();          // along each column, at x2 [m]
-  Vec3 force = Vec3::Zero();          // over the last tick, with friction [N]
-};
 
 // Share of the contacts' torque f2 that acts on the proxy with a law's feedforward:
 //     direct f2 + shared M2 M_L^-1 f2.
@@ -148,18 +98,14 @@ class Contacts {
   const BodyWorld* world() const { return world_.get(); }
   // Sets whether the tip, from the next find() on, holds a magnetic body near it, or lets go.
   void want_magnet(bool on) { magnet_wanted_ = on; }
-  // The magnet's hold over the tick: a spring from the tip to a point of a body.
-  struct Magnet {
-    bool on = false;
-    int body = BodyContact::kStill;
-    Vec3 at = Vec3::Zero();       // the body's point [m]
-    Vec3 stretch = Vec3::Zero();  // stretch of the spring: from `at` to the tip [m]
-    Material material;
-    Jacobian<N> J;              // of the tip
-    Vec3 force = Vec3::Zero();  // on the tip, over the last tick [N]
-  };
-  Magnet& magnet() { return magnet_; }
-  const Magnet& magnet() const { return magnet_; }
+  const MagnetContact<N>& magnet() const { return magnet_; }
+
+  // All kinds of contacts. A new one has a place here and its name in AnyContact. Sums are taken in
+  // these orders, so they decide on the last bits of rows.
+  auto kinds() { return std::tuple(list(), meshes(), std::span(&magnet_, 1)); }
+  auto kinds() const { return std::tuple(list(), meshes(), std::span(&magnet_, 1)); }
+  auto magnet_first() { return std::tuple(std::span(&magnet_, 1), list(), meshes()); }
+  auto magnet_first() const { return std::tuple(std::span(&magnet_, 1), list(), meshes()); }
 
   // Steps the bodies with the forces that push() found, for laws that do not solve for bodies.
   void step_bodies();
@@ -185,7 +131,6 @@ class Contacts {
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const Object& mesh, int body, const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
-  static void aim(MeshContact<N>& contact);
 
   void add_solid(const Shape& shape, const Pose& in_object, const Object& object, int body);
   void follow_bodies();
@@ -201,14 +146,13 @@ class Contacts {
   std::unique_ptr<BodyWorld> world_;
   std::vector<Material> of_bodies_;
   bool magnet_wanted_ = false;
-  Magnet magnet_;
+  MagnetContact<N> magnet_;
   double potential_ = 0;
   double stiffest_ = 0;
   bool rub_ = false;
 };
 
 extern template class Contacts<3>;
-extern template class Contacts<7>;
 extern template class Contacts<kAnyDof>;
 
 }  // namespace limpid

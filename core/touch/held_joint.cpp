@@ -115,9 +115,8 @@ Vec3 HeldJoint::add(const Vec3& change) {
   return left;
 }
 
-std::array<double, 3> HeldJoint::numbers() const {
-  if (ball()) return {friction.x(), friction.y(), friction.z()};
-  return {forces.potential, forces.stop, forces.friction};
+Vec3 HeldJoint::numbers() const {
+  return ball() ? friction : Vec3(forces.potential, forces.stop, forces.friction);
 }
 
 void HeldJoint::finish(double T, const Vec3& speed) {
@@ -138,15 +137,15 @@ void HeldJoint::follow(double sine) {
   }
 }
 
-void HeldJoint::write(std::span<double, kNumbers> into) const {
-  auto* to = into.data();
-  for (const double x : {place, forces.potential, forces.stop, forces.friction, forces.anchor}) {
-    *to++ = x;
-  }
+std::array<double, HeldJoint::kNumbers> HeldJoint::kept() const {
+  std::array<double, kNumbers> all{place, forces.potential, forces.stop, forces.friction,
+                                   forces.anchor};
+  double* to = all.data() + 5;
   for (const Vec3* v : {&friction, &anchor, &damping}) to = std::copy_n(v->data(), 3, to);
+  return all;
 }
 
-void HeldJoint::read(std::span<const double, kNumbers> from) {
+void HeldJoint::read(const double* from) {
   place = from[0];
   forces = {from[1], from[2], from[3], from[4]};
   friction = Vec3(from[5], from[6], from[7]);

@@ -61,7 +61,7 @@ struct HeldJoint {
   // Changes the forces by three numbers, along the joint or in the world. Returns the change of the
   // whole force.
   Vec3 add(const Vec3& change);
-  std::array<double, 3> numbers() const;
+  Vec3 numbers() const;  // of the forces
   // Ends a tick of T in which the sides moved with `speed`.
   void finish(double T, const Vec3& speed);
   // Holds the joint for a tick, with the friction of the last one.
@@ -71,8 +71,8 @@ struct HeldJoint {
   void follow(double sine);
 
   static constexpr std::size_t kNumbers = 14;
-  void write(std::span<double, kNumbers> into) const;
-  void read(std::span<const double, kNumbers> from);
+  std::array<double, kNumbers> kept() const;
+  void read(const double* from);
 };
 
 }  // namespace limpid

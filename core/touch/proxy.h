@@ -106,7 +106,6 @@ class Proxy {
 };
 
 extern template class Proxy<3>;
-extern template class Proxy<7>;
 extern template class Proxy<kAnyDof>;
 
 }  // namespace limpid

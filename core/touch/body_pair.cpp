@@ -1,0 +1,121 @@
+#include "core/touch/body_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/touch/joint_forces.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kFade = 0.05;  // time in which a depth present at the start fades [s]
+
+// F^T W F, number by number in the order of Eigen's sums.
+void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
+  for (int i = 0; i < 3; ++i) {
+    double T[3];
+    for (int j = 0; j < 3; ++j) {
+      T[j] = F(0, i) * W(0, j) + (F(1, i) * W(1, j) + F(2, i) * W(2, j));
+    }
+    for (int j = 0; j < 3; ++j) out(i, j) = T[0] * F(0, j) + (T[1] * F(1, j) + T[2] * F(2, j));
+  }
+}
+
+double stiffness(const BodyContact& contact, const Bodies& bodies) {
+  const double one = bodies.about[Bodies::at(contact.a)].contact_stiffness;
+  return contact.b == BodyContact::kStill
+             ? one
+             : std::min(one, bodies.about[Bodies::at(contact.b)].contact_stiffness);
+}
+
+}  // namespace
+
+void BodyPair::prepare(Bodies& bodies) {
+  BodyContact& c = *contact;
+  end_a = bodies.end_at(a, c.point, c.ball_a);
+  end_b = bodies.end_at(b, c.point, c.ball_b);
+  K = stiffness(c, bodies);
+  // Depth that was not pressed in fades, as fast as the contact's damper pays for it.
+  c.rest = std::max(c.rest, c.depth - c.pressed);
+  c.rest = std::min(c.rest, std::max(0.0, c.depth));
+  if (c.rest > 0) {
+    const double d = std::max(0.0, c.depth - c.rest);
+    const double paid = std::sqrt(d * d + 2 * std::max(0.0, c.lost) / K) - d;
+    c.rest -= std::min(paid, c.rest * std::min(1.0, bodies.T / kFade));
+  }
+  depth = c.depth - c.rest;
+  frame.col(0) = c.normal;
+  frame.col(1) = c.normal.unitOrthogonal();
+  frame.col(2) = c.normal.cross(frame.col(1));
+  Mat3 answer = bodies.answer(end_a);
+  if (end_b.body != BodyContact::kStill) answer += bodies.answer(end_b);
+  turn_into(frame, answer, W);
+  const Material& one = bodies.objects[static_cast<std::size_t>(c.object_a)];
+  const Material& two = bodies.objects[static_cast<std::size_t>(c.object_b)];
+  const double kinetic = std::max(one.friction_kinetic, two.friction_kinetic);
+  const double still = std::max(one.friction_static, two.friction_static);
+  radius = c.slipping ? kinetic : std::max(still, kinetic);
+  const auto restitution = [&](int body) {
+    return body == BodyContact::kStill ? 0.0 : bodies.about[Bodies::at(body)].restitution;
+  };
+  const double m_eff = BodyMotion::kTheta * bodies.T / W(0, 0);
+  B = 2 * damping_ratio(std::max(restitution(a), restitution(b))) * std::sqrt(K * m_eff);
+  // Turns the stored force to the contact's present frame first: a force that no row has would do
+  // unaccounted work.
+  force = c.force;
+  friction.noalias() = frame.rightCols<2>().transpose() * c.friction;
+  anchor.noalias() = frame.rightCols<2>().transpose() * c.anchor;
+  if (radius == 0) friction.setZero();
+  bodies.apply(end_a, end_b, force * c.normal + frame.rightCols<2>() * friction);
+}
+
+double BodyPair::solve(Bodies& bodies) {
+  const double T = bodies.T;
+  const Vec3 v = frame.transpose() * (bodies.velocity(end_a) - bodies.velocity(end_b));
+  const double c = T * W(0, 0);
+  const double F = wall_force({K, B, T, depth, -T * v.x() + c * force, c});
+  const double change = F - force;
+  force = F;
+  bodies.apply(end_a, end_b, change * frame.col(0));
+  if (radius == 0) return std::abs(change);
+  const auto across = frame.rightCols<2>();
+  const Mat2 W_across = W.bottomRightCorner<2, 2>();
+  const Vec2 free =
+      across.transpose() * (bodies.velocity(end_a) - bodies.velocity(end_b)) - W_across * friction;
+  const Vec2 l = friction_force(K, radius * F, anchor, T, free, W_across);
+  const Vec2 more = l - friction;
+  friction = l;
+  bodies.apply(end_a, end_b, across * more);
+  return std::abs(change) + more.norm();
+}
+
+void BodyPair::add(Bodies& bodies, const Vec3& more) {
+  force += more.x();
+  friction += more.tail<2>();
+  bodies.apply(end_a, end_b, frame * more);
+}
+
+void BodyPair::hold(const Bodies&) {
+  force = contact->force;
+  friction = frame.rightCols<2>().transpose() * contact->friction;
+}
+
+void BodyPair::finish(const Bodies& bodies) {
+  BodyContact& c = *contact;
+  c.force = force;
+  c.friction = frame.rightCols<2>() * friction;
+  c.anchor = -c.friction / K;
+  c.slipping = force > 0 && radius > 0 && friction.norm() >= radius * force * (1 - 1e-9);
+  const double D = -bodies.T * frame.col(0).dot(bodies.velocity(end_a) - bodies.velocity(end_b));
+  const double before = std::max(0.0, depth), after = std::max(0.0, depth + D);
+  c.pressed = after;
+  c.lost = force * D - 0.5 * K * (after * after - before * before);
+}
+
+double BodyPair::energy(const BodyContact& c, const Bodies& bodies) {
+  const double d = std::max(0.0, c.depth - c.rest);
+  const Vec3 across = c.anchor - c.normal * c.normal.dot(c.anchor);
+  return 0.5 * stiffness(c, bodies) * (d * d + across.squaredNorm());
+}
+
+}  // namespace limpid

@@ -1,0 +1,81 @@
+#include "core/touch/joint_between.h"
+
+#include "core/math/elementary.h"
+
+namespace limpid {
+
+JointBetween::JointBetween(const Bodies& bodies, int body, int to, std::span<const JointLink> held)
+    : a(body), b(to), links(held) {
+  joint.joint = *bodies.about[Bodies::at(body)].joint;
+  joint.potential = JointPotential(joint.joint.force);
+  const Vec3& along = joint.joint.axis;
+  const Pose there = to == BodyContact::kStill ? Pose::Identity() : bodies[to].pose();
+  axis = there.linear().transpose() * along;
+  across_b = there.linear().transpose() * along.unitOrthogonal();
+  across_a = bodies[body].pose().linear().transpose() * along.unitOrthogonal();
+  center = there.inverse() * bodies[body].center();
+}
+
+void JointBetween::prepare(Bodies& bodies) {
+  follow(bodies);
+  const Vec3 now = bodies.directed(b, axis);
+  joint.along = (now + 0.5 * bodies.T * bodies.spin(b).cross(now)).normalized();
+  const Vec3 at = bodies[a].center();
+  end_a = bodies.end_at(a, at);
+  end_b = bodies.end_at(b, at);
+  JointSide one, two;
+  if (bodies.moves(a)) one.answer = bodies[a].answer();
+  if (bodies.moves(b)) two.answer = bodies[b].answer();
+  one.lever = end_a.lever;
+  two.lever = end_b.lever;
+  std::array<JointHold, 3> holds;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    one.links[i] = links[i].force.end_a.lever;
+    two.links[i] = links[i].force.end_b.lever;
+    holds[i] = {links[i].point.push(bodies.T), links[i].held};
+  }
+  joint.start(joint_answer(joint.turns(), one, two, {holds.data(), links.size()}));
+  push(bodies, joint.force());
+}
+
+double JointBetween::solve(Bodies& bodies) {
+  const Vec3 before = joint.force();
+  const double change = joint.sweep(bodies.T, speed(bodies));
+  push(bodies, joint.force() - before);
+  return change;
+}
+
+void JointBetween::finish(const Bodies& bodies) {
+  if (bodies.moves(a) || bodies.moves(b)) joint.finish(bodies.T, speed(bodies));
+}
+
+void JointBetween::follow(const Bodies& bodies) {
+  if (joint.ball()) return;
+  const Vec3 now = bodies.directed(b, axis);
+  if (!joint.turns()) {
+    const Vec3 way = bodies[a].center() - bodies.place(b, center);
+    joint.follow(now.dot(way) - joint.place);
+    return;
+  }
+  const Vec3 start = bodies.directed(b, across_b);
+  const SineCosine turn = sine_cosine(joint.place);
+  const Vec3 expected = turn.cosine * start + turn.sine * now.cross(start);
+  joint.follow(now.dot(expected.cross(bodies.directed(a, across_a))));
+}
+
+Vec3 JointBetween::speed(const Bodies& bodies) const {
+  if (!joint.turns()) return bodies.velocity(end_a) - bodies.velocity(end_b);
+  const auto turning = [&](int body) {
+    return bodies.moves(body) ? bodies[body].turning() : Vec3(Vec3::Zero());
+  };
+  return turning(a) - turning(b);
+}
+
+void JointBetween::push(Bodies& bodies, const Vec3& force) const {
+  if (!joint.turns()) return bodies.apply(end_a, end_b, force);
+  if (force.isZero(0)) return;
+  bodies.twist(a, force);
+  bodies.twist(b, -force);
+}
+
+}  // namespace limpid

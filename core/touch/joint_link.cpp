@@ -1,0 +1,100 @@
+#include "core/touch/joint_link.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "core/touch/joint_forces.h"
+
+namespace limpid {
+namespace {
+
+// Distance between the points that make a hinge or a slider between bodies [m].
+constexpr double kJointArm = 0.01;
+
+double damping(double K, double T, double directions, const Mat3& W) {
+  const double m_eff = directions * BodyMotion::kTheta * T / W.trace();
+  return 2 * damping_ratio(0) * std::sqrt(K * m_eff);
+}
+
+}  // namespace
+
+void add_links(const Bodies& bodies, int body, int to, std::vector<JointLink>& links) {
+  const BodyJoint& joint = *bodies.about[Bodies::at(body)].joint;
+  const Pose& pose = bodies[body].pose();
+  const auto add = [&](const Vec3& point, bool rail) {
+    JointLink link;
+    link.a = body;
+    link.b = to;
+    link.on_a = point;
+    const Vec3 there = pose * point;
+    link.on_b = to == BodyContact::kStill ? there : bodies[to].pose().inverse() * there;
+    link.point.K = bodies.about[Bodies::at(body)].contact_stiffness;
+    if (rail) link.rail_axis = bodies[to].pose().linear().transpose() * joint.axis;
+    links.push_back(link);
+  };
+  const Vec3 axis = pose.linear().transpose() * joint.axis;
+  if (joint.kind == BodyJoint::Kind::ball) {
+    add(joint.point, false);
+  } else if (joint.kind == BodyJoint::Kind::hinge) {
+    add(joint.point + kJointArm * axis, false);
+    add(joint.point - kJointArm * axis, false);
+  } else {
+    const Vec3 across = pose.linear().transpose() * joint.axis.unitOrthogonal();
+    for (const Vec3& arm : {axis, Vec3(-axis), across}) {
+      add(pose.inverse() * bodies[body].center() + kJointArm * arm, true);
+    }
+  }
+}
+
+void JointLink::prepare(Bodies& bodies) {
+  if (rail_axis) return prepare_rail(bodies);
+  const Vec3 at_a = bodies.place(a, on_a), at_b = bodies.place(b, on_b);
+  force.end_a = bodies.end_at(a, at_a);
+  force.end_b = bodies.end_at(b, at_b);
+  point.stretch = at_a - at_b;
+  const Mat3 W = force.answer(bodies);
+  point.B = damping(point.K, bodies.T, 3, W);
+  point.yield(bodies.T, W);
+  force.apply(bodies);
+}
+
+// Holds the present place, by the point of the other body that is there now.
+void JointLink::prepare_rail(Bodies& bodies) {
+  const double T = bodies.T;
+  const Vec3 at_a = bodies.place(a, on_a);
+  force.end_a = bodies.end_at(a, at_a);
+  force.end_b = bodies.end_at(b, at_a);
+  const Vec3 now = bodies.directed(b, *rail_axis);
+  const Vec3 off_rail = at_a - bodies.place(b, on_b);
+  const Vec3 spin = bodies.spin(b);
+  const auto later = [&](const Vec3& v) { return Vec3(v + 0.5 * T * spin.cross(v)); };
+  const Vec3 axis = later(now).normalized();
+  // The point on b is the one at a's place in the middle of the tick: otherwise the force and its
+  // reaction would turn both.
+  const auto speed = [&](int body) {
+    if (!bodies.moves(body)) return Vec3(Vec3::Zero());
+    const BodyMotion& motion = bodies[body];
+    return Vec3(motion.speed() + motion.spin().cross(at_a - motion.center()));
+  };
+  force.end_b.lever += 0.5 * T * axis * axis.dot(speed(a) - speed(b));
+  held = Mat3::Identity() - axis * axis.transpose();
+  point.stretch = held * later(off_rail - now * now.dot(off_rail));
+  point.W = held * force.answer(bodies) * held;
+  point.B = damping(point.K, T, 2, point.W);
+  const double k = point.push(T);
+  point.give = k * (Mat3::Identity() + k * point.W).inverse() * held;
+  force.on_a = held * force.on_a;
+  force.apply(bodies);
+}
+
+double JointLink::energy(const Bodies& bodies) const {
+  Vec3 apart = bodies.place(a, on_a) - bodies.place(b, on_b);
+  if (rail_axis) {
+    const Vec3 axis = bodies.directed(b, *rail_axis);
+    apart -= apart.dot(axis) * axis;
+  }
+  const double x = apart.norm();
+  return 0.5 * point.K * x * x;
+}
+
+}  // namespace limpid

@@ -1,0 +1,50 @@
+// A force between points of two bodies, or of a body and the world.
+#pragma once
+
+#include <Eigen/LU>
+
+#include "core/touch/bodies.h"
+
+namespace limpid {
+
+struct PointForce {
+  Vec3 on_a = Vec3::Zero();  // [N]
+  BodyEnd end_a, end_b;      // in the tick
+
+  Vec3 speed(const Bodies& bodies) const {  // of the one point relative to the other [m/s]
+    return bodies.velocity(end_a) - bodies.velocity(end_b);
+  }
+  Mat3 answer(const Bodies& bodies) const { return bodies.answer(end_a) + bodies.answer(end_b); }
+  void apply(Bodies& bodies) const { bodies.apply(end_a, end_b, on_a); }
+  double set(Bodies& bodies, const Vec3& force) {  // returns the change [N]
+    const Vec3 change = force - on_a;
+    on_a = force;
+    bodies.apply(end_a, end_b, change);
+    return change.norm();
+  }
+  void add(Bodies& bodies, const Vec3& more) {
+    on_a += more;
+    bodies.apply(end_a, end_b, more);
+  }
+};
+
+// A spring K and damper B that hold a point of one body at a point of the other, found with their
+// own effect: the force is the one in the middle of the tick.
+struct HeldPoint {
+  double K = 0, B = 0;                         // [N/m, N s/m]
+  Vec3 stretch = Vec3::Zero();                 // at the tick's start [m]
+  Mat3 W = Mat3::Zero(), give = Mat3::Zero();  // give: force for a velocity of stretching
+
+  double push(double T) const { return K * T / 2 + B; }  // force for a velocity, without its effect
+  // `answer`: of the stretching's velocity to the force [m/(N s)].
+  void yield(double T, const Mat3& answer) {
+    W = answer;
+    const double k = push(T);
+    give = k * (Mat3::Identity() + k * W).inverse();
+  }
+  Vec3 force(double T, const Vec3& speed, const Vec3& before) const {
+    return -give * (K / push(T) * stretch + speed - W * before);
+  }
+};
+
+}  // namespace limpid

@@ -1,0 +1,32 @@
+#include "core/touch/world_joint.h"
+
+#include <algorithm>
+
+namespace limpid {
+
+double WorldJoint::solve(Bodies& bodies) {
+  BodyMotion& body = bodies[a];
+  AlongJoint now{body.joint(), body.joint_speed(), body.joint_answer()};
+  const double change = sweep_joint(body.of_joint(), body.potential(), bodies.T, now, along);
+  body.set_joint_speed(now.speed);
+  bodies.pushed[Bodies::at(a)] |= along.stop != 0 || along.friction != 0;
+  return change;
+}
+
+void WorldJoint::add(Bodies& bodies, const Vec3& more) {
+  along.potential += more[0];
+  along.stop += more[1];
+  along.friction += more[2];
+  const double change = more[0] + more[1] + more[2];
+  if (change != 0) bodies[a].push_joint(change);
+}
+
+// Without the potential, which is the body's own.
+double WorldJoint::energy(const Bodies& bodies) const {
+  const BodyMotion& body = bodies[a];
+  const BodyJoint& joint = body.of_joint();
+  const double d = std::max({0.0, joint.low - body.joint(), body.joint() - joint.high});
+  return 0.5 * joint.stop_stiffness * (d * d + along.anchor * along.anchor);
+}
+
+}  // namespace limpid
