@@ -85,6 +85,7 @@ void LimitedSolve<N>::stand_still(ContactSolve<N>& contacts, double T, Motion<N>
 }
 
 template struct LimitedSolve<3>;
+template struct LimitedSolve<7>;
 template struct LimitedSolve<kAnyDof>;
 
 }  // namespace limpid

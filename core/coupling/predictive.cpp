@@ -361,6 +361,7 @@ LawReport PredictiveLaw::Of<N>::report() const {
 }
 
 template class PredictiveLaw::Of<3>;
+template class PredictiveLaw::Of<7>;
 template class PredictiveLaw::Of<kAnyDof>;
 
 }  // namespace limpid

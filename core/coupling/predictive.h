@@ -69,6 +69,7 @@ class PredictiveLaw::Of {
 };
 
 extern template class PredictiveLaw::Of<3>;
+extern template class PredictiveLaw::Of<7>;
 extern template class PredictiveLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -23,6 +23,7 @@ Vec<N> ProposedLaw::Of<N>::with_feedforward(double eta, const SpringDamper& p,
 }
 
 template class ProposedLaw::Of<3>;
+template class ProposedLaw::Of<7>;
 template class ProposedLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -36,6 +36,7 @@ class ProposedLaw::Of : public PlainLaw<N> {
 };
 
 extern template class ProposedLaw::Of<3>;
+extern template class ProposedLaw::Of<7>;
 extern template class ProposedLaw::Of<kAnyDof>;
 
 }  // namespace limpid

@@ -61,6 +61,12 @@ template void move_proxy(const SpringDamper&, double, const FromDevice<3>&, cons
 template Vec<3> on_device(const SpringDamper&, const LawInput<3>&, const FromProxy<3>&,
                           const Feedforward<3>&);
 template Vec<3> StandardLaw::Of<3>::step(const Settings&, const LawInput<3>&, Proxy<3>&);
+template Vec<7> couple(const SpringDamper&, const LawInput<7>&, const Feedforward<7>&, Proxy<7>&);
+template void move_proxy(const SpringDamper&, double, const FromDevice<7>&, const Feedforward<7>&,
+                         Proxy<7>&);
+template Vec<7> on_device(const SpringDamper&, const LawInput<7>&, const FromProxy<7>&,
+                          const Feedforward<7>&);
+template Vec<7> StandardLaw::Of<7>::step(const Settings&, const LawInput<7>&, Proxy<7>&);
 template Vec<kAnyDof> couple(const SpringDamper&, const LawInput<kAnyDof>&,
                              const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
 template void move_proxy(const SpringDamper&, double, const FromDevice<kAnyDof>&,

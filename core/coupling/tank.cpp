@@ -85,6 +85,7 @@ double DeviceTank<N>::share(const Vec<N>& torque, const Mat<N>& M, double T) con
 }
 
 template class DeviceTank<3>;
+template class DeviceTank<7>;
 template class DeviceTank<kAnyDof>;
 
 template <int N>
@@ -188,6 +189,7 @@ LawReport TankLaw::Of<N>::report() const {
 }
 
 template class TankLaw::Of<3>;
+template class TankLaw::Of<7>;
 template class TankLaw::Of<kAnyDof>;
 
 }  // namespace limpid

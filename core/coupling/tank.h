@@ -89,6 +89,7 @@ class TankLaw::Of {
 };
 
 extern template class TankLaw::Of<3>;
+extern template class TankLaw::Of<7>;
 extern template class TankLaw::Of<kAnyDof>;
 
 }  // namespace limpid

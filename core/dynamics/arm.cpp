@@ -137,20 +137,28 @@ void Arm<N>::point_jacobian(const FramesOf<S>& f, int link, const Vec3Of<S>& wor
 
 template void Arm<3>::point_jacobian(const FramesOf<double>&, int, const Vec3Of<double>&,
                                      JacobianOf<3, double>&) const;
+template void Arm<7>::point_jacobian(const FramesOf<double>&, int, const Vec3Of<double>&,
+                                     JacobianOf<7, double>&) const;
 template void Arm<3>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                      JacobianOf<3, Pair>&) const;
+template void Arm<7>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                     JacobianOf<7, Pair>&) const;
 template void Arm<kAnyDof>::point_jacobian(const FramesOf<double>&, int, const Vec3Of<double>&,
                                            JacobianOf<kAnyDof, double>&) const;
 template void Arm<kAnyDof>::point_jacobian(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                            JacobianOf<kAnyDof, Pair>&) const;
 template Arm<3>::Angles Arm<3>::turned(const Angles&, const Vec<3>&) const;
+template Arm<7>::Angles Arm<7>::turned(const Angles&, const Vec<7>&) const;
 template Arm<kAnyDof>::Angles Arm<kAnyDof>::turned(const Angles&, const Vec<kAnyDof>&) const;
 template Arm<3>::AnglesOf<Pair> Arm<3>::turned(const Angles&, const VecOf<3, Pair>&) const;
+template Arm<7>::AnglesOf<Pair> Arm<7>::turned(const Angles&, const VecOf<7, Pair>&) const;
 template Arm<kAnyDof>::AnglesOf<Pair> Arm<kAnyDof>::turned(const Angles&,
                                                            const VecOf<kAnyDof, Pair>&) const;
 template void Arm<3>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
+template void Arm<7>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
 template void Arm<kAnyDof>::renew(Eigen::Index, double, AnglesOf<Pair>&) const;
 template class Arm<3>;
+template class Arm<7>;
 template class Arm<kAnyDof>;
 
 // An axis moves with the links before it, S_j' = V x S_j.
@@ -172,8 +180,12 @@ Vec3Of<S> Arm<N>::point_drift(const FramesOf<S>& f, int link, const Vec3Of<S>& w
 
 template Vec3Of<double> Arm<3>::point_drift(const FramesOf<double>&, int, const Vec3Of<double>&,
                                             const VecOf<3, double>&) const;
+template Vec3Of<double> Arm<7>::point_drift(const FramesOf<double>&, int, const Vec3Of<double>&,
+                                            const VecOf<7, double>&) const;
 template Vec3Of<Pair> Arm<3>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
                                           const VecOf<3, Pair>&) const;
+template Vec3Of<Pair> Arm<7>::point_drift(const FramesOf<Pair>&, int, const Vec3Of<Pair>&,
+                                          const VecOf<7, Pair>&) const;
 template Vec3Of<double> Arm<kAnyDof>::point_drift(const FramesOf<double>&, int,
                                                   const Vec3Of<double>&,
                                                   const VecOf<kAnyDof, double>&) const;
@@ -198,6 +210,7 @@ Vec<N> Arm<N>::weight(const Frames& f, const Vec3& gravity) const {
 }
 
 template Vec<3> Arm<3>::weight(const Frames& f, const Vec3& gravity) const;
+template Vec<7> Arm<7>::weight(const Frames& f, const Vec3& gravity) const;
 template Vec<kAnyDof> Arm<kAnyDof>::weight(const Frames& f, const Vec3& gravity) const;
 
 }  // namespace limpid

@@ -166,6 +166,7 @@ class Arm {
 };
 
 extern template class Arm<3>;
+extern template class Arm<7>;
 extern template class Arm<kAnyDof>;
 
 // Values of `field`, one for each joint.

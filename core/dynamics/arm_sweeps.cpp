@@ -197,17 +197,29 @@ void Arm<N>::bias(const FramesOf<S>& f, const Bodies<S>& bodies, const VecOf<N, 
 }
 
 template void Arm<3>::frames(const AnglesOf<double>&, FramesOf<double>&) const;
+template void Arm<7>::frames(const AnglesOf<double>&, FramesOf<double>&) const;
 template void Arm<3>::inertia(const FramesOf<double>&, Bodies<double>&, MatOf<3, double>&) const;
+template void Arm<7>::inertia(const FramesOf<double>&, Bodies<double>&, MatOf<7, double>&) const;
 template void Arm<3>::coriolis(const FramesOf<double>&, const Bodies<double>&,
                                const VecOf<3, double>&, MatOf<3, double>&) const;
+template void Arm<7>::coriolis(const FramesOf<double>&, const Bodies<double>&,
+                               const VecOf<7, double>&, MatOf<7, double>&) const;
 template void Arm<3>::bias(const FramesOf<double>&, const Bodies<double>&, const VecOf<3, double>&,
                            VecOf<3, double>&) const;
+template void Arm<7>::bias(const FramesOf<double>&, const Bodies<double>&, const VecOf<7, double>&,
+                           VecOf<7, double>&) const;
 template void Arm<3>::frames(const AnglesOf<Pair>&, FramesOf<Pair>&) const;
+template void Arm<7>::frames(const AnglesOf<Pair>&, FramesOf<Pair>&) const;
 template void Arm<3>::inertia(const FramesOf<Pair>&, Bodies<Pair>&, MatOf<3, Pair>&) const;
+template void Arm<7>::inertia(const FramesOf<Pair>&, Bodies<Pair>&, MatOf<7, Pair>&) const;
 template void Arm<3>::coriolis(const FramesOf<Pair>&, const Bodies<Pair>&, const VecOf<3, Pair>&,
                                MatOf<3, Pair>&) const;
+template void Arm<7>::coriolis(const FramesOf<Pair>&, const Bodies<Pair>&, const VecOf<7, Pair>&,
+                               MatOf<7, Pair>&) const;
 template void Arm<3>::bias(const FramesOf<Pair>&, const Bodies<Pair>&, const VecOf<3, Pair>&,
                            VecOf<3, Pair>&) const;
+template void Arm<7>::bias(const FramesOf<Pair>&, const Bodies<Pair>&, const VecOf<7, Pair>&,
+                           VecOf<7, Pair>&) const;
 template void Arm<kAnyDof>::frames(const AnglesOf<double>&, FramesOf<double>&) const;
 template void Arm<kAnyDof>::inertia(const FramesOf<double>&, Bodies<double>&,
                                     MatOf<kAnyDof, double>&) const;

@@ -13,6 +13,7 @@ double tip_force(const Vec<N>& tau, const Jacobian<N>& J) {
 }
 
 template double tip_force<3>(const Vec<3>&, const Jacobian<3>&);
+template double tip_force<7>(const Vec<7>&, const Jacobian<7>&);
 template double tip_force<kAnyDof>(const Vec<kAnyDof>&, const Jacobian<kAnyDof>&);
 
 }  // namespace limpid

@@ -52,6 +52,7 @@ struct TorqueLimits {
 };
 
 extern template double tip_force<3>(const Vec<3>&, const Jacobian<3>&);
+extern template double tip_force<7>(const Vec<7>&, const Jacobian<7>&);
 extern template double tip_force<kAnyDof>(const Vec<kAnyDof>&, const Jacobian<kAnyDof>&);
 
 }  // namespace limpid

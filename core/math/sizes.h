@@ -1,7 +1,8 @@
 // Vectors and matrices of n joints, without allocation.
 //
-// Three joints, as most haptic devices have, are known when compiling and cost nothing extra. Any
-// other number up to kMaxDof runs the same code on storage of bounded size.
+// A number of joints known when compiling costs nothing extra: N = 3, the haptic devices people
+// own, and 7, the robot arms beside them. Any other n up to kMaxDof runs the same code on storage
+// of bounded size.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,11 +14,14 @@ namespace limpid {
 inline constexpr int kMaxDof = 32;
 inline constexpr int kAnyDof = Eigen::Dynamic;
 
-// Calls f(N) with a constant N: 3 for three joints, else kAnyDof.
+// Calls f(N) with a constant N: dof where code is compiled for that number, else kAnyDof.
 template <class F>
 decltype(auto) with_dof(int dof, F&& f) {
-  if (dof == 3) return f(std::integral_constant<int, 3>{});
-  return f(std::integral_constant<int, kAnyDof>{});
+  switch (dof) {
+    case 3: return f(std::integral_constant<int, 3>{});
+    case 7: return f(std::integral_constant<int, 7>{});
+    default: return f(std::integral_constant<int, kAnyDof>{});
+  }
 }
 
 template <int N>

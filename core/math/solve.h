@@ -55,7 +55,7 @@ class SymmetricFactor {
     } else {
       factor_ = A;
       over_.resize(factor_.rows(), Eigen::NoChange);
-      wide::factor(factor_.cols(), factor_.data(), over_.data());
+      wide::factor<N>(factor_.cols(), factor_.data(), over_.data());
     }
   }
   template <class B>
@@ -64,7 +64,7 @@ class SymmetricFactor {
       return factor_ * b;
     } else {
       return solve_columns<N>(
-          b, [&](double* x) { wide::solve(factor_.cols(), factor_.data(), over_.data(), x); });
+          b, [&](double* x) { wide::solve<N>(factor_.cols(), factor_.data(), over_.data(), x); });
     }
   }
   // L and the inverses of its blocks of four, for loops that merge this solve with others.
@@ -75,7 +75,7 @@ class SymmetricFactor {
     if constexpr (N == 3) {
       X *= factor_;
     } else {
-      wide::divide(X.cols(), factor_.data(), over_.data(), X.data());
+      wide::divide<N>(X.cols(), factor_.data(), over_.data(), X.data());
     }
   }
 
@@ -107,8 +107,8 @@ class SteadyFactor {
       lower_ = a;
       upper_.resize(lower_.rows(), lower_.cols());
       over_.resize(lower_.rows(), Eigen::NoChange);
-      wide::turn(lower_.cols(), lower_.data(), upper_.data());
-      wide::factor_halves(lower_.cols(), lower_.data(), upper_.data(), over_.data());
+      wide::turn<N>(lower_.cols(), lower_.data(), upper_.data());
+      wide::factor_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data());
     }
   }
   template <class B>
@@ -117,7 +117,7 @@ class SteadyFactor {
       return lower_ * b;
     } else {
       return solve_columns<N>(b, [&](double* x) {
-        wide::solve_halves(lower_.cols(), lower_.data(), upper_.data(), over_.data(), x);
+        wide::solve_halves<N>(lower_.cols(), lower_.data(), upper_.data(), over_.data(), x);
       });
     }
   }
@@ -126,7 +126,7 @@ class SteadyFactor {
     if constexpr (N == 3) {
       X *= lower_;
     } else {
-      wide::divide_halves(X.cols(), lower_.data(), upper_.data(), over_.data(), X.data());
+      wide::divide_halves<N>(X.cols(), lower_.data(), upper_.data(), over_.data(), X.data());
     }
   }
 
@@ -192,8 +192,8 @@ class MovingFactor {
     } else {
       L_ = widened<N>(M);
       over_.resize(L_.rows(), Eigen::NoChange);
-      wide::factor(L_.cols(), L_.data(), over_.data());
-      wide::clear_above(L_.cols(), L_.data());
+      wide::factor<N>(L_.cols(), L_.data(), over_.data());
+      wide::clear_above<N>(L_.cols(), L_.data());
     }
   }
   // Computes S; after compute().
@@ -204,8 +204,8 @@ class MovingFactor {
       S_ = widened<N>(C);
       Wide<N> rate = turned<N>(S_);
       rate += S_;
-      wide::factor_rate(L_.cols(), L_.data(), over_.data(), rate.data());
-      wide::skew_rest(L_.cols(), L_.data(), rate.data(), S_.data());
+      wide::factor_rate<N>(L_.cols(), L_.data(), over_.data(), rate.data());
+      wide::skew_rest<N>(L_.cols(), L_.data(), rate.data(), S_.data());
     }
   }
 
@@ -219,7 +219,7 @@ class MovingFactor {
       return x;
     } else {
       WideVec<N> in = widened_vector<N>(x);
-      wide::solve_transposed(L_.cols(), L_.data(), over_.data(), in.data());
+      wide::solve_transposed<N>(L_.cols(), L_.data(), over_.data(), in.data());
       return in.head(x.size());
     }
   }

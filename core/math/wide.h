@@ -12,23 +12,33 @@ namespace limpid {
 
 constexpr int whole_fours(int n) { return (n + 3) / 4 * 4; }
 template <int N>
+inline constexpr int kWideRows = N == 3 || N == kAnyDof ? N : whole_fours(N);
+template <int N>
 inline constexpr int kMostWideRows = N == 3 ? 3 : whole_fours(kCapacity<N>);
 
 // Wide matrix of n columns, whose rows from n on are zero; an ordinary matrix for three joints.
 template <int N>
-using Wide = Eigen::Matrix<double, N, N, 0, kMostWideRows<N>, kCapacity<N>>;
+using Wide = Eigen::Matrix<double, kWideRows<N>, N, 0, kMostWideRows<N>, kCapacity<N>>;
 // Reciprocals of a factor's diagonal, then the inverses of its blocks of four; of two factors, if
 // Two.
 template <int N, bool Two = false>
-using Diagonal = Eigen::Matrix<double, N, Two ? 9 : 5, 0, kMostWideRows<N>, Two ? 9 : 5>;
+using Diagonal = Eigen::Matrix<double, kWideRows<N>, Two ? 9 : 5, 0, kMostWideRows<N>, Two ? 9 : 5>;
 template <int N>
-using WideVec = Eigen::Matrix<double, N, 1, 0, kMostWideRows<N>, 1>;
+using WideVec = Eigen::Matrix<double, kWideRows<N>, 1, 0, kMostWideRows<N>, 1>;
 
 namespace wide {
 
 using Eigen::Index;
 
-constexpr Index rows(Index n) { return (n + 3) / 4 * 4; }
+// N as in triangular.h: known when compiling, or kByFours.
+template <int N>
+constexpr Index rows(Index n) {
+  return N == kByFours ? (n + 3) / 4 * 4 : whole_fours(N);
+}
+template <int N>
+constexpr Index columns(Index n) {
+  return N == kByFours ? n : N;
+}
 
 // Factors by which columns are subtracted from others: f(c, k) for column k from column c.
 struct Factors {
@@ -38,8 +48,14 @@ struct Factors {
   Factors of_columns_from(Index c) const { return {at + c * by_column, by_column, by_k}; }
 };
 // Factors F(c, k) as stored, or F(k, c).
-[[gnu::always_inline]] inline Factors straight(const double* F, Index n) { return {F, 1, rows(n)}; }
-[[gnu::always_inline]] inline Factors turned(const double* F, Index n) { return {F, rows(n), 1}; }
+template <int N>
+[[gnu::always_inline]] inline Factors straight(const double* F, Index n) {
+  return {F, 1, rows<N>(n)};
+}
+template <int N>
+[[gnu::always_inline]] inline Factors turned(const double* F, Index n) {
+  return {F, rows<N>(n), 1};
+}
 
 // A tile of R times four rows and W columns.
 template <int R, int W>
@@ -122,7 +138,7 @@ template <class Work>
 }
 
 // C -= A F^T; Fresh: C counts as zero before.
-template <bool Fresh>
+template <int N, bool Fresh>
 struct TakeProduct {
   Index n;
   const double* A;
@@ -131,7 +147,7 @@ struct TakeProduct {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     by_eights(0, p, Rows<W>{*this, c, p});
   }
   template <int W>
@@ -143,7 +159,7 @@ struct TakeProduct {
       Tile<R, W> tile;
       if (Fresh) tile.clear();
       if (!Fresh) tile.load(all.C + c * p + r, p);
-      tile.take(all.A + r, p, all.F.of_columns_from(c), 0, all.n);
+      tile.take(all.A + r, p, all.F.of_columns_from(c), 0, columns<N>(all.n));
       tile.store(all.C + c * p + r, p);
     }
   };
@@ -151,7 +167,7 @@ struct TakeProduct {
 
 // X becomes X F^-T, with F's part up to its diagonal (Rising) or from it on. `scale`: reciprocals
 // of F's diagonal; null: that is one.
-template <bool Rising>
+template <int N, bool Rising>
 struct Divide {
   Index n;
   Factors F;
@@ -160,7 +176,7 @@ struct Divide {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     by_eights(0, p, Rows<W>{*this, c, p});
   }
   template <int W>
@@ -177,7 +193,7 @@ struct Divide {
         tile.take(all.X + r, p, f, 0, c);
         tile.finish_rising(f, c, factors);
       } else {
-        tile.take(all.X + r, p, f, c + W, all.n);
+        tile.take(all.X + r, p, f, c + W, columns<N>(all.n));
         tile.finish_falling(f, c, factors);
       }
       tile.store(all.X + c * p + r, p);
@@ -186,7 +202,7 @@ struct Divide {
 };
 
 // Columns c to c + W of a factor X, in rows from r on, divided by the diagonal block.
-template <int W>
+template <int N, int W>
 struct FactorRows {
   Index n, c, p;
   double* X;
@@ -221,14 +237,15 @@ template <int W>
 
 // L, given as A's lower triangle, becomes its lower Cholesky factor; entries above its blocks of
 // four stay as they were.
+template <int N>
 struct FactorSymmetric {
   Index n;
   double *L, *over;  // over: reciprocals of the diagonal, then the inverses of its blocks
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
-    const Factors f = straight(L, n);
+    const Index p = rows<N>(n);
+    const Factors f = straight<N>(L, n);
     Tile<1, W> block;
     block.load(L + c * p + c, p);
     block.take(L + c, p, f.of_columns_from(c), 0, c);
@@ -247,12 +264,13 @@ struct FactorSymmetric {
       over[c + j] = scale[j];
       for (int i = 0; i < W; ++i) L[(c + j) * p + c + i] = l[i][j];
     }
-    by_eights(c + 4, p, FactorRows<W>{n, c, p, L, f, over + c});
+    by_eights(c + 4, p, FactorRows<N, W>{n, c, p, L, f, over + c});
   }
 };
 
 // D, given as Adot's lower triangle, becomes the rate of A's factor L: the derivative of
 // FactorSymmetric.
+template <int N>
 struct FactorRate {
   Index n;
   const double *L, *over;
@@ -260,9 +278,9 @@ struct FactorRate {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
-    const Factors of_L = straight(L, n).of_columns_from(c);
-    const Factors of_D = straight(D, n).of_columns_from(c);
+    const Index p = rows<N>(n);
+    const Factors of_L = straight<N>(L, n).of_columns_from(c);
+    const Factors of_D = straight<N>(D, n).of_columns_from(c);
     Tile<1, W> block;
     block.load(D + c * p + c, p);
     block.take(D + c, p, of_L, 0, c);
@@ -309,6 +327,7 @@ struct FactorRate {
 };
 
 // S, given as C, becomes C - L Ldot^T where that is skew, computed from its upper half.
+template <int N>
 struct SkewRest {
   Index n;
   const double *L, *Ldot;
@@ -316,11 +335,11 @@ struct SkewRest {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     by_eights(c, p, Rows<W>{*this, c, p});
     for (Index j = c; j < c + W; ++j) {
       S[j * p + j] = 0;
-      for (Index i = j + 1; i < n; ++i) S[i * p + j] = -S[j * p + i];
+      for (Index i = j + 1; i < columns<N>(n); ++i) S[i * p + j] = -S[j * p + i];
     }
   }
   template <int W>
@@ -331,7 +350,7 @@ struct SkewRest {
     [[gnu::always_inline]] void operator()(Index r) const {
       Tile<R, W> tile;
       tile.load(all.S + c * p + r, p);
-      tile.take(all.L + r, p, straight(all.Ldot, all.n).of_columns_from(c), 0, c + W);
+      tile.take(all.L + r, p, straight<N>(all.Ldot, all.n).of_columns_from(c), 0, c + W);
       tile.store(all.S + c * p + r, p);
     }
   };
@@ -339,6 +358,7 @@ struct SkewRest {
 
 // L, given as A, and Ut, given as its transpose, become A = L Ut^T with a diagonal of ones in L;
 // entries above their diagonals are arbitrary.
+template <int N>
 struct FactorHalves {
   Index n;
   // over: reciprocals of Ut's diagonal, then the inverses of L's blocks and of Ut's.
@@ -346,8 +366,8 @@ struct FactorHalves {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
-    const Factors of_L = straight(L, n), of_Ut = straight(Ut, n);
+    const Index p = rows<N>(n);
+    const Factors of_L = straight<N>(L, n), of_Ut = straight<N>(Ut, n);
     Tile<1, W> block;
     block.load(L + c * p + c, p);
     block.take(L + c, p, of_Ut.of_columns_from(c), 0, c);
@@ -370,8 +390,8 @@ struct FactorHalves {
     }
     invert_corner<W>(m, ones, over + p + 4 * c);
     invert_corner<W>(ut, scale, over + 5 * p + 4 * c);
-    by_eights(c + 4, p, FactorRows<W>{n, c, p, L, of_Ut, over + c});
-    by_eights(c + 4, p, FactorRows<W>{n, c, p, Ut, of_L, nullptr});
+    by_eights(c + 4, p, FactorRows<N, W>{n, c, p, L, of_Ut, over + c});
+    by_eights(c + 4, p, FactorRows<N, W>{n, c, p, Ut, of_L, nullptr});
   }
 };
 
@@ -386,6 +406,7 @@ struct FactorHalves {
 
 // x, whose rows from n on are zero, becomes L^-1 x, four columns at a time. Each step waits for one
 // product with a block's inverse, not for a chain of its numbers.
+template <int N>
 struct SolveLower {
   Index n;
   const double *L, *corners;  // inverses of the diagonal's blocks
@@ -393,7 +414,7 @@ struct SolveLower {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     const double *const a = L + c * p, *const v = corners + 4 * c;
     Four solved = four(v) * x[c];
     for (int k = 1; k < W; ++k) solved += four(v + 4 * k) * x[c + k];
@@ -406,6 +427,7 @@ struct SolveLower {
   }
 };
 // x becomes L^-T x.
+template <int N>
 struct SolveTransposed {
   Index n;
   const double *L, *corners;
@@ -413,7 +435,7 @@ struct SolveTransposed {
 
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     const double *const a = L + c * p, *const v = corners + 4 * c;
     Four part[4] = {}, sums;
     for (Index i = c + 4; i < p; i += 4) {
@@ -428,13 +450,14 @@ struct SolveTransposed {
 };
 
 // y -= A x, and y -= A^T x.
+template <int N>
 struct TakeTimes {
   Index n;
   const double *A, *x;
   double* y;
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     const double* const a = A + c * p;
     for (Index i = 0; i < p; i += 4) {
       Four taken = four(a + i) * x[c];
@@ -443,13 +466,14 @@ struct TakeTimes {
     }
   }
 };
+template <int N>
 struct TakeTransposedTimes {
   Index n;
   const double *A, *x;
   double* y;
   template <int W>
   [[gnu::always_inline]] void operator()(Index c) const {
-    const Index p = rows(n);
+    const Index p = rows<N>(n);
     const double* const a = A + c * p;
     Four part[4] = {}, sums;
     for (Index i = 0; i < p; i += 4) {
@@ -461,22 +485,24 @@ struct TakeTransposedTimes {
 };
 
 // Clears everything above the diagonal blocks of four.
+template <int N>
 [[gnu::always_inline]] inline void clear_above_in(Index n, double* L) {
-  const Index p = rows(n);
-  for (Index c = 4; c < n; ++c) {
+  const Index p = rows<N>(n);
+  for (Index c = 4; c < columns<N>(n); ++c) {
     for (Index i = 0; i < c / 4 * 4; i += 4) four(L + c * p + i) = Four{};
   }
 }
 
 // B becomes A^T.
+template <int N>
 [[gnu::always_inline]] inline void turn_in(Index n, const double* A, double* B) {
-  const Index p = rows(n);
+  const Index p = rows<N>(n);
   for (Index j = 0; j < p; j += 4) {
     for (Index i = 0; i < p; i += 4) {
       const double* const from = A + j * p + i;
       Four a[4] = {};
       for (Index k = 0; k < 4; ++k) {
-        if (j + k < n) a[k] = four(from + k * p);
+        if (j + k < columns<N>(n)) a[k] = four(from + k * p);
       }
       const Four ab_low = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6);
       const Four ab_high = __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
@@ -487,15 +513,16 @@ struct TakeTransposedTimes {
                          __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
                          __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
       for (Index k = 0; k < 4; ++k) {
-        if (i + k < n) four(B + (i + k) * p + j) = b[k];
+        if (i + k < columns<N>(n)) four(B + (i + k) * p + j) = b[k];
       }
     }
   }
 }
 
 // W becomes A, whose columns have n rows.
+template <int N>
 [[gnu::always_inline]] inline void widen_in(Index n, const double* A, double* W) {
-  const Index p = rows(n), most = n, whole = most / 4 * 4;
+  const Index p = rows<N>(n), most = columns<N>(n), whole = most / 4 * 4;
   for (Index c = 0; c < most; ++c, A += most, W += p) {
     Index i = 0;
     for (; i + 8 <= whole; i += 8) {
@@ -509,33 +536,49 @@ struct TakeTransposedTimes {
   }
 }
 
-// The functions from here on are compiled in wide.cpp.
+// The functions from here on are compiled in wide.cpp, for 7 joints and for any number.
 // C -= A B; C = - A B^T.
+template <int N>
 void take_product(Index n, const double* A, const double* B, double* C);
+template <int N>
 void minus_product_turned(Index n, const double* A, const double* B, double* C);
 // W becomes A, whose columns have n rows.
+template <int N>
 void widen(Index n, const double* A, double* W);
 // B becomes A^T.
+template <int N>
 void turn(Index n, const double* A, double* B);
 // D, given as Adot, becomes the rate of L in A = L L^T; S, given as C, becomes C - L Ldot^T where
 // that is skew.
+template <int N>
 void factor_rate(Index n, const double* L, const double* over, double* D);
+template <int N>
 void skew_rest(Index n, const double* L, const double* Ldot, double* S);
 // Clears everything above the diagonal blocks of four, before products with L.
+template <int N>
 void clear_above(Index n, double* L);
 // x becomes L^-T x.
+template <int N>
 void solve_transposed(Index n, const double* L, const double* over, double* x);
 // A, given in L, becomes L of A = L L^T; or L and Ut of A = L Ut^T as in FactorHalves.
+template <int N>
 void factor(Index n, double* L, double* over);
+template <int N>
 void factor_halves(Index n, double* L, double* Ut, double* over);
 // X becomes X (L L^T)^-1, or X (L Ut^T)^-1.
+template <int N>
 void divide(Index n, const double* L, const double* over, double* X);
+template <int N>
 void divide_halves(Index n, const double* L, const double* Ut, const double* over, double* X);
 // x becomes (L L^T)^-1 x, or (L Ut^T)^-1 x.
+template <int N>
 void solve(Index n, const double* L, const double* over, double* x);
+template <int N>
 void solve_halves(Index n, const double* L, const double* Ut, const double* over, double* x);
 // y -= A x; y -= A^T x.
+template <int N>
 void take_times(Index n, const double* A, const double* x, double* y);
+template <int N>
 void take_turned_times(Index n, const double* A, const double* x, double* y);
 
 }  // namespace wide
@@ -546,7 +589,7 @@ Wide<N> widened(const Mat<N>& A) {
     return A;
   } else {
     Wide<N> W(whole_fours(static_cast<int>(A.rows())), A.cols());
-    wide::widen(A.cols(), A.data(), W.data());
+    wide::widen<N>(A.cols(), A.data(), W.data());
     return W;
   }
 }
@@ -557,7 +600,7 @@ Wide<N> turned(const Wide<N>& A) {
     return A.transpose();
   } else {
     Wide<N> W(A.rows(), A.cols());
-    wide::turn(A.cols(), A.data(), W.data());
+    wide::turn<N>(A.cols(), A.data(), W.data());
     return W;
   }
 }
@@ -579,7 +622,7 @@ void take_product(const Wide<N>& A, const Wide<N>& B, Wide<N>& C) {
   if constexpr (N == 3) {
     C.noalias() -= A * B;
   } else {
-    wide::take_product(A.cols(), A.data(), B.data(), C.data());
+    wide::take_product<N>(A.cols(), A.data(), B.data(), C.data());
   }
 }
 // - A B^T.
@@ -589,7 +632,7 @@ Wide<N> minus_product_turned(const Wide<N>& A, const Wide<N>& B) {
     return -A * B.transpose();
   } else {
     Wide<N> C(A.rows(), A.cols());
-    wide::minus_product_turned(A.cols(), A.data(), B.data(), C.data());
+    wide::minus_product_turned<N>(A.cols(), A.data(), B.data(), C.data());
     return C;
   }
 }
@@ -601,7 +644,7 @@ Vec<N> times(const Wide<N>& A, const Vec<N>& x) {
     return A * x;
   } else {
     WideVec<N> y = WideVec<N>::Zero(A.rows());
-    wide::take_times(x.size(), A.data(), x.data(), y.data());
+    wide::take_times<N>(x.size(), A.data(), x.data(), y.data());
     return -y.head(x.size());
   }
 }
@@ -612,7 +655,7 @@ Vec<N> turned_times(const Wide<N>& A, const Vec<N>& x) {
   } else {
     const WideVec<N> in = widened_vector<N>(x);
     WideVec<N> y = WideVec<N>::Zero(A.rows());
-    wide::take_turned_times(x.size(), A.data(), in.data(), y.data());
+    wide::take_turned_times<N>(x.size(), A.data(), in.data(), y.data());
     return -y.head(x.size());
   }
 }

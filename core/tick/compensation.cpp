@@ -78,6 +78,7 @@ const Vec<N>& Compensation<N>::step(const Parameters& p, const Arm<N>& arm,
 }
 
 template class Compensation<3>;
+template class Compensation<7>;
 template class Compensation<kAnyDof>;
 
 }  // namespace limpid

@@ -47,6 +47,7 @@ class Compensation {
 };
 
 extern template class Compensation<3>;
+extern template class Compensation<7>;
 extern template class Compensation<kAnyDof>;
 
 }  // namespace limpid

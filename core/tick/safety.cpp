@@ -142,6 +142,7 @@ Objections Safety<N>::judge(const DeviceHealth& health, bool diverged, const Dri
 }
 
 template class Safety<3>;
+template class Safety<7>;
 template class Safety<kAnyDof>;
 
 }  // namespace limpid

@@ -64,6 +64,7 @@ class Safety {
 };
 
 extern template class Safety<3>;
+extern template class Safety<7>;
 extern template class Safety<kAnyDof>;
 
 }  // namespace limpid

@@ -332,6 +332,7 @@ void Tick<N>::write_contacts(std::span<double> row) const {
 }
 
 template class Tick<3>;
+template class Tick<7>;
 template class Tick<kAnyDof>;
 
 }  // namespace limpid

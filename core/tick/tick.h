@@ -164,6 +164,7 @@ class Tick {
 };
 
 extern template class Tick<3>;
+extern template class Tick<7>;
 extern template class Tick<kAnyDof>;
 
 // Values of all joints: the setting, or the arm's own where the setting is NaN.

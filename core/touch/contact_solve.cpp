@@ -286,6 +286,7 @@ void ContactSolve<N>::finish(Contacts<N>& contacts) const {
 }
 
 template class ContactSolve<3>;
+template class ContactSolve<7>;
 template class ContactSolve<kAnyDof>;
 
 }  // namespace limpid

@@ -68,6 +68,7 @@ class ContactSolve {
 };
 
 extern template class ContactSolve<3>;
+extern template class ContactSolve<7>;
 extern template class ContactSolve<kAnyDof>;
 
 }  // namespace limpid

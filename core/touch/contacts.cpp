@@ -347,6 +347,7 @@ double Contacts<N>::stored() const {
 }
 
 template class Contacts<3>;
+template class Contacts<7>;
 template class Contacts<kAnyDof>;
 
 }  // namespace limpid

@@ -153,6 +153,7 @@ class Contacts {
 };
 
 extern template class Contacts<3>;
+extern template class Contacts<7>;
 extern template class Contacts<kAnyDof>;
 
 }  // namespace limpid

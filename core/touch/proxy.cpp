@@ -171,6 +171,7 @@ bool Proxy<N>::solve_step(double T, const ProxyDrive<N>& drive) {
 }
 
 template class Proxy<3>;
+template class Proxy<7>;
 template class Proxy<kAnyDof>;
 
 }  // namespace limpid

@@ -106,6 +106,7 @@ class Proxy {
 };
 
 extern template class Proxy<3>;
+extern template class Proxy<7>;
 extern template class Proxy<kAnyDof>;
 
 }  // namespace limpid

@@ -56,7 +56,9 @@ class TouchWorld {
 
  private:
   friend class Rig;
-  std::variant<std::unique_ptr<Contacts<3>>, std::unique_ptr<Contacts<kAnyDof>>> contacts_;
+  std::variant<std::unique_ptr<Contacts<3>>, std::unique_ptr<Contacts<7>>,
+               std::unique_ptr<Contacts<kAnyDof>>>
+      contacts_;
 };
 
 class Rig {
@@ -102,7 +104,7 @@ class Rig {
  private:
   template <int N>
   struct Of;
-  std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<kAnyDof>>> of_;
+  std::variant<std::unique_ptr<Of<3>>, std::unique_ptr<Of<7>>, std::unique_ptr<Of<kAnyDof>>> of_;
 };
 
 // A start at rest with the tip on `target`. Throws std::invalid_argument if it cannot be reached.

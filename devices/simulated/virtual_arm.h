@@ -117,8 +117,10 @@ struct WideSubsteps {
   double *u, *v, *sum_u, *dv;
   int count;
 };
+template <int N>
 void run_substeps(const WideSubsteps& steps);
 // Sets A to `by` A + `answer` J^T J.
+template <int N>
 void stiffen(Eigen::Index n, double by, double answer, const double* J_T, double* A);
 
 // Linearly implicit midpoint rule under one linearization. b takes position and velocity at a
@@ -142,7 +144,7 @@ class LinearSubsteps {
       J_T_.resize(A_.rows(), Eigen::NoChange);
       J_T_.topRows(n) = linear_.J.transpose();
       J_T_.bottomRows(A_.rows() - n).setZero();
-      stiffen(n, 1 / h, d_.answer(h), J_T_.data(), A_.data());
+      stiffen<N>(n, 1 / h, d_.answer(h), J_T_.data(), A_.data());
       A_.diagonal() += 0.5 * d_.damping;
     }
     factor_.compute_wide(A_);
@@ -173,10 +175,10 @@ class LinearSubsteps {
       const WideVec<N> damping = widened_vector<N>(d_.damping);
       WideVec<N> u = widened_vector<N>(at.u), v = widened_vector<N>(at.v);
       WideVec<N> sum_u = widened_vector<N>(at.sum_u), dv(p);
-      run_substeps({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(),
-                    damping.data(), h_, d_.stiffness, d_.along_rate(h_),
-                    d_.force_there(linear_, t + 0.5 * h_), h_ * d_.stiffness * d_.target_rate,
-                    u.data(), v.data(), sum_u.data(), dv.data(), substeps});
+      run_substeps<N>({n, factor_.lower(), factor_.corners(), J_T_.data(), steady.data(),
+                       damping.data(), h_, d_.stiffness, d_.along_rate(h_),
+                       d_.force_there(linear_, t + 0.5 * h_), h_ * d_.stiffness * d_.target_rate,
+                       u.data(), v.data(), sum_u.data(), dv.data(), substeps});
       return {u.head(n), v.head(n), sum_u.head(n)};
     }
   }
@@ -186,7 +188,7 @@ class LinearSubsteps {
   double h_;
   const Linearization<N, double>& linear_;
   Wide<N> A_;
-  Eigen::Matrix<double, N, 3, 0, kMostWideRows<N>, 3> J_T_;
+  Eigen::Matrix<double, kWideRows<N>, 3, 0, kMostWideRows<N>, 3> J_T_;
   SymmetricFactor<N> factor_;
 };
 
@@ -377,8 +379,10 @@ class VirtualDevice final : public Device {
 };
 
 extern template class VirtualDevice<3>;
+extern template class VirtualDevice<7>;
 extern template class VirtualDevice<kAnyDof>;
 extern template class VirtualArm<3>;
+extern template class VirtualArm<7>;
 extern template class VirtualArm<kAnyDof>;
 
 }  // namespace limpid

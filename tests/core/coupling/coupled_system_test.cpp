@@ -35,6 +35,8 @@ void expect_the_dense_solution(int n, unsigned seed) {
 
 TEST(CoupledSystem, HasTheSolutionOfTheWhole) {
   expect_the_dense_solution<3>(3, 51);
+  expect_the_dense_solution<7>(7, 51);
+  expect_the_dense_solution<7, Factor>(7, 51);
   for (const int n : {1, 2, 3, 7, 32}) {
     expect_the_dense_solution<kAnyDof>(n, 52);
     expect_the_dense_solution<kAnyDof, Factor>(n, 52);
@@ -71,6 +73,7 @@ void expect_eigens_solution(int n) {
 
 TEST(Factor, SolvesAsEigenDoes) {
   expect_eigens_solution<3>(3);
+  expect_eigens_solution<7>(7);
   for (const int n : {1, 2, 3, 7, 32}) expect_eigens_solution<kAnyDof>(n);
 }
 

@@ -12,12 +12,13 @@ namespace {
 
 using test::Random;
 
-// Runs with every remainder of a loop by fours as the number of joints, and with three known
-// when compiling.
+// Runs with every remainder of a loop by fours as the number of joints, and with the two compiled
+// sizes.
 template <class F>
 void for_sizes(const F& f) {
   for (int n = 1; n <= kMaxDof; ++n) f(std::integral_constant<int, kAnyDof>{}, n);
   f(std::integral_constant<int, 3>{}, 3);
+  f(std::integral_constant<int, 7>{}, 7);
 }
 
 TEST(Solve, FactorsByTheLowerTriangleAlone) {
