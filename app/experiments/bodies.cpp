@@ -97,10 +97,7 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
   std::vector<std::string> groups;
   for (const BodyClaim& claim : claims) {
     if (claim.group.empty()) continue;
-    if (groups.empty() || groups.back() != claim.group) {
-      const auto found = std::ranges::find(groups, claim.group);
-      if (found == groups.end()) groups.push_back(claim.group);
-    }
+    if (std::ranges::find(groups, claim.group) == groups.end()) groups.push_back(claim.group);
     const auto of_group = [&](const BodyClaim& one) { return one.group == claim.group; };
     const auto place = std::ranges::find(groups, claim.group) - groups.begin();
     const auto many = std::ranges::count_if(claims, of_group);
@@ -145,8 +142,8 @@ Outcome bodies(TrialRunner& lab) {
   outcome.figure.columns = 2;
   FigurePanel swing{.title = "Energy of a pendulum over a minute, " + tick_text(kTicks[0]),
                     .x_label = "time [s]",
-                    .y_label = "energy less that at the start [uJ]",
-                    .series = curves_of(all.curves[0], "pendulum")};
+                    .y_label = "energy, less that at the start [mJ]",
+                    .series = curves_of(all.curves[0], "swings")};
   FigurePanel roll{.title = "Rolling down 20 degrees, " + tick_text(kTicks[0]),
                    .x_label = "time [s]",
                    .y_label = "way [m]"};

@@ -18,6 +18,10 @@ constexpr double kDriftLimit = 0.1;               // [mm]
 constexpr double kEdge = 0.03;                    // of cubes that rest [m]
 constexpr double kCubeMass = 0.05;                // [kg]
 
+void rub(Object& object, double friction) {
+  object.material.friction_static = object.material.friction_kinetic = friction;
+}
+
 // Downhill on ground(slope).
 Vec3 downhill(double slope) { return {std::cos(slope), 0, -std::sin(slope)}; }
 Vec3 uphill_normal(double slope) { return {std::sin(slope), 0, std::cos(slope)}; }
@@ -164,7 +168,7 @@ BodyFindings bounces(double tick) {
   BodyFindings found;
   for (const double mass : {0.001, 0.1, 1.0}) {
     for (const double restitution : {0.0, 0.3, 0.7, 1.0}) {
-      const bool spoiled = restitution < 0.5 || mass < 0.05;
+      const bool spoiled = restitution < 0.5 || (mass < 0.05 && restitution < 1);
       found.claims.push_back(
           {.group = "bounce",
            .what = fmt::format("ball of {} g bounces, restitution {}, {}", 1e3 * mass, restitution,
@@ -176,7 +180,7 @@ BodyFindings bounces(double tick) {
            .relative = false,
            .conditions =
                "Falls 20 cm on a plane, radius 10 mm, contact of 20,000 N/m, no friction.",
-           .fault = spoiled ? spoiled_by(kFirstTickBounces) : ""});
+           .fault = spoiled ? spoiled_by(kBouncesTooHigh) : ""});
     }
   }
   return found;
@@ -258,6 +262,7 @@ BodyFindings tips_over(double tick) {
     scene.add(ground(slope, 1.5));
     scene.add(moving("block", Box{size}, kCubeMass,
                      turned_at(size.z() / 2 * uphill_normal(slope), slope, Vec3::UnitY())));
+    scene.objects.back().body->contact_stiffness = 1e6;
     BodyBench bench(scene, tick);
     bench.keep_awake();
     bench.run(1.5);
@@ -269,14 +274,17 @@ BodyFindings tips_over(double tick) {
     (tips(middle) ? falls : stands) = middle;
   }
   const double degree = radians(1);
-  return {{{.group = "tip",
-            .what = "slope from which on a block tips over, " + tick_text(tick),
-            .unit = "degrees",
-            .expected = tipping(size.x(), size.z()) / degree,
-            .measured = (stands + falls) / 2 / degree,
-            .limit = 2,
-            .conditions = "atan(width / height); a block of 20 x 20 x 40 mm and 50 g, friction "
-                          "1.5, set down at rest, within 1.5 s."}}};
+  return {
+      {{.group = "tip",
+        .what = "slope from which on a block tips over, " + tick_text(tick),
+        .unit = "degrees",
+        .expected = tipping(size.x(), size.z()) / degree,
+        .measured = (stands + falls) / 2 / degree,
+        .limit = 1,
+        .conditions =
+            "atan(width / height); a block of 20 x 20 x 40 mm and 50 g, friction "
+            "1.5, set down at rest on contacts of 1e6 N/m, within 1.5 s. On softer ones it rocks "
+            "and tips earlier."}}};
 }
 
 // Cubes one on the other.
@@ -286,6 +294,7 @@ Scene tower(int cubes) {
   for (int i = 0; i < cubes; ++i) {
     scene.add(moving(fmt::format("cube {}", i + 1), Box{Vec3::Constant(kEdge)}, kCubeMass,
                      pose_at({0, 0, kEdge * (i + 0.5)})));
+    rub(scene.objects.back(), 0.5);
   }
   return scene;
 }
@@ -323,7 +332,7 @@ BodyFindings rests(double tick) {
 BodyFindings stands(double tick) {
   const std::string cubes = fmt::format("Cubes of {} mm and {} g, friction 0.5, kept awake.",
                                         1e3 * kEdge, 1e3 * kCubeMass);
-  return {{{.group = "stack",
+  return {{{.group = "rest",
             .what = "a stack of five cubes rests for a minute, " + tick_text(tick),
             .unit = "mm",
             .expected = 0,
@@ -378,8 +387,7 @@ BodyFindings dominoes(double tick) {
   for (int i = 0; i < kAll; ++i) {
     scene.add(moving(fmt::format("domino {}", i + 1), Box{size}, 0.012,
                      pose_at({kApart * i, 0, size.z() / 2})));
-    Material& material = scene.objects.back().material;
-    material.friction_static = material.friction_kinetic = 0.2;
+    rub(scene.objects.back(), 0.2);
   }
   BodyBench bench(scene, tick);
   bench.run(0.1);

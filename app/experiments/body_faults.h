@@ -11,10 +11,15 @@ inline constexpr BodyFault kRollsThrough{
     "are "
     "new, and depth that nobody pressed in pushes nothing: it is braked, sinks, and goes through "
     "the ground."};
-inline constexpr BodyFault kFirstTickBounces{
+inline constexpr BodyFault kBouncesTooHigh{
     true,
-    "Known fault: the first tick of a contact is stepped by the midpoint rule, which turns the "
-    "speed of a light body around before the contact's damper acts."};
+    "Known fault: the damper of a contact is at most 0.7 of critical, and is chosen as if the "
+    "contact could pull; and the first tick of a contact is stepped by the midpoint rule, which "
+    "turns the speed of a light body around before the damper acts."};
+inline constexpr BodyFault kFastSpinIsOff{
+    true,
+    "Known fault: the midpoint rule of a free spin takes the spin in the middle of the tick from "
+    "its start, not from the tick itself, so angular momentum slowly changes its size."};
 inline constexpr BodyFault kSleepsInMotion{
     true,
     "Known fault: what is slower than 1 mm/s and 0.02 rad/s for half a second falls asleep, also "
@@ -22,7 +27,7 @@ inline constexpr BodyFault kSleepsInMotion{
 inline constexpr BodyFault kRowsTakeEnergy{
     true,
     "Known fault: a body that a joint's links hold is stepped with more weight on the end of the "
-    "tick than on its start, which takes energy."};
+    "tick than on its start, as if it were in contact, which takes energy."};
 inline constexpr BodyFault kJointsDiverge{
     true,
     "Known fault: where a joint between light and heavy bodies meets its stop, the sweeps do not "
