@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTicks[] = {1e-3, 2.5e-4};  // [s]
 
-// What all cases found, tick by tick.
+// Findings of all cases, tick by tick.
 struct AllFindings {
   std::vector<BodyClaim> claims[std::size(kTicks)];
   std::vector<Series> curves[std::size(kTicks)];

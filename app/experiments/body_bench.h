@@ -37,7 +37,7 @@ struct BodyClaim {
   Check check() const;
 };
 
-// What a case found under one tick.
+// Findings of a case under one tick.
 struct BodyFindings {
   std::vector<BodyClaim> claims;
   std::vector<Series> curves = {};  // for figures

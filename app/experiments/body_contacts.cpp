@@ -82,7 +82,7 @@ BodyFindings slides(double tick) {
   return found;
 }
 
-// What rolls, its axis along y.
+// A round body that rolls, its axis along y.
 struct Roller {
   const char* name;
   Shape shape;

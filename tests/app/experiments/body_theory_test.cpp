@@ -56,7 +56,7 @@ TEST(Moments, AreTheSumsOverTheSolid) {
               0.01);
 }
 
-// One step of the classical Runge-Kutta method.
+// A step of the classical Runge-Kutta method.
 using State = Eigen::VectorXd;
 using Change = std::function<State(const State&)>;
 void go_on(State& x, const Change& f, double h) {
