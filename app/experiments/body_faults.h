@@ -24,10 +24,11 @@ inline constexpr BodyFault kSleepsInMotion{
     true,
     "Known fault: what is slower than 1 mm/s and 0.02 rad/s for half a second falls asleep, also "
     "where weight, springs or dampers drive it."};
-inline constexpr BodyFault kRowsTakeEnergy{
+inline constexpr BodyFault kLinksTakeEnergy{
     true,
     "Known fault: a body that a joint's links hold is stepped with more weight on the end of the "
-    "tick than on its start, as if it were in contact, which takes energy."};
+    "tick than on its start, as if it were in contact, and the links' dampers work against every "
+    "stretch: both take energy."};
 inline constexpr BodyFault kJointsDiverge{
     true,
     "Known fault: where a joint between light and heavy bodies meets its stop, the sweeps do not "

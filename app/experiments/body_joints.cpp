@@ -73,7 +73,7 @@ void add_pendulum(double tick, BodyJoint::Kind kind, double amplitude, BodyFindi
     bench.run(1);
     note();
   }
-  const std::string fault = ball ? spoiled_by(kRowsTakeEnergy) : "";
+  const std::string fault = ball ? spoiled_by(kLinksTakeEnergy) : "";
   found.claims.push_back(
       {.group = "swing",
        .what = which + ": period",
@@ -141,7 +141,7 @@ void add_top(double tick, double spin, BodyFindings& found) {
                           .measured = turned / (bench.time() - start),
                           .limit = 2,
                           .conditions = "m g l / (I w); " + of,
-                          .fault = spoiled_by(kRowsTakeEnergy)});
+                          .fault = spoiled_by(kLinksTakeEnergy)});
   found.claims.push_back({.group = "top",
                           .what = which + ": energy",
                           .unit = "J",
@@ -150,7 +150,7 @@ void add_top(double tick, double spin, BodyFindings& found) {
                           .limit = kGained,
                           .relative = false,
                           .conditions = fmt::format("Change of {:.3g} J; {}", energy, of),
-                          .fault = spoiled_by(kRowsTakeEnergy)});
+                          .fault = spoiled_by(kLinksTakeEnergy)});
 }
 
 BodyFindings tops(double tick) {
@@ -260,7 +260,7 @@ BodyFindings chains(double tick) {
             .limit = kGained,
             .relative = false,
             .conditions = "Change; " + of,
-            .fault = spoiled_by(kRowsTakeEnergy)}}};
+            .fault = spoiled_by(kLinksTakeEnergy)}}};
 }
 
 // 125 g on a slider, 3.4 g hinged to them, 240 g hinged to these with stops: light between heavy.
