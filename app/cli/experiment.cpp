@@ -51,8 +51,13 @@ std::vector<const E*> chosen(std::span<const E> known, const std::string& name,
 void print(const std::string& name, const Outcome& outcome) {
   fmt::print("{}: {}\n", name, outcome.passed() ? "passed" : "FAILED");
   for (const Check& c : outcome.checks) {
-    fmt::print("  {}  {}: {:.4g}, bound {:.4g}\n", c.passed ? "ok  " : "FAIL", c.what, c.value,
-               c.bound);
+    const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
+    fmt::print("  {}  {}: {:.4g}, bound {:.4g}", verdict, c.what, c.value, c.bound);
+    if (c.against && c.against->expected) {
+      fmt::print("; {:.6g} {} for {:.6g}", c.against->measured, c.against->unit,
+                 *c.against->expected);
+    }
+    fmt::print("\n");
   }
   std::fflush(stdout);
 }
@@ -61,7 +66,7 @@ void print(const std::string& name, const Outcome& outcome) {
 void note_failures(const std::string& name, const Outcome& outcome,
                    std::vector<std::string>& failed) {
   for (const Check& c : outcome.checks) {
-    if (!c.passed) failed.push_back(fmt::format("{}: {}", name, c.what));
+    if (c.failed()) failed.push_back(fmt::format("{}: {}", name, c.what));
   }
   if (outcome.checks.empty()) failed.push_back(fmt::format("{}: no checks", name));
 }

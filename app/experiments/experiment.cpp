@@ -46,6 +46,7 @@ Outcome mass(TrialRunner& lab);
 Outcome click(TrialRunner& lab);
 Outcome drop(TrialRunner& lab);
 Outcome stack(TrialRunner& lab);
+Outcome bodies(TrialRunner& lab);
 
 namespace {
 
@@ -106,14 +107,27 @@ constexpr std::array kExperiments{
     Experiment{"click", "force of a button felt over its travel", click},
     Experiment{"drop", "a body that falls on the tip, and the energy ledger", drop},
     Experiment{"stack", "stacks of bodies: how far they sink, sweeps, energy", stack},
+    Experiment{"bodies", "motion of bodies against closed forms, errors both ways", bodies},
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& file) {
   nlohmann::ordered_json checks = nlohmann::ordered_json::array();
   for (const Check& c : outcome.checks) {
-    checks.push_back(
-        {{"what", c.what}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}});
+    nlohmann::ordered_json check{
+        {"what", c.what}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}};
+    if (!c.unjudged.empty()) {
+      check["passed"] = nullptr;
+      check["unjudged"] = c.unjudged;
+    }
+    if (c.against) {
+      check["expected"] = nullptr;
+      if (c.against->expected) check["expected"] = *c.against->expected;
+      check["measured"] = c.against->measured;
+      check["unit"] = c.against->unit;
+      check["conditions"] = c.against->conditions;
+    }
+    checks.push_back(check);
   }
   const nlohmann::ordered_json verdict{{"name", name},
                                        {"passed", outcome.passed()},
@@ -136,6 +150,46 @@ std::string verdict(bool passed) {
                 : R"(<span class="failed">✗ failed</span>)";
 }
 
+std::string verdict(const json& check) {
+  const json& passed = check.at("passed");
+  return passed.is_null() ? R"(<span class="soft">measured</span>)" : verdict(passed.get<bool>());
+}
+
+// Rows of checks that compare with theory say in a line of their own under what conditions.
+std::string table(const json& checks) {
+  const bool compares =
+      std::ranges::any_of(checks, [](const json& c) { return c.contains("expected"); });
+  std::string text = "<table><thead><tr><th>Check</th>";
+  if (compares) {
+    text += R"(<th class="number">Expected</th><th class="number">Measured</th>)";
+  }
+  text +=
+      R"(<th class="number">Value</th><th class="number">Bound</th><th class="verdict">Verdict</th>)"
+      "</tr></thead><tbody>\n";
+  const auto cell = [](const std::string& value) {
+    return fmt::format("<td class=\"number\">{}</td>", value);
+  };
+  for (const json& check : checks) {
+    text += "<tr><td>" + escaped(typeset(check.at("what").get<std::string>()));
+    for (const char* words : {"conditions", "unjudged"}) {
+      if (!check.contains(words)) continue;
+      text += fmt::format("<br><span class=\"soft\">{}</span>",
+                          escaped(typeset(check.at(words).get<std::string>())));
+    }
+    text += "</td>";
+    if (compares && check.contains("expected")) {
+      const std::string unit = " " + escaped(typeset(check.value("unit", "")));
+      text += check.at("expected").is_null() ? cell("") : cell(number(check.at("expected")) + unit);
+      text += cell(number(check.at("measured")) + unit);
+    } else if (compares) {
+      text += cell("") + cell("");
+    }
+    text += cell(number(check.at("value"))) + cell(number(check.at("bound")));
+    text += fmt::format("<td class=\"verdict\">{}</td></tr>\n", verdict(check));
+  }
+  return text + "</tbody></table>";
+}
+
 struct Page {
   std::string name, about;
   json verdict;
@@ -156,14 +210,6 @@ std::vector<Page> pages_in(const fs::path& dir) {
 
 std::string section(const Page& page) {
   const json& v = page.verdict;
-  std::string rows;
-  for (const json& check : v.at("checks")) {
-    rows += fmt::format(
-        "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
-        "<td class=\"verdict\">{}</td></tr>\n",
-        escaped(typeset(check.at("what").get<std::string>())), number(check.at("value")),
-        number(check.at("bound")), verdict(check.at("passed").get<bool>()));
-  }
   return fmt::format(
       R"(<section id="{0}">
 <header><h2>{1}</h2>{2}</header>
@@ -171,13 +217,11 @@ std::string section(const Page& page) {
 <figure><img src="{0}.svg" alt="{1}">
 <figcaption>{4} <a href="{0}.csv">data</a>, <a href="{0}.png">picture</a></figcaption></figure>
 <p class="soft">{6}</p>
-<table><thead><tr><th>Check</th><th class="number">Value</th><th class="number">Bound</th>
-<th class="verdict">Verdict</th></tr></thead><tbody>
-{5}</tbody></table>
+{5}
 </section>
 )",
       page.name, escaped(typeset(v.value("title", page.name))), verdict(v.value("passed", false)),
-      escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), rows,
+      escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), table(v.at("checks")),
       escaped(v.value("provenance", "")));
 }
 

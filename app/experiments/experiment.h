@@ -54,12 +54,24 @@ class Conditions {
 struct SweepPlan;
 struct SweepTable;
 
+// A measured value beside the one that theory expects; a check's value is then the error.
+struct Comparison {
+  std::optional<double> expected;  // none: no theory says it, and the check's value is measured
+  double measured = 0;
+  std::string unit;
+  std::string conditions;  // a sentence
+};
+
 // A promise: `value` stands to `bound` in the relation that `what` names.
 struct Check {
   std::string what;
   double value = 0;
   double bound = 0;
   bool passed = false;
+  std::optional<Comparison> against = {};
+  std::string unjudged = {};  // sentence on why the value is only measured; empty: it is judged
+
+  bool failed() const { return !passed && unjudged.empty(); }
 };
 
 inline Check at_most(std::string what, double value, double bound) {
@@ -83,7 +95,7 @@ struct Outcome {
   std::vector<Check> checks;
   bool passed() const {
     for (const Check& c : checks) {
-      if (!c.passed) return false;
+      if (c.failed()) return false;
     }
     return !checks.empty();
   }
@@ -139,11 +151,12 @@ class TrialRunner {
   // Runs all points of a plan. Errors: Cancelled, std::runtime_error.
   SweepTable sweep(const SweepPlan& plan);
 
- private:
   // Calls `work` for each index below `count`, on all cores.
   void each(std::size_t count, const std::function<void(std::size_t)>& work);
-  TrialResult run_one(const Trial& trial) const;
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+ private:
+  TrialResult run_one(const Trial& trial) const;
 
   std::string experiment_;
   Options options_;

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import math
 import operator
+import re
 import shutil
 import subprocess
 import unittest
@@ -21,6 +22,64 @@ STEPS = ("exact encoders", "encoders of 1e-05 rad", "encoders of 0.0001 rad")
 PUSHED = "predictive, pushed with 8 N, motors of 0.4 N m"
 TAPPED = "5000 N/m, eta 0.3 to 1, hand of"
 EVERY_MODEL = "with the model's inertia times"
+
+
+
+def _of_bodies(tick: str) -> list[tuple[str, object, float]]:
+    """Errors of bodies that move, under one tick."""
+    now = f", tick {tick} ms"
+    rows = [(f"slides at {slope} degrees, friction {friction}{now}: error [%]", 2)
+            for slope, friction in ((15, 0.2), (30, 0.2), (30, 0.5), (45, 0.5))]  # fmt: skip
+    rows.append((f"stays at 0.99 of the friction angle{now}: error [mm]", 0.1))
+    rows += [(f"{what} rolls at {slope} degrees{now}: error [%]", bound)
+             for what, bound in (("ball", 2), ("cylinder", 1), ("capsule", 2))
+             for slope in (5, 15, 30)]  # fmt: skip
+    rows += [(f"ball of {mass} g bounces, restitution {part}{now}: error [of its speed]",
+              0.03 if part else 0.02)
+             for mass in (1, 100, 1000) for part in (0, 0.3, 0.7, 1)]  # fmt: skip
+    for mass, part in ((50, 1), (50, 0.7), (100, 1), (100, 0.7)):
+        hit = f"50 g hit {mass} g, restitution {part}{now}"
+        rows.append((f"{hit}: momentum after they met: error [%]", 1e-6))
+        rows += [(f"{hit}: speed of the {side} ball after all impacts: error [m/s]", 0.03)
+                 for side in ("left", "right")]  # fmt: skip
+        rows.append((f"{hit}: energy after all impacts: error [mJ]", 1.5))
+    rows += [(f"slope from which on a block tips over{now}: error [%]", 1),
+             (f"a cube rests for ten minutes{now}: error [mm]", 0.1),
+             (f"a stack of five cubes rests for a minute{now}: error [mm]", 0.1),
+             (f"spin of a grain of 10 mg at rest{now}: error [rad/s]", 0.02),
+             (f"falls under a ten thousandth of weight{now}: error [%]", 2),
+             (f"dominoes fall{now} [m/s]", 0)]  # fmt: skip
+    for joint in ("hinge", "ball joint"):
+        for amplitude in (0.1, 2.5):
+            swing = f"pendulum on a {joint}, amplitude {amplitude} rad{now}"
+            rows += [(f"{swing}: period: error [%]", 0.1),
+                     (f"{swing}: energy after a minute: error [J]", 1e-6)]  # fmt: skip
+    for spin in (100, 300):
+        rows += [(f"top with {spin} rad/s{now}: precession: error [%]", 2),
+                 (f"top with {spin} rad/s{now}: energy: error [J]", 1e-6)]  # fmt: skip
+    for spin in (12, 60):
+        slab = f"slab tumbles with {spin} rad/s{now}"
+        rows += [(f"{slab}: its fifth turning over: error [%]", 0.5),
+                 (f"{slab}: energy after ten seconds: error [%]", 1e-4),
+                 (f"{slab}: angular momentum after ten seconds, off by: error [of it]", 0.005)]  # fmt: skip
+    rows += [(f"{what}{now}: error [J]", 1e-6)
+             for what in ("chain of three links, most energy gained",
+                          "chain of three links, energy at the end",
+                          "light link between heavy ones at a stop, most energy gained",
+                          "flipper of 10 mg at its stop, most energy gained")]  # fmt: skip
+    rows += [(f"{what}{now}: error [%]", 0.5)
+             for what in ("drawer with a damper, way after 0.25 s",
+                          "drawer with a damper, way after 1 s",
+                          "drawer that closes softly, way after a minute")]  # fmt: skip
+    return [(what, AT_MOST, bound) for what, bound in rows]
+
+
+# Rows of bodies that a known fault spoils, or that no theory judges: they are only measured.
+UNJUDGED = re.compile(
+    "cylinder rolls|capsule rolls|bounces, restitution 0(.3)?,|ball of 1 g bounces, restitution 0.7,"
+    "|spin of a grain|falls under a ten thousandth|dominoes fall|top with"
+    "|ball joint, amplitude 2.5|ball joint, .*energy|60 rad/s, tick 1 ms: its fifth"
+    "|links, energy at the end|light link between heavy|flipper .*tick 1 ms|closes softly")
 
 # name: (what, relation, bound) of each check, in order
 PROMISES = {
@@ -252,6 +311,11 @@ PROMISES = {
             ("ticks for which the proxy stood still", 0),
             ("force at the end off that of all springs in a row, of it", 0.02))
     ],
+    "bodies": [
+        *(promise for tick in ("1", "0.25") for promise in _of_bodies(tick)),
+        *((f"ball beside an arm in the ordinary loop, off the one by itself, tick {tick} ms [m]",
+           AT_MOST, 1e-9) for tick in ("1", "0.25")),
+    ],
 }  # fmt: skip
 # Promises of every experiment.
 for promises in PROMISES.values():
@@ -295,7 +359,11 @@ class AllExperiments(SystemTest):
             for check, (what, holds, bound) in zip(self.verdict(name)["checks"], promised):
                 with self.subTest(what):
                     self.assertTrue(math.isfinite(check["value"]))
-                    self.assertIs(check["passed"], holds(check["value"], bound))
+                    if name == "bodies" and UNJUDGED.search(what):
+                        self.assertIsNone(check["passed"])
+                        self.assertTrue(check["unjudged"])
+                    else:
+                        self.assertIs(check["passed"], holds(check["value"], bound))
 
     def test_each_leaves_its_files_and_a_report_of_all(self) -> None:
         for name in PROMISES:

@@ -227,13 +227,22 @@ fs::path ExperimentsPanel::draw_verdict(Verdict& verdict) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextWrapped("%s", check.what.c_str());
+      for (const std::string& words :
+           {check.against ? check.against->conditions : "", check.unjudged}) {
+        if (words.empty()) continue;
+        ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+        ImGui::TextWrapped("%s", words.c_str());
+        ImGui::PopStyleColor();
+      }
       ImGui::TableNextColumn();
       ImGui::Text("%.4g", check.value);
       ImGui::TableNextColumn();
       ImGui::Text("%.4g", check.bound);
       ImGui::TableNextColumn();
-      ImGui::TextColored(colour_vector(check.passed ? colours.muted : colours.broken), "%s",
-                         check.passed ? "passed" : "failed");
+      ImGui::TextColored(colour_vector(check.failed() ? colours.broken : colours.muted), "%s",
+                         !check.unjudged.empty() ? "measured"
+                         : check.passed          ? "passed"
+                                                 : "failed");
     }
     ImGui::EndTable();
   }

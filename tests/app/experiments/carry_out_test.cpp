@@ -72,6 +72,50 @@ TEST_F(CarryOut, CallsAValueThatIsNotFiniteAFailure) {
   EXPECT_EQ(nlohmann::json::parse(read(dir_ / "broken.json")).at("passed"), false);
 }
 
+Outcome spoiled(TrialRunner& lab) {
+  Outcome outcome = sound(lab);
+  Check judged = at_most("roll: error [%]", 0.5, 1);
+  judged.against = Comparison{4, 4.02, "m/s^2", "A ball."};
+  Check known = at_most("bounce: error [%]", 30, 1);
+  known.against = Comparison{0.1, 0.13, "of it", "Another ball."};
+  known.unjudged = "Known fault: it bounces.";
+  outcome.checks = {judged, known};
+  return outcome;
+}
+
+// A row that a known fault spoils is neither passed nor failed, and says why.
+TEST_F(CarryOut, MeasuresAndDoesNotJudgeWhatAKnownFaultSpoils) {
+  const Outcome outcome = carry_out({"inertia", "about", spoiled}, in(dir_));
+  EXPECT_TRUE(outcome.passed());
+  const auto verdict = nlohmann::json::parse(read(dir_ / "inertia.json"));
+  EXPECT_EQ(verdict.at("passed"), true);
+  EXPECT_EQ(verdict.at("checks")[0], (nlohmann::json{{"what", "roll: error [%]"},
+                                                     {"value", 0.5},
+                                                     {"bound", 1.0},
+                                                     {"passed", true},
+                                                     {"expected", 4.0},
+                                                     {"measured", 4.02},
+                                                     {"unit", "m/s^2"},
+                                                     {"conditions", "A ball."}}));
+  EXPECT_EQ(verdict.at("checks")[1].at("passed"), nullptr);
+  EXPECT_EQ(verdict.at("checks")[1].at("unjudged"), "Known fault: it bounces.");
+  write_report(dir_);
+  const std::string html = read(dir_ / "report.html");
+  EXPECT_THAT(html, HasSubstr("Known fault: it bounces."));
+  EXPECT_THAT(html, HasSubstr("4.02 m/s²"));
+  EXPECT_THAT(html, HasSubstr("A ball."));
+  EXPECT_THAT(html, HasSubstr("measured"));
+}
+
+TEST_F(CarryOut, FailsWhereARowFailsBesideOneThatIsOnlyMeasured) {
+  const auto fails = [](TrialRunner& lab) {
+    Outcome outcome = spoiled(lab);
+    outcome.checks[0].passed = false;
+    return outcome;
+  };
+  EXPECT_FALSE(carry_out({"inertia", "about", fails}, in(dir_)).passed());
+}
+
 Outcome runs_away(TrialRunner& lab) {
   Parameters p;
   p.eta = 0.05;

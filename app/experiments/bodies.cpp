@@ -1,0 +1,163 @@
+// Motion of bodies against closed forms: how far it is off, to both sides.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/experiments/body_bench.h"
+#include "app/experiments/signals.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kTicks[] = {1e-3, 2.5e-4};  // [s]
+
+// Findings of all cases, tick by tick.
+struct AllFindings {
+  std::vector<BodyClaim> claims[std::size(kTicks)];
+  std::vector<Series> curves[std::size(kTicks)];
+};
+
+AllFindings find_all(TrialRunner& lab) {
+  std::vector<BodyCase> cases = cases_with_contacts();
+  const std::vector<BodyCase> more = cases_with_joints();
+  cases.insert(cases.end(), more.begin(), more.end());
+  constexpr std::size_t kEach = std::size(kTicks);
+  std::vector<BodyFindings> found(kEach * cases.size());
+  lab.each(found.size(), [&](std::size_t i) {
+    if (lab.stopped()) throw Cancelled();
+    found[i] = cases[i / kEach].find(kTicks[i % kEach]);
+  });
+  AllFindings all;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::ranges::move(found[i].claims, std::back_inserter(all.claims[i % kEach]));
+    std::ranges::move(found[i].curves, std::back_inserter(all.curves[i % kEach]));
+  }
+  return all;
+}
+
+// A ball that rolls, out of the arm's reach.
+SceneDocument rolling_ball() {
+  SceneDocument document;
+  document.title = "Ball on a slope";
+  document.about = "A ball rolls down ten degrees.";
+  const double slope = radians(10);
+  const Vec3 foot(1, 0, 0), up(std::sin(slope), 0, std::cos(slope));
+  Object plane = ground(slope, 0.9);
+  plane.pose = pose_at(foot);
+  document.scene.add(plane);
+  document.scene.add(moving("ball", Sphere{0.02}, 0.05, pose_at(foot + 0.02 * up)));
+  return document;
+}
+
+// Bodies by themselves beside the same ones in the ordinary loop, with an arm [m].
+std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
+  constexpr double kSeconds = 1;
+  std::vector<Trial> trials;
+  for (const double tick : kTicks) {
+    Parameters p;
+    p.tick = tick;
+    const HandPath hand =
+        hand_path("stays", tick, kSeconds, [](double) { return Vec3(0.18, 0, 0); });
+    RunPlan plan = plan_in("title = \"\"\nabout = \"\"\n", hand, p);
+    plan.document = rolling_ball();
+    plan.document.toml = scene_text(plan.document, plan.arm);
+    trials.push_back({fmt::format("rolling-ball-{:.4g}-ms", 1e3 * tick), plan});
+  }
+  std::vector<Check> checks;
+  const std::vector<TrialResult> results = lab.run(trials);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    BodyBench bench(rolling_ball().scene, kTicks[i]);
+    const Session& s = results[i].session;
+    double off = 0;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const auto pose = s.at(k, Column::body_pose);
+      off = worse(off, (Vec3(pose[0], pose[1], pose[2]) - bench.world().center(0)).norm());
+      bench.step();
+    }
+    checks.push_back(at_most(
+        fmt::format("ball beside an arm in the ordinary loop, off the one by itself, {} [m]",
+                    tick_text(kTicks[i])),
+        off, 1e-9));
+  }
+  return checks;
+}
+
+// Error over limit of every claim, those of one kind in a column.
+FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
+  FigurePanel panel{.title = "Errors over their limits, " + tick_text(tick),
+                    .x_label = "what moves",
+                    .y_label = "error over limit [-]",
+                    .log_y = true,
+                    .y_range = std::pair(1e-4, 1e4)};
+  Series more{"more than right", kContactInk, Series::Style::points, {}};
+  Series less{"less than right", kProxyInk, Series::Style::points, {}};
+  Series known{"a known fault, not judged", kNeutralInk, Series::Style::points, {}};
+  std::vector<std::string> groups;
+  for (const BodyClaim& claim : claims) {
+    if (claim.group.empty()) continue;
+    if (std::ranges::find(groups, claim.group) == groups.end()) groups.push_back(claim.group);
+    const auto of_group = [&](const BodyClaim& one) { return one.group == claim.group; };
+    const auto place = std::ranges::find(groups, claim.group) - groups.begin();
+    const auto many = std::ranges::count_if(claims, of_group);
+    const auto before = std::count_if(claims.data(), &claim, of_group);
+    const double x = static_cast<double>(place) +
+                     0.8 * ((static_cast<double>(before) + 0.5) / static_cast<double>(many) - 0.5);
+    const double by = std::clamp(std::abs(claim.error()) / claim.limit, 1.2e-4, 0.8e4);
+    Series& series = !claim.fault.empty() ? known : claim.error() > 0 ? more : less;
+    series.points.push_back({x, by});
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    panel.x_ticks.emplace_back(static_cast<double>(i), groups[i]);
+  }
+  const double end = static_cast<double>(groups.size()) - 0.5;
+  panel.x_range = std::pair(-0.5, end);
+  panel.series = {Series{"limit", kHandInk, Series::Style::dashed, {{-0.5, 1}, {end, 1}}}, more,
+                  less, known};
+  return panel;
+}
+
+// The curves whose label begins like this, or that follow one of them without a label.
+std::vector<Series> curves_of(const std::vector<Series>& curves, std::string_view begin) {
+  std::vector<Series> some;
+  bool within = false;
+  for (const Series& curve : curves) {
+    if (!curve.label.empty()) within = curve.label.starts_with(begin);
+    if (within) some.push_back(curve);
+  }
+  return some;
+}
+
+}  // namespace
+
+Outcome bodies(TrialRunner& lab) {
+  Outcome outcome;
+  const AllFindings all = find_all(lab);
+  for (const auto& claims : all.claims) {
+    for (const BodyClaim& claim : claims) outcome.checks.push_back(claim.check());
+  }
+  for (const Check& check : same_as_in_the_loop(lab)) outcome.checks.push_back(check);
+  outcome.figure.title = "Motion of bodies against closed forms";
+  outcome.figure.columns = 2;
+  FigurePanel swing{.title = "Energy of a pendulum over a minute, " + tick_text(kTicks[0]),
+                    .x_label = "time [s]",
+                    .y_label = "energy, less that at the start [mJ]",
+                    .series = curves_of(all.curves[0], "swings")};
+  FigurePanel roll{.title = "Rolling down 20 degrees, " + tick_text(kTicks[0]),
+                   .x_label = "time [s]",
+                   .y_label = "way [m]"};
+  for (const char* name : {"ball", "cylinder", "capsule"}) {
+    for (const Series& curve : curves_of(all.curves[0], name)) roll.series.push_back(curve);
+  }
+  outcome.figure.panels = {errors_panel(all.claims[0], kTicks[0]),
+                           errors_panel(all.claims[1], kTicks[1]), swing, roll};
+  outcome.figure.caption =
+      "Bodies without an arm, stepped as the loop steps them. First row: every check's error over "
+      "its limit, under two ticks; what is off the axis is drawn at its end, and grey is what a "
+      "known fault spoils, which is measured and not judged. Rolling: solid as simulated, dashed "
+      "as right.";
+  return outcome;
+}
+
+}  // namespace limpid
