@@ -60,7 +60,9 @@ inline std::vector<DrawnText> drawn_texts() {
   for (int n = 0; n < data.CmdListsCount; ++n) {
     const ImDrawList& list = *data.CmdLists[n];
     for (const ImDrawCmd& command : list.CmdBuffer) {
-      if (command.UserCallback != nullptr) continue;
+      if (command.UserCallback != nullptr || command.TextureId != ImGui::GetIO().Fonts->TexID) {
+        continue;
+      }
       double pen = 0, line = 0;  // where the next letter of this text would stand
       const ImFont* font = nullptr;
       const auto vertex = [&](unsigned i) -> const ImDrawVert& {
@@ -83,8 +85,8 @@ inline std::vector<DrawnText> drawn_texts() {
                                                (glyph->Y1 - glyph->Y0));
         const double space = scale * of->FindGlyph(' ')->AdvanceX;
         const double gap = (left - pen) / space;
-        const bool goes_on = font == of && std::abs(top - line) < 1 && gap > -0.2 && gap < 3.2 &&
-                             std::abs(gap - std::round(gap)) < 0.15 && a.col == all.back().colour;
+        const bool goes_on = font == of && std::abs(top - line) < 1 && gap > -0.05 && gap < 3.05 &&
+                             std::abs(gap - std::round(gap)) < 0.05 && a.col == all.back().colour;
         if (!goes_on) {
           all.push_back({"", list._OwnerName != nullptr ? list._OwnerName : "", a.pos, b.pos,
                          command.ClipRect, a.col});

@@ -133,7 +133,7 @@ TEST_F(Work, OfAnExperimentHasItsOwnWorld) {
 
 constexpr const char* kStory = R"(title = "Short"
 scene = "table.toml"
-seconds = 0.3
+seconds = 0.4
 [[step]]
 time = 0
 caption = "Two laws."
@@ -148,16 +148,16 @@ caption = "Later."
 TEST_F(Work, OfAStoryTellsItsSteps) {
   write("short.toml", kStory);
   EXPECT_EQ(done({"story", "short.toml", "--check"}),
-            "  0.0 to   0.2 s  Two laws.\n  0.2 to   0.3 s  Later.\n");
+            "  0.0 to   0.2 s  Two laws.\n  0.2 to   0.4 s  Later.\n");
   const std::string told = done({"story", "short.toml", "--record", "short.h5"});
   EXPECT_THAT(told, StartsWith("0.0 to 0.2 s  Two laws.\n    standard "));
   EXPECT_THAT(told, ContainsRegex("\n    predictive +\\|x_E\\| up to [0-9.e-]+ mrad, \\|f1\\| "));
-  EXPECT_THAT(told, HasSubstr("\n0.2 to 0.3 s  Later.\n"));
-  EXPECT_THAT(told, EndsWith("recorded 300 ticks of both runs in short.h5\n"));
+  EXPECT_THAT(told, HasSubstr("\n0.2 to 0.4 s  Later.\n"));
+  EXPECT_THAT(told, EndsWith("recorded 400 ticks of both runs in short.h5\n"));
   EXPECT_THAT(done({"info", "short.h5"}), HasSubstr("story                    Short, 2 steps\n"));
   EXPECT_THAT(refused({"story", "short.toml", "--record", "short.h5"}), HasSubstr("short.h5"));
   EXPECT_THAT(done({"story", "short.toml", "--record", "short.h5", "--force"}),
-              HasSubstr("300 ticks"));
+              HasSubstr("400 ticks"));
   EXPECT_GT(lines_of(done({"story", "--check"})).size(), 5u) << "the one that comes along";
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <memory>
@@ -126,13 +127,17 @@ class WholeWindow : public testing::Test {
     }
     return all;
   }
+  // The same in one line, as a sentence may stand in several.
+  static std::string sentences(const std::string& in = "") {
+    std::string all = words(in);
+    std::ranges::replace(all, '\n', ' ');
+    return all;
+  }
   void click(const std::string& text, const std::string& in = "") {
     const auto found = find(text, in);
     ASSERT_TRUE(found) << text << " is not there:\n" << words(in);
     click(found->middle());
   }
-  // Opens a folded section of the panel at the right.
-  void unfold(const std::string& title) { click(title); }
   // Returns what the tooltip of a text says; empty for none.
   std::string hint(const std::string& text, const std::string& in = "") {
     const auto found = find(text, in);

@@ -188,32 +188,16 @@ TEST_F(Words, OfSectionsAreThereOnceTheyAreUnfolded) {
   height = 2600;
   for (const char* folded : {"Analysis", "This tick", "Device"}) click(folded, kSidePanel);
   const std::string shown = words(kSidePanel);
-  for (const char* label : {"Grip stiffness",
-                            "Grip damping",
-                            "Hand mass",
-                            "hold where released",
-                            "virtual arm, by the mouse",
-                            "haptic rate",
-                            "wake-up p50 / p99",
-                            "tick takes p50 / p99",
-                            "late over 0.2 ms",
-                            "missed",
-                            "slipped",
-                            "scheduling",
-                            "picture quality",
-                            "frame",
-                            "gap of the tips",
-                            "force of the motors",
-                            "stored in contacts",
-                            "controller, E_c",
-                            "stiffest wall [N/m]",
-                            "stiffest in this scene"}) {
+  for (const char* label :
+       {"Grip stiffness", "Grip damping", "Hand mass", "haptic rate", "tick takes p50 / p99",
+        "stored in contacts", "controller, E_c", "stiffest wall [N/m]"}) {
     EXPECT_THAT(shown, HasSubstr(label));
-    if (find(label, kSidePanel) && std::string(label) != "stiffest wall [N/m]" &&
-        std::string(label) != "tick takes p50 / p99" &&
-        std::string(label) != "stored in contacts" && std::string(label) != "controller, E_c") {
-      EXPECT_NE(hint(label, kSidePanel), "") << label;
-    }
+  }
+  for (const char* label :
+       {"hold where released", "virtual arm, by the mouse", "wake-up p50 / p99", "late over 0.2 ms",
+        "missed", "slipped", "scheduling", "picture quality", "frame", "gap of the tips",
+        "force of the motors", "stiffest in this scene"}) {
+    EXPECT_NE(hint(label, kSidePanel), "") << label;
   }
   EXPECT_THAT(shown, HasSubstr("inertia felt [g at the tip] over frequency [Hz]"));
   EXPECT_THAT(shown, HasSubstr("damping felt [N s/m] over frequency [Hz]"));
@@ -225,7 +209,8 @@ TEST_F(Words, OfSectionsAreThereOnceTheyAreUnfolded) {
 TEST_F(Words, OfPictureQualitySayTheLevel) {
   const auto said = [&](const char* wanted) {
     desktop->settings.picture_quality = wanted;
-    frames(3);
+    height = 1400;
+    frames(4);
     return words(kSidePanel);
   };
   EXPECT_THAT(said("high"), HasSubstr("\nhigh\n"));
@@ -247,7 +232,7 @@ TEST_F(Words, OfTheBarBelowSayWhatCanBeDone) {
     EXPECT_TRUE(find(button, "transport")) << button;
     EXPECT_NE(hint(button, "transport"), "") << button;
   }
-  EXPECT_THAT(hint("x1", "transport"), HasSubstr("Speed of the simulation."));
+  EXPECT_THAT(hint("1x", "transport"), HasSubstr("Speed of the simulation."));
   const CouplingKind before = desktop->settings.parameters.kind;
   click("A/B", "transport");
   EXPECT_NE(desktop->settings.parameters.kind, before);
@@ -258,7 +243,7 @@ TEST_F(Words, OfTheBarBelowSayWhatCanBeDone) {
   click("Pause", "transport");
   EXPECT_TRUE(desktop->live.paused());
   EXPECT_TRUE(find(">", "transport"));
-  EXPECT_FALSE(find("x1", "transport"));
+  EXPECT_FALSE(find("1x", "transport"));
   click("Pause", "transport");
   EXPECT_FALSE(desktop->live.paused());
   click("Open...", "transport");
@@ -267,7 +252,7 @@ TEST_F(Words, OfTheBarBelowSayWhatCanBeDone) {
 
 TEST_F(Words, OfTheBarBelowCountWhatIsRecorded) {
   click("Record", "transport");
-  ASSERT_TRUE(until([&] { return desktop->live.recording(); }));
+  ASSERT_TRUE(until([&] { return desktop->live.loop().recording(); }));
   frames(5);
   EXPECT_TRUE(find("Stop", "transport"));
   EXPECT_FALSE(find("Play", "transport"));
@@ -305,8 +290,9 @@ TEST_F(Words, OfPlaybackLeadThroughTheRecording) {
        {"In this recording", "For the re-run (E)", "Coupling", "Grip stiffness"}) {
     EXPECT_THAT(panel, HasSubstr(title));
   }
-  EXPECT_THAT(words(kSidePanel), HasSubstr("The recording's scene; it stays as it was."));
-  EXPECT_THAT(words(kSidePanel), HasSubstr("For the re-run; what was recorded is on the left."));
+  EXPECT_THAT(sentences(kSidePanel), HasSubstr("The recording's scene; it stays as it was."));
+  EXPECT_THAT(sentences(kSidePanel),
+              HasSubstr("For the re-run; what was recorded is on the left."));
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("playing table.h5"));
   click("Back to live", "transport");
   EXPECT_FALSE(desktop->playback.on());
@@ -507,7 +493,6 @@ TEST_F(Words, OfTheStateForScriptsTellOfPlaybackAndSelection) {
   EXPECT_EQ(playing["playing"], true);
   EXPECT_NEAR(playing["recorded"]["at"].get<double>(), 0.5, 1e-3);
   EXPECT_EQ(playing["recorded"]["marks"].size(), desktop->playback.shown()->marks().size());
-  EXPECT_FALSE(playing["recorded"]["facts"].empty());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -50,9 +51,14 @@ class ReadPanel : public ImGuiFrames {
     frames();
   }
 
-  static std::optional<test::DrawnText> find(const std::string& text) {
+  // Finds a text; `part`: in a part of the panel with such a name.
+  static std::optional<test::DrawnText> find(const std::string& text,
+                                             const std::string& part = "") {
     for (const test::DrawnText& each : test::drawn_texts()) {
-      if (each.text == text && !each.window.starts_with("##Tooltip")) return each;
+      if (each.text == text && !each.window.starts_with("##Tooltip") &&
+          each.window.find(part) != std::string::npos) {
+        return each;
+      }
     }
     return std::nullopt;
   }
@@ -62,6 +68,12 @@ class ReadPanel : public ImGuiFrames {
     for (const test::DrawnText& each : test::drawn_texts()) {
       if (!each.window.starts_with("##Tooltip")) all += each.text + '\n';
     }
+    return all;
+  }
+  // The same in one line, as a sentence may stand in several.
+  static std::string sentences() {
+    std::string all = words();
+    std::ranges::replace(all, '\n', ' ');
     return all;
   }
   // The text at the right of a label, in its line.
@@ -86,8 +98,8 @@ class ReadPanel : public ImGuiFrames {
     return text && text->colour == colour(current_palette().broken);
   }
   // What the tooltip says while the mouse is over a text; empty for none.
-  std::string hint(const std::string& text) {
-    const auto at = find(text);
+  std::string hint(const std::string& text, const std::string& part = "") {
+    const auto at = find(text, part);
     EXPECT_TRUE(at) << text << " is not in:\n" << words();
     if (!at) return "";
     show_mouse(at->middle());
@@ -108,15 +120,15 @@ class ReadPanel : public ImGuiFrames {
     }
     away();
   }
-  void click(const std::string& text) {
-    const auto at = find(text);
+  void click(const std::string& text, const std::string& part = "") {
+    const auto at = find(text, part);
     ASSERT_TRUE(at) << text << " is not in:\n" << words();
     click(at->middle());
   }
   // Types a number in place of that of a field, with a double click and Enter.
   void type(ImVec2 at, const std::string& text) {
     show_mouse(at);
-    frames(1);
+    frames(20);  // clicks before are over
     for (int i = 0; i < 2; ++i) {
       for (const bool down : {true, false}) {
         show_mouse_button(0, down);
