@@ -168,7 +168,7 @@ TEST_F(Commands, RunWarnsOfEnergyAndFailsWhereItIsUnstable) {
 
 TEST_F(Commands, RunHasVariationsOfPathsAlone) {
   const auto target = [](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"run", "--duration", "2", "--record", "a.h5", "--force"};
+    std::vector<std::string> words{"run", "--duration", "1.2", "--record", "a.h5", "--force"};
     words.insert(words.end(), more.begin(), more.end());
     done(words);
     done({"info", "a.h5", "--csv", "a.csv", "--force"});

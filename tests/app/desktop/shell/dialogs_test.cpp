@@ -343,7 +343,7 @@ TEST_F(Dialog, OfAPersonEndsWithItsTime) {
 
 TEST_F(Dialog, OfARecordingThatIsUnderWayKeepsIt) {
   desktop->world.toggle_recording();
-  ASSERT_TRUE(until([&] { return desktop->live.recording(); }));
+  ASSERT_TRUE(until([&] { return desktop->live.loop().recording(); }));
   desktop->dialog.open("quit");
   frames(5);
   EXPECT_THAT(words("End the recording?"), HasSubstr("It is kept as far as it has come."));
@@ -354,7 +354,7 @@ TEST_F(Dialog, OfARecordingThatIsUnderWayKeepsIt) {
   frames(5);
   click("End it and quit (Enter)", "End the recording?");
   EXPECT_TRUE(desktop->asked.close && desktop->recording_may_end);
-  EXPECT_TRUE(until([&] { return !desktop->live.recording(); }));
+  EXPECT_TRUE(until([&] { return !desktop->live.loop().recording(); }));
 }
 
 TEST_F(Dialog, OfUnsavedChangesSavesDiscardsOrStays) {
