@@ -39,8 +39,6 @@ class Commands : public test::Program {
   }
 };
 
-// Runs.
-
 TEST_F(Commands, RunSaysInJsonWhatItSaysInLines) {
   const std::vector<std::string> words{"run", "--duration", "0.8", "--coupling", "proposed"};
   std::vector<std::string> as_json = words;
@@ -212,8 +210,6 @@ TEST_F(Commands, RunOnADeviceHasNoOtherHand) {
   EXPECT_THAT(refused({"run", "--live", "nothing:1", "--yes"}), HasSubstr("is not connected"));
 }
 
-// Recordings.
-
 TEST_F(Commands, InfoSaysWhatARecordingHolds) {
   done({"run", "--duration", "0.25", "--eta", "0.8", "--coupling", "proposed", "--seed", "7",
         "--variation", "1", "--scene", "stack.toml", "--record", "a.h5"});
@@ -287,8 +283,6 @@ TEST_F(Commands, RecoverMakesASessionOfWhatWasLeft) {
   EXPECT_EQ(parsed({"info", "b.h5", "--json"})["runs"][0]["ticks"], 50);
   EXPECT_THAT(refused({"recover", "none.h5.part"}), HasSubstr("none.h5.part"));
 }
-
-// Analysis.
 
 // A scalar inertia m of the joint: the estimate's bandwidth is alpha / m, and a light grip holds
 // k_vc between two masses, m/2 reduced.
@@ -383,8 +377,6 @@ TEST_F(Commands, AnalyzeKnowsWhatIsNotPassiveAndWhatIsNotKnown) {
   EXPECT_THAT(late, ContainsRegex("link +up to [0-9.]+ ms old each way"));
   EXPECT_THAT(done({"analyze"}), Not(ContainsRegex("\nlink ")));
 }
-
-// Checks.
 
 constexpr const char* kPlane =
     "[[plane]]\nname = \"wall\"\npoint = [0.2, 0.0, {}]\nnormal = [0.0, 0.0, 1.0]\n";

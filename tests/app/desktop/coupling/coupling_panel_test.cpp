@@ -135,7 +135,7 @@ TEST_F(CouplingWords, SayWhichPromiseIsBrokenAndByHowMuch) {
               HasSubstr("eta 0.35 is below Routh's limit 0.400"));
 }
 
-// What condition (3) asks for, by core/coupling/laws.h: of the device (2 + j/2) b_vc + k_vc (T +
+// Condition (3) asks, by core/coupling/laws.h: of the device (2 + j/2) b_vc + k_vc (T +
 // 3/2 t_d + t_l), of the proxy j/2 b_vc + k_vc ((T + t_d)/2 + t_l).
 TEST_F(CouplingWords, SayWhatConditionThreeAsksForThroughDelays) {
   const auto asked = [&](double delay, double link, int jitter) {

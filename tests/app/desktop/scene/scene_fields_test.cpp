@@ -109,7 +109,7 @@ constexpr Field kOfBody[] = {
     {"Size x, y, z [mm]", "12", 0.012,
      [](const Object& o) { return std::get<Box>(o.shape).size.y(); }},
 };
-// Of both kinds of joints that move along something.
+// Fields of both kinds of joints that have an axis.
 constexpr Field kOfJoint[] = {
     {"Damping", "0.25", 0.25, [](const Object& o) { return joint(o).damping; }},
     {"Dry friction", "0.75", 0.75, [](const Object& o) { return joint(o).friction; }},

@@ -39,8 +39,6 @@ class Dialog : public WholeWindow {
   }
 };
 
-// Presets: names with texts.
-
 TEST_F(Dialog, OfPresetsListsUsesKeepsRenamesAndRemoves) {
   run("settings.presets");
   frames(3);
@@ -105,8 +103,6 @@ TEST_F(Dialog, OfLayoutsSetsPanelsAndPlots) {
   EXPECT_EQ(desktop->settings.plot_choices[0].title, "hand and contact torque");
 }
 
-// Marks.
-
 TEST_F(Dialog, OfAMarkTakesItsTextAndSaysWhereItStands) {
   play("table.h5");
   const std::size_t before = desktop->playback.shown()->marks().size();
@@ -141,8 +137,6 @@ TEST_F(Dialog, OfAMarkIsInThePlotsWhereNothingIsRecorded) {
   click("Set (Enter)", "Mark");
   EXPECT_EQ(desktop->live.stage().history.marks().size(), count) << "it is too long";
 }
-
-// Exports.
 
 TEST_F(Dialog, OfAnExportWritesThePlotInTheSizeThatIsAsked) {
   run("export.begin");
@@ -195,8 +189,6 @@ TEST_F(Dialog, OfAnExportOffersAVideoOfRecordingsAlone) {
   click("Go on (Enter)", "Export");
   EXPECT_EQ(desktop->dialog.name(), "video");
 }
-
-// Files.
 
 TEST_F(Dialog, OfAFileListsFoldersAndFilesOfItsKind) {
   const fs::path folder = dir / "files";
@@ -296,8 +288,6 @@ TEST_F(Dialog, OfTheGalleryOpensAScene) {
   EXPECT_TRUE(until([&] { return said("Scene:"); }));
 }
 
-// Questions.
-
 TEST_F(Dialog, OfAPersonGivesTheAnswerThatIsClickedOrTyped) {
   for (const bool beside : {false, true}) {
     for (const bool typed : {false, true}) {
@@ -381,8 +371,6 @@ TEST_F(Dialog, OfUnsavedChangesSavesDiscardsOrStays) {
   EXPECT_TRUE(until([&] { return !desktop->document.editor().dirty(); }));
 }
 
-// Devices.
-
 TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   run("device.identify");
   frames(4);
@@ -405,8 +393,6 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   click("Stop (Esc)", "Identify the device");
   EXPECT_TRUE(until([&] { return !desktop->identify.moving(); }));
 }
-
-// Experiments and sweeps.
 
 TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
   run("experiments.show");

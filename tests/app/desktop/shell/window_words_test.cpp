@@ -179,8 +179,6 @@ TEST_F(Words, AboutLimpidNameItsVersionAndWhatItIsBuiltOn) {
   EXPECT_EQ(desktop->dialog.name(), "");
 }
 
-// Sections of the panel at the right.
-
 TEST_F(Words, OfSectionsAreThereOnceTheyAreUnfolded) {
   for (const char* title : {"Scene", "Hand", "Device", "Analysis", "This tick", "Timing"}) {
     EXPECT_TRUE(find(title, kSidePanel)) << title;
@@ -223,8 +221,6 @@ TEST_F(Words, OfTheHandSayWhetherItHolds) {
   click("hold where released", kSidePanel);
   EXPECT_TRUE(desktop->settings.hold_on_release);
 }
-
-// The bar below.
 
 TEST_F(Words, OfTheBarBelowSayWhatCanBeDone) {
   for (const char* button :
@@ -317,8 +313,6 @@ TEST_F(Words, OfTheVideoDialogReckonItsLength) {
   EXPECT_EQ(desktop->dialog.name(), "");
 }
 
-// The line at the top.
-
 TEST_F(Words, OfTheStatusLineAreLawRateAndForce) {
   desktop->settings.parameters.kind = CouplingKind::proposed;
   desktop->settings.parameters.eta = 0.75;
@@ -352,8 +346,6 @@ TEST_F(Words, OfANarrowWindowHaveOneMenu) {
   click("Menu", "##MainMenuBar");
   EXPECT_THAT(menu_words(), HasSubstr("\nSession\n"));
 }
-
-// Parts over the picture.
 
 TEST_F(Words, OfYourTurnTickWhatWasDone) {
   desktop->settings.your_turn = true;

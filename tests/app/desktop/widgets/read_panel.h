@@ -97,7 +97,7 @@ class ReadPanel : public ImGuiFrames {
     const auto text = beside(label);
     return text && text->colour == colour(current_palette().broken);
   }
-  // What the tooltip says while the mouse is over a text; empty for none.
+  // Returns what the tooltip says while the mouse is over a text; empty for none.
   std::string hint(const std::string& text, const std::string& part = "") {
     const auto at = find(text, part);
     EXPECT_TRUE(at) << text << " is not in:\n" << words();
