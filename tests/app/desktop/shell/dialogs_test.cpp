@@ -54,8 +54,8 @@ TEST_F(Dialog, OfPresetsListsUsesKeepsRenamesAndRemoves) {
   EXPECT_FALSE(find("Remove it", "Presets"));
   click("Use", "Presets");
   EXPECT_EQ(desktop->dialog.name(), "");
-  EXPECT_EQ(desktop->settings.parameters.kind, CouplingKind::predictive);
-  EXPECT_EQ(desktop->settings.parameters.eta, 0.3);
+  EXPECT_EQ(desktop->settings.parameters().kind, CouplingKind::predictive);
+  EXPECT_EQ(desktop->settings.parameters().eta, 0.3);
 
   run("settings.presets");
   frames(3);
@@ -87,7 +87,7 @@ TEST_F(Dialog, OfPresetsTakesANameByEnterAndKeepsWhatCameAlong) {
   write("Heavy hand");
   press(GLFW_KEY_ENTER);
   frames(2);
-  EXPECT_EQ(desktop->settings.parameters.eta, 3);
+  EXPECT_EQ(desktop->settings.parameters().eta, 3);
   EXPECT_EQ(desktop->dialog.name(), "");
 }
 

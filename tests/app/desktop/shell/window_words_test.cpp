@@ -229,9 +229,9 @@ TEST_F(Words, OfTheBarBelowSayWhatCanBeDone) {
     EXPECT_NE(hint(button, "transport"), "") << button;
   }
   EXPECT_THAT(hint("1x", "transport"), HasSubstr("Speed of the simulation."));
-  const CouplingKind before = desktop->settings.parameters.kind;
+  const CouplingKind before = desktop->settings.parameters().kind;
   click("A/B", "transport");
-  EXPECT_NE(desktop->settings.parameters.kind, before);
+  EXPECT_NE(desktop->settings.parameters().kind, before);
   click("Freeze plots", "transport");
   EXPECT_FALSE(desktop->shown.stage().group.following());
   click("Follow", "transport");
@@ -307,15 +307,15 @@ TEST_F(Words, OfTheVideoDialogReckonItsLength) {
   // 30 pictures a second, as usual.
   EXPECT_THAT(shown, HasSubstr(fmt::format("{:.1f} s, {:.0f} pictures", duration,
                                            std::round(30 * duration))));
-  EXPECT_EQ(shown.find("both runs in one picture") != std::string::npos,
-            desktop->playback.shown()->player().session().twin != nullptr);
+  EXPECT_EQ(shown.find("in one picture") != std::string::npos,
+            desktop->playback.shown()->player().session().lanes() > 1);
   click("Cancel (Esc)", "Write a video");
   EXPECT_EQ(desktop->dialog.name(), "");
 }
 
 TEST_F(Words, OfTheStatusLineAreLawRateAndForce) {
-  desktop->settings.parameters.kind = CouplingKind::proposed;
-  desktop->settings.parameters.eta = 0.75;
+  desktop->settings.parameters().kind = CouplingKind::proposed;
+  desktop->settings.parameters().eta = 0.75;
   frames(3);
   const std::string shown = words("##MainMenuBar");
   EXPECT_THAT(shown, HasSubstr("PROPOSED"));
@@ -328,7 +328,7 @@ TEST_F(Words, OfTheStatusLineAreLawRateAndForce) {
   EXPECT_TRUE(
       until([&] { return words("##MainMenuBar").find("force off [F]") != std::string::npos; }));
   EXPECT_EQ(hint("force off [F]", "##MainMenuBar"), "F arms it");
-  desktop->settings.parameters.kind = CouplingKind::standard;
+  desktop->settings.parameters().kind = CouplingKind::standard;
   frames(3);
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("STANDARD"));
   EXPECT_THAT(words("##MainMenuBar"), Not(HasSubstr("0.75"))) << "it takes no eta";
@@ -384,17 +384,22 @@ TEST_F(Words, OfTheFirstStartOfferAStory) {
   EXPECT_TRUE(desktop->playback.loading() || desktop->playback.on());
 }
 
-TEST_F(Words, OfATwinStandSideBySide) {
+TEST_F(Words, OfRunsOnOneHandStandSideBySide) {
   desktop->tuning.toggle_twin();
-  ASSERT_TRUE(until([&] { return !desktop->shown.twin_row().empty(); }));
+  ASSERT_TRUE(until([&] { return desktop->shown.rows().size() == 2; }));
   frames(4);
   const std::string shown = words("coupling");
-  for (const char* line : {"|x_E| mrad", "|f1| N m", "|f2| N m", "E_c mJ", "both in one picture"}) {
+  for (const char* line : {"|x_E| mrad", "|f1| N m", "|f2| N m", "E_c mJ", "all in one picture"}) {
     EXPECT_THAT(shown, HasSubstr(line));
   }
-  EXPECT_THAT(hint("both in one picture", "coupling"), HasSubstr("(Shift+B)"));
-  click("both in one picture", "coupling");
-  EXPECT_TRUE(desktop->settings.twin_overlaid);
+  EXPECT_THAT(hint("all in one picture", "coupling"), HasSubstr("(Shift+B)"));
+  click("all in one picture", "coupling");
+  EXPECT_TRUE(desktop->settings.overlaid);
+  EXPECT_THAT(hint("+ run", "coupling"), HasSubstr("(Ctrl+B)"));
+  click("+ run", "coupling");
+  ASSERT_TRUE(until([&] { return desktop->shown.rows().size() == 3; }));
+  frames(4);
+  EXPECT_FALSE(find("+ run", "coupling")) << "three are the most";
 }
 
 TEST_F(Words, OfFoldedPanelsComeBackByTheirTabs) {
@@ -432,7 +437,7 @@ TEST_F(Words, OfABlindWindowTellNoLaw) {
 // The state for scripts, against the parts themselves.
 TEST_F(Words, OfTheStateForScriptsAreThoseOfTheParts) {
   run("help.about");
-  desktop->settings.parameters.alpha = 0.0123;
+  desktop->settings.parameters().alpha = 0.0123;
   desktop->notices.say("A notice.");
   frames(3);
   testing::internal::CaptureStdout();
@@ -440,8 +445,8 @@ TEST_F(Words, OfTheStateForScriptsAreThoseOfTheParts) {
   const auto state = nlohmann::json::parse(testing::internal::GetCapturedStdout());
   EXPECT_EQ(state["dialog"], "about");
   EXPECT_EQ(state["alpha"], 0.0123);
-  EXPECT_EQ(state["eta"], desktop->settings.parameters.eta);
-  EXPECT_EQ(state["k_vc"], desktop->settings.parameters.k_vc);
+  EXPECT_EQ(state["eta"], desktop->settings.parameters().eta);
+  EXPECT_EQ(state["k_vc"], desktop->settings.parameters().k_vc);
   EXPECT_EQ(state["size"], nlohmann::json({1440, 900}));
   EXPECT_EQ(state["frames"], 77);
   EXPECT_EQ(state["input_waits"], true);
