@@ -192,7 +192,7 @@ FigurePanel felt_panel(const std::vector<FeltBody>& all, double mass) {
     line.points.push_back({f, mass_of_theory(mass, kHeld, f) / mass});
   panel.series.push_back(line);
   for (const FeltBody& one : all) {
-    if (one.mass != mass) continue;
+    if (one.mass != mass || one.felt.empty()) continue;
     Series curve{one.way.label, one.way.ink, Series::Style::line, {}};
     for (std::size_t i = 0; i < one.felt.size(); ++i) {
       curve.points.push_back({kHeldLines[i], one.felt[i] / mass});

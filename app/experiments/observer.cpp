@@ -212,7 +212,7 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
   FigurePanel panel;
   panel.title = "Error of an estimate wrong at first, heaviest mode (dashed: exp(-w_f t))";
   panel.x_label = "time [s]";
-  panel.y_label = "|error|, of the first";
+  panel.y_label = "|error|, of the first [-]";
   panel.log_y = true;
   panel.x_range = {0, 0.1};
   panel.y_range = {1e-2, 1};
@@ -261,7 +261,7 @@ void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   FigurePanel panel;
   panel.title = "Largest estimate, of the largest true torque";
   panel.x_label = "alpha [N m s/rad]";
-  panel.y_label = "max |f1_hat| / max |f1|";
+  panel.y_label = "max |f1_hat| / max |f1| [-]";
   panel.log_x = panel.log_y = true;
   Series points{"", kProxyInk, Series::Style::points, {}};
   for (std::size_t i = 0; i < gains.size(); ++i) points.points.push_back({gains[i], ratio[i]});

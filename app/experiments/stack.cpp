@@ -114,7 +114,7 @@ Outcome stack(TrialRunner& lab) {
                     .log_y = true};
   FigurePanel sweeps{.title = "Sweeps over contacts until a tick's forces were found",
                      .x_label = "time [s]",
-                     .y_label = "sweeps",
+                     .y_label = "sweeps [-]",
                      .x_range = std::pair(0.0, kStackSeconds)};
   FigurePanel gain{.title = "What the stack has beyond what it had and was given",
                    .x_label = "time [s]",

@@ -153,7 +153,7 @@ void write_atomically(const fs::path& file, std::span<const unsigned char> bytes
 
 std::string try_write_atomically(const std::filesystem::path& file, std::string_view text) {
   try {
-    std::filesystem::create_directories(file.parent_path());
+    fs::create_directories(folder_of(file));
     write_atomically(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
     return {};
   } catch (const std::exception& e) {
@@ -164,7 +164,7 @@ std::string try_write_atomically(const std::filesystem::path& file, std::string_
 void update_file_under_lock(const fs::path& file,
                             const std::function<std::string(const std::string& text)>& change) {
   try {
-    fs::create_directories(file.parent_path());
+    fs::create_directories(folder_of(file));
   } catch (const fs::filesystem_error& e) {
     throw FileError(fmt::format("{}: cannot be written: {}", file.string(), e.code().message()));
   }

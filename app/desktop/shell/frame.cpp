@@ -76,9 +76,8 @@ void Frame::draw() {
 
 // Draws only the picture, banners and modal dialogs: nothing that tells couplings apart.
 void Frame::draw_blind() {
-  int width = 0, height = 0;
-  window_.size(width, height);
-  const ScreenRect view{{0, 0}, {static_cast<float>(width), static_cast<float>(height)}};
+  const FrameSize size = size_();
+  const ScreenRect view{{0, 0}, {static_cast<float>(size.width), static_cast<float>(size.height)}};
   const auto part = [this](auto&& work) { guard(desktop_.notices, work); };
   part([&] { draw_view(view); });
   part([&] { draw_banners(desktop_.banners(), view, {view.min, view.min}, act_); });
@@ -94,26 +93,23 @@ ScreenRect Frame::signs_box(ScreenRect view) {
 }
 
 Layout Frame::lay_out() {
-  int width = 0, height = 0;
-  window_.size(width, height);
+  const FrameSize size = size_();
   return layout_(
       desktop_.settings,
-      {.width = static_cast<float>(width),
-       .height = static_cast<float>(height),
+      {.width = static_cast<float>(size.width),
+       .height = static_cast<float>(size.height),
        .scale = current_scale(),
        .menu = std::round(ImGui::GetFrameHeight()),
        .transport = std::round(ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y)});
 }
 
 ViewScene Frame::view_scene() {
-  int points_x = 0, points_y = 0, pixels_x = 0, pixels_y = 0;
-  window_.size(points_x, points_y);
-  window_.framebuffer_size(pixels_x, pixels_y);
+  const FrameSize size = size_();
   ViewScene scene{.stage = desktop_.shown.stage(),
                   .row = desktop_.shown.row(),
                   .quality = desktop_.shown.quality_level(),
-                  .pixel_scale = points_x > 0 ? static_cast<double>(pixels_x) / points_x : 1,
-                  .pixel_height = pixels_y};
+                  .pixel_scale = size.width > 0 ? static_cast<double>(size.pixels_x) / size.width : 1,
+                  .pixel_height = size.pixels_y};
   if (const PlayedSession* session = desktop_.playback.shown()) {
     scene.recorded = true;
     scene.rerun = session->rerun_row();

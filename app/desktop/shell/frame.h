@@ -1,6 +1,7 @@
 // Frame of the window: all of its parts, each in its place.
 #pragma once
 
+#include <functional>
 #include <utility>
 
 #include "app/desktop/coupling/coupling_panel.h"
@@ -10,17 +11,21 @@
 #include "app/desktop/shell/layout.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/shell/sections.h"
-#include "app/desktop/shell/window.h"
 #include "app/desktop/view/view_panel.h"
 
 namespace limpid {
 
+// Size of the window in ImGui's coordinates, and of its picture in pixels.
+struct FrameSize {
+  int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
+};
+
 class Frame {
  public:
   // Runs commands of the parts by `act`.
-  Frame(Desktop& desktop, Window& window, Act act)
+  Frame(Desktop& desktop, std::function<FrameSize()> size, Act act)
       : desktop_(desktop),
-        window_(window),
+        size_(std::move(size)),
         act_(std::move(act)),
         sections_(desktop),
         dialogs_(desktop) {}
@@ -53,7 +58,7 @@ class Frame {
   void draw_fold_tabs(const Layout& at);
 
   Desktop& desktop_;
-  Window& window_;
+  std::function<FrameSize()> size_;
   Act act_;
   WindowLayout layout_;
   FileMenus files_;

@@ -58,7 +58,15 @@ class Application {
         desktop_(with(settings, options),
                  [this](pid_t thread, int priority) { return ask_rtkit(thread, priority, &why_); }),
         window_(prepare_window()),
-        frame_(desktop_, window_, [this](std::string_view id) { run_or_say(id, desktop_); }) {
+        frame_(
+            desktop_,
+            [this] {
+              FrameSize size;
+              window_.size(size.width, size.height);
+              window_.framebuffer_size(size.pixels_x, size.pixels_y);
+              return size;
+            },
+            [this](std::string_view id) { run_or_say(id, desktop_); }) {
     desktop_.key_labels = &window_.key_labels();
   }
   ~Application() {  // pictures go before the window they are drawn in

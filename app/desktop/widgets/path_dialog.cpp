@@ -193,7 +193,9 @@ bool PathDialog::draw_folder() {
 void PathDialog::list_folder() {
   std::error_code none;
   const fs::path typed = expanded(text_);
-  const fs::path folder = fs::is_directory(typed, none) ? typed : typed.parent_path();
+  // A folder typed with / at its end has itself for a parent.
+  const bool whole = fs::is_directory(typed, none) && typed.has_filename();
+  const fs::path folder = whole ? typed : typed.parent_path();
   if (folder.string() == listed_ && was_open_) return;
   listed_ = folder.string();
   folders_.clear();

@@ -20,6 +20,19 @@ std::span<const unsigned char> bytes(std::string_view text) {
   return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
 }
 
+TEST(AtomicFile, TakesANameWithoutAFolder) {
+  const test::TempDir dir;
+  const fs::path before = fs::current_path();
+  fs::current_path(dir / ".");
+  EXPECT_EQ(try_write_atomically("a.txt", "here"), "");
+  EXPECT_EQ(read_text("a.txt", 100), "here");
+  update_file_under_lock("a.txt", [](const std::string& text) { return text + " too"; });
+  EXPECT_EQ(read_text("a.txt", 100), "here too");
+  EXPECT_EQ(try_write_atomically("new/b.txt", "there"), "");
+  EXPECT_TRUE(fs::exists("new/b.txt"));
+  fs::current_path(before);
+}
+
 // A pipe stands for /dev/stdout and /dev/null, which a privileged program could replace.
 TEST(AtomicFile, WritesIntoAPipeInsteadOfReplacingIt) {
   const test::TempDir dir;

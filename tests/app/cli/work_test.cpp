@@ -1,0 +1,306 @@
+// Commands that work through plans: sweeps, experiments, stories, devices and what is beside them.
+#include <fcntl.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "app/experiments/experiment.h"
+#include "tests/app/cli/said.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::lines_of;
+using test::Said;
+using test::text_of;
+using testing::ContainsRegex;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Work : public test::Program {
+ protected:
+  // Four runs of 20 ms.
+  std::string plan(const std::string& more = "") {
+    write("plan.toml", R"(title = "Four"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [2e-4, 2e-4, 2e-4] }
+seconds = 0.02
+measure = ["stable", "human_rms"]
+)" + more + R"(
+[[axis]]
+key = "coupling.kind"
+values = ["proposed", "predictive"]
+[[axis]]
+key = "coupling.eta"
+values = [0.5, 1]
+)");
+    return "plan.toml";
+  }
+};
+
+TEST_F(Work, OfASweepIsATableAndAFigure) {
+  EXPECT_EQ(done({"sweep", plan(), "--out", "swept", "--threads", "2", "--csv"}),
+            "4 of 4 points in swept/table.h5\n");
+  const std::vector<std::string> lines = lines_of(text_of("swept/table.csv"));
+  EXPECT_GE(lines.size(), 5u);
+  EXPECT_THAT(text_of("swept/figure.svg"), HasSubstr("<svg"));
+  EXPECT_EQ(done({"sweep", "plan.toml", "--out", "swept", "--gather"}),
+            "4 of 4 points in swept/table.h5\n");
+}
+
+TEST_F(Work, OfASweepCanBeSharedOut) {
+  const std::string file = plan();
+  EXPECT_EQ(done({"sweep", file, "--out", "swept", "--shard", "1/2", "--threads", "1"}), "");
+  EXPECT_FALSE(fs::exists("swept/table.h5"));
+  const Said half = run({"sweep", file, "--out", "swept", "--gather"});
+  EXPECT_EQ(half.status, 1) << "it is not complete";
+  EXPECT_EQ(done({"sweep", file, "--out", "swept", "--shard", "2/2", "--threads", "1"}), "");
+  EXPECT_EQ(done({"sweep", file, "--out", "swept", "--gather"}),
+            "4 of 4 points in swept/table.h5\n");
+  for (const char* wrong : {"0/2", "3/2", "1/0", "1", "1/2x", "a/b", "-1/2", "1/100000"}) {
+    EXPECT_THAT(refused({"sweep", file, "--out", "other", "--shard", wrong}),
+                HasSubstr("allowed: I/N with I from 1 to N"));
+  }
+  EXPECT_EQ(run({"sweep", file, "--out", "last", "--shard", "1/99999"}).status, 0);
+}
+
+TEST_F(Work, OfASweepRunsOnePointAgain) {
+  const std::string file = plan();
+  const std::string shown = std::getenv("DISPLAY") != nullptr ? std::getenv("DISPLAY") : "";
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const std::string said = done({"sweep", file, "--out", "swept", "--open", "3"});
+  EXPECT_THAT(said, HasSubstr("recorded in swept/points/"));
+  const std::string recorded = said.substr(said.find("swept/points/"));
+  EXPECT_THAT(done({"info", recorded.substr(0, recorded.find('\n'))}),
+              HasSubstr("predictive, eta 1\n"));
+  EXPECT_THAT(refused({"sweep", file, "--out", "swept", "--open", "4"}),
+              HasSubstr("--open 4: is not allowed; allowed: a point from 0 to 3"));
+  if (!shown.empty()) setenv("DISPLAY", shown.c_str(), 1);
+}
+
+TEST_F(Work, OfASweepNeedsWhatBelongsTogether) {
+  const std::string file = plan();
+  EXPECT_THAT(refused({"sweep", file, "--out", "o", "--mpi"}),
+              HasSubstr("--mpi: no rank among many"));
+  for (const auto& [one, other] : {std::pair("--mpi", "--slurm"), std::pair("--gather", "--mpi")}) {
+    EXPECT_EQ(run({"sweep", file, "--out", "o", one, other}).status, 2);
+  }
+  EXPECT_EQ(run({"sweep", file, "--out", "o", "--tasks", "3"}).status, 2) << "of --slurm";
+  EXPECT_EQ(run({"sweep", file, "--out", "o", "--threads", "0"}).status, 2);
+  EXPECT_EQ(run({"sweep", file, "--out", "o", "--threads", "1025"}).status, 2);
+  write("file", "mine");
+  EXPECT_THAT(refused({"sweep", file, "--out", "file"}), HasSubstr("--out file: Not a directory"));
+  EXPECT_THAT(refused({"sweep", file, "--out", "file/x"}), HasSubstr("Not a directory"));
+  const std::string help = done({"sweep", "--help"});
+  EXPECT_THAT(help, ContainsRegex("\n  human_rms +N m +"));
+}
+
+TEST_F(Work, OfAnExperimentLeavesAReport) {
+  const std::string said = done({"experiment", "inertia", "--out", "found"});
+  EXPECT_THAT(said, StartsWith("inertia: passed\n  ok    rms human torque at eta = 0.6 over"));
+  EXPECT_THAT(said, HasSubstr(", bound 0.1\n"));
+  EXPECT_THAT(said, EndsWith("report: found/report.html\n"));
+  EXPECT_THAT(text_of("found/report.html"), HasSubstr("1 of 1 experiments passed"));
+  for (const char* end : {"csv", "png", "svg", "json"}) {
+    EXPECT_TRUE(fs::exists(std::string("found/inertia.") + end)) << end;
+  }
+}
+
+TEST_F(Work, OfAnExperimentHasItsOwnWorld) {
+  for (const auto& [option, value] :
+       {std::pair("--device", "omni.urdf"), std::pair("--tip", "x"),
+        std::pair("--scene", "table.toml"), std::pair("--config", "x"),
+        std::pair("--set", "coupling.eta=1"), std::pair("--coupling", "tank"),
+        std::pair("--eta", "1"), std::pair("--alpha", "1")}) {
+    EXPECT_THAT(refused({"experiment", "inertia", "--out", "o", option, value}),
+                HasSubstr(std::string(option) + ": only beside --live"))
+        << option;
+  }
+  const std::string unknown = refused({"experiment", "banana", "--out", "o"});
+  EXPECT_THAT(unknown, HasSubstr("\"banana\" is not an experiment; allowed: all"));
+  for (const Experiment& e : experiments()) EXPECT_THAT(unknown, HasSubstr(e.name));
+  EXPECT_THAT(refused({"experiment", "inertia"}), HasSubstr("--out"));
+  EXPECT_EQ(run({"experiment", "inertia", "--out", "o", "--threads", "257"}).status, 2);
+  EXPECT_FALSE(fs::exists("o"));
+  EXPECT_THAT(refused({"experiment", "banana", "--out", "o", "--live", "--yes"}),
+              HasSubstr("\"banana\": not beside --live"));
+}
+
+constexpr const char* kStory = R"(title = "Short"
+scene = "table.toml"
+seconds = 0.4
+[[step]]
+time = 0
+caption = "Two laws."
+first = ["coupling.kind = standard"]
+twin = ["coupling.kind = predictive"]
+hand = [[0, 0.19, 0, 0], [0.1, 0.19, 0, 0.002]]
+[[step]]
+time = 0.2
+caption = "Later."
+)";
+
+TEST_F(Work, OfAStoryTellsItsSteps) {
+  write("short.toml", kStory);
+  EXPECT_EQ(done({"story", "short.toml", "--check"}),
+            "  0.0 to   0.2 s  Two laws.\n  0.2 to   0.4 s  Later.\n");
+  const std::string told = done({"story", "short.toml", "--record", "short.h5"});
+  EXPECT_THAT(told, StartsWith("0.0 to 0.2 s  Two laws.\n    standard "));
+  EXPECT_THAT(told, ContainsRegex("\n    predictive +\\|x_E\\| up to [0-9.e-]+ mrad, \\|f1\\| "));
+  EXPECT_THAT(told, HasSubstr("\n0.2 to 0.4 s  Later.\n"));
+  EXPECT_THAT(told, EndsWith("recorded 400 ticks of both runs in short.h5\n"));
+  EXPECT_THAT(done({"info", "short.h5"}), HasSubstr("story                    Short, 2 steps\n"));
+  EXPECT_THAT(refused({"story", "short.toml", "--record", "short.h5"}), HasSubstr("short.h5"));
+  EXPECT_THAT(done({"story", "short.toml", "--record", "short.h5", "--force"}),
+              HasSubstr("400 ticks"));
+  EXPECT_GT(lines_of(done({"story", "--check"})).size(), 5u) << "the one that comes along";
+}
+
+TEST_F(Work, OfAVideoIsAskedForAsItIsSaid) {
+  done({"play", "table.h5", "--video", "out.mp4"});
+  EXPECT_THAT(video().of, EndsWith("sessions/table.h5"));
+  const VideoOptions usual = video().options;
+  EXPECT_EQ(usual.out, "out.mp4");
+  EXPECT_EQ(usual.size, "");
+  EXPECT_EQ(usual.fps, std::nullopt);
+  EXPECT_EQ(usual.from, 0);
+  EXPECT_EQ(usual.to, std::nullopt);
+  EXPECT_EQ(usual.speed, 1);
+  EXPECT_TRUE(usual.plots);
+  EXPECT_FALSE(usual.overlaid || usual.force || usual.print_progress);
+  EXPECT_EQ(video().text_scale, 0);
+  done({"play",       "table.h5", "--video",    "out.gif",    "--size",  "640x480",
+        "--fps",      "20",       "--from",     "1",          "--to",    "2.5",
+        "--speed",    "0.5",      "--no-plots", "--overlaid", "--force", "--print-progress",
+        "--ui-scale", "1.5"});
+  const VideoOptions asked = video().options;
+  EXPECT_EQ(asked.out, "out.gif");
+  EXPECT_EQ(asked.size, "640x480");
+  EXPECT_EQ(asked.fps, 20);
+  EXPECT_EQ(asked.from, 1);
+  EXPECT_EQ(asked.to, 2.5);
+  EXPECT_EQ(asked.speed, 0.5);
+  EXPECT_FALSE(asked.plots);
+  EXPECT_TRUE(asked.overlaid && asked.force && asked.print_progress);
+  EXPECT_EQ(video().text_scale, 1.5);
+  done({"--ui-scale", "2", "play", "table.h5", "--video", "out.mp4"});
+  EXPECT_EQ(video().text_scale, 2) << "also before the command";
+  done({"story", "first.toml", "--video", "story.mp4", "--fps", "10"});
+  EXPECT_THAT(video().of, EndsWith("stories/first.toml"));
+  EXPECT_EQ(video().options.fps, 10);
+}
+
+TEST_F(Work, OfAVideoShowsTheSessionAsItIs) {
+  for (const auto& [option, value] :
+       {std::pair("--device", "omni.urdf"), std::pair("--scene", "table.toml"),
+        std::pair("--eta", "1")}) {
+    EXPECT_THAT(refused({"play", "table.h5", "--video", "o.mp4", option, value}),
+                HasSubstr("--video: shows the session as it was recorded"))
+        << option;
+  }
+  EXPECT_THAT(refused({"play", "table.h5", "--video", "o.mp4", "--listen", "x"}),
+              HasSubstr("--listen: is of the window"));
+  EXPECT_THAT(refused({"play", "table.h5", "--video", "o.mp4", "--print-state"}),
+              HasSubstr("--print-state: is of the window"));
+  EXPECT_EQ(run({"play", "table.h5", "--fps", "20"}).status, 2) << "of --video";
+  EXPECT_EQ(run({"play", "table.h5", "--video", "o.mp4", "--speed", "0.009"}).status, 2);
+  EXPECT_EQ(run({"play", "table.h5", "--video", "o.mp4", "--speed", "101"}).status, 2);
+  EXPECT_EQ(run({"story", "first.toml", "--video", "o.mp4", "--check"}).status, 2);
+}
+
+TEST_F(Work, OfTheWindowIsCheckedBeforeItOpens) {
+  EXPECT_THAT(refused({"--until-eof"}), HasSubstr("--until-eof: needs --listen"));
+  EXPECT_THAT(refused({"none.txt"}),
+              HasSubstr("\"none.txt\": not expected: no command, and no file"));
+  EXPECT_THAT(refused({"--scene", "none.toml"}), HasSubstr("none.toml"));
+  EXPECT_THAT(refused({"--eta", "many"}), HasSubstr("coupling.eta"));
+  EXPECT_EQ(run({"--ui-scale", "0.4"}).status, 2);
+  EXPECT_EQ(run({"--ui-scale", "4.1"}).status, 2);
+  EXPECT_THAT(refused({"--listen", "a/b"}), HasSubstr("a/b"));
+  EXPECT_THAT(refused({"play", "none.h5"}), HasSubstr("none.h5"));
+}
+
+TEST_F(Work, OfDevicesListsThemWithTheVirtualArm) {
+  const json told = json::parse(done({"devices", "--json"}));
+  const std::string text = done({"devices"});
+  EXPECT_THAT(text, StartsWith("virtual arm\n  built in; any URDF chain of 1 to 32 joints"));
+  EXPECT_EQ(told["devices"].empty(),
+            text.find("no haptic device is plugged in\n") != std::string::npos);
+  EXPECT_THAT(refused({"devices", "raw:1"}),
+              HasSubstr("raw:1: a device is named beside --arm only"));
+  EXPECT_EQ(run({"devices", "--tip", "x"}).status, 2) << "of --arm";
+  EXPECT_EQ(run({"devices", "--json", "--arm", "x"}).status, 2);
+  EXPECT_THAT(refused({"devices", "--arm", "omni.urdf", "raw:1"}),
+              HasSubstr("raw:1: is not connected"));
+}
+
+TEST_F(Work, OfTheDoctorEndsWithTheWorstThatItFound) {
+  const Said said = run({"doctor", "--json"});
+  const json told = json::parse(said.out);
+  const std::vector<std::string> states{"ok", "better", "broken"};
+  long worst = 0;
+  std::set<std::string> areas;
+  for (const json& finding : told["findings"]) {
+    const auto at = std::ranges::find(states, finding["state"].get<std::string>()) - states.begin();
+    ASSERT_LT(at, 3);
+    worst = std::max(worst, static_cast<long>(at));
+    areas.insert(finding["area"].get<std::string>());
+    EXPECT_FALSE(finding["what"].get<std::string>().empty());
+    EXPECT_FALSE(finding["found"].get<std::string>().empty());
+    EXPECT_TRUE(at == 0 || !finding["cost"].get<std::string>().empty()) << finding;
+  }
+  EXPECT_EQ(areas.size(), 4u) << "real time, devices, picture, files";
+  EXPECT_EQ(told["state"], states[static_cast<std::size_t>(worst)]);
+  EXPECT_EQ(said.status, worst);
+  const Said text = run({"doctor"});
+  for (const json& finding : told["findings"]) {
+    EXPECT_THAT(text.out, HasSubstr(finding["what"].get<std::string>()));
+    EXPECT_THAT(text.out, HasSubstr(finding["cost"].get<std::string>()));
+    if (finding["mend"] != "") {
+      EXPECT_THAT(text.out, HasSubstr("-> " + finding["mend"].get<std::string>()));
+    }
+  }
+  constexpr const char* kEnds[] = {"all is well\n", "all works; something would be better\n",
+                                   "something does not work\n"};
+  EXPECT_THAT(text.out, EndsWith(std::string("\n\n") + kEnds[text.status]));
+}
+
+TEST_F(Work, OfIdentifyingNeedsADeviceAndAFolder) {
+  EXPECT_THAT(refused({"identify"}), HasSubstr("--out is required"));
+  EXPECT_THAT(
+      refused({"identify", "--out", "o"}),
+      HasSubstr("no device is chosen; `limpid devices` lists their ids, and \"simulated\""));
+  for (const char* wrong : {"0,0", "0,0,-30", "0,0,-9.81,1", "a,b,c", "0,0,nan", "0,0,-9.81x"}) {
+    EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--gravity", wrong}),
+                HasSubstr("needed: none, or X,Y,Z in m/s^2"));
+  }
+  EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--masses-right"}),
+              HasSubstr("the simulated device has other masses"));
+  EXPECT_THAT(refused({"identify", "--out", "o", "--yes", "--load", "0.1"}),
+              HasSubstr("--yes: with --load somebody has to be asked"));
+  EXPECT_EQ(run({"identify", "--out", "o", "--range", "0.04"}).status, 2);
+  EXPECT_EQ(run({"identify", "--out", "o", "--range", "0.91"}).status, 2);
+  EXPECT_EQ(run({"identify", "--out", "o", "--torque", "1.01"}).status, 2);
+}
+
+TEST_F(Work, OfServingEndsWithItsInput) {
+  const int before = dup(STDIN_FILENO), nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  const Said said = run({"serve", "here", "--until-eof"});
+  dup2(before, STDIN_FILENO);
+  close(before);
+  close(nothing);
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_THAT(said.out, ContainsRegex("^limpid listens on .*/home/limpid/here.control\n$"));
+  EXPECT_THAT(refused({"serve", "a/b", "--until-eof"}), HasSubstr("a/b"));
+  EXPECT_THAT(refused({"serve", "--live", "--hand", "touch.csv"}),
+              HasSubstr("--hand: not beside --live"));
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,292 @@
+// The coupling's panel: what it shows of each law, what is broken, and what its buttons do.
+#include "app/desktop/coupling/coupling_panel.h"
+
+#include <cmath>
+
+#include "app/run/fitted_gains.h"
+#include "app/style/words.h"
+#include "core/dynamics/arm.h"
+#include "tests/app/desktop/widgets/read_panel.h"
+#include "tests/support/built_in.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class CouplingWords : public ReadPanel {
+ protected:
+  CouplingWords() {
+    p_.kind = CouplingKind::proposed;
+    a_.w_f = {12, 80};
+    a_.w_c = {20, 60};
+    a_.eta_min = 0.6;
+    a_.eta_min_grip = 0.4;
+    a_.above_eta_min = true;
+    a_.condition3 = {.device_margin = 0.002, .proxy_margin = 0.003, .known = true, .holds = true};
+  }
+  void draw() {
+    show([this] {
+      draw_coupling(p_, {.analysis = a_, .arm = arm_, .real = real_, .broken = repair_}, now_,
+                    [this](std::string_view id) { asked_ = id; });
+    });
+  }
+
+  ArmDescription arm_ = test::omni();
+  Parameters p_;
+  Analysis a_;
+  bool real_ = false, repair_ = false;
+  std::string asked_;
+  CouplingReading now_{.energy_total = -0.0123,
+                       .compensation = 0,
+                       .energy = {},
+                       .chatters = false,
+                       .limited = {},
+                       .reserve = 0.02,
+                       .contact_governor = 1,
+                       .damping_governor = 1,
+                       .torque_governor = 1,
+                       .unsettled = 0,
+                       .left_out = 0};
+};
+
+TEST_F(CouplingWords, AreOfTheLawThatIsChosen) {
+  draw();
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
+    const std::string label = info(kind).label;
+    const std::string help = hint(label);
+    EXPECT_THAT(help, StartsWith(label + ": "));
+    EXPECT_THAT(help, HasSubstr("C switches."));
+    click(label);
+    EXPECT_EQ(p_.kind, kind);
+    const std::string verdict = info(kind).verdict;
+    EXPECT_THAT(words(), HasSubstr(verdict.substr(0, 12)));
+    EXPECT_EQ(find("Passivity").has_value(), !info(kind).keeps_ledger) << label;
+    EXPECT_EQ(find("Energy tanks").has_value(), kind == CouplingKind::tank);
+    EXPECT_EQ(find("Energy ledger").has_value(), kind == CouplingKind::predictive);
+    EXPECT_TRUE(find("Energy given E_c")) << label;
+  }
+}
+
+TEST_F(CouplingWords, StayWhereTheyAreUnderEveryLaw) {
+  draw();
+  std::optional<float> height;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    click(info(static_cast<CouplingKind>(i)).label);
+    const float at = find("Advanced")->min.y;
+    if (p_.kind == CouplingKind::standard || p_.kind == CouplingKind::proposed) {
+      EXPECT_EQ(height.value_or(at), at);
+      height = at;
+    }
+  }
+}
+
+// Sliders of a law: the usual ones at once, those of spring, dampers and energies in a part of
+// their own, the link's in another.
+TEST_F(CouplingWords, HaveASliderForEachParameterOfTheLaw) {
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    p_.kind = static_cast<CouplingKind>(i);
+    draw();
+    const LawInfo& law = info(p_.kind);
+    const auto shown = [&](std::string_view key) {
+      const std::string words_of_it = caption(*find_parameter(std::string(key).c_str()));
+      const auto plain = std::ranges::find_if(words_of_it, [](char c) { return c < 0; });
+      return words().find(std::string(words_of_it.begin(), plain)) != std::string::npos;
+    };
+    click("Advanced");
+    click("Link");
+    for (const std::string_view key : law.sliders) {
+      EXPECT_EQ(shown(key), !(key.starts_with("link.") && law.solves_together))
+          << law.key << " " << key;
+    }
+    EXPECT_EQ(find("Packets lost").has_value(), !law.solves_together) << law.key;
+    EXPECT_EQ(sentences().find("knows no link.") != std::string::npos, law.solves_together);
+    click("Advanced");
+    click("Link");
+    EXPECT_FALSE(find("Coupling spring k_vc")) << "folded";
+    EXPECT_FALSE(find("Packets lost"));
+  }
+}
+
+TEST_F(CouplingWords, SayWhichPromiseIsBrokenAndByHowMuch) {
+  draw();
+  EXPECT_THAT(value("Least passive inertia ?_min"), HasSubstr("0.600"));
+  EXPECT_FALSE(broken("Condition (3), device"));
+  EXPECT_EQ(value("Condition (3), device"), "ok  +0.002");
+  EXPECT_EQ(value("Condition (3), proxy"), "ok  +0.003");
+  EXPECT_EQ(value("Least stable in this grip"), "0.400");
+  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("b_d less 2 b_vc + k_vc T [N m s/rad]"));
+  EXPECT_THAT(hint("Condition (3), proxy"), HasSubstr("b_v less k_vc T / 2 [N m s/rad]"));
+  a_.condition3 = {.device_margin = -0.004, .proxy_margin = -0.005, .known = true, .holds = false};
+  a_.above_eta_min = false;
+  p_.eta = 0.35;
+  draw();
+  EXPECT_TRUE(broken("Condition (3), device"));
+  EXPECT_EQ(value("Condition (3), device"), "broken  -0.004");
+  EXPECT_EQ(value("Condition (3), proxy"), "broken  -0.005");
+  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("b_d is 0.004 N m s/rad short of"));
+  EXPECT_THAT(hint("Condition (3), proxy"), HasSubstr("b_v is 0.005 N m s/rad short of"));
+  EXPECT_TRUE(find("Advanced: condition (3) broken"));
+  EXPECT_TRUE(broken("Least stable in this grip")) << "0.35 is below 0.4";
+  EXPECT_THAT(hint("Least stable in this grip"),
+              HasSubstr("eta 0.35 is below Routh's limit 0.400"));
+}
+
+// Condition (3) asks, by core/coupling/laws.h: of the device (2 + j/2) b_vc + k_vc (T +
+// 3/2 t_d + t_l), of the proxy j/2 b_vc + k_vc ((T + t_d)/2 + t_l).
+TEST_F(CouplingWords, SayWhatConditionThreeAsksForThroughDelays) {
+  const auto asked = [&](double delay, double link, int jitter) {
+    a_.delay = delay;
+    a_.link = link;
+    p_.link_jitter = jitter;
+    draw();
+    return hint("Condition (3), device") + "|" + hint("Condition (3), proxy");
+  };
+  const std::string late = asked(0.002, 0, 0);
+  EXPECT_THAT(late, HasSubstr("2 b_vc + k_vc (T + 3/2 delay), delay 2.0 ms"));
+  EXPECT_THAT(late, HasSubstr("b_v less k_vc (T + delay) / 2, delay 2.0 ms"));
+  const std::string linked = asked(0, 0.005, 0);
+  EXPECT_THAT(linked, HasSubstr("2 b_vc + k_vc (T + link), link 5 ms"));
+  EXPECT_THAT(linked, HasSubstr("b_v less k_vc (T / 2 + link), link 5 ms"));
+  const std::string both = asked(0.002, 0.005, 4);
+  EXPECT_THAT(both, HasSubstr("4 b_vc + k_vc (T + 3/2 delay + link)"));
+  EXPECT_THAT(both, HasSubstr("b_v less 2 b_vc + k_vc ((T + delay) / 2 + link)"));
+  a_.condition3.known = false;
+  draw();
+  EXPECT_THAT(hint("Condition (3), device"), HasSubstr("no bound is known"));
+}
+
+TEST_F(CouplingWords, SayWhetherFiguresAreMeasuredWhereThatMatters) {
+  draw();
+  EXPECT_FALSE(find("These figures are"));
+  real_ = true;
+  draw();
+  EXPECT_EQ(value("These figures are"), "assumed");
+  EXPECT_THAT(hint("These figures are"), HasSubstr("limpid identify measures them."));
+  a_.measured = true;
+  draw();
+  EXPECT_EQ(value("These figures are"), "measured");
+  EXPECT_EQ(value("Observer bandwidth ?_f"), "12 to 80 rad/s");
+}
+
+TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
+  p_.kind = CouplingKind::predictive;
+  draw();
+  EXPECT_EQ(value("Reserve"), "20.0 mJ");
+  for (const char* share : {"Wall force let through", "Damping cancelled", "Torque let through"}) {
+    EXPECT_EQ(value(share), "100 %");
+    EXPECT_FALSE(broken(share));
+    EXPECT_NE(hint(share), "");
+  }
+  EXPECT_FALSE(find("Ticks without a solution"));
+  EXPECT_FALSE(find("Contact points left out"));
+  now_.contact_governor = 0.994;
+  now_.damping_governor = 0.5;
+  now_.torque_governor = 0.25;
+  now_.unsettled = 3;
+  now_.left_out = 1;
+  draw();
+  EXPECT_EQ(value("Wall force let through"), "99 %");
+  EXPECT_EQ(value("Damping cancelled"), "50 %");
+  EXPECT_EQ(value("Torque let through"), "25 %");
+  EXPECT_EQ(value("Ticks without a solution"), "3");
+  EXPECT_EQ(value("Contact points left out"), "1");
+  for (const char* bad : {"Wall force let through", "Damping cancelled", "Torque let through",
+                          "Ticks without a solution", "Contact points left out"}) {
+    EXPECT_TRUE(broken(bad)) << bad;
+  }
+  EXPECT_THAT(hint("Damping cancelled"), HasSubstr("less of the device's damping is cancelled"));
+  now_.contact_governor = 0.996;
+  draw();
+  EXPECT_FALSE(broken("Wall force let through")) << "it reads 100 %";
+}
+
+TEST_F(CouplingWords, OfTanksSayWhatTheyHoldBack) {
+  p_.kind = CouplingKind::tank;
+  draw();
+  EXPECT_EQ(value("In both"), "20.0 mJ");
+  EXPECT_EQ(value("Proxy moves freely"), "100 %");
+  now_.contact_governor = 0.5;
+  now_.torque_governor = 0.75;
+  draw();
+  EXPECT_EQ(value("Proxy moves freely"), "50 %");
+  EXPECT_EQ(value("Torque let through"), "75 %");
+  EXPECT_THAT(hint("Torque let through"), HasSubstr("The device's tank is low"));
+}
+
+TEST_F(CouplingWords, NameMotorsAtTheirLimit) {
+  draw();
+  EXPECT_FALSE(find("Motor at its limit"));
+  now_.limited = {0, 2};
+  draw();
+  EXPECT_EQ(value("Motor at its limit"), "joint 1, joint 3");
+  EXPECT_THAT(hint("Motor at its limit"), HasSubstr("(section 3.1)"));
+}
+
+TEST_F(CouplingWords, BreakAndRepairPassivityOfTheVirtualArm) {
+  draw();
+  EXPECT_THAT(hint("Break passivity"), HasSubstr("Repair puts everything back."));
+  click("Break passivity");
+  EXPECT_EQ(asked_, "coupling.break_passivity");
+  repair_ = true;
+  draw();
+  EXPECT_THAT(hint("Repair"), HasSubstr("Puts all settings back"));
+  click("Repair");
+  EXPECT_EQ(asked_, "coupling.end_break");
+  real_ = true;
+  draw();
+  EXPECT_FALSE(find("Repair"));
+}
+
+TEST_F(CouplingWords, SayWhoseEnergyItIs) {
+  draw();
+  EXPECT_EQ(value("Energy given E_c"), "?12.3 mJ");
+  EXPECT_FALSE(find("For the device's own forces"));
+  now_.compensation = 0.004;
+  draw();
+  EXPECT_EQ(value("For the device's own forces"), "4.00 mJ");
+  EXPECT_FALSE(find("Put in by switching"));
+}
+
+TEST_F(CouplingWords, FitGainsToTheArm) {
+  p_ = fitted(arm_, p_);
+  draw();
+  click("Advanced");
+  EXPECT_THAT(value("Gains for this arm"), testing::AnyOf("the paper's", "fitted"));
+  const Parameters fit = p_;
+  p_.k_vc = 2 * p_.k_vc;
+  p_.eta = 0.77;
+  draw();
+  EXPECT_THAT(hint("Fit gains to this arm"), HasSubstr("condition (3) just holds"));
+  click("Fit gains to this arm");
+  EXPECT_EQ(p_.k_vc, fit.k_vc);
+  EXPECT_EQ(p_.b_vc, fit.b_vc);
+  EXPECT_EQ(p_.b_v, fit.b_v);
+  EXPECT_EQ(p_.alpha, fit.alpha);
+  EXPECT_EQ(p_.eta, 0.77) << "no gain";
+}
+
+TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
+  p_.link_delay = 5;
+  p_.tick = 0.002;
+  draw();
+  EXPECT_TRUE(find("Link: 10 ms each way"));
+  click("Link: 10 ms each way");
+  EXPECT_EQ(value("Through it"), info(p_.kind).through_link);
+}
+
+TEST_F(CouplingWords, OfARerunHaveNothingOfTheLoop) {
+  show([this] { draw_coupling_of_rerun(p_, {.analysis = a_, .arm = arm_}); });
+  EXPECT_TRUE(find("Passivity"));
+  EXPECT_FALSE(find("Break passivity"));
+  EXPECT_FALSE(find("Energy given E_c"));
+  click("Tank");
+  EXPECT_EQ(p_.kind, CouplingKind::tank);
+  EXPECT_FALSE(find("Passivity"));
+}
+
+}  // namespace
+}  // namespace limpid

@@ -1,0 +1,449 @@
+// Dialogs of the window: what each of them offers, refuses and hands over.
+#include <algorithm>
+#include <fstream>
+
+#include "app/experiments/experiment.h"
+#include "tests/app/desktop/shell/whole_window.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+class Dialog : public WholeWindow {
+ protected:
+  void write(const std::string& text) {
+    ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
+    frames(3);
+  }
+  // Puts a text in place of that of the field with the keyboard's focus.
+  void write_over(const std::string& text) {
+    show_modifiers(true, false, false);
+    press(GLFW_KEY_A);
+    show_modifiers(false, false, false);
+    write(text);
+  }
+  bool said(const std::string& what) const {
+    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
+      return notice.text.find(what) != std::string::npos;
+    });
+  }
+  void play(const char* session) {
+    desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions" / session);
+    ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+    desktop->playback.shown()->player().pause();
+    frames(3);
+  }
+};
+
+TEST_F(Dialog, OfPresetsListsUsesKeepsRenamesAndRemoves) {
+  run("settings.presets");
+  frames(3);
+  for (const char* name :
+       {"Paper's values", "Spring and damper", "Light hand", "Stiff walls", "comes with Limpid"}) {
+    EXPECT_TRUE(find(name, "Presets")) << name;
+  }
+  click("Use", "Presets");
+  EXPECT_EQ(desktop->dialog.name(), "presets") << "none is chosen";
+  click("Light hand", "Presets");
+  click("Remove", "Presets");
+  EXPECT_TRUE(find("Light hand", "Presets")) << "it came along";
+  EXPECT_FALSE(find("Remove it", "Presets"));
+  click("Use", "Presets");
+  EXPECT_EQ(desktop->dialog.name(), "");
+  EXPECT_EQ(desktop->settings.parameters().kind, CouplingKind::predictive);
+  EXPECT_EQ(desktop->settings.parameters().eta, 0.3);
+
+  run("settings.presets");
+  frames(3);
+  click("Save what is now", "Presets");
+  EXPECT_THAT(words("Presets"), HasSubstr("It needs a name."));
+  click("Close (Esc)", "Presets");
+  run("settings.presets");
+  frames(4);
+  write("mine");
+  click("Save what is now", "Presets");
+  EXPECT_TRUE(find("mine", "Presets"));
+  EXPECT_TRUE(find("Replace by what is now", "Presets")) << "it is one's own";
+  EXPECT_NE(desktop->tuning.presets.find("mine"), nullptr);
+  click("Remove", "Presets");
+  EXPECT_NE(desktop->tuning.presets.find("mine"), nullptr) << "asks once more";
+  click("Remove it", "Presets");
+  EXPECT_EQ(desktop->tuning.presets.find("mine"), nullptr);
+}
+
+TEST_F(Dialog, OfPresetsTakesANameByEnterAndKeepsWhatCameAlong) {
+  run("settings.presets");
+  frames(4);
+  write("Heavy hand");
+  click("Save what is now", "Presets");
+  EXPECT_THAT(words("Presets"), HasSubstr("Heavy hand comes with Limpid; choose another name."));
+  click("Close (Esc)", "Presets");
+  run("settings.presets");
+  frames(4);
+  write("Heavy hand");
+  press(GLFW_KEY_ENTER);
+  frames(2);
+  EXPECT_EQ(desktop->settings.parameters().eta, 3);
+  EXPECT_EQ(desktop->dialog.name(), "");
+}
+
+TEST_F(Dialog, OfLayoutsSetsPanelsAndPlots) {
+  run("plots.layouts");
+  frames(3);
+  EXPECT_THAT(words("Layouts"), HasSubstr("Which plots and panels the window shows, by name."));
+  click("Frequencies", "Layouts");
+  click("Use", "Layouts");
+  frames(3);
+  ASSERT_GE(desktop->settings.plot_choices.size(), 2u);
+  EXPECT_EQ(desktop->settings.plot_choices[0].kind, PlotKind::spectrum);
+  EXPECT_EQ(desktop->settings.plot_choices[0].title, "hand and contact torque");
+}
+
+TEST_F(Dialog, OfAMarkTakesItsTextAndSaysWhereItStands) {
+  play("table.h5");
+  const std::size_t before = desktop->playback.shown()->marks().size();
+  desktop->playback.shown()->player().seek(0.75);
+  away();
+  run("session.mark");
+  frames(3);
+  EXPECT_THAT(words("Mark"), HasSubstr("at 0.750 s; kept in table.h5"));
+  EXPECT_FALSE(find("Remove", "Mark")) << "it is not there yet";
+  click("Cancel (Esc)", "Mark");
+  EXPECT_EQ(desktop->playback.shown()->marks().size(), before);
+}
+
+TEST_F(Dialog, OfAMarkIsInThePlotsWhereNothingIsRecorded) {
+  away();
+  run("session.mark");
+  frames(4);
+  EXPECT_THAT(words("Mark"), ContainsRegex("at [0-9.]+ s; in the plots; nothing is recorded"));
+  EXPECT_TRUE(find("mark 1", "Mark"));
+  write_over("here it was");
+  click("Set (Enter)", "Mark");
+  frames(2);
+  const auto& marks = desktop->live.stage().history.marks();
+  ASSERT_FALSE(marks.empty());
+  EXPECT_EQ(marks.back().label, "here it was");
+  run("session.mark");
+  frames(4);
+  EXPECT_TRUE(find("mark 2", "Mark"));
+  write_over(std::string(300, 'x'));
+  EXPECT_THAT(words("Mark"), ContainsRegex("300 bytes; at most [0-9]+ are kept"));
+  const std::size_t count = marks.size();
+  click("Set (Enter)", "Mark");
+  EXPECT_EQ(desktop->live.stage().history.marks().size(), count) << "it is too long";
+}
+
+TEST_F(Dialog, OfAnExportWritesThePlotInTheSizeThatIsAsked) {
+  run("export.begin");
+  frames(4);
+  const std::string shown = words("Export");
+  for (const char* label :
+       {"a plot, as a picture", "what", "plot", "PNG, pixels", "SVG, lines", "light, for paper",
+        "dark, for slides", "by", "printed", "dpi", "file", "Export (Enter)", "Cancel (Esc)"}) {
+    EXPECT_THAT(shown, HasSubstr(label));
+  }
+  click("SVG, lines", "Export");
+  EXPECT_FALSE(find("dpi", "Export")) << "lines have none";
+  EXPECT_THAT(words("Export"), ContainsRegex("-001.svg"));
+  click("PNG, pixels", "Export");
+  EXPECT_TRUE(find("dpi", "Export"));
+  click("a plot, as a picture", "Export");
+  click("a plot, as a table (CSV)");
+  EXPECT_FALSE(find("PNG, pixels", "Export"));
+  EXPECT_THAT(words("Export"), ContainsRegex("-001.csv"));
+  click("Export (Enter)", "Export");
+  EXPECT_EQ(desktop->dialog.name(), "");
+  ASSERT_TRUE(until([&] { return !desktop->exporter.written().empty(); }));
+  const fs::path file = desktop->exporter.written();
+  EXPECT_EQ(file.extension(), ".csv");
+  EXPECT_GT(fs::file_size(file), 0u);
+  EXPECT_TRUE(run_command("export.forget", *desktop).empty());
+  run("export.begin");
+  frames(4);
+  EXPECT_THAT(words("Export"), ContainsRegex("-002.csv")) << "the first name is taken";
+  click("a plot, as a table (CSV)", "Export");
+  click("the whole window");
+  click("Export (Enter)", "Export");
+  EXPECT_EQ(desktop->asked.picture.extension(), ".png");
+}
+
+TEST_F(Dialog, OfAnExportOffersAVideoOfRecordingsAlone) {
+  run("export.begin");
+  frames(4);
+  click("a plot, as a picture", "Export");
+  EXPECT_FALSE(find("the recording, as a video"));
+  press(GLFW_KEY_ESCAPE);
+  desktop->escape();
+  frames(3);
+  play("table.h5");
+  run("export.begin");
+  frames(4);
+  click("a plot, as a picture", "Export");
+  click("the recording, as a video");
+  EXPECT_THAT(words("Export"), HasSubstr("Length, size and speed are asked for next."));
+  click("Go on (Enter)", "Export");
+  EXPECT_EQ(desktop->dialog.name(), "video");
+}
+
+TEST_F(Dialog, OfAFileListsFoldersAndFilesOfItsKind) {
+  const fs::path folder = dir / "files";
+  fs::create_directories(folder / "inside");
+  std::ofstream(folder / "one.toml") << "title = \"One\"\n";
+  std::ofstream(folder / "two.txt") << "";
+  std::ofstream(folder / ".hidden.toml") << "";
+  desktop->dialog.last_folder = folder;
+  run("scene.open");
+  frames(4);
+  const std::string shown = words("Open scene");
+  EXPECT_THAT(shown, HasSubstr("inside/"));
+  EXPECT_THAT(shown, HasSubstr("one.toml"));
+  EXPECT_THAT(shown, Not(HasSubstr("two.txt")));
+  EXPECT_THAT(shown, Not(HasSubstr(".hidden")));
+  EXPECT_THAT(shown, HasSubstr("Scenes of Limpid")) << "a place";
+  click("inside/", "Open scene");
+  EXPECT_THAT(words("Open scene"), Not(HasSubstr("one.toml")));
+  EXPECT_THAT(words("Open scene"), HasSubstr("../"));
+  click("../", "Open scene");
+  EXPECT_THAT(words("Open scene"), HasSubstr("inside/")) << "up again";
+  click("one.toml", "Open scene");
+  click("Open", "Open scene");
+  EXPECT_EQ(desktop->dialog.name(), "");
+  EXPECT_TRUE(until([&] { return desktop->document.file() == folder / "one.toml"; }));
+}
+
+TEST_F(Dialog, OfAFileSaysWhatIsNotThere) {
+  desktop->dialog.last_folder = dir / ".";
+  run("scene.open");
+  frames(4);
+  write_over((dir / "none.toml").string());
+  click("Open", "Open scene");
+  EXPECT_THAT(words("Open scene"), HasSubstr("There is no such file."));
+  click("Cancel (Esc)", "Open scene");
+  EXPECT_EQ(desktop->dialog.name(), "");
+}
+
+TEST_F(Dialog, OfANewFileAsksBeforeItReplacesOne) {
+  const fs::path folder = dir / "files";
+  fs::create_directories(folder);
+  std::ofstream(folder / "old.toml") << "mine";
+  run("scene.save_as");
+  frames(4);
+  write_over((folder / "old").string());
+  click("Save", "Save scene as");
+  EXPECT_THAT(words("Save scene as"), HasSubstr("old.toml is there already."));
+  click("Replace it", "Save scene as");
+  EXPECT_TRUE(until([&] { return desktop->document.file() == folder / "old.toml"; }));
+  run("scene.save_as");
+  frames(4);
+  write_over((folder / "none/new.toml").string());
+  click("Save", "Save scene as");
+  EXPECT_THAT(words("Save scene as"), HasSubstr("There is no folder"));
+  click("New folder", "Save scene as");
+  frames(3);
+  write("a/b");
+  press(GLFW_KEY_ENTER);
+  EXPECT_THAT(words("Save scene as"), HasSubstr("A folder's name has no / in it."));
+}
+
+TEST_F(Dialog, OfSessionsListsWhatCameAlong) {
+  run("session.open");
+  frames(4);
+  const std::string shown = words("Open session");
+  for (const char* label : {"Yours", "none yet", "Shipped with Limpid", "Open (Enter)",
+                            "Cancel (Esc)", "Elsewhere..."}) {
+    EXPECT_THAT(shown, HasSubstr(label));
+  }
+  EXPECT_THAT(shown, ContainsRegex("[0-9.]+ MiB"));
+  write((dir / "none.h5").string());
+  click("Open (Enter)", "Open session");
+  EXPECT_THAT(words("Open session"), HasSubstr("There is no such file."));
+  click("Cancel (Esc)", "Open session");
+  run("session.open");
+  frames(4);
+  write((dir / ".").string());
+  click("Open (Enter)", "Open session");
+  EXPECT_THAT(sentences("Open session"),
+              HasSubstr("There is no table.h5 of a sweep in that folder."));
+  click("Elsewhere...", "Open session");
+  EXPECT_EQ(desktop->dialog.name(), "find session");
+}
+
+TEST_F(Dialog, OfTheGalleryOpensAScene) {
+  height = 1600;
+  run("scene.gallery");
+  frames(4);
+  const std::string shown = words();
+  EXPECT_THAT(shown, HasSubstr("Shipped with Limpid"));
+  EXPECT_THAT(shown, HasSubstr("arrows and Enter choose a scene"));
+  EXPECT_THAT(shown, HasSubstr("Play its recorded session"));
+  press(GLFW_KEY_RIGHT);
+  press(GLFW_KEY_RIGHT);
+  press(GLFW_KEY_ENTER);
+  EXPECT_EQ(desktop->dialog.name(), "");
+  EXPECT_TRUE(until([&] { return said("Scene:"); }));
+}
+
+TEST_F(Dialog, OfAPersonGivesTheAnswerThatIsClickedOrTyped) {
+  for (const bool beside : {false, true}) {
+    for (const bool typed : {false, true}) {
+      desktop->question.ask("Which is lighter?", {"left", "right"}, {.beside = beside});
+      desktop->dialog.open("ask");
+      frames(6);
+      EXPECT_THAT(words(), HasSubstr("Which is lighter?"));
+      EXPECT_TRUE(find("1   left"));
+      if (typed) {
+        write("2");
+      } else {
+        click("2   right");
+      }
+      const auto answer = desktop->question.take();
+      ASSERT_TRUE(answer) << beside << typed;
+      EXPECT_EQ(answer->choice, 1u);
+      EXPECT_GT(answer->seconds, 0);
+      ASSERT_TRUE(until([&] { return desktop->dialog.name().empty(); }));
+    }
+  }
+}
+
+TEST_F(Dialog, OfAPersonTakesEnterForTheOnlyAnswer) {
+  desktop->question.ask("Read this.", {"Go on"}, {});
+  desktop->dialog.open("ask");
+  frames(6);
+  EXPECT_TRUE(find("Go on  (Enter)"));
+  press(GLFW_KEY_ENTER);
+  const auto answer = desktop->question.take();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->choice, 0u);
+}
+
+TEST_F(Dialog, OfAPersonEndsWithItsTime) {
+  desktop->question.ask("Quick!", {"a", "b"}, {.seconds = 0.2});
+  desktop->dialog.open("ask");
+  ASSERT_TRUE(until([&] { return !desktop->question.asking(); }));
+  const auto answer = desktop->question.take();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->choice, std::nullopt);
+  EXPECT_GE(answer->seconds, 0.2);
+}
+
+TEST_F(Dialog, OfARecordingThatIsUnderWayKeepsIt) {
+  desktop->world.toggle_recording();
+  ASSERT_TRUE(until([&] { return desktop->live.loop().recording(); }));
+  desktop->dialog.open("quit");
+  frames(5);
+  EXPECT_THAT(words("End the recording?"), HasSubstr("It is kept as far as it has come."));
+  click("Go on (Esc)", "End the recording?");
+  EXPECT_FALSE(desktop->asked.close);
+  EXPECT_EQ(desktop->dialog.name(), "");
+  desktop->dialog.open("quit");
+  frames(5);
+  click("End it and quit (Enter)", "End the recording?");
+  EXPECT_TRUE(desktop->asked.close && desktop->recording_may_end);
+  EXPECT_TRUE(until([&] { return !desktop->live.loop().recording(); }));
+}
+
+TEST_F(Dialog, OfUnsavedChangesSavesDiscardsOrStays) {
+  const auto ask = [&] {
+    desktop->document.editor().set_tip_radius(desktop->document.scene().tip_radius + 0.001);
+    frames(2);
+    desktop->world.new_scene();
+    frames(5);
+    ASSERT_TRUE(desktop->document.asking());
+    EXPECT_THAT(words("Save changes?"), HasSubstr("The scene has changes that are not saved."));
+    EXPECT_TRUE(find("Save as... (Enter)", "Save changes?")) << "it has no file of its own";
+  };
+  ask();
+  click("Cancel (Esc)", "Save changes?");
+  EXPECT_FALSE(desktop->document.asking());
+  EXPECT_TRUE(desktop->document.editor().dirty());
+  ask();
+  click("Save as... (Enter)", "Save changes?");
+  EXPECT_EQ(desktop->dialog.name(), "save scene");
+  desktop->dialog.close();
+  frames(3);
+  ask();
+  click("Discard (D)", "Save changes?");
+  EXPECT_TRUE(until([&] { return !desktop->document.editor().dirty(); }));
+}
+
+TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
+  run("device.identify");
+  frames(4);
+  const std::string shown = words("Identify the device");
+  for (const char* label :
+       {"of each joint's range", "of the motors' limits", "down, seen from the base",
+        "a second time with a load at the tip", "Begin (Enter)", "Close (Esc)"}) {
+    EXPECT_THAT(shown, HasSubstr(label));
+  }
+  EXPECT_THAT(shown, HasSubstr("No device is in use: a simulated one"));
+  EXPECT_FALSE(find("load", "Identify the device"));
+  click("a second time with a load at the tip", "Identify the device");
+  EXPECT_TRUE(find("load", "Identify the device"));
+  EXPECT_NE(hint("of the motors' limits", "Identify the device"), "");
+  click("Begin (Enter)", "Identify the device");
+  ASSERT_TRUE(until([&] { return desktop->identify.moving(); }));
+  frames(3);
+  EXPECT_THAT(words("Identify the device"), HasSubstr("It moves by itself: "));
+  EXPECT_FALSE(find("Close (Esc)", "Identify the device")) << "it has to be stopped first";
+  click("Stop (Esc)", "Identify the device");
+  EXPECT_TRUE(until([&] { return !desktop->identify.moving(); }));
+}
+
+TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
+  run("experiments.show");
+  frames(4);
+  const std::string shown = words();
+  EXPECT_THAT(shown, HasSubstr("The paper's experiments, each run by the ordinary loop"));
+  EXPECT_THAT(shown, HasSubstr("Run all"));
+  for (const Experiment& each : experiments()) EXPECT_THAT(shown, HasSubstr(each.name));
+  EXPECT_NE(hint("inertia"), "");
+  const auto name = find("inertia");
+  ASSERT_TRUE(name);
+  std::optional<test::DrawnText> button;
+  for (const test::DrawnText& each : test::drawn_texts()) {
+    if (each.text == "Run" && std::abs(each.middle().y - name->middle().y) < 4) button = each;
+  }
+  ASSERT_TRUE(button);
+  click(button->middle());
+  ASSERT_TRUE(until([&] { return !desktop->experiments_under_way.empty() || said("inertia:"); }));
+  ASSERT_TRUE(until([&] { return said("inertia: passed"); }));
+  frames(4);
+  const std::string verdict = words();
+  for (const char* head : {"value", "bound", "passed", "Trials, to open in playback"}) {
+    EXPECT_THAT(verdict, HasSubstr(head));
+  }
+}
+
+TEST_F(Dialog, OfAPlotChoosesItsChannels) {
+  run("plots.add");
+  frames(4);
+  for (const char* label :
+       {"over time", "against a channel", "spectrum", "Done (Esc)", "None", "Remove plot"}) {
+    EXPECT_TRUE(find(label)) << label;
+  }
+  const std::size_t plot = desktop->plots.chosen();
+  EXPECT_NE(hint("spectrum"), "");
+  write("hand torque norm");
+  press(GLFW_KEY_ENTER);
+  frames(2);
+  ASSERT_LT(plot, desktop->settings.plot_choices.size());
+  EXPECT_EQ(desktop->settings.plot_choices[plot].channels.size(), 1u);
+  click("spectrum");
+  EXPECT_EQ(desktop->settings.plot_choices[plot].kind, PlotKind::spectrum);
+  click("against a channel");
+  EXPECT_TRUE(find("along x"));
+  EXPECT_NE(desktop->settings.plot_choices[plot].across, "");
+  click("None");
+  EXPECT_TRUE(desktop->settings.plot_choices[plot].channels.empty());
+  click("Remove plot");
+  EXPECT_EQ(desktop->settings.plot_choices.size(), plot);
+  EXPECT_EQ(desktop->dialog.name(), "");
+}
+
+}  // namespace
+}  // namespace limpid
