@@ -11,23 +11,23 @@
 namespace limpid {
 namespace {
 
-constexpr double kTicks[] = {1e-3, 2.5e-4};  // [s]
+constexpr double kBodyTicks[] = {1e-3, 2.5e-4};  // [s]
 
 // Findings of all cases, tick by tick.
 struct AllFindings {
-  std::vector<BodyClaim> claims[std::size(kTicks)];
-  std::vector<Series> curves[std::size(kTicks)];
+  std::vector<BodyClaim> claims[std::size(kBodyTicks)];
+  std::vector<Series> curves[std::size(kBodyTicks)];
 };
 
 AllFindings find_all(TrialRunner& lab) {
   std::vector<BodyCase> cases = cases_with_contacts();
   const std::vector<BodyCase> more = cases_with_joints();
   cases.insert(cases.end(), more.begin(), more.end());
-  constexpr std::size_t kEach = std::size(kTicks);
+  constexpr std::size_t kEach = std::size(kBodyTicks);
   std::vector<BodyFindings> found(kEach * cases.size());
   lab.each(found.size(), [&](std::size_t i) {
     if (lab.stopped()) throw Cancelled();
-    found[i] = cases[i / kEach].find(kTicks[i % kEach]);
+    found[i] = cases[i / kEach].find(kBodyTicks[i % kEach]);
   });
   AllFindings all;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -55,7 +55,7 @@ SceneDocument rolling_ball() {
 std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
   constexpr double kSeconds = 1;
   std::vector<Trial> trials;
-  for (const double tick : kTicks) {
+  for (const double tick : kBodyTicks) {
     Parameters p;
     p.tick = tick;
     const HandPath hand =
@@ -68,7 +68,7 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
   std::vector<Check> checks;
   const std::vector<TrialResult> results = lab.run(trials);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    BodyBench bench(rolling_ball().scene, kTicks[i]);
+    BodyBench bench(rolling_ball().scene, kBodyTicks[i]);
     const Session& s = results[i].session;
     double off = 0;
     for (std::size_t k = 0; k < s.size(); ++k) {
@@ -78,7 +78,7 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
     }
     checks.push_back(at_most(
         fmt::format("ball beside an arm in the ordinary loop, off the one by itself, {} [m]",
-                    tick_text(kTicks[i])),
+                    tick_text(kBodyTicks[i])),
         off, 1e-9));
   }
   return checks;
@@ -140,18 +140,18 @@ Outcome bodies(TrialRunner& lab) {
   for (const Check& check : same_as_in_the_loop(lab)) outcome.checks.push_back(check);
   outcome.figure.title = "Motion of bodies against closed forms";
   outcome.figure.columns = 2;
-  FigurePanel swing{.title = "Energy of a pendulum over a minute, " + tick_text(kTicks[0]),
+  FigurePanel swing{.title = "Energy of a pendulum over a minute, " + tick_text(kBodyTicks[0]),
                     .x_label = "time [s]",
                     .y_label = "energy, less that at the start [mJ]",
                     .series = curves_of(all.curves[0], "swings")};
-  FigurePanel roll{.title = "Rolling down 20 degrees, " + tick_text(kTicks[0]),
+  FigurePanel roll{.title = "Rolling down 20 degrees, " + tick_text(kBodyTicks[0]),
                    .x_label = "time [s]",
                    .y_label = "way [m]"};
   for (const char* name : {"ball", "cylinder", "capsule"}) {
     for (const Series& curve : curves_of(all.curves[0], name)) roll.series.push_back(curve);
   }
-  outcome.figure.panels = {errors_panel(all.claims[0], kTicks[0]),
-                           errors_panel(all.claims[1], kTicks[1]), swing, roll};
+  outcome.figure.panels = {errors_panel(all.claims[0], kBodyTicks[0]),
+                           errors_panel(all.claims[1], kBodyTicks[1]), swing, roll};
   outcome.figure.caption =
       "Bodies without an arm, stepped as the loop steps them. First row: every check's error over "
       "its limit, under two ticks; what is off the axis is drawn at its end, and grey is what a "

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRadius = 0.02, kLength = 0.04;  // of what rolls [m]
 constexpr double kRollingMass = 0.05;             // [kg]
-constexpr double kGrip = 0.9;                     // friction under what rolls [-]
+constexpr double kRollingFriction = 0.9;          // friction under what rolls [-]
 constexpr double kDriftLimit = 0.1;               // [mm]
 constexpr double kEdge = 0.03;                    // of cubes that rest [m]
 constexpr double kCubeMass = 0.05;                // [kg]
@@ -103,7 +103,7 @@ Scene roller_on(double slope, const Roller& roller) {
   Pose pose = turned_at(kRadius * uphill_normal(slope), slope, Vec3::UnitY());
   pose.rotate(Eigen::AngleAxisd(radians(90), Vec3::UnitX()));
   Scene scene;
-  scene.add(ground(slope, kGrip));
+  scene.add(ground(slope, kRollingFriction));
   scene.add(moving(roller.name, roller.shape, kRollingMass, pose));
   return scene;
 }
@@ -123,7 +123,7 @@ BodyFindings rolls(double tick) {
            .limit = roller.limit,
            .conditions = fmt::format("g sin / (1 + I / (m r^2)); radius {} mm, {} g, friction {}, "
                                      "from 0.2 to 1 s.",
-                                     1e3 * kRadius, 1e3 * kRollingMass, kGrip),
+                                     1e3 * kRadius, 1e3 * kRollingMass, kRollingFriction),
            .fault = roller.spoiled ? spoiled_by(kRollsThrough) : ""});
     }
     // The way at 20 degrees, for the figure.
