@@ -92,7 +92,7 @@ TEST_F(CouplingWords, HaveASliderForEachParameterOfTheLaw) {
     draw();
     const LawInfo& law = info(p_.kind);
     const auto shown = [&](std::string_view key) {
-      const std::string words_of_it = caption(*find_parameter(std::string(key).c_str()));
+      const std::string words_of_it = find_parameter(std::string(key))->caption;
       const auto plain = std::ranges::find_if(words_of_it, [](char c) { return c < 0; });
       return words().find(std::string(words_of_it.begin(), plain)) != std::string::npos;
     };

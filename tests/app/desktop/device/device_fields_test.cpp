@@ -99,10 +99,10 @@ TEST_F(DeviceFields, OfAJoystickWithoutUnitsAreForceAndRange) {
 
 TEST_F(DeviceFields, OfLimitsNameEachOfThem) {
   draw();
-  EXPECT_FALSE(find(kSafetyLimitInfo[0].label));
+  EXPECT_FALSE(find(kSafetyLimits[0].caption));
   click("Limits of force");
-  for (const SafetyLimitInfo& info : kSafetyLimitInfo) {  // long ones are cut in this font
-    EXPECT_THAT(words(), HasSubstr(std::string(info.label).substr(0, 12)));
+  for (const auto& limit : kSafetyLimits) {  // long ones are cut in this font
+    EXPECT_THAT(words(), HasSubstr(std::string(limit.caption).substr(0, 12)));
   }
   EXPECT_THAT(hint("Limits of force"), HasSubstr("They can be lowered"));
 }

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "app/desktop/base/first_steps.h"
-#include "app/desktop/shell/print_state.h"
+#include "app/desktop/shell/state.h"
 #include "tests/app/desktop/shell/whole_window.h"
 
 namespace limpid {
@@ -465,7 +465,7 @@ TEST_F(Words, OfTheStateForScriptsAreThoseOfTheParts) {
   EXPECT_EQ(state["objects"], desktop->document.scene().objects.size());
   EXPECT_EQ(state["plots"].size(), desktop->shown.stage().plots.size());
   EXPECT_EQ(state["identify"]["phase"], "asking");
-  EXPECT_EQ(state["device"]["in_use"], "");
+  EXPECT_EQ(state["device_panel"]["in_use"], "");
   const auto places = dialog_places();
   ASSERT_TRUE(places);
   EXPECT_NEAR(state["closing"]["cross"][0].get<float>(), places->cross.x, 1);
