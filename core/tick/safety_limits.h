@@ -37,7 +37,8 @@ inline constexpr auto kSafetyLimits = [] {
   using L = SafetyLimits;
   const auto limit = [](const char* key, const char* caption, double L::*member, double least,
                         const char* unit, const char* meaning) {
-    return Field<L>(key, caption, member, {least, L{}.*member, false, unit}, meaning);
+    return Field<L>(key, caption, member, {least, L{}.*member, false, unit}, meaning,
+                    {least, L{}.*member, true});
   };
   return std::array{
       limit("joint_speed", "joint speed", &L::joint_speed, 0.5, "rad/s", "Of the fastest joint."),

@@ -183,6 +183,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     c.normal.setZero();
     c.friction.setZero();
     c.id = id++;
+    c.body = BodyContact::kStill;
     c.touching = c.depth > 0;
   }
   for (MeshContact<N>& contact : meshes_) {

@@ -102,6 +102,7 @@ class Contacts {
 
   // All kinds of contacts. A new one has a place here and its name in AnyContact. Sums are taken in
   // these orders, so they decide on the last bits of rows.
+  // Both have every kind of AnyContact.
   auto kinds() { return std::tuple(list(), meshes(), std::span(&magnet_, 1)); }
   auto kinds() const { return std::tuple(list(), meshes(), std::span(&magnet_, 1)); }
   auto magnet_first() { return std::tuple(std::span(&magnet_, 1), list(), meshes()); }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <vector>
 
 #include "core/base/field.h"
@@ -55,11 +56,15 @@ void read_fields(const TomlTable& t, const Table& fields, Owner& owner, bool who
   }
 }
 
-// Inserts all fields but vectors, and those that are left open.
+// Inserts all fields but vectors, and those that are left open by default and still are. A number
+// that is none is written, so that no reader takes the default instead.
 template <class Table, class Owner>
 void insert_fields(toml::table& table, const Table& fields, const Owner& owner) {
   for (const Field<Owner>& field : fields) {
-    const std::optional<FieldValue> value = value_of(field, owner);
+    std::optional<FieldValue> value = value_of(field, owner);
+    if (!value && field.kind == FieldInfo::Kind::number && value_of(field, Owner{})) {
+      value = std::numeric_limits<double>::quiet_NaN();
+    }
     if (!value) continue;
     std::visit(
         [&]<class T>(const T& x) {

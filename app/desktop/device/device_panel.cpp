@@ -209,7 +209,8 @@ bool settled_slider(const Field<Owner>& field, Owner& owner, float letters) {
   if (ImGui::SliderFloat(
           field.caption, &value, static_cast<float>(shown * least),
           static_cast<float>(shown * most), format.c_str(),
-          (field.logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp)) {
+          (field.logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp) &&
+      std::isfinite(value)) {  // "nan" can be typed
     set_number(field, owner, static_cast<double>(value) / shown);
   }
   const bool settled = ImGui::IsItemDeactivatedAfterEdit();

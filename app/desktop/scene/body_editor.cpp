@@ -101,12 +101,12 @@ std::string_view edit_limits(BodyJoint& joint) {
   const FieldInfo from{{-far, high - kApart, false, kTravel.unit},
                        "from",
                        "From",
-                       "",
+                       "From",
                        "The stop on the side against the axis."};
   const FieldInfo to{{low + kApart, far, false, kTravel.unit},
                      "to",
                      "To",
-                     "",
+                     "To",
                      "The stop on the side of the axis."};
   if (edit_value(from, low, 0, turns(joint))) {
     joint.low = low;
@@ -266,9 +266,9 @@ std::string_view edit_moments(Object& object) {
 
 }  // namespace
 
-std::string_view edit_body(Object& object, const Scene& scene, std::size_t place) {
+std::string edit_body(Object& object, const Scene& scene, std::size_t place) {
   if (has_shape<Plane>(object) || has_shape<JointStop>(object)) return {};
-  std::string_view what;
+  std::string what;
   bool moves = object.body.has_value();
   if (ImGui::Checkbox("moves", &moves)) {
     object.body.reset();
@@ -281,7 +281,9 @@ std::string_view edit_body(Object& object, const Scene& scene, std::size_t place
   what = edit_fields(std::array{kBodyMass}, body);
   if (const auto key = edit_fields(kBodyFields, body); !key.empty()) what = key;
   if (const auto moments = edit_moments(object); !moments.empty()) what = moments;
-  if (const auto joint = edit_joint(body, scene, place); !joint.empty()) what = joint;
+  if (const auto joint = edit_joint(body, scene, place); !joint.empty()) {
+    what = "joint " + std::string(joint);  // a body has a key "stiffness" too
+  }
   return what;
 }
 

@@ -8,7 +8,7 @@
 namespace limpid {
 
 // Edits whether an object moves, and its body. Returns the name of the change, "" for none.
-std::string_view edit_body(Object& object, const Scene& scene, std::size_t place);
+std::string edit_body(Object& object, const Scene& scene, std::size_t place);
 
 // Edits springs and gravity of a scene with moving objects; draws nothing for others.
 void draw_springs(Document& document);

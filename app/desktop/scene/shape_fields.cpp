@@ -23,9 +23,13 @@ struct ShownUnit {
   std::string_view unit;
   double of_one;  // shown number for one of `unit`
   const char* format;
+  double pace;   // least change per pixel of a drag, as shown
+  double least;  // where 0 is not allowed, as shown
 };
-constexpr std::array kShownUnits{ShownUnit{"m", 1e3, "%.2f mm"}, ShownUnit{"kg", 1e3, "%.4g g"},
-                                 ShownUnit{"rad", 180 / std::numbers::pi, "%.1f\xC2\xB0"}};
+constexpr std::array kShownUnits{
+    ShownUnit{"m", 1e3, "%.2f mm", kMillimetreSpeed, 0.1},
+    ShownUnit{"kg", 1e3, "%.4g g", 0.01, 1e-3},
+    ShownUnit{"rad", 180 / std::numbers::pi, "%.1f\xC2\xB0", kDegreeSpeed, 0.1}};
 
 std::string_view unit_of(const FieldInfo& field, bool turns) {
   constexpr std::string_view kOr = " or ";
@@ -38,14 +42,19 @@ std::string_view unit_of(const FieldInfo& field, bool turns) {
 bool drag_value(const FieldInfo& field, double& value, bool turns) {
   const std::string_view unit = unit_of(field, turns);
   const auto* known = std::ranges::find(kShownUnits, unit, &ShownUnit::unit);
-  const double of_one = known == kShownUnits.end() ? 1 : known->of_one;
-  std::string format = known == kShownUnits.end() ? fmt::format("%.6g {}", unit) : known->format;
+  const std::string plain = fmt::format("%.6g {}", unit);
+  const ShownUnit as =
+      known == kShownUnits.end() ? ShownUnit{unit, 1, plain.c_str(), 0.01, 1e-6} : *known;
+  const double of_one = as.of_one;
+  std::string format = as.format;
   // A number without an upper end may be left out, which is shown as 0.
   const bool endless = std::isinf(field.maximum);
   double shown = endless && std::isinf(value) ? 0 : of_one * value;
   if (endless && shown == 0) format = "never";
-  const double pace = std::max(0.01, 0.005 * std::abs(shown));
-  if (!drag_number(field.caption, shown, pace, endless ? 0 : of_one * field.least(),
+  const double pace = std::max(as.pace, 0.005 * std::abs(shown));
+  const double least =
+      field.exclusive_minimum ? of_one * field.minimum + as.least : of_one * field.minimum;
+  if (!drag_number(field.caption, shown, pace, endless ? 0 : least,
                    of_one * std::min(field.maximum, 1e9), format.c_str(), field.meaning)) {
     return false;
   }

@@ -42,7 +42,7 @@ class FilmFrames : public testing::Test {
     look_ = look;
     if (!test::has_offscreen_pictures()) GTEST_SKIP() << "no EGL here";
     frame_.emplace(look);
-    History history({.channels = TraceChannels(layout_).count(), .seconds = 10, .tick = kTick});
+    History history({.channels = 2 * TraceChannels(layout_).count(), .seconds = 10, .tick = kTick});
     stage_ = std::make_unique<Stage>(read_urdf(default_device()), SceneDocument{}, MeshModels{},
                                      std::move(history), kShown);
     camera_.reset(stage_->picture.bounds());
@@ -58,13 +58,13 @@ class FilmFrames : public testing::Test {
   Picture draw_beside(const std::vector<double>& row, const std::vector<double>& other,
                       const std::string& told = {}) {
     const ViewState view = stage_->rows().view(layout_, row);
-    const ImVec2 size = frame_->viewport(true);
+    const ImVec2 size = frame_->viewport(2);
     camera_.resize(size.x, size.y);
-    stage_->name_runs({"a", "a", true});
+    stage_->name_runs({{"a", "a"}, true});
     return {
         look_.width, look_.height,
         frame_->draw(*stage_, view, camera_, {.time = {}, .text = {}, .aside = {}, .told = told},
-                     0.1, stage_->rows().view(layout_, other))};
+                     0.1, {stage_->rows().view(layout_, other)})};
   }
 
   const RowLayout layout_{3};
@@ -185,7 +185,7 @@ TEST_F(FilmFrames, ShowTwoRunsInHalvesThroughOneCamera) {
 TEST_F(FilmFrames, ShowTwoRunsInOnePictureWhereThatIsAskedFor) {
   ASSERT_NO_FATAL_FAILURE(begin({.plots = false, .overlaid = true}));
   if (!frame_) return;
-  EXPECT_EQ(frame_->viewport(true).x, frame_->viewport(false).x);
+  EXPECT_EQ(frame_->viewport(2).x, frame_->viewport(1).x);
   const std::vector<double> row = row_at(layout_, 0);
   std::vector<double> turned = row;
   layout_.in(std::span<double>(turned), Column::proxy_position)[0] = 0.6;

@@ -206,6 +206,41 @@ TEST(Magnet, PicksUpAModel) {
   EXPECT_LE(r.gain, 1e-6);
 }
 
+// A contact's place is used again, by a joint's stop where a body was touched before.
+TEST(Stop, TouchedAfterABodyIsFelt) {
+  constexpr double kStop = -0.3;
+  const ArmDescription arm = omni();
+  for (std::uint8_t kind = 0; kind < std::tuple_size_v<Laws>; ++kind) {
+    Scene scene;
+    scene.tip_radius = 0.004;
+    scene.gravity.setZero();
+    scene.add(block(0.5, {0.18, 0.03, 0}, 0.3, 1000));
+    scene.add({.name = "stop", .shape = JointStop{0, kStop, -1}, .material = {20, 0, 0, 0}});
+    Parameters p;
+    p.kind = static_cast<CouplingKind>(kind);
+    p.hand_stiffness = 300;
+    const auto hand = [](double t) {  // to the block, back, and on beyond the stop
+      const double y = t < 0.5 ? 0.03 * t / 0.5 : 0.03 - 0.14 * std::min((t - 0.5) / 0.7, 1.0);
+      return HandInput{Vec3(0.18, y, 0)};
+    };
+    Rig rig(arm, scene);
+    rig.start(p, rest_at(arm, hand(0).target));
+    std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+    const auto at = [&](Column c) { return rig.layout().in(std::span<const double>(row), c); };
+    double moved = 0;
+    for (int k = 0; k < 1500; ++k) {
+      rig.step(p, {hand(k * p.tick)}, row);
+      ASSERT_TRUE(std::isfinite(at(Column::proxy_position)[0])) << int(kind) << " in tick " << k;
+      moved = std::max(moved, at(Column::body_pose)[1] - 0.03);
+    }
+    EXPECT_GT(moved, 0.001) << int(kind);
+    // The hand holds back by at most 20 N m/rad against its own 300 N/m at 0.18 m, 9.7 N m/rad.
+    const double beyond = std::atan2(-0.11, 0.18) - kStop;
+    EXPECT_LT(at(Column::proxy_position)[0], kStop) << int(kind);
+    EXPECT_NEAR(at(Column::proxy_position)[0], kStop + beyond * 9.7 / 29.7, 0.03) << int(kind);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Stiffnesses, MovingBodies, testing::Values(600, 2000, 5000));
 
 }  // namespace
