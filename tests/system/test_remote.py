@@ -243,7 +243,8 @@ class TestServe(RemoteTest):
     @staticmethod
     def twin_row(loop, names):
         try:
-            return list(loop.row(names).values())
+            row = loop.row(names)
+            return [row[name] for name in names]
         except limpid.RequestError:
             return None
 

@@ -65,7 +65,9 @@ class Headless(WithAnArm):
 
     def test_the_picture_of_an_unstable_run_is_of_before(self) -> None:
         image = self.out(".png")
-        result = limpid("run", *self.arm, "--twin", "--k-vc", "100000", "--picture", image)
+        result = limpid("run", *self.arm, "--twin", "--set", "coupling.k_vc=10000",
+                        "--set", "loop.tick=0.01",
+                        "--picture", image)
         self.assertEqual(result.status, 1, result)
         self.assertTrue(image.exists(), result)
 

@@ -80,7 +80,7 @@ TEST_F(Commands, RunOfATwinHasTwoRunsOfTwoLaws) {
       done({"run", "--twin", "coupling.eta=0.7", "--duration", "0.02", "--coupling", "proposed"}),
       ContainsRegex("proposed 1.*proposed 0.7"));
   EXPECT_THAT(refused({"run", "--twin", "loop.tick=0.0005", "--duration", "0.02"}),
-              HasSubstr("both runs go in the same ticks"));
+              HasSubstr("all runs go in the same ticks"));
 }
 
 TEST_F(Commands, RunKeepsFilesThatAreThereUnlessForced) {

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Words, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
+TEST(WordsOfSliders, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
   for (std::uint8_t kind = 0; kind < kLaws; ++kind) {
     for (const char* key : info(static_cast<CouplingKind>(kind)).sliders) {
       const std::string words = find_parameter(key)->caption;
@@ -23,7 +23,7 @@ TEST(Words, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
   EXPECT_STREQ(find_parameter("coupling.eta")->caption, "Impedance scaling \xCE\xB7");
 }
 
-TEST(Words, MarkAChangeAsTheSliderReads) {
+TEST(WordsOfSliders, MarkAChangeAsTheSliderReads) {
   Parameters p;
   p.eta = 1 / 1.1;
   const ParameterInfo& eta = *find_parameter("coupling.eta");
@@ -37,7 +37,7 @@ TEST(Words, MarkAChangeAsTheSliderReads) {
   EXPECT_THAT(mark_text(*find_parameter("observer.anti_windup"), p), HasSubstr("off"));
 }
 
-TEST(Words, WriteLargeEnergiesInJoules) {
+TEST(WordsOfSliders, WriteLargeEnergiesInJoules) {
   EXPECT_EQ(energy_text(5.761), "5.76 J");
   EXPECT_EQ(energy_text(0.0642), "64.2 mJ");
   EXPECT_EQ(energy_text(-0.0642),
