@@ -139,7 +139,7 @@ class Live(unittest.TestCase):
         for text, said in (
                 (entry + 'limits = {tip_force = "1"}\n', 'limits.tip_force: "1" is not allowed'),
                 (entry + "limits = {tip_force = 100}\n", "allowed: a number from 0.1 up to 10"),
-                (entry + "axis = [{inverted = 'yes'}]\n", "allowed: true or false"),
+                (entry + "axis = [{inverted = 'yes'}]\n", "allowed: true, false"),
                 (entry + "checked = \n", "not TOML")):
             with self.subTest(text=text):
                 book.write_text(text)
