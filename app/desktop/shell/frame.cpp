@@ -105,11 +105,12 @@ Layout Frame::lay_out() {
 
 ViewScene Frame::view_scene() {
   const FrameSize size = size_();
-  ViewScene scene{.stage = desktop_.shown.stage(),
-                  .row = desktop_.shown.row(),
-                  .quality = desktop_.shown.quality_level(),
-                  .pixel_scale = size.width > 0 ? static_cast<double>(size.pixels_x) / size.width : 1,
-                  .pixel_height = size.pixels_y};
+  ViewScene scene{
+      .stage = desktop_.shown.stage(),
+      .row = desktop_.shown.row(),
+      .quality = desktop_.shown.quality_level(),
+      .pixel_scale = size.width > 0 ? static_cast<double>(size.pixels_x) / size.width : 1,
+      .pixel_height = size.pixels_y};
   if (const PlayedSession* session = desktop_.playback.shown()) {
     scene.recorded = true;
     scene.rerun = session->rerun_row();
