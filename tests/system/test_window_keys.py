@@ -1,10 +1,10 @@
 """Keys, dialogs and possible faults of the window, under Xvfb with xdotool."""
 
-import re
 import shutil
 import signal
 import subprocess
 import time
+import tomllib
 import unittest
 
 from support import ASSETS
@@ -268,7 +268,7 @@ class WhatGoesWrong(WindowTest):
         kept = data / "scenes/table-unsaved.toml"
         self.assertEqual(kept.read_text().count("[[plane]]"), 2)
         settings = (self.home / "config/limpid/settings.toml").read_text()
-        self.assertEqual(float(re.search(r"\beta = ([0-9.e-]+)", settings)[1]), eta)
+        self.assertEqual(tomllib.loads(settings)["parameters"]["coupling"]["eta"], eta)
 
     def test_ctrl_c_keeps_unsaved_changes_even_while_they_are_asked_about(self) -> None:
         make_a_change(self)
