@@ -313,7 +313,7 @@ class TestRemoteWindow(WindowTest):
         result, thread = self.beside(lambda: self.compares(run))
         for key in ("Return", "Return", "2", "Return"):
             self.answer(key)
-        self.wait("the trial's question", lambda s: s["recording"] and s["dialog"] == "ask")
+        self.wait("recording", lambda s: s["recording"])
         cut_off()
         thread.join(60)
         [error] = result

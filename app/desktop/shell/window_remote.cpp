@@ -320,7 +320,7 @@ Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
   const double seconds = keys.number_or("seconds", 0, 0.1, 3600);
   d_.question.ask(keys.text("text"), *choices, {keys.flag_or("beside", false), seconds});
   asks_ = client;
-  d_.dialog.open("ask");
+  if (!d_.dialog.modal()) d_.dialog.open("ask");  // else turn() opens it once that is answered
   return Answer::Later([this]() -> std::optional<json> {
     const auto answer = d_.question.take();
     if (!answer) return std::nullopt;
