@@ -11,24 +11,14 @@
 
 namespace limpid {
 
-struct JointLink {
+struct JointLink : HeldForce {
   int a = 0, b = BodyContact::kStill;
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // in their objects' frames, or the world's [m]
   std::optional<Vec3> rail_axis;                  // in the frame of b
-  PointForce force;
-  HeldPoint point;               // in the tick, as all below
-  Mat3 held = Mat3::Identity();  // projection on the directions that are not free
+  Mat3 held = Mat3::Identity();                   // in the tick: onto directions that are not free
 
   static constexpr bool kWakes = true;
-  bool off() const { return false; }
   void prepare(Bodies& bodies);
-  double solve(Bodies& bodies) {
-    return force.set(bodies, point.force(bodies.T, force.speed(bodies), force.on_a));
-  }
-  Vec3 forces() const { return force.on_a; }
-  void add(Bodies& bodies, const Vec3& more) { force.add(bodies, more); }
-  void hold(const Bodies&) {}
-  void finish(const Bodies&) {}
   double energy(const Bodies& bodies) const;
 
   std::array<double, 4> numbers() const {

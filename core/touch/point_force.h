@@ -47,4 +47,19 @@ struct HeldPoint {
   }
 };
 
+// A force that holds a point, as parts of joints and pulls have it.
+struct HeldForce {
+  PointForce force;
+  HeldPoint point;  // in the tick
+
+  static bool off() { return false; }
+  double solve(Bodies& bodies) {
+    return force.set(bodies, point.force(bodies.T, force.speed(bodies), force.on_a));
+  }
+  Vec3 forces() const { return force.on_a; }
+  void add(Bodies& bodies, const Vec3& more) { force.add(bodies, more); }
+  void hold(const Bodies&) {}
+  void finish(const Bodies&) {}
+};
+
 }  // namespace limpid

@@ -5,9 +5,9 @@
 
 namespace limpid {
 
-// The force is conservative like a single wall's. A spring K
-// and damper B pull a ball's centre to the nearest place that the mesh leaves free. Over the tick
-// the centre moves by D = a + W F: a without this force [m], W the response to it [m/N].
+// The force is conservative like a single wall's. A spring K and damper B pull a ball's centre to
+// the nearest place that the mesh leaves free. Over the tick the centre moves by D = a + W F: a
+// without this force [m], W the response to it [m/N].
 struct RoomTick {
   double K, B, T;
   Vec3 center;
