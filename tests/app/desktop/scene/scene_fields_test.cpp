@@ -420,5 +420,55 @@ TEST_F(SceneFields, OfAnEmptySceneSayHowItIsFilled) {
   EXPECT_TRUE(find("Model..."));
 }
 
+// A panel that is only looked at changes nothing, whatever it shows.
+TEST_F(SceneFields, OfEveryShapeChangeNothingByThemselves) {
+  for (const Shape& shape :
+       {Shape(Plane{}), Shape(Sphere{0.02}), Shape(Box{{0.02, 0.03, 0.04}}),
+        Shape(Cylinder{0.01, 0.05}), Shape(Capsule{0.01, 0.05}), Shape(JointStop{1, 0.7, -1})}) {
+    Object one;
+    one.shape = shape;
+    one.pose = pose_at({0.1, 0.02, 0.03});
+    one.name = "it";
+    open({one});
+    frames();
+    EXPECT_FALSE(document_.editor().dirty()) << shape.index();
+    EXPECT_EQ(object().shape, shape) << shape.index();
+  }
+}
+
+TEST_F(SceneFields, OfAStopTurnIt) {
+  Object stop;
+  stop.shape = JointStop{1, 0.7, -1};
+  stop.name = "it";
+  open({stop});
+  type_into("Angle", "-30");
+  const auto& now = std::get<JointStop>(object().shape);
+  EXPECT_NEAR(now.angle, -std::numbers::pi / 6, 1e-12);
+  EXPECT_EQ(now.joint, 1);
+  EXPECT_EQ(now.direction, -1);
+  document_.undo();
+  EXPECT_EQ(std::get<JointStop>(object().shape).angle, 0.7);
+}
+
+TEST_F(SceneFields, OfAPlaneMoveAPointOfIt) {
+  Object plane;
+  plane.shape = Plane{};
+  plane.name = "it";
+  open({plane});
+  type_into("Point on it x, y, z [mm]", "12");
+  EXPECT_EQ(object().pose.translation(), Vec3(0, 0.012, 0));
+}
+
+TEST_F(SceneFields, OfABallMoveItsCentreAndSize) {
+  Object ball;
+  ball.shape = Sphere{0.02};
+  ball.name = "it";
+  open({ball});
+  type_into("Centre x, y, z [mm]", "-5");
+  type_into("Radius", "7");
+  EXPECT_EQ(object().pose.translation(), Vec3(0, -0.005, 0));
+  EXPECT_NEAR(std::get<Sphere>(object().shape).radius, 0.007, 1e-12);
+}
+
 }  // namespace
 }  // namespace limpid
