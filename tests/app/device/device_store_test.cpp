@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "app/device/device_hub.h"
@@ -64,6 +65,17 @@ TEST(DeviceStore, LowersLimits) {
   EXPECT_EQ(read.tip_force, 3);
   EXPECT_EQ(read.range, 0.8);
   EXPECT_EQ(read.joint_speed, 15);
+}
+
+// Left out, it would be the widest one when the file is read again.
+TEST(DeviceStore, RefusesALimitThatIsNoNumberWhenItComesBack) {
+  const test::TempDir dir;
+  const auto file = dir / "devices.toml";
+  DeviceStore store;
+  store.notes["1209:4c50:"].limits.tip_force = std::nan("");
+  EXPECT_EQ(save_device_store({}, store, file), "");
+  const DeviceStore read = load_device_store(file);
+  EXPECT_THAT(read.notes.at("1209:4c50:").refusal, testing::HasSubstr("limits.tip_force: nan"));
 }
 
 // Each of these values once meant the widest limit, or an axis that is not inverted.
