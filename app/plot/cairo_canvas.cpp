@@ -150,15 +150,11 @@ void CairoCanvas::polyline(std::span<const Point> points, Rgb rgb, double width)
 }
 
 void CairoCanvas::polygon(std::span<const Point> points, Rgb rgb, double width) {
-  for (const bool edge : {false, true}) {
-    impl_->path(points);
-    cairo_close_path(impl_->cairo.get());
-    if (!edge) {
-      impl_->fill(rgb);
-    } else if (width > 0) {
-      impl_->stroke(rgb, width);
-    }
-  }
+  impl_->path(points);
+  cairo_close_path(impl_->cairo.get());
+  impl_->use(rgb);
+  cairo_fill_preserve(impl_->cairo.get());
+  if (width > 0) impl_->stroke(rgb, width);
   cairo_new_path(impl_->cairo.get());
 }
 
