@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include "app/device/device_store.h"
@@ -52,7 +50,7 @@ void LiveStage::open(ArmDescription arm, SceneDocument document, const MeshModel
   } else {
     session_.open(fresh->arm(), fresh->document().scene, p, rest);
   }
-  take_stage(std::move(fresh));
+  stage_ = std::move(fresh);
 }
 
 void LiveStage::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
@@ -64,7 +62,7 @@ void LiveStage::open_beside(SceneDocument document, const MeshModels& models, co
   }
   auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
   touch(fresh->document().scene);
-  take_stage(std::move(fresh));
+  stage_ = std::move(fresh);
 }
 
 void LiveStage::touch(const Scene& scene) { session_.touch(stage_->arm(), scene); }
@@ -77,8 +75,6 @@ std::unique_ptr<Stage> LiveStage::make_stage(ArmDescription arm, SceneDocument d
       std::move(arm), std::move(document), models,
       History({.channels = static_cast<int>(kMostLanes) * channels, .tick = p.tick}), shown);
 }
-
-void LiveStage::take_stage(std::unique_ptr<Stage> fresh) { stage_ = std::move(fresh); }
 
 void LiveStage::drop_pictures() {
   loop().close();

@@ -116,7 +116,6 @@ class LiveStage {
   std::unique_ptr<Stage> make_stage(ArmDescription arm, SceneDocument document,
                                     const MeshModels& models, const Parameters& p,
                                     double shown) const;
-  void take_stage(std::unique_ptr<Stage> fresh);
   void tell(const RecordingNews& news);
   void follow_saving();
   void set_marks();
