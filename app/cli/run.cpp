@@ -278,11 +278,13 @@ void say_about(const RunPlan& plan) {
 }
 
 int live(const RunOptions& options) {
-  for (const auto& [given, what] : {std::pair(!options.input.hand.empty(), "--hand"),
-                                    std::pair(options.input.variation.has_value(), "--variation"),
-                                    std::pair(options.beside[0].has_value(), "--twin"),
-                                    std::pair(options.beside[1].has_value(), "--lane3")}) {
+  const auto refuse = [](bool given, std::string_view what) {
     if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
+  };
+  refuse(!options.input.hand.empty(), "--hand");
+  refuse(options.input.variation.has_value(), "--variation");
+  for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
+    refuse(options.beside[lane - 1].has_value(), lane_option(lane));
   }
   if (options.json) throw UsageError("--json: not beside --live");
   check_outputs(options);

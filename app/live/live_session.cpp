@@ -66,9 +66,7 @@ void LiveSession::touch(const ArmDescription& arm, const Scene& scene) {
 
 void LiveSession::set(std::size_t lane, const Parameters& p) {
   controls_.lanes[lane] = p;
-  for (Parameters& other : std::span(controls_.lanes).subspan(1)) {
-    share_world(controls_.parameters(), other);
-  }
+  share_world(controls_.lanes);
 }
 
 std::vector<std::span<const double>> LiveSession::rows() const {

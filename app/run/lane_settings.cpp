@@ -20,11 +20,12 @@ const ParameterInfo* first_difference(const std::vector<const Parameters*>& lane
 
 }  // namespace
 
-void share_world(const Parameters& first, Parameters& other) {
-  const Parameters before = other;
-  const ControllerSettings& own = before;
-  other = first;
-  static_cast<ControllerSettings&>(other) = own;
+void share_world(std::span<Parameters> lanes) {
+  for (Parameters& other : lanes.subspan(1)) {
+    const ControllerSettings own = other;
+    other = lanes.front();
+    static_cast<ControllerSettings&>(other) = own;
+  }
 }
 
 CouplingKind law_beside(std::span<const Parameters> lanes) {

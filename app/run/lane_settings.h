@@ -9,8 +9,8 @@
 
 namespace limpid {
 
-// Copies to another lane all settings but its own ControllerSettings.
-void share_world(const Parameters& first, Parameters& other);
+// Gives all settings of the first lane but its ControllerSettings to the other ones.
+void share_world(std::span<Parameters> lanes);
 // Returns the law that a further lane begins with, beside those that are there already: the first
 // of standard, predictive and proposed that none of them has.
 CouplingKind law_beside(std::span<const Parameters> lanes);

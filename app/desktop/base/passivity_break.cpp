@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "app/run/analysis.h"
@@ -37,7 +36,7 @@ void break_passivity(Settings& settings, const ArmDescription& arm) {
   // The hand is the same for all lanes, and the first one's settings hold it.
   all[kMainLane].hand_stiffness = all[lane].hand_stiffness;
   all[kMainLane].hand_damping = all[lane].hand_damping;
-  for (Parameters& other : std::span(all).subspan(1)) share_world(all[kMainLane], other);
+  share_world(all);
 }
 
 void end_passivity_break(Settings& settings) {

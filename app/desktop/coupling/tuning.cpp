@@ -158,9 +158,7 @@ void Tuning::follow_lanes() {
   LaneSettings& lanes = settings_.lanes;
   if (live_.loop().device_in_place()) lanes.count = 1;
   lanes.edited = std::min(lanes.edited, lanes.count - 1);
-  for (Parameters& other : std::span(lanes.parameters).subspan(1)) {
-    share_world(lanes.parameters[kMainLane], other);
-  }
+  share_world(lanes.parameters);
   if (lanes.count == 1) return live_.stage().name_runs({});
   const auto running = std::span(lanes.parameters).first(lanes.count);
   RunNames names{lane_names(running), true};

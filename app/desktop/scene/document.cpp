@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -179,8 +178,7 @@ Bounds Document::selected_bounds() const {
 Document::EditState Document::present() const {
   EditState now{settings_.lanes.parameters, editor_.version()};
   if (const auto& before = settings_.before_break) now.lanes = before->parameters;
-  for (Parameters& other : std::span(now.lanes).subspan(1))
-    share_world(now.lanes[kMainLane], other);
+  share_world(now.lanes);
   return now;
 }
 

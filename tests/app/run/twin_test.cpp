@@ -61,12 +61,13 @@ RunPlan alone(const RunPlan& plan) {
 TEST(Twin, HasTheCouplingsSettingsOfItsOwnAndNoOthers) {
   constexpr std::array<std::string_view, 6> kOwn{"coupling.", "observer.", "predictor.",
                                                  "ledger.",   "tank.",     "model."};
-  Parameters first, twin;
+  std::array<Parameters, 2> lanes;
+  auto& [first, twin] = lanes;
   for (const ParameterInfo& info : parameter_table()) {
     set_parameter_number(first, info, info.minimum);
     set_parameter_number(twin, info, info.maximum);
   }
-  share_world(first, twin);
+  share_world(lanes);
   for (const ParameterInfo& info : parameter_table()) {
     const bool own = std::ranges::any_of(kOwn, [&info](std::string_view group) {
       return std::string_view(info.key).starts_with(group);
