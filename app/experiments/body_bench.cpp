@@ -30,26 +30,6 @@ const Object& BodyBench::object(int body) const {
   throw std::out_of_range("no such body");
 }
 
-void BodyBench::set_going(int body, const Vec3& speed, const Vec3& spin) {
-  const MassProperties own = mass_properties(object(body));
-  const Mat3 R = world_.pose(body).linear();
-  const Vec3 torque = R * own.inertia * R.transpose() * spin / tick_;
-  const Vec3 center = world_.center(body);
-  world_.touch(body);
-  world_.begin(tick_);
-  world_.push(world_.end_at(body, center), own.mass / tick_ * speed);
-  // Pairs of forces half a metre to both sides of the centre.
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 arm = 0.5 * Vec3::Unit((i + 1) % 3), force = torque[i] * Vec3::Unit((i + 2) % 3);
-    world_.push(world_.end_at(body, center + arm), force);
-    world_.push(world_.end_at(body, center - arm), -force);
-  }
-  world_.settle();
-  world_.finish();
-  ++ticks_;
-  step();
-}
-
 void BodyBench::step() {
   for (int i = 0; awake_ && i < world_.count(); ++i) world_.touch(i);
   world_.begin(tick_);

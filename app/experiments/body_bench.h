@@ -62,9 +62,10 @@ class BodyBench {
 
   // Bodies never sleep from now on, as those do that the tip is near to.
   void keep_awake() { awake_ = true; }
-  // Lets a body that rests begin to move within a tick, and steps one more. A body on a joint moves
-  // as far as that lets it.
-  void set_going(int body, const Vec3& speed, const Vec3& spin);
+  // Sets a body going, as far as its joint lets it [m/s, rad/s].
+  void set_going(int body, const Vec3& speed, const Vec3& spin) {
+    world_.set_speed(body, speed, spin);
+  }
   void step();
   void run(double seconds, const std::function<void()>& after_tick = {});
 

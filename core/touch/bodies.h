@@ -21,8 +21,12 @@ struct Bodies {
   std::vector<BodyMotion> motions;
   std::vector<Body> about;
   std::vector<Material> objects;            // by object of the scene
-  std::vector<std::uint8_t> awake, pushed;  // pushed: since the tick began, by anything but joints
+  std::vector<std::uint8_t> awake;
+  // Ticks for which a body still counts as pressed by the arm, a contact, a stop or friction.
+  std::vector<int> pressed;
   double T = 1e-3;                          // length of the tick [s]
+
+  static constexpr int kPressed = 20;
 
   static std::size_t at(int body) { return static_cast<std::size_t>(body); }
   BodyMotion& operator[](int body) { return motions[at(body)]; }
@@ -30,11 +34,12 @@ struct Bodies {
   int count() const { return static_cast<int>(motions.size()); }
   bool moves(int body) const { return body != BodyContact::kStill && awake[at(body)] != 0; }
 
-  // `rolls`: the place does not turn with the body.
-  BodyEnd end_at(int body, const Vec3& point, bool rolls = false) const {
+  // `rolls`: the round part that rolls there.
+  BodyEnd end_at(int body, const Vec3& point, const RoundPart* rolls = nullptr) const {
     if (!moves(body)) return {};
     const BodyMotion& motion = (*this)[body];
-    return {body, rolls ? Vec3(point - motion.center()) : motion.lever(point, T)};
+    if (rolls == nullptr) return {body, motion.lever(point, T)};
+    return {body, motion.rolling(point, place(body, rolls->center), directed(body, rolls->axis), T)};
   }
   Vec3 velocity(const BodyEnd& end) const {  // mean over the tick [m/s]
     if (end.body == BodyContact::kStill) return Vec3::Zero();
@@ -47,7 +52,6 @@ struct Bodies {
   void push(const BodyEnd& end, const Vec3& force) {
     if (end.body == BodyContact::kStill) return;
     (*this)[end.body].push(end.lever, force);
-    pushed[at(end.body)] = 1;
   }
   // Pushes a with the force and b against it [N].
   void apply(const BodyEnd& a, const BodyEnd& b, const Vec3& force) {
@@ -56,9 +60,21 @@ struct Bodies {
     push(b, -force);
   }
   void twist(int body, const Vec3& torque) {  // [N m]
-    if (!moves(body)) return;
-    (*this)[body].twist(torque);
-    pushed[at(body)] = 1;
+    if (moves(body)) (*this)[body].twist(torque);
+  }
+  void press(int body) {
+    if (moves(body)) pressed[at(body)] = kPressed;
+  }
+
+  // Between ticks, as BodyMotion has them.
+  Vec3 speed_at(int body, const Vec3& point) const {
+    return moves(body) ? (*this)[body].speed_at(point) : Vec3(Vec3::Zero());
+  }
+  double yields(int body, const Vec3& point, const Vec3& n) const {
+    return moves(body) ? (*this)[body].yields(point, n) : 0;
+  }
+  void strike(int body, const Vec3& point, const Vec3& impulse) {
+    if (moves(body)) (*this)[body].strike(point, impulse);
   }
 
   // Turn a point or a direction from a body's frame to the world's.

@@ -26,6 +26,9 @@ concept BodyConstraint = requires(C& c, const C& known, Bodies& bodies, const Ve
   { c.solve(bodies) } -> std::same_as<double>;      // for the present velocities; the change [N]
   { known.forces() } -> std::convertible_to<Vec3>;  // the three numbers
   c.add(bodies, more);                              // adds to them
+  // After the sweeps: energy that its force gives over the tick beyond what it takes from what is
+  // stored [J]. If it is the right force, none.
+  { known.made(bodies) } -> std::same_as<double>;
   c.hold(bodies);  // takes back the last tick's, for bodies at rest
   c.finish(bodies);
 };

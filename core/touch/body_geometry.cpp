@@ -18,6 +18,7 @@ constexpr double kNear = 1e-3;    // points further apart than this are ignored 
 constexpr double kMargin = 1e-4;  // radius by which Bullet rounds some edges [m]
 constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
 constexpr int kPointsOfPair = 4;  // points of a pair that Bullet keeps
+constexpr double kStands = 0.7;   // rise of a cylinder's axis from which on it stands on an end [-]
 
 btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -88,7 +89,7 @@ Pose block_below(const Plane& plane, const Pose& pose) {
 }
 
 // Numbers of a point in write().
-constexpr std::size_t kNumbers = 30;
+constexpr std::size_t kNumbers = 31;
 
 void put(std::vector<double>& into, const btVector3& v) {
   for (int i = 0; i < 3; ++i) into.push_back(v[i]);
@@ -112,6 +113,9 @@ struct BodyGeometry::Inside {
     btScalar height = 0;             // the plane's coordinate along it [m]
     btVector3 low, high;             // box around it, slightly enlarged
     double least = 0;                // smallest extent [m]
+    std::optional<RoundPart> round;
+    double radius = 0, half = 0;  // of a cylinder or a capsule; half of its length [m]
+    bool rolls() const { return round && !round->axis.isZero(0); }
     bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
   };
   struct Pair {
@@ -121,6 +125,7 @@ struct BodyGeometry::Inside {
     bool single = false;   // the two meet in one point at most
     bool refresh = true;   // its search does not remove points that are gone
     bool corners = false;  // a box on a plane: only the box's corners are tested
+    bool rolls = false;    // a cylinder or a capsule: its points are new in every tick
     int points = 0;        // points of its manifold
   };
 
@@ -134,6 +139,7 @@ struct BodyGeometry::Inside {
   static void slide_along(const Pair& pair);
   static void keep_deepest(const Pair& pair);
   static void find_corners(const Pair& pair, Points& result);
+  static bool find_ends(const Pair& pair, Points& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void meet(Pair& pair);
   void take(Pair& pair);
@@ -241,14 +247,21 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     solid->shape = std::make_unique<btSphereShape>(sphere->radius);
     solid->least = 2 * sphere->radius;
+    solid->round = RoundPart{in_object.translation()};
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     const double r = cylinder->radius;
     solid->shape = std::make_unique<btCylinderShapeZ>(btVector3(r, r, cylinder->length / 2));
     solid->shape->setMargin(std::min(kMargin, 0.1 * std::min(r, cylinder->length)));
     solid->least = std::min(2 * r, cylinder->length);
+    solid->round = RoundPart{in_object.translation(), in_object.linear().col(2)};
+    solid->radius = r;
+    solid->half = cylinder->length / 2;
   } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     solid->shape = std::make_unique<btCapsuleShapeZ>(capsule->radius, capsule->length);
     solid->least = 2 * capsule->radius;
+    solid->round = RoundPart{in_object.translation(), in_object.linear().col(2)};
+    solid->radius = capsule->radius;
+    solid->half = capsule->length / 2;
   } else if (std::holds_alternative<Plane>(shape)) {
     solid->shape = std::make_unique<btBoxShape>(btVector3(kWide, kWide, kWide));
     solid->least = 1;
@@ -300,6 +313,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   const bool convex = a.shape->isConvex() && b.shape->isConvex();
   p.single = (ball(a) || ball(b)) && convex;
   p.corners = a.shape->getShapeType() == BOX_SHAPE_PROXYTYPE && b.level;
+  p.rolls = convex && (a.rolls() || b.rolls());
   p.refresh = !convex || (ball(a) && ball(b)) || p.corners;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -423,8 +437,27 @@ void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
   }
 }
 
+// Finds the lowest points of both ends of a cylinder or a capsule that lies on a plane.
+bool BodyGeometry::Inside::find_ends(const Pair& p, Points& result) {
+  if (!p.a->rolls() || !p.b->level) return false;
+  const btTransform& at = p.a->at.getWorldTransform();
+  const btVector3& normal = *p.b->level;
+  const btVector3 axis = at.getBasis().getColumn(2);
+  const btScalar rise = normal.dot(axis);
+  if (std::abs(rise) > kStands) return false;
+  const bool capsule = p.a->shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE;
+  const btVector3 down = capsule ? -normal : (rise * axis - normal).normalized();
+  const btScalar near = p.manifold->getContactBreakingThreshold();
+  for (const double end : {-p.a->half, p.a->half}) {
+    const btVector3 point = at.getOrigin() + end * axis + p.a->radius * down;
+    const btScalar distance = normal.dot(point) - p.b->height;
+    if (distance <= near) result.addContactPoint(normal, point - distance * normal, distance);
+  }
+  return true;
+}
+
 void BodyGeometry::Inside::meet(Pair& p) {
-  if (!p.corners) slide_along(p);
+  if (!p.corners && !p.rolls) slide_along(p);
   std::array<BodyContact*, kPointsOfPair> before{};
   std::size_t count = 0;
   for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
@@ -437,9 +470,10 @@ void BodyGeometry::Inside::meet(Pair& p) {
                                       p.b->at.getWorldTransform(), -1, -1);
   Points result(&on_a, &on_b);
   result.setPersistentManifold(p.manifold);
+  if (p.rolls) p.manifold->clearManifold();
   if (p.corners) {
     find_corners(p, result);
-  } else {
+  } else if (!find_ends(p, result)) {
     p.algorithm->processCollision(&on_a, &on_b, info, &result);
   }
   if (p.refresh) result.refreshContactPoints();
@@ -453,8 +487,8 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   BodyContact* c = free_ones.back();
   free_ones.pop_back();
   *c = {.a = p.a->body, .b = p.b->body, .object_a = p.a->object, .object_b = p.b->object};
-  c->ball_a = p.a->ball();
-  c->ball_b = p.b->ball();
+  c->round_a = p.a->round ? &*p.a->round : nullptr;
+  c->round_b = p.b->round ? &*p.b->round : nullptr;
   return c;
 }
 
@@ -568,6 +602,7 @@ void BodyGeometry::write(std::vector<double>& into) const {
       into.push_back(c->slipping ? 1 : 0);
       into.push_back(c->lost);
       into.push_back(c->pressed);
+      into.push_back(c->impact.number());
     }
   }
 }
@@ -598,6 +633,7 @@ std::span<const double> BodyGeometry::read(std::span<const double> from) {
     c->slipping = from[27] != 0;
     c->lost = from[28];
     c->pressed = from[29];
+    c->impact.read(from[30]);
     p.manifold->getContactPoint(at).m_userPersistentData = c;
     in_->points.push_back(c);
   }

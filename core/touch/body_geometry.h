@@ -6,9 +6,17 @@
 #include <span>
 #include <vector>
 
+#include "core/touch/impact.h"
 #include "core/touch/scene.h"
 
 namespace limpid {
+
+// A ball, cylinder or capsule as a part of an object: it rolls, and its contact point does not turn
+// along with it.
+struct RoundPart {
+  Vec3 center = Vec3::Zero();  // in the object's frame [m]
+  Vec3 axis = Vec3::Zero();    // about which it rolls, there; zero for a ball: about any
+};
 
 // A point where a body meets another one or a fixed object. It lasts as long as the same places of
 // both are near each other, and keeps the state of its force.
@@ -20,11 +28,10 @@ struct BodyContact {
   Vec3 point = Vec3::Zero();       // in the middle of the overlap [m]
   Vec3 normal = Vec3::UnitZ();     // out of b, unit
   double depth = 0;                // negative: apart [m]
-  // Set for a ball, whose point stays below the centre while it rolls and does not turn along.
-  bool ball_a = false, ball_b = false;
+  const RoundPart *round_a = nullptr, *round_b = nullptr;  // its sides that roll
 
   // The rest is kept from tick to tick.
-  double lost = 0;  // energy lost in its damper over the last tick [J]
+  double lost = 0;  // energy lost in its damper and in impacts, not yet paid back [J]
   // Depth that was not pressed in: it was there when they met, or the nearest features of two
   // shapes changed. It causes no force [m].
   double rest = 0;
@@ -33,6 +40,7 @@ struct BodyContact {
   Vec3 friction = Vec3::Zero();  // on a [N]
   Vec3 anchor = Vec3::Zero();    // stretch of friction's spring [m]
   bool slipping = false;
+  Impact impact{};
   bool seen = false;
 };
 

@@ -16,33 +16,36 @@ inline Mat3 skew(const Vec3& v) {
   return S;
 }
 
-// A free body, or one on a slider or a hinge. A body on a ball joint is a free body held by a row
-// (BodyWorld).
+// A free body, or one on a joint with the world. A free body turns about its centre of mass, one on
+// a ball joint about the joint's point, which stays.
 class BodyMotion {
  public:
-  // A point of the body, seen from its centre of mass, in the middle of a tick [m].
+  // A point of the body, seen from where it turns about, in the middle of a tick [m].
   using Lever = Vec3;
 
   BodyMotion(const Object& object, const Vec3& gravity);  // [m/s^2]
 
   void reset();  // to its start, at rest
 
-  // Weight of the tick's end after a tick with contact forces; otherwise 1/2. At 1/2 energy is
-  // kept, but a stiff contact of a light body then alternates. With restitution energy is kept, so
-  // the weight is nearer to 1/2.
+  // Weight of the tick's end for a body that is pressed, or was a moment ago; otherwise 1/2. At 1/2
+  // energy is kept, but a stiff contact of a light body then alternates. With restitution energy is
+  // kept, so the weight is nearer to 1/2.
   static constexpr double kTheta = 0.6;
 
   // Begins a tick of T [s]: computes the mean velocity under weight alone, and the response to
   // forces.
-  void begin(double T, bool pushed);
+  void begin(double T, bool pressed);
   Lever lever(const Vec3& point, double T) const;
+  // Lever of the point where a round part of the body rolls: the part turns about its centre [m] and
+  // the axis, zero for a ball, and the point does not turn along.
+  Lever rolling(const Vec3& point, const Vec3& center, const Vec3& axis, double T) const;
   // Mean velocity over the tick of the body's point there [m/s].
   Vec3 velocity(const Lever& at) const { return u_ + o_.cross(at); }
   // Response of that velocity to a force there [m/(N s)].
   Mat3 answer(const Lever& at) const;
   // Applies a force there [N].
   void push(const Lever& at, const Vec3& force) {
-    if (kind_ == Kind::free) {
+    if (!on_joint()) {
       u_ += im_ * force;
       o_ += Ai_ * at.cross(force);
     } else {
@@ -57,7 +60,7 @@ class BodyMotion {
   using Answer = Eigen::Matrix<double, 6, 6>;
   Answer answer() const;
   // For a body on a joint: response to a generalized force along it [N] or [N m].
-  bool on_joint() const { return kind_ != Kind::free; }
+  bool on_joint() const { return kind_ == Kind::slider || kind_ == Kind::hinge; }
   void push_joint(double force);
   double joint_speed() const { return U_; }
   void set_joint_speed(double speed);  // after forces along the joint
@@ -69,43 +72,61 @@ class BodyMotion {
   // Ends the tick.
   void finish(double T);
   void halt();  // at rest from now on
+  // Between ticks: velocity of the body's point there [m/s], its response along a unit n to an
+  // impulse there [1/kg], and such an impulse [N s].
+  Vec3 speed_at(const Vec3& point) const { return speed() + spin().cross(point - center()); }
+  double yields(const Vec3& point, const Vec3& n) const;
+  void strike(const Vec3& point, const Vec3& impulse);
+  // Sets the speed of the centre [m/s] and the spin [rad/s], as far as its joint lets it.
+  void set_speed(const Vec3& speed, const Vec3& spin);
+  void slow_down(double by) {  // multiplies all velocities
+    v_ *= by;
+    w_ *= by;
+    sd_ *= by;
+  }
 
   const Pose& pose() const { return pose_; }  // of its object
-  const Vec3& center() const { return p_; }   // centre of mass [m]
-  Vec3 speed() const;                         // of the centre [m/s]
-  Vec3 spin() const;                          // [rad/s], world
+  const Vec3& turns_at() const { return p_; }  // the point where it turns about [m]
+  Vec3 center() const { return kind_ == Kind::ball ? Vec3(pose_ * c_) : p_; }  // of mass [m]
+  Vec3 speed() const;  // of the centre [m/s]
+  Vec3 spin() const;   // [rad/s], world
   double mass() const { return m_; }
   double kinetic() const;
-  double weight_energy() const;  // of a free body, relative to the origin [J]
+  double kinetic_after() const;  // of the velocities that finish() will leave [J]
+  double weight_energy() const;  // without a slider or a hinge; relative to the origin [J]
   bool finite() const { return p_.allFinite() && pose_.matrix().allFinite(); }
 
   // All changing state, as numbers.
-  static constexpr int kNumbers = 20;
+  static constexpr int kNumbers = 23;
   void write(std::span<double, kNumbers> into) const;
   void read(std::span<const double, kNumbers> from);
   // True if both have the same start and joint.
   bool alike(const BodyMotion& other) const;
 
  private:
-  enum class Kind : std::uint8_t { free, slider, hinge };
+  enum class Kind : std::uint8_t { free, ball, slider, hinge };
   void add_weight();
   void place();
+  void begin_turning(double T);
+  // The point where it turns about, in the object's frame [m].
+  const Vec3& turns_about() const { return kind_ == Kind::ball ? joint_.point : c_; }
 
   Kind kind_ = Kind::free;
   Vec3 gravity_;
   double m_ = 0;
   Vec3 c_;            // centre of mass in the object's frame [m]
-  Mat3 I_, inverse_;  // about the centre, along the object's axes [kg m^2]
+  Mat3 I_, inverse_;  // where it turns about, along the object's axes [kg m^2]
   Pose start_;
   BodyJoint joint_;
   JointPotential potential_;
   double reflected_ = 0;       // inertia along the joint [kg] or [kg m^2]
-  Vec3 pivot_ = Vec3::Zero();  // of a hinge [m]
+  Vec3 pivot_ = Vec3::Zero();  // of a hinge or a ball joint [m]
 
   Pose pose_;                       // of the object
-  Vec3 p_, v_, w_;                  // centre [m], its velocity [m/s], angular velocity in its frame
-  double s_ = 0, sd_ = 0;           // of the joint
-  double bouncing_theta_ = kTheta;  // theta_ after a tick with contact forces
+  Vec3 p_, v_, w_;         // where it turns about [m], its velocity [m/s], spin in the body's frame
+  double s_ = 0, sd_ = 0;  // of the joint
+  Vec3 torque_;            // on it over the last tick but for the weight, in its frame [N m]
+  double pressed_theta_ = kTheta;
   double theta_ = 0.5;
 
   // State of the tick.
@@ -113,6 +134,8 @@ class BodyMotion {
   Vec3 spin_;      // at the start, world
   double im_ = 0;  // theta T / m
   Mat3 Ai_;
+  Vec3 own_;        // mean spin under weight alone, in the body's frame
+  Mat3 impedance_;  // torque for a change of it
   Vec3 S_v_, S_w_;  // velocity at the centre and angular velocity for unit joint speed
   double U_ = 0, a_ = 0;
 };

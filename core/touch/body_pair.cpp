@@ -8,7 +8,8 @@
 namespace limpid {
 namespace {
 
-constexpr double kFade = 0.05;  // time in which a depth present at the start fades [s]
+constexpr double kFade = 0.05;  // time in which a depth that was not pressed in fades [s]
+constexpr double kRise = 0.01;  // speed at which a body rises by that at most [m/s]
 
 // F^T W F, number by number in the order of Eigen's sums.
 void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
@@ -21,6 +22,8 @@ void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
   }
 }
 
+constexpr double kPlastic = 2;  // damping ratio of an impact without restitution: it sinks less
+
 double stiffness(const BodyContact& contact, const Bodies& bodies) {
   const double one = bodies.about[Bodies::at(contact.a)].contact_stiffness;
   return contact.b == BodyContact::kStill
@@ -32,8 +35,8 @@ double stiffness(const BodyContact& contact, const Bodies& bodies) {
 
 void BodyPair::prepare(Bodies& bodies) {
   BodyContact& c = *contact;
-  end_a = bodies.end_at(a, c.point, c.ball_a);
-  end_b = bodies.end_at(b, c.point, c.ball_b);
+  end_a = bodies.end_at(a, c.point, c.round_a);
+  end_b = bodies.end_at(b, c.point, c.round_b);
   K = stiffness(c, bodies);
   // Depth that was not pressed in fades, as fast as the contact's damper pays for it.
   c.rest = std::max(c.rest, c.depth - c.pressed);
@@ -41,7 +44,10 @@ void BodyPair::prepare(Bodies& bodies) {
   if (c.rest > 0) {
     const double d = std::max(0.0, c.depth - c.rest);
     const double paid = std::sqrt(d * d + 2 * std::max(0.0, c.lost) / K) - d;
-    c.rest -= std::min(paid, c.rest * std::min(1.0, bodies.T / kFade));
+    const double less =
+        std::min({paid, c.rest * std::min(1.0, bodies.T / kFade), kRise * bodies.T});
+    c.rest -= less;
+    c.lost -= K * less * (d + less / 2);
   }
   depth = c.depth - c.rest;
   frame.col(0) = c.normal;
@@ -55,11 +61,15 @@ void BodyPair::prepare(Bodies& bodies) {
   const double kinetic = std::max(one.friction_kinetic, two.friction_kinetic);
   const double still = std::max(one.friction_static, two.friction_static);
   radius = c.slipping ? kinetic : std::max(still, kinetic);
-  const auto restitution = [&](int body) {
+  const auto of = [&](int body) {
     return body == BodyContact::kStill ? 0.0 : bodies.about[Bodies::at(body)].restitution;
   };
-  const double m_eff = BodyMotion::kTheta * bodies.T / W(0, 0);
-  B = 2 * damping_ratio(std::max(restitution(a), restitution(b))) * std::sqrt(K * m_eff);
+  restitution = std::max(of(a), of(b));
+  c.impact.begin(c.force, -c.normal.dot(bodies.speed_at(a, c.point) - bodies.speed_at(b, c.point)));
+  const double ratio = !c.impact.going() ? damping_ratio(restitution)
+                       : restitution > 0 ? 0
+                                         : kPlastic;
+  B = 2 * ratio * std::sqrt(K * mass(bodies));
   // Turns the stored force to the contact's present frame first: a force that no row has would do
   // unaccounted work.
   force = c.force;
@@ -100,16 +110,63 @@ void BodyPair::hold(const Bodies&) {
   friction = frame.rightCols<2>().transpose() * contact->friction;
 }
 
-void BodyPair::finish(const Bodies& bodies) {
+double BodyPair::deeper(const Bodies& bodies) const {
+  return -bodies.T * frame.col(0).dot(bodies.velocity(end_a) - bodies.velocity(end_b));
+}
+
+double BodyPair::made(const Bodies& bodies) const {
+  const Vec3 v = frame.transpose() * (bodies.velocity(end_a) - bodies.velocity(end_b));
+  const double before = std::max(0.0, depth), after = std::max(0.0, depth - bodies.T * v.x());
+  return bodies.T * (force * v.x() + friction.dot(v.tail<2>())) +
+         0.5 * K * (after * after - before * before) +
+         0.5 * (friction.squaredNorm() / K - K * anchor.squaredNorm());
+}
+
+void BodyPair::finish(Bodies& bodies) {
   BodyContact& c = *contact;
   c.force = force;
   c.friction = frame.rightCols<2>() * friction;
   c.anchor = -c.friction / K;
   c.slipping = force > 0 && radius > 0 && friction.norm() >= radius * force * (1 - 1e-9);
-  const double D = -bodies.T * frame.col(0).dot(bodies.velocity(end_a) - bodies.velocity(end_b));
+  const double D = deeper(bodies);
   const double before = std::max(0.0, depth), after = std::max(0.0, depth + D);
   c.pressed = after;
-  c.lost = force * D - 0.5 * K * (after * after - before * before);
+  const double lost = force * D - 0.5 * K * (after * after - before * before);
+  c.lost = force > 0 ? std::max(0.0, c.lost + lost) : 0;
+  c.impact.finish(force, mass(bodies), K, bodies.T);
+  if (force > 0 && !c.impact.going()) {
+    bodies.press(a);
+    bodies.press(b);
+  }
+}
+
+double BodyPair::mass(const Bodies& bodies) const { return BodyMotion::kTheta * bodies.T / W(0, 0); }
+
+bool BodyPair::turns(const Bodies& bodies) {
+  BodyContact& c = *contact;
+  if (!c.impact.may_turn()) return false;
+  const BodyEnd middle{bodies.moves(a) ? a : b, Vec3::Zero()};
+  now = c.point + bodies.T * bodies.velocity(middle);
+  if (apart(bodies) < 0) return false;
+  c.impact.turn(restitution);
+  parting = restitution * apart(bodies);
+  c.lost += 0.5 * K * (1 - restitution * restitution) * c.pressed * c.pressed;
+  c.pressed *= restitution;
+  c.force *= restitution;
+  return true;
+}
+
+double BodyPair::part(Bodies& bodies) const {
+  const Vec3& n = contact->normal;
+  const double more = parting - apart(bodies);
+  const Vec3 impulse = more / (bodies.yields(a, now, n) + bodies.yields(b, now, n)) * n;
+  bodies.strike(a, now, impulse);
+  bodies.strike(b, now, -impulse);
+  return std::abs(more);
+}
+
+double BodyPair::apart(const Bodies& bodies) const {
+  return contact->normal.dot(bodies.speed_at(a, now) - bodies.speed_at(b, now));
 }
 
 double BodyPair::energy(const BodyContact& c, const Bodies& bodies) {

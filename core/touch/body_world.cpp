@@ -3,19 +3,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace limpid {
 namespace {
 
 // Change of a force that counts as settled, for bodies that the arm touches, and for others [N].
 constexpr double kEnough = 1e-8;
-constexpr double kEnoughElse = 1e-5;
+constexpr double kEnoughElse = 1e-5, kEnoughOfMass = 1e-2;  // [N], [N/kg]
 constexpr int kMostSweeps = 30;  // most sweeps over bodies that the arm touches
 constexpr int kFewSweeps = 10, kManySweeps = 60;
 constexpr std::size_t kMostRowsSwept = 2000;  // rows in a tick's sweeps beyond kFewSweeps: 0.2 ms
-constexpr double kSlow = 1e-3;                // largest speed of a body at rest [m/s]
+// Largest speed at which a body rests that something bears, and one that nothing does [m/s].
+constexpr double kSlow = 1e-5, kStill = 1e-8;
 constexpr double kQuiet = 0.5;                // time of rest before a body sleeps [s]
 constexpr double kGone = 20;                  // distance at which a body is given up [m]
+// Energy of forces that are right but for rounding and for what is settled, by the lightest mass
+// [J/kg].
+constexpr double kMade = 1e-10;
+constexpr int kMostPartings = 100;            // sweeps over contacts that part
+constexpr double kSameSpeed = 1e-9;           // change of speed at which they end [m/s]
+constexpr int kMostRounds = 4;                // rounds of sweeps for forces that make energy
 
 }  // namespace
 
@@ -27,7 +35,7 @@ Bodies::Bodies(const Scene& scene) {
     about.push_back(*object.body);
   }
   awake.assign(motions.size(), 1);
-  pushed.assign(motions.size(), 0);
+  pressed.assign(motions.size(), 0);
 }
 
 BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
@@ -39,8 +47,18 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
   touched_.assign(n, 0);
   quiet_island_.assign(n, 0);
   quiet_.assign(n, 0);
+  made_.assign(n, 0);
+  moving_.assign(n, 0);
+  slower_.assign(n, 1);
+  parting_.reserve(BodyGeometry::kMost);
   parent_.assign(n, 0);
   quick_.reserve(n);
+  enough_else_ = kEnoughElse;
+  right_ = std::numeric_limits<double>::infinity();
+  for (const BodyMotion& motion : bodies_.motions) {
+    enough_else_ = std::min(enough_else_, kEnoughOfMass * motion.mass());
+    right_ = std::min(right_, kMade * motion.mass());
+  }
   add_links(scene);
   constraints_.pairs.reserve(BodyGeometry::kMost);
   constraints_.pulls.reserve(1);
@@ -60,7 +78,7 @@ void BodyWorld::add_links(const Scene& scene) {
     if (bodies_[i].on_joint() || !joint) continue;
     const int to = number(joint->to);
     const std::size_t first = joint_links.size();
-    limpid::add_links(bodies_, i, to, joint_links);
+    if (to != BodyContact::kStill) limpid::add_links(bodies_, i, to, joint_links);
     if (!HeldJoint::needed(*joint)) continue;
     joints_between.emplace_back(bodies_, i, to, std::span(joint_links).subspan(first));
   }
@@ -87,7 +105,7 @@ int BodyWorld::number(const std::string& name) const {
 void BodyWorld::reset() {
   for (BodyMotion& body : bodies_.motions) body.reset();
   std::ranges::fill(bodies_.awake, 1);
-  std::ranges::fill(bodies_.pushed, 0);
+  std::ranges::fill(bodies_.pressed, 0);
   std::ranges::fill(quiet_, 0);
   for_each_of(constraints_.in_files(), [](auto& c) {
     constexpr decltype(c.numbers()) kAtRest{};
@@ -99,6 +117,7 @@ void BodyWorld::reset() {
   constraints_.pairs.clear();
   fresh_ = true;
   given_ = given_now_ = all_given_ = all_pulled_ = energy_ = first_energy_ = gain_ = 0;
+  stood_still_ = 0;
 }
 
 void BodyWorld::take_over(const BodyWorld& other) {
@@ -113,8 +132,8 @@ void BodyWorld::take_over(const BodyWorld& other) {
     const BodyMotion& before = other.bodies_[theirs];
     before.write(numbers);
     // Keeps the object's place, although its centre of mass may have moved.
-    const Vec3 own = pose(i).inverse() * center(i);
-    const Vec3 moved = before.pose() * own - before.center();
+    const Vec3 own = pose(i).inverse() * bodies_[i].turns_at();
+    const Vec3 moved = before.pose() * own - before.turns_at();
     if (moved.norm() > 1e-12) {
       const Vec3 speed = before.spin().cross(moved);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -170,9 +189,9 @@ void BodyWorld::begin(double T) {
   wake_neighbours();
   geometry_.search(bodies_.awake);
   for (int i = 0; i < count(); ++i) {
-    if (moves(i)) bodies_[i].begin(T, bodies_.pushed[at(i)] != 0);
+    if (moves(i)) bodies_[i].begin(T, bodies_.pressed[at(i)] != 0);
   }
-  std::ranges::fill(bodies_.pushed, 0);
+  for (int& ticks : bodies_.pressed) ticks = std::max(0, ticks - 1);
   constraints_.pairs.clear();
   for (BodyContact* contact : geometry_.points()) {
     if (moves(contact->a) || moves(contact->b)) constraints_.pairs.emplace_back(*contact);
@@ -225,6 +244,7 @@ void BodyWorld::find_islands() {
   for_each_of(constraints_.all(), [&](const auto& c) {
     if (!c.off()) join(c.a, c.b);
   });
+  std::ranges::fill(made_, 0.0);
   // An island counts as touched if one of its bodies is.
   for (int i = 0; i < count(); ++i) {
     if (touched_[at(i)] != 0) touched_[at(root(i))] = 1;
@@ -309,13 +329,66 @@ void BodyWorld::settle() {
   sweep(true, kEnough, kMostSweeps);
   const auto many =
       static_cast<int>(kMostRowsSwept / std::max<std::size_t>(1, constraints_.pairs.size()));
-  sweep(false, kEnoughElse, std::clamp(many, kFewSweeps, kManySweeps));
+  sweep(false, enough_else_, std::clamp(many, kFewSweeps, kManySweeps));
+  settle_what_makes_energy();
+}
+
+void BodyWorld::add_up_made() {
+  std::ranges::fill(made_, 0);
+  for_each_of(constraints_.all(), [&](const auto& c) {
+    if (c.off() || !(moves(c.a) || moves(c.b))) return;
+    made_[at(root(moves(c.a) ? c.a : c.b))] += c.made(bodies_);
+  });
+}
+
+void BodyWorld::settle_what_makes_energy() {
+  const auto makes = [&](int i) { return moves(i) && !(made_[at(root(i))] <= right_); };
+  for (int round = 0; round < kMostRounds; ++round) {
+    add_up_made();
+    bool touched = false, others = false;
+    for (int i = 0; i < count(); ++i) {
+      if (makes(i)) (touched_[at(root(i))] != 0 ? touched : others) = true;
+    }
+    if (!touched && !others) return;
+    if (touched) sweep(true, kEnough, kMostSweeps);
+    if (others) sweep(false, kEnough, kManySweeps);
+  }
+  add_up_made();
+}
+
+// Takes energy that was made from the motion at the tick's end; what is mostly made up stands still.
+void BodyWorld::hold_what_is_made_up() {
+  std::ranges::fill(slower_, 1.0);
+  if (std::ranges::all_of(made_, [this](double made) { return made <= right_; })) return;
+  std::ranges::fill(moving_, 0.0);
+  for (int i = 0; i < count(); ++i) {
+    if (moves(i)) moving_[at(root(i))] += bodies_[i].kinetic_after();
+  }
+  const auto stands = [&](int island) { return !(2 * made_[at(island)] <= moving_[at(island)]); };
+  bool any = false;
+  for (int i = 0; i < count(); ++i) {
+    const int island = moves(i) ? root(i) : 0;
+    if (!moves(i) || made_[at(island)] <= right_) continue;
+    slower_[at(island)] = std::sqrt(std::max(0.0, 1 - made_[at(island)] / moving_[at(island)]));
+    if (!stands(island)) continue;
+    slower_[at(island)] = 1;
+    bodies_[i].halt();
+    any = true;
+  }
+  if (!any) return;
+  ++stood_still_;
+  for_each_of(constraints_.all(), [&](auto& c) {
+    if (c.off() || !(moves(c.a) || moves(c.b))) return;
+    const int island = root(moves(c.a) ? c.a : c.b);
+    if (made_[at(island)] > right_ && stands(island)) c.hold(bodies_);
+  });
 }
 
 void BodyWorld::finish() {
   given_ = given_now_;
   all_given_ += given_now_;
   given_now_ = 0;
+  hold_what_is_made_up();
   for (const PullLink& pull : constraints_.pulls) all_pulled_ += pull.work(bodies_);
   for_each_of(constraints_.all(), [&](auto& c) { c.finish(bodies_); });
   for (int i = 0; i < count(); ++i) {
@@ -323,10 +396,25 @@ void BodyWorld::finish() {
     BodyMotion& body = bodies_[i];
     body.finish(bodies_.T);
     if (!body.finite()) body.reset();
+    if (const double by = slower_[at(root(i))]; by != 1) body.slow_down(by);
     geometry_.place(i, pose(i));
   }
+  part();
   fall_asleep();
   std::ranges::fill(touched_, 0);
+}
+
+// Ends impacts: gives contacts that now part their speed, all of them together.
+void BodyWorld::part() {
+  parting_.clear();
+  for (BodyPair& pair : constraints_.pairs) {
+    if (pair.turns(bodies_)) parting_.push_back(&pair);
+  }
+  double change = parting_.empty() ? 0 : 1;
+  for (int i = 0; i < kMostPartings && change > kSameSpeed; ++i) {
+    change = 0;
+    for (const BodyPair* pair : parting_) change = std::max(change, pair->part(bodies_));
+  }
 }
 
 // Puts an island to sleep after all of it has been at rest for a while.
@@ -335,7 +423,8 @@ void BodyWorld::fall_asleep() {
   for (int i = 0; i < count(); ++i) {
     if (!moves(i)) continue;
     const BodyMotion& body = bodies_[i];
-    const bool slow = body.speed().norm() < kSlow && body.spin().norm() * 0.05 < kSlow;
+    const double most = bodies_.pressed[at(i)] == Bodies::kPressed ? kSlow : kStill;
+    const bool slow = body.speed().norm() < most && body.spin().norm() * 0.05 < most;
     const bool gone = body.center().norm() > kGone;
     quiet_[at(i)] = slow || gone ? quiet_[at(i)] + 1 : 0;
     if (gone) quiet_[at(i)] = long_enough;
@@ -384,7 +473,7 @@ void BodyWorld::write(std::vector<double>& into) const {
   for (int i = 0; i < count(); ++i) {
     bodies_[i].write(numbers);
     into.insert(into.end(), numbers.begin(), numbers.end());
-    for (const int n : {int{bodies_.awake[at(i)]}, int{bodies_.pushed[at(i)]}, quiet_[at(i)]})
+    for (const int n : {int{bodies_.awake[at(i)]}, bodies_.pressed[at(i)], quiet_[at(i)]})
       into.push_back(n);
   }
   for_each_of(constraints_.in_files(), [&](const auto& c) {
@@ -414,7 +503,7 @@ bool BodyWorld::read(std::span<const double> from) {
   for (int i = 0; i < count(); ++i, from = from.subspan(kBody)) {
     bodies_[i].read(from.first<BodyMotion::kNumbers>());
     bodies_.awake[at(i)] = from[BodyMotion::kNumbers] != 0 ? 1 : 0;
-    bodies_.pushed[at(i)] = from[BodyMotion::kNumbers + 1] != 0 ? 1 : 0;
+    bodies_.pressed[at(i)] = static_cast<int>(from[BodyMotion::kNumbers + 1]);
     quiet_[at(i)] = static_cast<int>(from[BodyMotion::kNumbers + 2]);
     geometry_.place(i, pose(i));
   }

@@ -25,6 +25,11 @@ class BodyWorld {
 
   int count() const { return bodies_.count(); }
   void reset();  // to the scene's state
+  // Sets a body going between ticks, as far as its joint lets it [m/s, rad/s].
+  void set_speed(int body, const Vec3& speed, const Vec3& spin) {
+    wake(body);
+    bodies_[body].set_speed(speed, spin);
+  }
   // Takes over the books, and the state of bodies that have the same name, start and joint in
   // another scene.
   void take_over(const BodyWorld& other);
@@ -38,7 +43,10 @@ class BodyWorld {
   End end_at(int body, const Vec3& point) const { return bodies_.end_at(body, point); }
   Vec3 velocity(const End& end) const { return bodies_.velocity(end); }
   Mat3 answer(const End& end) const { return bodies_.answer(end); }
-  void push(const End& end, const Vec3& force) { bodies_.push(end, force); }
+  void push(const End& end, const Vec3& force) {
+    bodies_.push(end, force);
+    bodies_.press(end.body);
+  }
   // Sweeps over the rows of all bodies connected to the arm's contacts, or of all others. Ends when
   // no force changes by more than `enough`, or after `most` sweeps; returns the last largest change
   // [N]. The number of plain sweeps grows with the ratio of a heavy body to a light one below it.
@@ -71,12 +79,13 @@ class BodyWorld {
   // Books the energy that the arm's row at this end gave, by its force on it over the whole tick
   // [N].
   void book(const End& end, const Vec3& force);
-  // Sweeps until nothing changes any more.
+  // Sweeps until nothing changes any more. Forces that are not found so make energy: then more
+  // sweeps follow, and what still makes energy stands still for the tick.
   void settle();
   void finish();
 
   const Pose& pose(int body) const { return bodies_[body].pose(); }
-  const Vec3& center(int body) const { return bodies_[body].center(); }
+  Vec3 center(int body) const { return bodies_[body].center(); }
   Vec3 speed(int body) const { return bodies_[body].speed(); }
   Vec3 spin(int body) const { return bodies_[body].spin(); }
   double joint(int body) const;  // distance from its start along the joint [m] or [rad]
@@ -92,6 +101,8 @@ class BodyWorld {
   double all_given() const { return all_given_; }  // by the arm since the start [J]
   int awake() const;
   int sweeps() const { return sweeps_; }  // of the last tick
+  // Number of ticks since the start in which forces were not found and a mechanism stood still.
+  int stood_still() const { return stood_still_; }
   // Number of points for which there was no room: they do not push.
   int left_out() const { return geometry_.left_out(); }
 
@@ -99,7 +110,7 @@ class BodyWorld {
   // numbers are of another scene.
   void write(std::vector<double>& into) const;
   bool read(std::span<const double> from);
-  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 30;
+  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 31;
 
  private:
   static std::size_t at(int body) { return static_cast<std::size_t>(body); }
@@ -118,12 +129,21 @@ class BodyWorld {
   void halt(int body);
   void fall_asleep();
   void take_stock();
+  void part();
+  // Energy that the forces of each island make from nothing over the tick, at its root [J].
+  void add_up_made();
+  void settle_what_makes_energy();
+  void hold_what_is_made_up();
 
   Bodies bodies_;
+  double enough_else_ = 0;  // change of a force that counts as settled where the arm is not [N]
+  double right_ = 0;        // energy that forces which count as right may make in a tick [J]
   std::vector<std::string> names_;
   std::vector<std::uint8_t> touched_;
   std::vector<std::uint8_t> quiet_island_;  // by the island's root
   std::vector<int> quiet_;                  // ticks
+  std::vector<double> made_, moving_;       // energies, by the island's root [J]
+  std::vector<double> slower_;              // factors of velocities, by the island's root [-]
   std::vector<int> parent_;                 // union of islands
   std::vector<int> quick_;                  // bodies that wake others
   std::vector<int> body_of_;                // by object
@@ -131,11 +151,12 @@ class BodyWorld {
   BodyConstraints constraints_;
   Magnet magnet_;
   BodyPull pull_;
+  std::vector<BodyPair*> parting_;            // contacts whose impact turns
   std::vector<double> before_, now_, along_;  // forces of all, and the search direction [N]
   bool fresh_ = true;                         // first_energy_ is not yet known
   double given_now_ = 0, given_ = 0, all_given_ = 0, energy_ = 0, first_energy_ = 0, gain_ = 0;
   double all_pulled_ = 0;
-  int sweeps_ = 0;
+  int sweeps_ = 0, stood_still_ = 0;
 };
 
 }  // namespace limpid

@@ -119,6 +119,15 @@ Vec3 HeldJoint::numbers() const {
   return ball() ? friction : Vec3(forces.potential, forces.stop, forces.friction);
 }
 
+double HeldJoint::made(double T, const Vec3& speed) const {
+  if (ball()) {
+    const double K = joint.stop_stiffness;
+    return T * force().dot(speed) + 0.5 * (friction.squaredNorm() / K - K * anchor.squaredNorm());
+  }
+  return T * damping.dot(speed) +
+         limpid::made(joint, potential, T, {place, along.dot(speed), 0}, forces);
+}
+
 void HeldJoint::finish(double T, const Vec3& speed) {
   anchor = -friction / joint.stop_stiffness;
   forces.anchor = -forces.friction / joint.stop_stiffness;

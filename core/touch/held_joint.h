@@ -62,6 +62,8 @@ struct HeldJoint {
   // whole force.
   Vec3 add(const Vec3& change);
   Vec3 numbers() const;  // of the forces
+  double made(double T, const Vec3& speed) const;  // see made() of a joint
+  bool presses() const { return ball() ? !friction.isZero(0) : forces.presses(); }
   // Ends a tick of T in which the sides moved with `speed`.
   void finish(double T, const Vec3& speed);
   // Holds the joint for a tick, with the friction of the last one.

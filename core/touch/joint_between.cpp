@@ -45,7 +45,11 @@ double JointBetween::solve(Bodies& bodies) {
   return change;
 }
 
-void JointBetween::finish(const Bodies& bodies) {
+void JointBetween::finish(Bodies& bodies) {
+  if (joint.presses()) {
+    bodies.press(a);
+    bodies.press(b);
+  }
   if (bodies.moves(a) || bodies.moves(b)) joint.finish(bodies.T, speed(bodies));
 }
 

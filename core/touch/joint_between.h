@@ -27,11 +27,12 @@ struct JointBetween {
   void prepare(Bodies& bodies);
   double solve(Bodies& bodies);
   Vec3 forces() const { return joint.numbers(); }
+  double made(const Bodies& bodies) const { return joint.made(bodies.T, speed(bodies)); }
   void add(Bodies& bodies, const Vec3& more) {
     if (!more.isZero(0)) push(bodies, joint.add(more));
   }
   void hold(const Bodies&) { joint.hold(); }
-  void finish(const Bodies& bodies);
+  void finish(Bodies& bodies);
   double energy(const Bodies&) const { return joint.stored(); }
   // Sets the joint's place to that of its sides, from which a tick's own rotation leads it away.
   void follow(const Bodies& bodies);

@@ -63,6 +63,13 @@ double stored(const BodyJoint& joint, const JointPotential& potential, double pl
   return potential.energy(place) + 0.5 * joint.stop_stiffness * (d * d + anchor * anchor);
 }
 
+double made(const BodyJoint& joint, const JointPotential& potential, double T,
+            const AlongJoint& along, const JointForces& forces) {
+  const double way = T * along.speed, anchor = -forces.friction / joint.stop_stiffness;
+  return forces.sum() * way + stored(joint, potential, along.place + way, anchor) -
+         stored(joint, potential, along.place, forces.anchor);
+}
+
 // Outside the ball l solves (1 + K T W + m) l = -K (z + T b), m > 0 such that |l| is the radius.
 // Newton's method on 1/|l| converges from below (More and Sorensen 1983).
 Vec3 friction_torque(double K, double radius, const Vec3& z, double T, const Vec3& b,

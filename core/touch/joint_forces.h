@@ -16,6 +16,7 @@ struct JointForces {
   double anchor = 0;  // stretch of friction's spring [m] or [rad]
 
   double sum() const { return potential + stop + friction; }
+  bool presses() const { return stop != 0 || friction != 0; }
 };
 
 // Motion along a joint over a tick.
@@ -32,6 +33,10 @@ double sweep_joint(const BodyJoint& joint, const JointPotential& potential, doub
 
 // Energy stored in a joint: potential, pressed stops and friction's stretch [J].
 double stored(const BodyJoint& joint, const JointPotential& potential, double place, double anchor);
+
+// Energy that the forces gave over a tick beyond what they took from what is stored [J].
+double made(const BodyJoint& joint, const JointPotential& potential, double T,
+            const AlongJoint& along, const JointForces& forces);
 
 // Friction torque l of a ball joint, the projection of -K (z + T (b + W l)) on a ball of this
 // radius [N m]. z: stretch of its spring [rad]; b: angular velocity without l [rad/s]; W: response

@@ -1,6 +1,7 @@
 #include "core/touch/joint_link.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "core/touch/joint_forces.h"
@@ -10,10 +11,14 @@ namespace {
 
 // Distance between the points that make a hinge or a slider between bodies [m].
 constexpr double kJointArm = 0.01;
+// A link is this many times as stiff as its body's contacts, and little damped: a damper works
+// against every stretch, and takes the energy of what swings.
+constexpr double kStiffer = 10, kRatio = 0.1;
+constexpr double kMostLost = 1e-3;  // energy of the damper that is kept to pay for the stretch [J]
 
 double damping(double K, double T, double directions, const Mat3& W) {
   const double m_eff = directions * BodyMotion::kTheta * T / W.trace();
-  return 2 * damping_ratio(0) * std::sqrt(K * m_eff);
+  return 2 * kRatio * std::sqrt(K * m_eff);
 }
 
 }  // namespace
@@ -28,7 +33,7 @@ void add_links(const Bodies& bodies, int body, int to, std::vector<JointLink>& l
     link.on_a = point;
     const Vec3 there = pose * point;
     link.on_b = to == BodyContact::kStill ? there : bodies[to].pose().inverse() * there;
-    link.point.K = bodies.about[Bodies::at(body)].contact_stiffness;
+    link.point.K = kStiffer * bodies.about[Bodies::at(body)].contact_stiffness;
     if (rail) link.rail_axis = bodies[to].pose().linear().transpose() * joint.axis;
     links.push_back(link);
   };
@@ -51,7 +56,7 @@ void JointLink::prepare(Bodies& bodies) {
   const Vec3 at_a = bodies.place(a, on_a), at_b = bodies.place(b, on_b);
   force.end_a = bodies.end_at(a, at_a);
   force.end_b = bodies.end_at(b, at_b);
-  point.stretch = at_a - at_b;
+  stretch(at_a - at_b);
   const Mat3 W = force.answer(bodies);
   point.B = damping(point.K, bodies.T, 3, W);
   point.yield(bodies.T, W);
@@ -78,7 +83,8 @@ void JointLink::prepare_rail(Bodies& bodies) {
   };
   force.end_b.lever += 0.5 * T * axis * axis.dot(speed(a) - speed(b));
   held = Mat3::Identity() - axis * axis.transpose();
-  point.stretch = held * later(off_rail - now * now.dot(off_rail));
+  made_stretch = held * made_stretch;
+  stretch(held * later(off_rail - now * now.dot(off_rail)));
   point.W = held * force.answer(bodies) * held;
   point.B = damping(point.K, T, 2, point.W);
   const double k = point.push(T);
@@ -87,14 +93,24 @@ void JointLink::prepare_rail(Bodies& bodies) {
   force.apply(bodies);
 }
 
-double JointLink::energy(const Bodies& bodies) const {
-  Vec3 apart = bodies.place(a, on_a) - bodies.place(b, on_b);
-  if (rail_axis) {
-    const Vec3 axis = bodies.directed(b, *rail_axis);
-    apart -= apart.dot(axis) * axis;
+void JointLink::stretch(const Vec3& to) {
+  const Vec3 way = to - made_stretch;
+  // Part x of the way with K/2 (|s + x way|^2 - |s|^2) = lost.
+  const double square = way.squaredNorm(), half = made_stretch.dot(way), most = 2 * lost / point.K;
+  double part = 1;
+  if (square + 2 * half > most) {
+    const double root = std::sqrt(half * half + square * most);
+    part = half > 0 ? most / (root + half) : (root - half) / square;
   }
-  const double x = apart.norm();
-  return 0.5 * point.K * x * x;
+  made_stretch += part * way;
+  lost = std::max(0.0, lost - 0.5 * point.K * part * (2 * half + part * square));
+  point.stretch = made_stretch;
+}
+
+void JointLink::finish(const Bodies& bodies) {
+  lost = std::min(lost - made(bodies), kMostLost);
+  lost = std::max(0.0, lost);
+  made_stretch = point.stretch + bodies.T * (held * force.speed(bodies));
 }
 
 }  // namespace limpid

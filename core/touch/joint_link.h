@@ -16,18 +16,34 @@ struct JointLink : HeldForce {
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // in their objects' frames, or the world's [m]
   std::optional<Vec3> rail_axis;                  // in the frame of b
   Mat3 held = Mat3::Identity();                   // in the tick: onto directions that are not free
+  // The stretch that the forces so far made, and energy that the damper took [m, J]. A tick's
+  // rotation leads to another one by third order: it is taken as far as it stores no more energy
+  // than this.
+  Vec3 made_stretch = Vec3::Zero();
+  double lost = 0;
 
   static constexpr bool kWakes = true;
   void prepare(Bodies& bodies);
-  double energy(const Bodies& bodies) const;
-
-  std::array<double, 4> numbers() const {
-    return {force.on_a.x(), force.on_a.y(), force.on_a.z(), 0};
+  double made(const Bodies& bodies) const {
+    const Vec3 way = bodies.T * (held * force.speed(bodies));
+    return way.dot(force.on_a + point.K * (point.stretch + way / 2));
   }
-  void read(const double* from) { force.on_a = Eigen::Map<const Vec3>(from); }
+  void finish(const Bodies& bodies);
+  double energy(const Bodies&) const { return 0.5 * point.K * made_stretch.squaredNorm(); }
+
+  std::array<double, 7> numbers() const {
+    return {force.on_a.x(), force.on_a.y(), force.on_a.z(), made_stretch.x(),
+            made_stretch.y(), made_stretch.z(), lost};
+  }
+  void read(const double* from) {
+    force.on_a = Eigen::Map<const Vec3>(from);
+    made_stretch = Eigen::Map<const Vec3>(from + 3);
+    lost = from[6];
+  }
 
  private:
   void prepare_rail(Bodies& bodies);
+  void stretch(const Vec3& to);
 };
 
 // Appends the links of a body's joint, with body `to` or the world.

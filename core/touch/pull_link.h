@@ -14,6 +14,7 @@ struct PullLink : HeldForce {
 
   static constexpr bool kWakes = false;
   void prepare(Bodies& bodies);
+  static double made(const Bodies&) { return 0; }  // what it gives comes from outside
   // Energy that it gives over the tick [J].
   double work(const Bodies& bodies) const {
     return bodies.T * force.on_a.dot(bodies.velocity(force.end_a));

@@ -21,6 +21,11 @@ double SpringLink::solve(Bodies& bodies) {
   return force.set(bodies, -(spring.stiffness * stretch + k * v0) / (1 + k * c) * along);
 }
 
+double SpringLink::made(const Bodies& bodies) const {
+  const double way = bodies.T * along.dot(force.speed(bodies));
+  return along.dot(force.on_a) * way + spring.stiffness * way * (stretch + way / 2);
+}
+
 void SpringLink::finish(const Bodies&) {
   if (!(force.on_a.norm() > spring.breaks_at)) return;
   broken = true;

@@ -23,6 +23,7 @@ struct SpringLink {
   Vec3 forces() const { return force.on_a; }
   void add(Bodies& bodies, const Vec3& more) { force.add(bodies, more); }
   void hold(const Bodies&) {}
+  double made(const Bodies& bodies) const;
   void finish(const Bodies& bodies);
   double energy(const Bodies& bodies) const;
 

@@ -9,8 +9,18 @@ double WorldJoint::solve(Bodies& bodies) {
   AlongJoint now{body.joint(), body.joint_speed(), body.joint_answer()};
   const double change = sweep_joint(body.of_joint(), body.potential(), bodies.T, now, along);
   body.set_joint_speed(now.speed);
-  bodies.pushed[Bodies::at(a)] |= along.stop != 0 || along.friction != 0;
   return change;
+}
+
+double WorldJoint::made(const Bodies& bodies) const {
+  const BodyMotion& body = bodies[a];
+  return limpid::made(body.of_joint(), body.potential(), bodies.T,
+                      {body.joint(), body.joint_speed(), 0}, along);
+}
+
+void WorldJoint::finish(Bodies& bodies) {
+  along.anchor = -along.friction / stiffness(bodies);
+  if (along.presses()) bodies.press(a);
 }
 
 void WorldJoint::add(Bodies& bodies, const Vec3& more) {

@@ -21,7 +21,8 @@ struct WorldJoint {
   Vec3 forces() const { return {along.potential, along.stop, along.friction}; }
   void add(Bodies& bodies, const Vec3& more);
   void hold(const Bodies& bodies) { along.friction = -along.anchor * stiffness(bodies); }
-  void finish(const Bodies& bodies) { along.anchor = -along.friction / stiffness(bodies); }
+  double made(const Bodies& bodies) const;
+  void finish(Bodies& bodies);
   double energy(const Bodies& bodies) const;
 
   std::array<double, 4> numbers() const {
