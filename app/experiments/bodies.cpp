@@ -93,7 +93,7 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
                     .y_range = std::pair(1e-4, 1e4)};
   Series more{"more than right", kContactInk, Series::Style::points, {}};
   Series less{"less than right", kProxyInk, Series::Style::points, {}};
-  Series known{"a known fault, not judged", kNeutralInk, Series::Style::points, {}};
+  Series measured{"only measured", kNeutralInk, Series::Style::points, {}};
   std::vector<std::string> groups;
   for (const BodyClaim& claim : claims) {
     if (claim.group.empty()) continue;
@@ -105,7 +105,7 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
     const double x = static_cast<double>(place) +
                      0.8 * ((static_cast<double>(before) + 0.5) / static_cast<double>(many) - 0.5);
     const double by = std::clamp(std::abs(claim.error()) / claim.limit, 1.2e-4, 0.8e4);
-    Series& series = !claim.fault.empty() ? known : claim.error() > 0 ? more : less;
+    Series& series = !claim.unjudged.empty() ? measured : claim.error() > 0 ? more : less;
     series.points.push_back({x, by});
   }
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -114,7 +114,7 @@ FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
   const double end = static_cast<double>(groups.size()) - 0.5;
   panel.x_range = std::pair(-0.5, end);
   panel.series = {Series{"limit", kHandInk, Series::Style::dashed, {{-0.5, 1}, {end, 1}}}, more,
-                  less, known};
+                  less, measured};
   return panel;
 }
 
@@ -154,9 +154,8 @@ Outcome bodies(TrialRunner& lab) {
                            errors_panel(all.claims[1], kBodyTicks[1]), swing, roll};
   outcome.figure.caption =
       "Bodies without an arm, stepped as the loop steps them. First row: every check's error over "
-      "its limit, under two ticks; what is off the axis is drawn at its end, and grey is what a "
-      "known fault spoils, which is measured and not judged. Rolling: solid as simulated, dashed "
-      "as right.";
+      "its limit, under two ticks; what is off the axis is drawn at its end, and grey is what "
+      "no theory judges. Rolling: solid as simulated, dashed as right.";
   return outcome;
 }
 

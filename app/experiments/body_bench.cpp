@@ -17,7 +17,7 @@ Check BodyClaim::check() const {
       !expected ? fmt::format(" [{}]", unit) : fmt::format(": error [{}]", relative ? "%" : unit);
   Check check = at_most(what + of, std::abs(error()), limit);
   check.against = Comparison{expected, measured, unit, conditions};
-  check.unjudged = fault;
+  check.unjudged = unjudged;
   return check;
 }
 

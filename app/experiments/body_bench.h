@@ -14,13 +14,6 @@
 
 namespace limpid {
 
-// A fault of the simulation that is known. While it stands, what it spoils is measured and not
-// judged; `stands` is all that has to change once it is mended.
-struct BodyFault {
-  bool stands = true;
-  const char* sentence = "";
-};
-
 // A measured value beside the one that theory expects.
 struct BodyClaim {
   std::string group;  // on the figure's axis
@@ -30,8 +23,8 @@ struct BodyClaim {
   double measured = 0;
   double limit = 0;        // of the error: relative [%], or in `unit`
   bool relative = true;    // the error is one of the expected value
-  std::string conditions;  // a sentence
-  std::string fault = {};  // sentence on why it is only measured; else empty
+  std::string conditions;     // a sentence
+  std::string unjudged = {};  // sentence on why it is only measured; else empty
 
   double error() const;  // more than right is positive; without theory the measured value
   Check check() const;

@@ -134,6 +134,7 @@ bool Summary::add(std::span<const double> row) {
     t.objects_gain = std::max(t.objects_gain, at(Column::objects_gain)[0]);
     t.most_awake = std::max(t.most_awake, at(Column::objects_awake)[0]);
     t.left_out = std::max(t.left_out, at(Column::objects_left_out)[0]);
+    t.stood_still = at(Column::objects_stood_still)[0];
   }
   return memorable;
 }
@@ -165,6 +166,10 @@ std::string Summary::text() const {
       1e3 * t.to_objects, 1e3 * t.objects_gain, t.most_awake, layout_.bodies());
   if (t.left_out > 0) {
     text += fmt::format("contact points left out  {:.0f} at once: they push nothing\n", t.left_out);
+  }
+  if (t.stood_still > 0) {
+    text += fmt::format("objects stood still      {:.0f} ticks: their forces were not found\n",
+                        t.stood_still);
   }
   return text;
 }

@@ -85,6 +85,7 @@ class Summary {
     double to_objects = 0, objects_gain = 0;  // given to bodies, and the most they gained [J]
     double most_awake = 0;                    // bodies
     double left_out = 0;                      // most points at which bodies meet without pushing
+    double stood_still = 0;                   // ticks in which forces of bodies were not found
     std::vector<double> memorable;
 
     double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }

@@ -29,7 +29,7 @@ concept BodyConstraint = requires(C& c, const C& known, Bodies& bodies, const Ve
   // After the sweeps: energy that its force gives over the tick beyond what it takes from what is
   // stored [J]. If it is the right force, none.
   { known.made(bodies) } -> std::same_as<double>;
-  c.hold(bodies);  // takes back the last tick's, for bodies at rest
+  c.hold(bodies);  // begins anew, for bodies that stand still
   c.finish(bodies);
 };
 // Kinds that last have energy, and numbers that are kept from tick to tick.

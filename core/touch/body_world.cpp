@@ -21,6 +21,7 @@ constexpr double kGone = 20;                  // distance at which a body is giv
 // Energy of forces that are right but for rounding and for what is settled, by the lightest mass
 // [J/kg].
 constexpr double kMade = 1e-10;
+constexpr double kFew = 1e4;  // times this energy is taken from the motion, and needs no standstill
 constexpr int kMostPartings = 100;            // sweeps over contacts that part
 constexpr double kSameSpeed = 1e-9;           // change of speed at which they end [m/s]
 constexpr int kMostRounds = 4;                // rounds of sweeps for forces that make energy
@@ -364,7 +365,10 @@ void BodyWorld::hold_what_is_made_up() {
   for (int i = 0; i < count(); ++i) {
     if (moves(i)) moving_[at(root(i))] += bodies_[i].kinetic_after();
   }
-  const auto stands = [&](int island) { return !(2 * made_[at(island)] <= moving_[at(island)]); };
+  const auto stands = [&](int island) {
+    const double made = made_[at(island)];
+    return !(made <= kFew * right_ || 2 * made <= moving_[at(island)]);
+  };
   bool any = false;
   for (int i = 0; i < count(); ++i) {
     const int island = moves(i) ? root(i) : 0;

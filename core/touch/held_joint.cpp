@@ -8,9 +8,6 @@
 namespace limpid {
 namespace {
 
-constexpr int kMostHolds = 3;
-using Mat9 = Eigen::Matrix<double, 3 * kMostHolds, 3 * kMostHolds>;
-using Mat93 = Eigen::Matrix<double, 3 * kMostHolds, 3>;
 using Mat63 = Eigen::Matrix<double, 6, 3>;
 
 // Force at the centre of mass and torque, for a unit force at a lever along each axis.
@@ -32,11 +29,11 @@ Mat3 symmetric(const Mat3& A) { return 0.5 * (A + A.transpose()); }
 
 // The response is W - G^T M^-1 G. M, without the springs' forces, is the response of the springs to
 // each other, G theirs to the force, W the joint's to it.
-Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
-                  std::span<const JointHold> holds) {
+JointAnswer joint_answer(bool turns, const JointSide& a, const JointSide& b,
+                         std::span<const JointHold> holds) {
   const auto n = static_cast<int>(holds.size());
-  Mat9 M = Mat9::Identity();
-  Mat93 G = Mat93::Zero();
+  JointAnswer::Mat9 M = JointAnswer::Mat9::Identity();
+  JointAnswer::Mat93 G = JointAnswer::Mat93::Zero();
   Mat3 W = Mat3::Zero();
   for (int i = 0; i < n; ++i) {
     M.block<3, 3>(3 * i, 3 * i) /= holds[static_cast<std::size_t>(i)].stiffness;
@@ -57,10 +54,12 @@ Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
     }
   }
   // Rotating bodies make M slightly unsymmetric; the sweeps correct the error.
-  const Eigen::LLT<Mat9> factor(0.5 * (M + M.transpose()));
-  Mat3 left = symmetric(W);
-  for (int i = 0; i < 3; ++i) left.col(i) -= G.transpose() * factor.solve(G.col(i));
-  return symmetric(left);
+  const Eigen::LLT<JointAnswer::Mat9> factor(0.5 * (M + M.transpose()));
+  JointAnswer answer;
+  answer.give = factor.solve(JointAnswer::Mat9::Identity());
+  answer.yield = answer.give * G;
+  answer.response = symmetric(symmetric(W) - G.transpose() * answer.yield);
+  return answer;
 }
 
 bool HeldJoint::needed(const BodyJoint& joint) {
@@ -136,6 +135,8 @@ void HeldJoint::finish(double T, const Vec3& speed) {
 
 void HeldJoint::hold() {
   friction = -joint.stop_stiffness * anchor;
+  damping.setZero();
+  forces.potential = forces.stop = 0;
   forces.friction = -joint.stop_stiffness * forces.anchor;
 }
 

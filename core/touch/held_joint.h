@@ -23,10 +23,22 @@ struct JointHold {
   Mat3 directions = Mat3::Identity();  // a projection
 };
 
-// Response of the sides' relative velocity to a force along the joint, or of their angular velocity
-// to a torque about it. The springs that hold it yield at once.
-Mat3 joint_answer(bool turns, const JointSide& a, const JointSide& b,
-                  std::span<const JointHold> holds);
+// A joint's force along it, or its torque about it, together with the springs that hold it.
+struct JointAnswer {
+  static constexpr int kMostHolds = 3;
+  using Numbers = Eigen::Matrix<double, 3 * kMostHolds, 1>;  // three of each spring
+  using Mat9 = Eigen::Matrix<double, 3 * kMostHolds, 3 * kMostHolds>;
+  using Mat93 = Eigen::Matrix<double, 3 * kMostHolds, 3>;
+
+  // Response of the sides' relative velocity to the force, or of their angular velocity to the
+  // torque. The springs yield at once, with forces of -yield times it.
+  Mat3 response = Mat3::Zero();
+  Mat93 yield = Mat93::Zero();
+  // Forces of the springs are -give times what is left of their velocities.
+  Mat9 give = Mat9::Zero();
+};
+JointAnswer joint_answer(bool turns, const JointSide& a, const JointSide& b,
+                         std::span<const JointHold> holds);
 
 // Forces of a joint between two sides: damping and friction in a ball joint; all forces in a hinge
 // or a slider whose other side moves as well.

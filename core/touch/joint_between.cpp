@@ -1,10 +1,12 @@
 #include "core/touch/joint_between.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace limpid {
 
-JointBetween::JointBetween(const Bodies& bodies, int body, int to, std::span<const JointLink> held)
+JointBetween::JointBetween(const Bodies& bodies, int body, int to, std::span<JointLink> held)
     : a(body), b(to), links(held) {
   joint.joint = *bodies.about[Bodies::at(body)].joint;
   joint.potential = JointPotential(joint.joint.force);
@@ -34,15 +36,35 @@ void JointBetween::prepare(Bodies& bodies) {
     two.links[i] = links[i].force.end_b.lever;
     holds[i] = {links[i].point.push(bodies.T), links[i].held};
   }
-  joint.start(joint_answer(joint.turns(), one, two, {holds.data(), links.size()}));
+  answer = joint_answer(joint.turns(), one, two, {holds.data(), links.size()});
+  joint.start(answer.response);
   push(bodies, joint.force());
 }
 
+// Solves its links, and then its own force with the links' forces that follow from it: one after the
+// other they would not settle where masses are unlike.
 double JointBetween::solve(Bodies& bodies) {
+  JointAnswer::Numbers left = JointAnswer::Numbers::Zero();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    left.segment<3>(3 * static_cast<Eigen::Index>(i)) = links[i].left(bodies);
+  }
+  const double linked = add_to_links(bodies, -answer.give * left);
   const Vec3 before = joint.force();
   const double change = joint.sweep(bodies.T, speed(bodies));
-  push(bodies, joint.force() - before);
-  return change;
+  const Vec3 more = joint.force() - before;
+  push(bodies, more);
+  add_to_links(bodies, -answer.yield * more);
+  return std::max(linked, change);
+}
+
+double JointBetween::add_to_links(Bodies& bodies, const JointAnswer::Numbers& more) {
+  double most = 0;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Vec3 of_it = more.segment<3>(3 * static_cast<Eigen::Index>(i));
+    links[i].add(bodies, of_it);
+    most = std::max(most, of_it.norm());
+  }
+  return most;
 }
 
 void JointBetween::finish(Bodies& bodies) {

@@ -12,15 +12,16 @@ namespace limpid {
 
 struct JointBetween {
   // `links`: those that hold it; they stay where they are.
-  JointBetween(const Bodies& bodies, int body, int to, std::span<const JointLink> links);
+  JointBetween(const Bodies& bodies, int body, int to, std::span<JointLink> links);
 
   HeldJoint joint;
   int a, b;
-  std::span<const JointLink> links;
+  std::span<JointLink> links;
   // At the start: the axis, a direction across it and the centre of mass of a, in the frame of b;
   // and that direction in the frame of a.
   Vec3 axis, across_b, center, across_a;
   BodyEnd end_a, end_b;  // ends of a force along it, in the tick
+  JointAnswer answer;    // in the tick
 
   static constexpr bool kWakes = false;  // its links do
   bool off() const { return false; }
@@ -43,6 +44,7 @@ struct JointBetween {
  private:
   Vec3 speed(const Bodies& bodies) const;  // of a relative to b: of the joint's point, or angular
   void push(Bodies& bodies, const Vec3& force) const;
+  double add_to_links(Bodies& bodies, const JointAnswer::Numbers& more);  // the largest change [N]
 };
 
 }  // namespace limpid

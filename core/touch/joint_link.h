@@ -28,6 +28,11 @@ struct JointLink : HeldForce {
     const Vec3 way = bodies.T * (held * force.speed(bodies));
     return way.dot(force.on_a + point.K * (point.stretch + way / 2));
   }
+  // The velocity that is left: zero for the right force [m/s].
+  Vec3 left(const Bodies& bodies) const {
+    return held * force.speed(bodies) +
+           (point.K * point.stretch + force.on_a) / point.push(bodies.T);
+  }
   void finish(const Bodies& bodies);
   double energy(const Bodies&) const { return 0.5 * point.K * made_stretch.squaredNorm(); }
 

@@ -58,7 +58,7 @@ struct HeldForce {
   }
   Vec3 forces() const { return force.on_a; }
   void add(Bodies& bodies, const Vec3& more) { force.add(bodies, more); }
-  void hold(const Bodies&) {}
+  void hold(const Bodies&) { force.on_a.setZero(); }
   void finish(const Bodies&) {}
 };
 

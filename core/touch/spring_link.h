@@ -22,7 +22,7 @@ struct SpringLink {
   double solve(Bodies& bodies);
   Vec3 forces() const { return force.on_a; }
   void add(Bodies& bodies, const Vec3& more) { force.add(bodies, more); }
-  void hold(const Bodies&) {}
+  void hold(const Bodies&) { force.on_a.setZero(); }
   double made(const Bodies& bodies) const;
   void finish(const Bodies& bodies);
   double energy(const Bodies& bodies) const;

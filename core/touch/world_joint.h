@@ -20,7 +20,10 @@ struct WorldJoint {
   double solve(Bodies& bodies);
   Vec3 forces() const { return {along.potential, along.stop, along.friction}; }
   void add(Bodies& bodies, const Vec3& more);
-  void hold(const Bodies& bodies) { along.friction = -along.anchor * stiffness(bodies); }
+  void hold(const Bodies& bodies) {
+    along.potential = along.stop = 0;
+    along.friction = -along.anchor * stiffness(bodies);
+  }
   double made(const Bodies& bodies) const;
   void finish(Bodies& bodies);
   double energy(const Bodies& bodies) const;

@@ -56,11 +56,7 @@ inline std::vector<double> state(const BodyWorld& world) {
 
 // Sets a body's velocity [m/s] and its angular velocity in its own frame [rad/s].
 inline void set_moving(BodyWorld& world, int body, const Vec3& speed, const Vec3& spin) {
-  std::vector<double> numbers = state(world);
-  const auto at = numbers.begin() + 10 + 23 * body + 12;
-  std::copy_n(speed.data(), 3, at);
-  std::copy_n(spin.data(), 3, at + 3);
-  if (!world.read(numbers)) throw std::logic_error("a state that was written is not read");
+  world.set_speed(body, speed, world.pose(body).linear() * spin);
 }
 
 }  // namespace limpid::test

@@ -283,6 +283,14 @@ void draw_ledger(const CouplingReading& now) {
         "sink into each other. Fewer objects that lie on each other avoid it.";
     read_out("Contact points left out", fmt::format("{:.0f}", now.left_out), why, why);
   }
+  if (now.stood_still > 0) {
+    const char* why =
+        "The forces in a mechanism were not found in these ticks, so its bodies stood still for "
+        "each of them. That takes energy only. Masses that are less unlike, softer stops and a "
+        "shorter tick avoid it.";
+    read_out("Ticks in which objects stood still", fmt::format("{:.0f}", now.stood_still), why,
+             why);
+  }
 }
 
 // Returns a way out of a coupling that gives energy.

@@ -23,6 +23,7 @@ struct CouplingReading {
   double torque_governor;
   double unsettled;  // ticks without a joint solution for contacts and motors at their limit
   double left_out;   // contacts of bodies for which there was no room
+  double stood_still;  // ticks in which forces of bodies were not found
 };
 
 // Situation of the coupling. `analysis` is of these parameters; `real`: a device is in the arm's

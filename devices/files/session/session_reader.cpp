@@ -48,6 +48,7 @@ std::optional<double> default_of(Column column) {
     case Column::energy_compensation:
     case Column::objects_sweeps:
     case Column::objects_left_out:
+    case Column::objects_stood_still:
     case Column::magnet:
     case Column::hand_magnet:
     case Column::hand_pull:

@@ -49,7 +49,8 @@ class CouplingWords : public ReadPanel {
                        .damping_governor = 1,
                        .torque_governor = 1,
                        .unsettled = 0,
-                       .left_out = 0};
+                       .left_out = 0,
+                       .stood_still = 0};
 };
 
 TEST_F(CouplingWords, AreOfTheLawThatIsChosen) {
@@ -183,19 +184,23 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
   }
   EXPECT_FALSE(find("Ticks without a solution"));
   EXPECT_FALSE(find("Contact points left out"));
+  EXPECT_FALSE(find("Ticks in which objects stood still"));
   now_.contact_governor = 0.994;
   now_.damping_governor = 0.5;
   now_.torque_governor = 0.25;
   now_.unsettled = 3;
   now_.left_out = 1;
+  now_.stood_still = 2;
   draw();
   EXPECT_EQ(value("Wall force let through"), "99 %");
   EXPECT_EQ(value("Damping cancelled"), "50 %");
   EXPECT_EQ(value("Torque let through"), "25 %");
   EXPECT_EQ(value("Ticks without a solution"), "3");
   EXPECT_EQ(value("Contact points left out"), "1");
+  EXPECT_EQ(value("Ticks in which objects stood still"), "2");
   for (const char* bad : {"Wall force let through", "Damping cancelled", "Torque let through",
-                          "Ticks without a solution", "Contact points left out"}) {
+                          "Ticks without a solution", "Contact points left out",
+                          "Ticks in which objects stood still"}) {
     EXPECT_TRUE(broken(bad)) << bad;
   }
   EXPECT_THAT(hint("Damping cancelled"), HasSubstr("less of the device's damping is cancelled"));
