@@ -300,6 +300,15 @@ double BodyMotion::kinetic_after() const {
   return 0.5 * m_ * (v_ + (u_ - v_) / theta_).squaredNorm() + 0.5 * w.dot(I_ * w);
 }
 
+double BodyMotion::made(double T) const {
+  if (kind_ != Kind::ball) return 0;
+  const Vec3 own = pose_.linear().transpose() * o_;
+  const Vec3 arm = c_ - joint_.point, there = cayley(T * own) * arm;
+  const double fallen = m_ * gravity_.dot(pose_.linear() * (there - arm));
+  const double work = T * own.dot(impedance_ * (own - own_));
+  return std::max(0.0, kinetic_after() - kinetic() - fallen - work);
+}
+
 double BodyMotion::weight_energy() const {
   return on_joint() ? 0 : -m_ * gravity_.dot(center());  // else in the potential
 }

@@ -93,6 +93,9 @@ class BodyMotion {
   double mass() const { return m_; }
   double kinetic() const;
   double kinetic_after() const;  // of the velocities that finish() will leave [J]
+  // Energy that the tick brings beyond the work of forces: of the weight on a ball joint, which is
+  // known for the motion under weight alone [J].
+  double made(double T) const;
   double weight_energy() const;  // without a slider or a hinge; relative to the origin [J]
   bool finite() const { return p_.allFinite() && pose_.matrix().allFinite(); }
 

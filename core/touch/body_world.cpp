@@ -80,7 +80,7 @@ void BodyWorld::add_links(const Scene& scene) {
     const int to = number(joint->to);
     const std::size_t first = joint_links.size();
     if (to != BodyContact::kStill) limpid::add_links(bodies_, i, to, joint_links);
-    if (!HeldJoint::needed(*joint)) continue;
+    if (to == BodyContact::kStill && !HeldJoint::needed(*joint)) continue;
     joints_between.emplace_back(bodies_, i, to, std::span(joint_links).subspan(first));
   }
   for (const BodySpring& spring : scene.springs) {
@@ -336,6 +336,9 @@ void BodyWorld::settle() {
 
 void BodyWorld::add_up_made() {
   std::ranges::fill(made_, 0);
+  for (int i = 0; i < count(); ++i) {
+    if (moves(i)) made_[at(root(i))] += bodies_[i].made(bodies_.T);
+  }
   for_each_of(constraints_.all(), [&](const auto& c) {
     if (c.off() || !(moves(c.a) || moves(c.b))) return;
     made_[at(root(moves(c.a) ? c.a : c.b))] += c.made(bodies_);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kJointArm = 0.01;
 // A link is this many times as stiff as its body's contacts, and little damped: a damper works
 // against every stretch, and takes the energy of what swings.
-constexpr double kStiffer = 10, kRatio = 0.1;
+constexpr double kStiffer = 100, kRatio = 0.1;
 constexpr double kMostLost = 1e-3;  // energy of the damper that is kept to pay for the stretch [J]
 
 double damping(double K, double T, double directions, const Mat3& W) {
