@@ -13,8 +13,9 @@ namespace {
 constexpr double kJointArm = 0.01;
 // A link is this many times as stiff as its body's contacts, and little damped: a damper works
 // against every stretch, and takes the energy of what swings.
-constexpr double kStiffer = 100, kRatio = 0.1;
-constexpr double kMostLost = 1e-3;  // energy of the damper that is kept to pay for the stretch [J]
+constexpr double kStiffer = 100, kRatio = 0.7;
+constexpr double kRight = 0.01;     // velocity that a right force may leave, of that of stretching [-]
+constexpr double kMostLost = 1e-5;  // energy of the damper that is kept to pay for the stretch [J]
 
 double damping(double K, double T, double directions, const Mat3& W) {
   const double m_eff = directions * BodyMotion::kTheta * T / W.trace();
@@ -108,9 +109,12 @@ void JointLink::stretch(const Vec3& to) {
 }
 
 void JointLink::finish(const Bodies& bodies) {
-  lost = std::min(lost - made(bodies), kMostLost);
-  lost = std::max(0.0, lost);
-  made_stretch = point.stretch + bodies.T * (held * force.speed(bodies));
+  const Vec3 v = held * force.speed(bodies);
+  // A force that is not right may lose what another one makes: that pays for nothing.
+  const bool right = left(bodies).norm() < kRight * v.norm();
+  const double damped = right ? std::min(-made(bodies), bodies.T * point.B * v.squaredNorm()) : 0;
+  lost = std::clamp(lost + damped, 0.0, kMostLost);
+  made_stretch = point.stretch + bodies.T * v;
 }
 
 }  // namespace limpid
