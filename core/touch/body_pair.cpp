@@ -9,7 +9,7 @@ namespace limpid {
 namespace {
 
 constexpr double kFade = 0.05;  // time in which a depth that was not pressed in fades [s]
-constexpr double kRise = 0.01;  // speed at which a body rises by that at most [m/s]
+constexpr double kRise = 0.01;   // speed at which a body rises by that at most [m/s]
 
 // F^T W F, number by number in the order of Eigen's sums.
 void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
@@ -38,24 +38,14 @@ void BodyPair::prepare(Bodies& bodies) {
   end_a = bodies.end_at(a, c.point, c.round_a);
   end_b = bodies.end_at(b, c.point, c.round_b);
   K = stiffness(c, bodies);
-  // Depth that was not pressed in fades, as fast as the contact's damper pays for it.
-  c.rest = std::max(c.rest, c.depth - c.pressed);
-  c.rest = std::min(c.rest, std::max(0.0, c.depth));
-  if (c.rest > 0) {
-    const double d = std::max(0.0, c.depth - c.rest);
-    const double paid = std::sqrt(d * d + 2 * std::max(0.0, c.lost) / K) - d;
-    const double less =
-        std::min({paid, c.rest * std::min(1.0, bodies.T / kFade), kRise * bodies.T});
-    c.rest -= less;
-    c.lost -= K * less * (d + less / 2);
-  }
-  depth = c.depth - c.rest;
   frame.col(0) = c.normal;
   frame.col(1) = c.normal.unitOrthogonal();
   frame.col(2) = c.normal.cross(frame.col(1));
   Mat3 answer = bodies.answer(end_a);
   if (end_b.body != BodyContact::kStill) answer += bodies.answer(end_b);
   turn_into(frame, answer, W);
+  fade(bodies);
+  depth = c.depth - c.rest;
   const Material& one = bodies.objects[static_cast<std::size_t>(c.object_a)];
   const Material& two = bodies.objects[static_cast<std::size_t>(c.object_b)];
   const double kinetic = std::max(one.friction_kinetic, two.friction_kinetic);
@@ -77,6 +67,21 @@ void BodyPair::prepare(Bodies& bodies) {
   anchor.noalias() = frame.rightCols<2>().transpose() * c.anchor;
   if (radius == 0) friction.setZero();
   bodies.apply(end_a, end_b, force * c.normal + frame.rightCols<2>() * friction);
+}
+
+// Depth that was not pressed in fades, as fast as what the contact lost pays for it, and so slowly
+// that it throws up no body.
+void BodyPair::fade(const Bodies& bodies) {
+  BodyContact& c = *contact;
+  c.rest = std::max(c.rest, c.depth - c.pressed);
+  c.rest = std::min(c.rest, std::max(0.0, c.depth));
+  if (!(c.rest > 0)) return;
+  const double d = std::max(0.0, c.depth - c.rest), T = bodies.T;
+  const double paid = std::sqrt(d * d + 2 * std::max(0.0, c.lost) / K) - d;
+  const double slow = kRise * std::min(T, std::sqrt(mass(bodies) / K));
+  const double less = std::min({paid, c.rest * std::min(1.0, T / kFade), slow});
+  c.rest -= less;
+  c.lost -= K * less * (d + less / 2);
 }
 
 double BodyPair::solve(Bodies& bodies) {
@@ -132,7 +137,7 @@ void BodyPair::finish(Bodies& bodies) {
   const double before = std::max(0.0, depth), after = std::max(0.0, depth + D);
   c.pressed = after;
   const double lost = force * D - 0.5 * K * (after * after - before * before);
-  c.lost = force > 0 ? std::max(0.0, c.lost + lost) : 0;
+  c.lost = std::max(0.0, c.lost + lost);
   c.impact.finish(force, mass(bodies), K, bodies.T);
   if (force > 0 && !c.impact.going()) {
     bodies.press(a);

@@ -38,6 +38,7 @@ struct BodyPair {
   static double energy(const BodyContact& contact, const Bodies& bodies);
 
  private:
+  void fade(const Bodies& bodies);
   double deeper(const Bodies& bodies) const;  // over the tick [m]
   double apart(const Bodies& bodies) const;   // speed of parting after the tick [m/s]
   double mass(const Bodies& bodies) const;    // that the contact moves [kg]

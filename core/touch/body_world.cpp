@@ -14,8 +14,10 @@ constexpr double kEnoughElse = 1e-5, kEnoughOfMass = 1e-2;  // [N], [N/kg]
 constexpr int kMostSweeps = 30;  // most sweeps over bodies that the arm touches
 constexpr int kFewSweeps = 10, kManySweeps = 60;
 constexpr std::size_t kMostRowsSwept = 2000;  // rows in a tick's sweeps beyond kFewSweeps: 0.2 ms
-// Largest speed at which a body rests that something bears, and one that nothing does [m/s].
-constexpr double kSlow = 1e-5, kStill = 1e-8;
+// A body rests while it is slower than this: one that something bears if it also stays where it is
+// [m/s, m]; one that nothing bears.
+constexpr double kSlow = 1e-3, kStays = 5e-6, kStill = 1e-8;
+constexpr double kReach = 0.05;  // distance at which turning counts as moving [m]
 constexpr double kQuiet = 0.5;                // time of rest before a body sleeps [s]
 constexpr double kGone = 20;                  // distance at which a body is given up [m]
 // Energy of forces that are right but for rounding and for what is settled, by the lightest mass
@@ -48,6 +50,7 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
   touched_.assign(n, 0);
   quiet_island_.assign(n, 0);
   quiet_.assign(n, 0);
+  quiet_at_.assign(n, Pose::Identity());
   made_.assign(n, 0);
   moving_.assign(n, 0);
   slower_.assign(n, 1);
@@ -430,10 +433,19 @@ void BodyWorld::fall_asleep() {
   for (int i = 0; i < count(); ++i) {
     if (!moves(i)) continue;
     const BodyMotion& body = bodies_[i];
-    const double most = bodies_.pressed[at(i)] == Bodies::kPressed ? kSlow : kStill;
-    const bool slow = body.speed().norm() < most && body.spin().norm() * 0.05 < most;
+    const bool borne = bodies_.pressed[at(i)] == Bodies::kPressed;
+    const double most = borne ? kSlow : kStill;
+    const bool slow = body.speed().norm() < most && kReach * body.spin().norm() < most;
+    const Pose& then = quiet_at_[at(i)];
+    const Mat3& R = body.pose().linear();
+    const bool stays = (body.center() - then.translation()).norm() < kStays &&
+                       kReach * (R - then.linear()).norm() < kStays;
     const bool gone = body.center().norm() > kGone;
-    quiet_[at(i)] = slow || gone ? quiet_[at(i)] + 1 : 0;
+    quiet_[at(i)] = slow && stays ? quiet_[at(i)] + 1 : 0;
+    if (quiet_[at(i)] == 0) {
+      quiet_at_[at(i)].translation() = body.center();
+      quiet_at_[at(i)].linear() = R;
+    }
     if (gone) quiet_[at(i)] = long_enough;
   }
   std::ranges::fill(quiet_island_, 1);
@@ -482,6 +494,8 @@ void BodyWorld::write(std::vector<double>& into) const {
     into.insert(into.end(), numbers.begin(), numbers.end());
     for (const int n : {int{bodies_.awake[at(i)]}, bodies_.pressed[at(i)], quiet_[at(i)]})
       into.push_back(n);
+    const auto& then = quiet_at_[at(i)].matrix();
+    for (int k = 0; k < 12; ++k) into.push_back(then(k % 3, k / 3));
   }
   for_each_of(constraints_.in_files(), [&](const auto& c) {
     const auto numbers_of_it = c.numbers();
@@ -491,7 +505,7 @@ void BodyWorld::write(std::vector<double>& into) const {
 }
 
 bool BodyWorld::read(std::span<const double> from) {
-  constexpr std::size_t kMagnet = 8, kBody = BodyMotion::kNumbers + 3;
+  constexpr std::size_t kMagnet = 8, kBody = BodyMotion::kNumbers + 3 + 12;
   std::size_t own = 2 + kMagnet + kBody * names_.size();
   for_each_of(constraints_.in_files(), [&](const auto& c) { own += c.numbers().size(); });
   if (from.size() < own || from[0] != count() ||
@@ -512,6 +526,9 @@ bool BodyWorld::read(std::span<const double> from) {
     bodies_.awake[at(i)] = from[BodyMotion::kNumbers] != 0 ? 1 : 0;
     bodies_.pressed[at(i)] = static_cast<int>(from[BodyMotion::kNumbers + 1]);
     quiet_[at(i)] = static_cast<int>(from[BodyMotion::kNumbers + 2]);
+    for (int k = 0; k < 12; ++k) {
+      quiet_at_[at(i)].matrix()(k % 3, k / 3) = from[BodyMotion::kNumbers + 3 + std::size_t(k)];
+    }
     geometry_.place(i, pose(i));
   }
   for_each_of(constraints_.in_files(), [&](auto& c) {

@@ -142,6 +142,7 @@ class BodyWorld {
   std::vector<std::uint8_t> touched_;
   std::vector<std::uint8_t> quiet_island_;  // by the island's root
   std::vector<int> quiet_;                  // ticks
+  std::vector<Pose> quiet_at_;              // poses since then: centre of mass [m], turning
   std::vector<double> made_, moving_;       // energies, by the island's root [J]
   std::vector<double> slower_;              // factors of velocities, by the island's root [-]
   std::vector<int> parent_;                 // union of islands
