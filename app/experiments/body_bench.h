@@ -21,8 +21,8 @@ struct BodyClaim {
   std::string unit;
   std::optional<double> expected;  // none: no theory says it
   double measured = 0;
-  double limit = 0;        // of the error: relative [%], or in `unit`
-  bool relative = true;    // the error is one of the expected value
+  double limit = 0;           // of the error: relative [%], or in `unit`
+  bool relative = true;       // the error is one of the expected value
   std::string conditions;     // a sentence
   std::string unjudged = {};  // sentence on why it is only measured; else empty
 

@@ -73,14 +73,14 @@ void add_pendulum(double tick, BodyJoint::Kind kind, double amplitude, BodyFindi
     bench.run(1);
     note();
   }
-  found.claims.push_back(
-      {.group = "swing",
-       .what = which + ": period",
-       .unit = "s",
-       .expected = pendulum_period(kRodMass, to_center, I, amplitude),
-       .measured = period,
-       .limit = 0.1,
-       .conditions = "4 K(sin(a / 2)) sqrt(I / (m g l)); " + of + ", let go at rest, mean of 10 s."});
+  found.claims.push_back({.group = "swing",
+                          .what = which + ": period",
+                          .unit = "s",
+                          .expected = pendulum_period(kRodMass, to_center, I, amplitude),
+                          .measured = period,
+                          .limit = 0.1,
+                          .conditions = "4 K(sin(a / 2)) sqrt(I / (m g l)); " + of +
+                                        ", let go at rest, mean of 10 s."});
   found.claims.push_back(
       {.group = "swing",
        .what = which + ": energy after a minute",

@@ -20,11 +20,11 @@ struct Bodies {
 
   std::vector<BodyMotion> motions;
   std::vector<Body> about;
-  std::vector<Material> objects;            // by object of the scene
+  std::vector<Material> objects;  // by object of the scene
   std::vector<std::uint8_t> awake;
   // Ticks for which a body still counts as pressed by the arm, a contact, a stop or friction.
   std::vector<int> pressed;
-  double T = 1e-3;                          // length of the tick [s]
+  double T = 1e-3;  // length of the tick [s]
 
   static constexpr int kPressed = 20;
 
@@ -39,7 +39,8 @@ struct Bodies {
     if (!moves(body)) return {};
     const BodyMotion& motion = (*this)[body];
     if (rolls == nullptr) return {body, motion.lever(point, T)};
-    return {body, motion.rolling(point, place(body, rolls->center), directed(body, rolls->axis), T)};
+    return {body,
+            motion.rolling(point, place(body, rolls->center), directed(body, rolls->axis), T)};
   }
   Vec3 velocity(const BodyEnd& end) const {  // mean over the tick [m/s]
     if (end.body == BodyContact::kStill) return Vec3::Zero();

@@ -23,11 +23,11 @@ struct RoundPart {
 struct BodyContact {
   static constexpr int kStill = -1;
 
-  int a = 0, b = kStill;           // bodies
-  int object_a = 0, object_b = 0;  // objects of the scene
-  Vec3 point = Vec3::Zero();       // in the middle of the overlap [m]
-  Vec3 normal = Vec3::UnitZ();     // out of b, unit
-  double depth = 0;                // negative: apart [m]
+  int a = 0, b = kStill;                                   // bodies
+  int object_a = 0, object_b = 0;                          // objects of the scene
+  Vec3 point = Vec3::Zero();                               // in the middle of the overlap [m]
+  Vec3 normal = Vec3::UnitZ();                             // out of b, unit
+  double depth = 0;                                        // negative: apart [m]
   const RoundPart *round_a = nullptr, *round_b = nullptr;  // its sides that roll
 
   // The rest is kept from tick to tick.

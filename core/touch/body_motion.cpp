@@ -121,10 +121,10 @@ void BodyMotion::begin(double T, bool pressed) {
 
 // Finds the mean spin `own` in the body's frame. With I w the angular momentum, all there,
 //     I (w' - w)/T = (I own) x own + (1 - T/2 own x) torque,   own = (w + w')/2
-// keeps energy and angular momentum but for rounding: the last term turns the torque into the middle
-// of the tick. The gyroscopic torque and that of the weight W are functions of `own`; W pulls in the
-// middle of the arm's two places, so it gives what the centre of mass falls. Other torques are not
-// known yet: the last tick's are turned in place of them, which needs no energy.
+// keeps energy and angular momentum but for rounding: the last term turns the torque into the
+// middle of the tick. The gyroscopic torque and that of the weight W are functions of `own`; W
+// pulls in the middle of the arm's two places, so it gives what the centre of mass falls. Other
+// torques are not known yet: the last tick's are turned in place of them, which needs no energy.
 void BodyMotion::begin_turning(double T) {
   const Mat3& R = pose_.linear();
   const Vec3 start = I_ * w_ / (theta_ * T);
@@ -141,7 +141,8 @@ void BodyMotion::begin_turning(double T) {
       const Vec3 middle = (Mat3::Identity() - half).inverse() * arm;  // half of both places
       const Vec3 torque = middle.cross(W);
       const Mat3 to_middle = Mat3::Identity() - half;
-      const Mat3 more = 0.5 * T * (to_middle * skew(W) * skew(middle) + skew(torque));  // by the spin
+      const Mat3 more =
+          0.5 * T * (to_middle * skew(W) * skew(middle) + skew(torque));  // by the spin
       A -= more;
       pull += to_middle * torque - more * own;
     }

@@ -36,8 +36,8 @@ class BodyMotion {
   // forces.
   void begin(double T, bool pressed);
   Lever lever(const Vec3& point, double T) const;
-  // Lever of the point where a round part of the body rolls: the part turns about its centre [m] and
-  // the axis, zero for a ball, and the point does not turn along.
+  // Lever of the point where a round part of the body rolls: the part turns about its centre [m]
+  // and the axis, zero for a ball, and the point does not turn along.
   Lever rolling(const Vec3& point, const Vec3& center, const Vec3& axis, double T) const;
   // Mean velocity over the tick of the body's point there [m/s].
   Vec3 velocity(const Lever& at) const { return u_ + o_.cross(at); }
@@ -85,7 +85,7 @@ class BodyMotion {
     sd_ *= by;
   }
 
-  const Pose& pose() const { return pose_; }  // of its object
+  const Pose& pose() const { return pose_; }   // of its object
   const Vec3& turns_at() const { return p_; }  // the point where it turns about [m]
   Vec3 center() const { return kind_ == Kind::ball ? Vec3(pose_ * c_) : p_; }  // of mass [m]
   Vec3 speed() const;  // of the centre [m/s]
@@ -125,7 +125,7 @@ class BodyMotion {
   double reflected_ = 0;       // inertia along the joint [kg] or [kg m^2]
   Vec3 pivot_ = Vec3::Zero();  // of a hinge or a ball joint [m]
 
-  Pose pose_;                       // of the object
+  Pose pose_;              // of the object
   Vec3 p_, v_, w_;         // where it turns about [m], its velocity [m/s], spin in the body's frame
   double s_ = 0, sd_ = 0;  // of the joint
   Vec3 torque_;            // on it over the last tick but for the weight, in its frame [N m]

@@ -9,7 +9,7 @@ namespace limpid {
 namespace {
 
 constexpr double kFade = 0.05;  // time in which a depth that was not pressed in fades [s]
-constexpr double kRise = 0.01;   // speed at which a body rises by that at most [m/s]
+constexpr double kRise = 0.01;  // speed at which a body rises by that at most [m/s]
 
 // F^T W F, number by number in the order of Eigen's sums.
 void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
@@ -145,7 +145,9 @@ void BodyPair::finish(Bodies& bodies) {
   }
 }
 
-double BodyPair::mass(const Bodies& bodies) const { return BodyMotion::kTheta * bodies.T / W(0, 0); }
+double BodyPair::mass(const Bodies& bodies) const {
+  return BodyMotion::kTheta * bodies.T / W(0, 0);
+}
 
 bool BodyPair::turns(const Bodies& bodies) {
   BodyContact& c = *contact;

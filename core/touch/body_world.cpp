@@ -18,15 +18,15 @@ constexpr std::size_t kMostRowsSwept = 2000;  // rows in a tick's sweeps beyond 
 // [m/s, m]; one that nothing bears.
 constexpr double kSlow = 1e-3, kStays = 5e-6, kStill = 1e-8;
 constexpr double kReach = 0.05;  // distance at which turning counts as moving [m]
-constexpr double kQuiet = 0.5;                // time of rest before a body sleeps [s]
-constexpr double kGone = 20;                  // distance at which a body is given up [m]
+constexpr double kQuiet = 0.5;   // time of rest before a body sleeps [s]
+constexpr double kGone = 20;     // distance at which a body is given up [m]
 // Energy of forces that are right but for rounding and for what is settled, by the lightest mass
 // [J/kg].
 constexpr double kMade = 1e-10;
 constexpr double kFew = 1e4;  // times this energy is taken from the motion, and needs no standstill
-constexpr int kMostPartings = 100;            // sweeps over contacts that part
-constexpr double kSameSpeed = 1e-9;           // change of speed at which they end [m/s]
-constexpr int kMostRounds = 4;                // rounds of sweeps for forces that make energy
+constexpr int kMostPartings = 100;   // sweeps over contacts that part
+constexpr double kSameSpeed = 1e-9;  // change of speed at which they end [m/s]
+constexpr int kMostRounds = 4;       // rounds of sweeps for forces that make energy
 
 }  // namespace
 
@@ -363,7 +363,8 @@ void BodyWorld::settle_what_makes_energy() {
   add_up_made();
 }
 
-// Takes energy that was made from the motion at the tick's end; what is mostly made up stands still.
+// Takes energy that was made from the motion at the tick's end; what is mostly made up stands
+// still.
 void BodyWorld::hold_what_is_made_up() {
   std::ranges::fill(slower_, 1.0);
   if (std::ranges::all_of(made_, [this](double made) { return made <= right_; })) return;

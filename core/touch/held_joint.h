@@ -73,7 +73,7 @@ struct HeldJoint {
   // Changes the forces by three numbers, along the joint or in the world. Returns the change of the
   // whole force.
   Vec3 add(const Vec3& change);
-  Vec3 numbers() const;  // of the forces
+  Vec3 numbers() const;                            // of the forces
   double made(double T, const Vec3& speed) const;  // see made() of a joint
   bool presses() const { return ball() ? !friction.isZero(0) : forces.presses(); }
   // Ends a tick of T in which the sides moved with `speed`.

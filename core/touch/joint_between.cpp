@@ -41,8 +41,8 @@ void JointBetween::prepare(Bodies& bodies) {
   push(bodies, joint.force());
 }
 
-// Solves its links, and then its own force with the links' forces that follow from it: one after the
-// other they would not settle where masses are unlike.
+// Solves its links, and then its own force with the links' forces that follow from it: one after
+// the other they would not settle where masses are unlike.
 double JointBetween::solve(Bodies& bodies) {
   JointAnswer::Numbers left = JointAnswer::Numbers::Zero();
   for (std::size_t i = 0; i < links.size(); ++i) {

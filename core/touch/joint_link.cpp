@@ -14,7 +14,7 @@ constexpr double kJointArm = 0.01;
 // A link is this many times as stiff as its body's contacts, and little damped: a damper works
 // against every stretch, and takes the energy of what swings.
 constexpr double kStiffer = 100, kRatio = 0.7;
-constexpr double kRight = 0.01;     // velocity that a right force may leave, of that of stretching [-]
+constexpr double kRight = 0.01;  // velocity that a right force may leave, of that of stretching [-]
 constexpr double kMostLost = 1e-5;  // energy of the damper that is kept to pay for the stretch [J]
 
 double damping(double K, double T, double directions, const Mat3& W) {

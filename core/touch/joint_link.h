@@ -37,8 +37,13 @@ struct JointLink : HeldForce {
   double energy(const Bodies&) const { return 0.5 * point.K * made_stretch.squaredNorm(); }
 
   std::array<double, 7> numbers() const {
-    return {force.on_a.x(), force.on_a.y(), force.on_a.z(), made_stretch.x(),
-            made_stretch.y(), made_stretch.z(), lost};
+    return {force.on_a.x(),
+            force.on_a.y(),
+            force.on_a.z(),
+            made_stretch.x(),
+            made_stretch.y(),
+            made_stretch.z(),
+            lost};
   }
   void read(const double* from) {
     force.on_a = Eigen::Map<const Vec3>(from);

@@ -21,8 +21,8 @@ struct CouplingReading {
   double contact_governor;   // share let through, as the two below, 0 to 1
   double damping_governor;
   double torque_governor;
-  double unsettled;  // ticks without a joint solution for contacts and motors at their limit
-  double left_out;   // contacts of bodies for which there was no room
+  double unsettled;    // ticks without a joint solution for contacts and motors at their limit
+  double left_out;     // contacts of bodies for which there was no room
   double stood_still;  // ticks in which forces of bodies were not found
 };
 

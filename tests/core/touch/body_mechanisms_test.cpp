@@ -93,8 +93,9 @@ Scene mechanism(Random& random) {
   Vec3 end = Vec3::Zero();
   for (int i = 0; i < count; ++i) {
     const Vec3 way = random.direction();
-    Object object = body("body " + std::to_string(i), Box{Vec3::Constant(0.03) + random.point(0.02)},
-                         random.log_between(1e-3, 0.3), end + 0.03 * way);
+    Object object =
+        body("body " + std::to_string(i), Box{Vec3::Constant(0.03) + random.point(0.02)},
+             random.log_between(1e-3, 0.3), end + 0.03 * way);
     object.pose.linear() = random.rotation();
     BodyJoint& joint = object.body->joint.emplace();
     joint.kind = random.one_of({Kind::hinge, Kind::hinge, Kind::slider, Kind::ball});
@@ -124,9 +125,9 @@ double apart(const Scene& scene, const BodyWorld& world) {
     const BodyJoint& joint = *scene.objects[i].body->joint;
     if (joint.kind == Kind::slider) continue;
     const Vec3 there = scene.objects[i].pose * joint.point;
-    const Vec3 other =
-        i == 0 ? there
-               : world.pose(static_cast<int>(i) - 1) * (scene.objects[i - 1].pose.inverse() * there);
+    const Vec3 other = i == 0 ? there
+                              : world.pose(static_cast<int>(i) - 1) *
+                                    (scene.objects[i - 1].pose.inverse() * there);
     most = std::max(most, (world.pose(static_cast<int>(i)) * joint.point - other).norm());
   }
   return most;
