@@ -9,8 +9,6 @@
 namespace limpid {
 namespace {
 
-// Distance beyond which nothing touches within a tick [m].
-constexpr double kReach = 0.02;
 // Spacing of the balls that replace a capsule, in radii, and their largest number.
 constexpr double kSpacing = 0.75;
 constexpr int kMostBalls = 24;
@@ -64,6 +62,7 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
   }
   Contact<N> empty;
   empty.gradient = Vec<N>::Zero(arm.dof());
+  for (const Probe& probe : probes_) touches_.emplace_back(probe.radius, solids_.size());
   contacts_.assign(solids_.size() * probes_.size() + stops_.size(), empty);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!has_shape<Mesh>(scene.objects[i])) continue;
@@ -111,6 +110,7 @@ void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, con
     contact.touch.place(contact.center);
     contact.force.setZero();
   }
+  for (SolidTouch& touch : touches_) touch.forget();
   forget();
   find(arm, f, x, 0);
   for (Contact<N>& contact : contacts_) contact.force = 0;
@@ -134,8 +134,25 @@ void Contacts<N>::take_over(const Contacts& other) {
 
 template <int N>
 bool Contacts<N>::recoverable() const {
-  return std::ranges::all_of(meshes_,
-                             [](const MeshContact<N>& c) { return c.touch.recoverable(); });
+  const auto mesh = [](const MeshContact<N>& c) { return c.touch.recoverable(); };
+  const auto solid = [](const SolidTouch& touch) { return touch.recoverable(); };
+  return std::ranges::all_of(meshes_, mesh) && std::ranges::all_of(touches_, solid);
+}
+
+// Gives a contact the force and the friction of one that another surface now covers: the probe goes
+// from one to the other. Friction's spring keeps its force, or gets less where that needs no less
+// energy.
+template <int N>
+void Contacts<N>::pass_on(std::size_t from, std::size_t to) {
+  ContactMemory& now = memories_[to];
+  ContactMemory& before = memories_[from];
+  if (before.push.isZero(0) || !now.push.isZero(0)) return;
+  const auto stiffness = [&](std::size_t id) {
+    return friction_stiffness(solids_[id % solids_.size()].material);
+  };
+  now = before;
+  now.anchor *= std::min(1.0, stiffness(from) / stiffness(to));
+  before = {};
 }
 
 template <int N>
@@ -154,25 +171,31 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
                        double T) {
   if (world_) follow_bodies();
   count_ = 0;
-  std::size_t id = 0;
-  for (const Probe& probe : probes_) {
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const Probe& probe = probes_[k];
     const Vec3 from = Arm<N>::point(f, probe.link, probe.from);
     const Vec3 to = Arm<N>::point(f, probe.link, probe.to);
-    const bool ball = from == to;
-    const auto touch = [&](const auto& shape, const Solid& solid) {
-      const Vec3 point = ball ? from : nearest_on_segment(shape, solid.pose, from, to);
-      const Surface s = distance_to(shape, solid.pose, point);
-      const double depth = probe.radius - s.distance;
-      if (depth > -kReach) {
-        add({depth, {}, solid.material, point, s.normal, probe.link, id, solid.body}, arm, f);
-        if (solid.body != BodyContact::kStill && depth > -kWakes) world_->touch(solid.body);
+    const std::size_t first = k * solids_.size();
+    for (const auto& near : touches_[k].find(solids_, from, to)) {
+      const Solid& solid = solids_[near.solid];
+      const double depth = probe.radius - near.surface.distance;
+      if (solid.body != BodyContact::kStill && depth > -kWakes) world_->touch(solid.body);
+      if (near.counts) {
+        add({depth,
+             {},
+             solid.material,
+             near.point,
+             near.surface.normal,
+             probe.link,
+             first + near.solid,
+             solid.body},
+            arm, f);
+      } else {
+        pass_on(first + near.solid, first + near.by);
       }
-      ++id;
-    };
-    for (const Solid& solid : solids_) {
-      std::visit([&](const auto& shape) { touch(shape, solid); }, solid.shape);
     }
   }
+  std::size_t id = probes_.size() * solids_.size();
   for (const auto& [stop, material] : stops_) {
     Contact<N>& c = contacts_[count_++];
     c.depth = stop.direction * (x[stop.joint] - stop.angle);

@@ -12,28 +12,10 @@
 #include "core/touch/magnet_contact.h"
 #include "core/touch/mesh_contact.h"
 #include "core/touch/scene.h"
+#include "core/touch/solid_touch.h"
 #include "core/touch/wall_contact.h"
 
 namespace limpid {
-
-// Signed distance of a point to the surface, negative inside, and the outward normal there.
-struct Surface {
-  double distance;  // [m]
-  Vec3 normal;
-};
-Surface distance_to(const Plane& plane, const Pose& pose, const Vec3& point);
-Surface distance_to(const Sphere& sphere, const Pose& pose, const Vec3& point);
-Surface distance_to(const Box& box, const Pose& pose, const Vec3& point);
-Surface distance_to(const Cylinder& cylinder, const Pose& pose, const Vec3& point);
-Surface distance_to(const Capsule& capsule, const Pose& pose, const Vec3& point);
-
-// Point of the segment from-to nearest to a shape.
-Vec3 nearest_on_segment(const Plane& plane, const Pose& pose, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Sphere& sphere, const Pose& pose, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Cylinder& cylinder, const Pose& pose, const Vec3& from,
-                        const Vec3& to);
-Vec3 nearest_on_segment(const Capsule& capsule, const Pose& pose, const Vec3& from, const Vec3& to);
 
 // Share of the contacts' torque f2 that acts on the proxy with a law's feedforward:
 //     direct f2 + shared M2 M_L^-1 f2.
@@ -115,20 +97,13 @@ class Contacts {
   double potential() const { return potential_; }
 
  private:
-  // An object in the form that a tick needs.
-  struct Solid {
-    std::variant<Plane, Sphere, Box, Cylinder, Capsule> shape;  // shapes of distance_to()
-    Pose pose;
-    Material material;
-    int body = BodyContact::kStill;
-    Pose in_body = Pose::Identity();
-  };
   struct Stop {
     JointStop at;
     Material material;
   };
 
   double stored() const;
+  void pass_on(std::size_t from, std::size_t to);
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const Object& mesh, int body, const ArmDescription& arm);
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
@@ -139,6 +114,7 @@ class Contacts {
 
   std::vector<Probe> probes_;  // the tip first
   std::vector<Solid> solids_;
+  std::vector<SolidTouch> touches_;  // of each probe
   std::vector<Stop> stops_;
   std::vector<Contact<N>> contacts_;
   std::size_t count_ = 0;

@@ -1,0 +1,84 @@
+// Touch of one probe of the arm on all plain solids: the surfaces that hold it.
+#pragma once
+
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "core/touch/body_world.h"
+#include "core/touch/obstacle_distance.h"
+
+namespace limpid {
+
+// An object of a plain shape in the form that a tick needs.
+struct Solid {
+  std::variant<Plane, Sphere, Box, Cylinder, Capsule> shape;  // shapes of distance_to()
+  Pose pose;
+  Material material;
+  int body = BodyContact::kStill;
+  Pose in_body = Pose::Identity();
+};
+
+// Knows for each solid the side on which the probe is. A point inside of a solid is held by the
+// surface nearest to it, but never by one that faces the other way than its side does: however deep
+// it is pressed, it leaves a thin board where it came in. The place that it is held to is its free
+// place, outside of all solids; a segment has none and is looked at where it is.
+//
+// Solids that meet are one: a surface inside of another solid is no surface. Seen from the free
+// place, a solid counts only if no other one that holds its nearest point is nearer. So seams
+// between level faces are not felt; of level faces on top of each other the first counts.
+class SolidTouch {
+ public:
+  // A solid within reach.
+  struct Near {
+    std::size_t solid = 0;  // index
+    Vec3 point;             // of the probe, nearest to it [m]
+    Surface surface;        // with the distance of the point from it
+    bool counts = true;     // no other solid covers this surface
+    std::size_t by = 0;     // else: the solid that covers it
+    bool inside = false;    // the point is in the solid
+    Surface seen{};         // from the free place
+  };
+
+  // radius: of the probe [m].
+  SolidTouch(double radius, std::size_t solids) : radius_(radius), sides_(solids), near_(solids) {}
+
+  // Looks at all solids from the probe's new place; the answer is in the solids' order. Two half
+  // spaces never cover each other.
+  std::span<const Near> find(std::span<const Solid> solids, const Vec3& from, const Vec3& to);
+  // Forgets all sides: the next find() takes the nearest surfaces.
+  void forget();
+  // True if find() without memory would have found the same.
+  bool recoverable() const { return recoverable_; }
+
+ private:
+  // Outward normal of the surface at which the probe was last, in the solid's frame; zero: none.
+  // `holds`: its point was inside of it.
+  struct Side {
+    Vec3 normal = Vec3::Zero();
+    bool holds = false;
+  };
+
+  std::span<Near> near() { return {near_.data(), count_}; }
+  void lift_out(std::span<const Solid> solids, bool by_sides);
+  void choose(std::span<const Solid> solids, Near& near, bool ball);
+  enum class Asked {
+    all,
+    not_inside
+  };  // solids that may cover: all, or those not around the point
+  bool covered(std::span<const Solid> solids, const Near& near, const Vec3& point,
+               const Surface& surface, Asked asked);
+  Surface exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
+                  const Surface& else_, Asked asked);
+  Surface entered(std::span<const Solid> solids, const Near& near, const Surface& nearest);
+  void hide_covered(std::span<const Solid> solids, bool ball);
+
+  double radius_;
+  std::vector<Side> sides_;  // by solid
+  std::vector<Near> near_;
+  std::size_t count_ = 0;
+  Vec3 free_ = Vec3::Zero();
+  bool recoverable_ = true;
+};
+
+}  // namespace limpid
