@@ -103,9 +103,15 @@ class Contacts {
   };
 
   double stored() const;
-  void pass_on(std::size_t from, std::size_t to);
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const Object& mesh, int body, const ArmDescription& arm);
+  Vec3 lifted_out_of_meshes(Vec3 point, const Vec3& centre, std::size_t probe,
+                            const MeshContact<N>* except, bool whole) const;
+  void follow(bool holds, double T);
+  Vec3 free_place(const MeshContact<N>& of, bool whole) const;
+  bool covers_others(const MeshContact<N>& mesh) const;
+  void pass_on();
+  bool covered(const MeshContact<N>& mesh, const Vec3& place, const Vec3& free) const;
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
 
   void add_solid(const Shape& shape, const Pose& in_object, const Object& object, int body);
@@ -119,7 +125,8 @@ class Contacts {
   std::vector<Contact<N>> contacts_;
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
-  std::vector<ContactMemory> memories_;  // by id
+  std::vector<std::vector<MeshContact<N>*>> balls_;  // the contacts with meshes of each probe
+  std::vector<ContactMemory> memories_;              // by id
   std::unique_ptr<BodyWorld> world_;
   std::vector<Material> of_bodies_;
   bool magnet_wanted_ = false;

@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace limpid {
 namespace {
 
 // Distance beyond which nothing touches within a tick [m].
 constexpr double kReach = 0.02;
-// Height of the free place above the surfaces that hold it [m].
-constexpr double kAbove = 2e-6;
-// Distance within which two solids meet [m]: below it a gap or a step is none.
-constexpr double kMeet = 1e-6;
-// Difference of distances that says nothing [m]. Where two differ by less, the solids' nearest
-// points are within kMeet of each other.
-constexpr double kTied = 1e-11;
 // Cosines: of normals that are the same, of one that faces the other way, and of one that is
 // opposite.
 constexpr double kSame = 0.99, kAway = -0.5, kOpposite = -0.99;
@@ -88,9 +82,9 @@ void SolidTouch::forget() {
   recoverable_ = true;
 }
 
-std::span<const SolidTouch::Near> SolidTouch::find(std::span<const Solid> solids, const Vec3& from,
-                                                   const Vec3& to) {
-  const bool ball = from == to;
+void SolidTouch::look(std::span<const Solid> solids, const Vec3& from, const Vec3& to,
+                      const Vec3& free) {
+  ball_ = from == to;
   bool held = false;
   count_ = 0;
   recoverable_ = true;
@@ -99,7 +93,7 @@ std::span<const SolidTouch::Near> SolidTouch::find(std::span<const Solid> solids
     std::visit(
         [&](const auto& shape) {
           const Pose& pose = solids[i].pose;
-          n.point = ball ? from : nearest_on_segment(shape, pose, from, to);
+          n.point = ball_ ? from : nearest_on_segment(shape, pose, from, to);
           n.surface = limpid::distance_to(shape, pose, n.point);
         },
         solids[i].shape);
@@ -114,17 +108,31 @@ std::span<const SolidTouch::Near> SolidTouch::find(std::span<const Solid> solids
     n.inside = n.surface.distance < 0;
     ++count_;
   }
-  free_ = from;
+  free_ = free;
   // Inside of one solid alone the free place is not needed.
-  const bool alone = count_ == 1 && near_[0].surface.distance < 0;
-  if (ball && held && !alone) lift_out(solids, true);
-  for (Near& n : near()) choose(solids, n, ball);
-  hide_covered(solids, ball);
+  const bool alone = count_ == 1 && near_[0].inside && free == from;
+  if (ball_ && (held || free != from) && !alone) lift_out(solids, true);
+}
+
+std::span<const SolidTouch::Near> SolidTouch::settle(std::span<const Solid> solids) {
+  for (Near& n : near()) choose(solids, n);
+  hide_covered(solids);
   for (const Near& n : near()) {
-    sides_[n.solid] = {solids[n.solid].pose.linear().transpose() * n.surface.normal,
+    sides_[n.solid] = {solids[n.solid].pose.linear().transpose() * n.surface.normal, n.counts,
                        n.counts && n.surface.distance < 0};
   }
   return near();
+}
+
+Vec3 SolidTouch::lifted(std::span<const Solid> solids, Vec3 point, bool whole) const {
+  const double out = whole ? radius_ : 0;
+  for (const Near& n : near()) {
+    const Side& side = sides_[n.solid];
+    if (!(whole ? side.counts : side.holds)) continue;
+    const Surface s = plane_at(solids[n.solid], side.normal, point);
+    if (s.distance < out + kAbove / 2) point += (out + kAbove - s.distance) * s.normal;
+  }
+  return point;
 }
 
 // Lifts the free place out of the solids that hold the probe: by the sides they had, else by the
@@ -155,14 +163,14 @@ void SolidTouch::lift_out(std::span<const Solid> solids, bool by_sides) {
 }
 
 // Chooses the surface of a near solid that holds the probe.
-void SolidTouch::choose(std::span<const Solid> solids, Near& near, bool ball) {
+void SolidTouch::choose(std::span<const Solid> solids, Near& near) {
   const Solid& solid = solids[near.solid];
   const Side& side = sides_[near.solid];
   const Surface nearest = near.surface;
   const auto is_side = [&](const Surface& s) {
     return (solid.pose.linear() * side.normal).dot(s.normal) > kSame;
   };
-  const bool lifted = ball && free_ != near.point;
+  const bool lifted = ball_ && free_ != near.point;
   if (lifted && side.holds && nearest.distance >= 0) {
     // The point has left the solid: by another face, or below it where it is thin.
     const Surface plane = plane_at(solid, side.normal, near.point);
@@ -178,7 +186,8 @@ void SolidTouch::choose(std::span<const Solid> solids, Near& near, bool ball) {
     const bool turned = near.surface.distance < 0 && !is_side(near.surface);
     // Before a side is known, solids that overlap are left each on its own.
     const Asked asked = side.normal.isZero(0) ? Asked::not_inside : Asked::all;
-    if (turned && count_ > 1 && covered(solids, near, near.point, near.surface, asked)) {
+    const bool several = count_ > 1 || !meshes_.empty();
+    if (turned && several && covered(solids, near, near.point, near.surface, asked)) {
       near.surface = side.holds ? plane_at(solid, side.normal, near.point)
                                 : exposed(solids, near, near.point, near.surface, asked);
     }
@@ -197,13 +206,16 @@ Surface SolidTouch::entered(std::span<const Solid> solids, const Near& near,
 // True if another solid covers the place of a surface that is nearest to a point inside.
 bool SolidTouch::covered(std::span<const Solid> solids, const Near& near, const Vec3& point,
                          const Surface& surface, Asked asked) {
-  const Vec3 place = point - (surface.distance - kMeet) * surface.normal;
-  return std::ranges::any_of(this->near(), [&](const Near& other) {
+  const Vec3 foot = point - surface.distance * surface.normal;
+  const Vec3 place = foot + kMeet * surface.normal;
+  const auto in_solid = [&](const Near& other) {
     if (other.solid == near.solid) return false;
     const Solid& solid = solids[other.solid];
     if (asked == Asked::not_inside && distance_to(solid, point).distance < 0) return false;
     return distance_to(solid, place).distance <= 0;
-  });
+  };
+  const auto on_mesh = [&](const MeshTouch* mesh) { return mesh->meets(foot, kMeet); };
+  return std::ranges::any_of(this->near(), in_solid) || std::ranges::any_of(meshes_, on_mesh);
 }
 
 // Nearest face of a solid that no other one covers; `else_`, if all are covered.
@@ -227,16 +239,23 @@ Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, con
   return best;
 }
 
-// Hides solids whose nearest point, seen from the free place, another solid holds that is nearer.
+// Hides solids whose nearest point, seen from the free place, something else holds that is nearer.
 // Two that hold the point both push if they face different ways: it is in a corner of them.
-void SolidTouch::hide_covered(std::span<const Solid> solids, bool ball) {
-  if (count_ < 2) return;
-  free_ = near_[0].point;
-  const bool inside =
-      std::ranges::any_of(near(), [](const Near& n) { return n.surface.distance < 0; });
-  if (ball && inside) lift_out(solids, false);
+void SolidTouch::hide_covered(std::span<const Solid> solids) {
+  if (count_ + meshes_.size() < 2) return;
+  bool inside = false;
+  const Vec3 centre = count_ > 0 ? near_[0].point : free_;
+  free_ = centre;
+  for (const MeshTouch* mesh : meshes_) {
+    if (!mesh->holds(centre)) continue;
+    free_ = mesh->lifted(free_, kAbove);
+    inside = true;
+  }
+  inside =
+      inside || std::ranges::any_of(near(), [](const Near& n) { return n.surface.distance < 0; });
+  if (ball_ && inside) lift_out(solids, false);
   for (Near& n : near()) {
-    n.seen = ball && inside ? distance_to(solids[n.solid], free_) : n.surface;
+    n.seen = ball_ && inside ? distance_to(solids[n.solid], free_) : n.surface;
   }
   const auto half_space = [&](const Near& n) {
     return std::holds_alternative<Plane>(solids[n.solid].shape);
@@ -245,21 +264,44 @@ void SolidTouch::hide_covered(std::span<const Solid> solids, bool ball) {
     if (half_space(a) && half_space(b)) return true;
     return a.inside && b.inside && a.surface.normal.dot(b.surface.normal) < kSame;
   };
+  const auto place_of = [&](const Near& n) {
+    return Vec3((ball_ ? free_ : n.point) - n.seen.distance * n.seen.normal);
+  };
+  const auto on = [&](const Near& n, const Vec3& place) {
+    return distance_to(solids[n.solid], place).distance <= kMeet;
+  };
   for (Near& n : near()) {
     if (n.seen.distance < 0) continue;
-    const Vec3 place = (ball ? free_ : n.point) - n.seen.distance * n.seen.normal;
-    for (const Near& other : near()) {
+    const Vec3 place = place_of(n);
+    const auto hides = [&](const Near& other) {
       const double further = n.seen.distance - other.seen.distance;
-      const bool nearer = further > kTied || (further >= -kTied && other.solid < n.solid);
-      if (!nearer || !other.counts || other.seen.distance < 0 || apart(n, other) ||
-          distance_to(solids[other.solid], place).distance > kMeet) {
-        continue;
-      }
-      n.counts = false;
-      n.by = other.solid;
-      break;
-    }
+      if (further < -kTied || !other.counts || other.seen.distance < 0) return false;
+      if (other.solid == n.solid || apart(n, other) || !on(other, place)) return false;
+      // Of two that hold each other's nearest point the first counts.
+      return further > kTied || other.solid < n.solid || !on(n, place_of(other));
+    };
+    n.counts = std::ranges::none_of(near(), hides) &&
+               !(ball_ && hidden_by_mesh(solids[n.solid], n, place));
   }
+}
+
+bool SolidTouch::hidden_by_mesh(const Solid& solid, const Near& near, const Vec3& place) const {
+  return std::ranges::any_of(meshes_, [&](const MeshTouch* mesh) {
+    const std::optional<Vec3> on_mesh = mesh->nearest_to(free_);
+    if (!on_mesh) return false;
+    const double further = near.seen.distance - (free_ - *on_mesh).norm();
+    if (further < -kTied || !mesh->meets(place, kMeet)) return false;
+    return further > kTied || distance_to(solid, *on_mesh).distance > kMeet;
+  });
+}
+
+bool SolidTouch::covers(std::span<const Solid> solids, const Vec3& place, const Vec3& free) const {
+  const double distance = (free - place).norm();
+  return std::ranges::any_of(near(), [&](const Near& n) {
+    const Solid& solid = solids[n.solid];
+    return distance_to(solid, place).distance <= kMeet &&
+           distance_to(solid, free).distance <= distance + kTied;
+  });
 }
 
 }  // namespace limpid

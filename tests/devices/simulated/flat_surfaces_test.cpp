@@ -98,6 +98,28 @@ std::vector<Floor> floors_of_solids() {
            [](Random& r, const Material& m) { return let_into_a_plane(r, m, false); }}};
 }
 
+std::vector<Floor> floors_of_models() {
+  return {{"two models",
+           [](Random& r, const Material& m) {
+             return row_of_slabs(r, m, 0.1, 0.02, {true, true});
+           }},
+          {"tiles that are models",
+           [](Random& r, const Material& m) {
+             return row_of_slabs(r, m, 0.01, 0.02, std::vector<bool>(9, true));
+           }},
+          {"a box beside a model",
+           [](Random& r, const Material& m) {
+             return row_of_slabs(r, m, 0.1, 0.02, {false, true});
+           }},
+          {"tiles of both kinds",
+           [](Random& r, const Material& m) {
+             return row_of_slabs(r, m, 0.01, 0.02,
+                                 {true, false, true, false, true, true, false, false, true});
+           }},
+          {"a model let into a plane",
+           [](Random& r, const Material& m) { return let_into_a_plane(r, m, true); }}};
+}
+
 using Hand = std::function<Vec3(double)>;  // target of the tip at a time
 
 Rows run(const Scene& scene, CouplingKind kind, const Hand& hand, double seconds) {
@@ -168,6 +190,12 @@ TEST(FlatSurfaces, OfSeveralSolidsHaveNoSeamsForTheTip) {
 }
 
 TEST(FlatSurfaces, OfSeveralSolidsRubAsOne) { expect_all_flat(floors_of_solids(), 92, 0.4); }
+
+TEST(FlatSurfaces, OfModelsAndSolidsHaveNoSeamsForTheTip) {
+  expect_all_flat(floors_of_models(), 95, 0);
+}
+
+TEST(FlatSurfaces, OfModelsAndSolidsRubAsOne) { expect_all_flat(floors_of_models(), 96, 0.4); }
 
 // Presses slowly, by 45 mm of the hand's spring.
 Rows press(const Scene& scene, CouplingKind kind) {
