@@ -5,7 +5,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace limpid {
 namespace {
@@ -305,7 +304,7 @@ void Contacts<N>::pass_on() {
       if (covered && pushed) from = id;
       if (!covered && inside && !pushed) to = id;
     };
-    for (const auto& near : std::as_const(touches_[k]).near()) {
+    for (const auto& near : touches_[k].near()) {
       const bool inside = near.surface.distance < probes_[k].radius;
       take(k * solids_.size() + near.solid, !near.counts, inside);
     }

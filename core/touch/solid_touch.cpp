@@ -115,7 +115,7 @@ void SolidTouch::look(std::span<const Solid> solids, const Vec3& from, const Vec
 }
 
 std::span<const SolidTouch::Near> SolidTouch::settle(std::span<const Solid> solids) {
-  for (Near& n : near()) choose(solids, n);
+  for (Near& n : nears()) choose(solids, n);
   hide_covered(solids);
   for (const Near& n : near()) {
     sides_[n.solid] = {solids[n.solid].pose.linear().transpose() * n.surface.normal, n.counts,
@@ -254,7 +254,7 @@ void SolidTouch::hide_covered(std::span<const Solid> solids) {
   inside =
       inside || std::ranges::any_of(near(), [](const Near& n) { return n.surface.distance < 0; });
   if (ball_ && inside) lift_out(solids, false);
-  for (Near& n : near()) {
+  for (Near& n : nears()) {
     n.seen = ball_ && inside ? distance_to(solids[n.solid], free_) : n.surface;
   }
   const auto half_space = [&](const Near& n) {
@@ -270,7 +270,7 @@ void SolidTouch::hide_covered(std::span<const Solid> solids) {
   const auto on = [&](const Near& n, const Vec3& place) {
     return distance_to(solids[n.solid], place).distance <= kMeet;
   };
-  for (Near& n : near()) {
+  for (Near& n : nears()) {
     if (n.seen.distance < 0) continue;
     const Vec3 place = place_of(n);
     const auto hides = [&](const Near& other) {

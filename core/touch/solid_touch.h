@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -76,13 +77,12 @@ class SolidTouch {
     bool counts = false, holds = false;
   };
 
-  std::span<Near> near() { return {near_.data(), count_}; }
+  // Solids that may cover a surface: all, or those that are not around the point.
+  enum class Asked { all, not_inside };
+
+  std::span<Near> nears() { return {near_.data(), count_}; }
   void lift_out(std::span<const Solid> solids, bool by_sides);
   void choose(std::span<const Solid> solids, Near& near);
-  enum class Asked {
-    all,
-    not_inside
-  };  // solids that may cover: all, or those not around the point
   bool covered(std::span<const Solid> solids, const Near& near, const Vec3& point,
                const Surface& surface, Asked asked);
   Surface exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
