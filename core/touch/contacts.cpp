@@ -287,7 +287,7 @@ bool Contacts<N>::covered(const MeshContact<N>& mesh, const Vec3& place, const V
     if (other == &mesh || !its) return false;
     const double further = (free - place).norm() - (free - *its).norm();
     if (further < -kTied || !other->touch.meets(place, kMeet)) return false;
-    // Of two that hold each other's nearest point the first counts.
+    // The first counts of two that hold each other's nearest point.
     return further > kTied || other->id < mesh.id || !mesh.touch.meets(*its, kMeet);
   });
 }

@@ -56,9 +56,9 @@ class FreeSpace {
   int count_ = 0;
 };
 
-// Where things meet their free places are one. Height of such a place above the surfaces that hold
-// it, and distance within which two things meet: below it a gap or a step is none [m]. Difference
-// of distances that says nothing: less than models are rounded by [m].
+// Height of a free place above the surfaces that hold it. Distance within which two things meet: a
+// gap or a step of less is none. Difference of distances that says nothing: models are rounded by
+// less. All in [m].
 inline constexpr double kAbove = 2e-6, kMeet = 1e-6, kTied = 1e-8;
 
 // Tracks one ball on one mesh. A free point g follows the ball's centre c as near as the surface

@@ -277,7 +277,7 @@ void SolidTouch::hide_covered(std::span<const Solid> solids) {
       const double further = n.seen.distance - other.seen.distance;
       if (further < -kTied || !other.counts || other.seen.distance < 0) return false;
       if (other.solid == n.solid || apart(n, other) || !on(other, place)) return false;
-      // Of two that hold each other's nearest point the first counts.
+      // The first counts of two that hold each other's nearest point.
       return further > kTied || other.solid < n.solid || !on(n, place_of(other));
     };
     n.counts = std::ranges::none_of(near(), hides) &&
