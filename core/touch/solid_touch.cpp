@@ -198,8 +198,11 @@ void SolidTouch::choose(std::span<const Solid> solids, Near& near) {
 // Surface of a solid by which the free place has just come in. `nearest`: of all.
 Surface SolidTouch::entered(std::span<const Solid> solids, const Near& near,
                             const Surface& nearest) {
-  const Surface s = on_side(solids[near.solid], free_, nearest, sides_[near.solid].normal);
-  if (!covered(solids, near, free_, s, Asked::all)) return s;
+  const Solid& solid = solids[near.solid];
+  const Vec3& side = sides_[near.solid].normal;
+  const Surface s = on_side(solid, free_, nearest, side);
+  const bool known = (solid.pose.linear() * side).dot(s.normal) > kSame;
+  if (known || !covered(solids, near, free_, s, Asked::all)) return s;
   return exposed(solids, near, free_, s, Asked::all);
 }
 

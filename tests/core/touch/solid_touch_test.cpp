@@ -105,6 +105,32 @@ TEST(SolidTouch, InACornerOfTwoBoxesBothHoldThePoint) {
   }
 }
 
+TEST(SolidTouch, SqueezedBetweenABoxAndAFloorBothHoldThePoint) {
+  Random random(44);
+  for (int round = 0; round < 100; ++round) {
+    const bool box_below = round % 2 == 0;
+    const double radius = round % 3 * 0.002, step = random.between(1e-5, 1e-3);
+    std::vector<Solid> solids(2);
+    solids[0] = {Plane{Vec3::UnitZ()}, Pose::Identity(), {}};
+    if (box_below) {
+      solids[0] = {Box{Vec3(0.2, 0.2, 0.02)}, placed(Mat3::Identity(), Vec3(0, 0, -0.01)), {}};
+    }
+    SolidTouch touch(radius, 2);
+    const Vec3 aside(random.between(-0.012, 0.012), random.between(-0.012, 0.012), 0);
+    double bottom = 0.02, z = 0.01;  // both come down, the box further than the point
+    for (; bottom > -0.003; bottom -= 2 * step, z = std::max(-0.002, z - step)) {
+      solids[1] = {
+          Box{Vec3::Constant(0.03)}, placed(Mat3::Identity(), Vec3(0, 0, bottom + 0.015)), {}};
+      const auto near = count(touch, solids, aside + z * Vec3::UnitZ());
+      ASSERT_EQ(near.size(), 2u);
+      EXPECT_NEAR(near[0].surface.distance, z, 1e-12);
+      EXPECT_NEAR(near[1].surface.distance, bottom - z, 1e-12);
+      EXPECT_NEAR(near[0].surface.normal.z(), 1, 1e-12);
+      EXPECT_NEAR(near[1].surface.normal.z(), -1, 1e-12);
+    }
+  }
+}
+
 TEST(SolidTouch, OfTwoHalfSpacesBothCount) {
   const std::vector<Solid> solids{{Plane{Vec3::UnitZ()}, Pose::Identity(), {}},
                                   {Plane{Vec3(0, 0.6, 0.8)}, Pose::Identity(), {}}};
