@@ -12,7 +12,7 @@ namespace {
 
 using test::Random;
 
-Pose placed(const Mat3& turned, const Vec3& middle) {
+Pose turned_at(const Mat3& turned, const Vec3& middle) {
   Pose pose = Pose::Identity();
   pose.linear() = turned;
   pose.translation() = middle;
@@ -20,8 +20,8 @@ Pose placed(const Mat3& turned, const Vec3& middle) {
 }
 
 // The near solids that count.
-std::vector<SolidTouch::Near> count(SolidTouch& touch, const std::vector<Solid>& solids,
-                                    const Vec3& point) {
+std::vector<SolidTouch::Near> counting(SolidTouch& touch, const std::vector<Solid>& solids,
+                                       const Vec3& point) {
   std::vector<SolidTouch::Near> out;
   for (const auto& near : touch.find(solids, point, point)) {
     if (near.counts) out.push_back(near);
@@ -34,7 +34,7 @@ TEST(SolidTouch, HoldsAPointThatGoesThroughABoardByTheFaceThatItCameInBy) {
   for (int round = 0; round < 300; ++round) {
     const Mat3 turned = random.rotation();
     const double thick = random.between(5e-4, 0.01);
-    const Pose pose = placed(turned, random.point(0.1));
+    const Pose pose = turned_at(turned, random.point(0.1));
     std::vector<Solid> solids(1);
     if (round % 2 == 0) {
       solids[0] = {Box{Vec3(0.1, 0.1, thick)}, pose, {}};
@@ -47,14 +47,14 @@ TEST(SolidTouch, HoldsAPointThatGoesThroughABoardByTheFaceThatItCameInBy) {
     const double step = random.between(1e-5, 0.01);  // up to 10 m/s
     for (double height = 0.015; height > -0.015; height -= step) {
       const Vec3 point = pose * Vec3(at + side * (height + thick / 2) * Vec3::UnitZ());
-      const auto near = count(touch, solids, point);
+      const auto near = counting(touch, solids, point);
       ASSERT_EQ(near.size(), 1u);
       EXPECT_NEAR(near[0].surface.distance, height, 1e-12);
       EXPECT_NEAR(near[0].surface.normal.dot(turned.col(2)), side, 1e-12);
     }
     EXPECT_FALSE(touch.recoverable());
     touch.forget();
-    const auto anew = count(touch, solids, pose * Vec3(at - side * 0.0151 * Vec3::UnitZ()));
+    const auto anew = counting(touch, solids, pose * Vec3(at - side * 0.0151 * Vec3::UnitZ()));
     ASSERT_EQ(anew.size(), 1u);
     EXPECT_NEAR(anew[0].surface.normal.dot(turned.col(2)), -side, 1e-12);
     EXPECT_TRUE(touch.recoverable());
@@ -65,37 +65,38 @@ TEST(SolidTouch, LetsAPointGoThatHasLeftTheBoardSideways) {
   const std::vector<Solid> solids{{Box{Vec3(0.1, 0.1, 0.002)}, Pose::Identity(), {}}};
   SolidTouch touch(0, 1);
   double x = 0.04;
-  for (double z = 0.005; z > -0.008; z -= 5e-4) count(touch, solids, Vec3(x, 0, z));
+  for (double z = 0.005; z > -0.008; z -= 5e-4) counting(touch, solids, Vec3(x, 0, z));
   for (; x < 0.05; x += 5e-4) {
-    const auto near = count(touch, solids, Vec3(x, 0, -0.008));
+    const auto near = counting(touch, solids, Vec3(x, 0, -0.008));
     ASSERT_EQ(near.size(), 1u);
     EXPECT_NEAR(near[0].surface.distance, -0.009, 1e-12) << x;
   }
   for (; x > 0.04; x -= 5e-4) {
-    const auto near = count(touch, solids, Vec3(x + 0.002, 0, -0.008));
+    const auto near = counting(touch, solids, Vec3(x + 0.002, 0, -0.008));
     ASSERT_EQ(near.size(), 1u);
     EXPECT_GT(near[0].surface.distance, 0) << x;
   }
 }
 
 // A floor and a wall that stands beside it, on the same ground; `over`: the floor goes on below.
-std::vector<Solid> corner(const Mat3& turned, bool over) {
+std::vector<Solid> floor_and_wall(const Mat3& turned, bool over) {
   const double more = over ? 0.02 : 0;
   const Vec3 low(more / 2 - 0.05, 0, -0.01), wall(0.01, 0, over ? 0.02 : 0.01);
-  return {{Box{Vec3(0.1 + more, 0.1, 0.02)}, placed(turned, turned * low), {}},
-          {Box{Vec3(0.02, 0.1, over ? 0.04 : 0.06)}, placed(turned, turned * wall), {}}};
+  return {{Box{Vec3(0.1 + more, 0.1, 0.02)}, turned_at(turned, turned * low), {}},
+          {Box{Vec3(0.02, 0.1, over ? 0.04 : 0.06)}, turned_at(turned, turned * wall), {}}};
 }
 
 TEST(SolidTouch, InACornerOfTwoBoxesBothHoldThePoint) {
   Random random(42);
   for (int round = 0; round < 100; ++round) {
     const Mat3 turned = random.rotation();
-    const std::vector<Solid> solids = corner(turned, round % 2 == 0);
+    const std::vector<Solid> solids = floor_and_wall(turned, round % 2 == 0);
     SolidTouch touch(0, 2);
     const double deep = random.between(1e-4, 5e-3), step = random.between(1e-5, 1e-3);
-    for (double z = 0.002; z > -deep; z -= 1e-4) count(touch, solids, turned * Vec3(-0.01, 0, z));
+    for (double z = 0.002; z > -deep; z -= 1e-4)
+      counting(touch, solids, turned * Vec3(-0.01, 0, z));
     for (double x = -0.01; x < 0.004; x += step) {
-      const auto near = count(touch, solids, turned * Vec3(x, 0, -deep));
+      const auto near = counting(touch, solids, turned * Vec3(x, 0, -deep));
       ASSERT_EQ(near.size(), 2u) << x;
       EXPECT_NEAR(near[0].surface.distance, -deep, 1e-12) << x;
       EXPECT_NEAR(near[1].surface.distance, -x, 3e-6) << x;
@@ -113,15 +114,15 @@ TEST(SolidTouch, SqueezedBetweenABoxAndAFloorBothHoldThePoint) {
     std::vector<Solid> solids(2);
     solids[0] = {Plane{Vec3::UnitZ()}, Pose::Identity(), {}};
     if (box_below) {
-      solids[0] = {Box{Vec3(0.2, 0.2, 0.02)}, placed(Mat3::Identity(), Vec3(0, 0, -0.01)), {}};
+      solids[0] = {Box{Vec3(0.2, 0.2, 0.02)}, turned_at(Mat3::Identity(), Vec3(0, 0, -0.01)), {}};
     }
     SolidTouch touch(radius, 2);
     const Vec3 aside(random.between(-0.012, 0.012), random.between(-0.012, 0.012), 0);
     double bottom = 0.02, z = 0.004;  // the box comes down behind the point
     for (; bottom > -0.003; bottom -= 2 * step, z = std::max(-0.002, z - step)) {
       solids[1] = {
-          Box{Vec3::Constant(0.03)}, placed(Mat3::Identity(), Vec3(0, 0, bottom + 0.015)), {}};
-      const auto near = count(touch, solids, aside + z * Vec3::UnitZ());
+          Box{Vec3::Constant(0.03)}, turned_at(Mat3::Identity(), Vec3(0, 0, bottom + 0.015)), {}};
+      const auto near = counting(touch, solids, aside + z * Vec3::UnitZ());
       ASSERT_EQ(near.size(), 2u);
       EXPECT_NEAR(near[0].surface.distance, z, 1e-12);
       EXPECT_NEAR(near[1].surface.distance, bottom - z, 1e-12);
@@ -136,7 +137,7 @@ TEST(SolidTouch, OfTwoHalfSpacesBothCount) {
                                   {Plane{Vec3(0, 0.6, 0.8)}, Pose::Identity(), {}}};
   SolidTouch touch(0.005, 2);
   for (double z = 0.01; z > -0.01; z -= 1e-4) {
-    EXPECT_EQ(count(touch, solids, Vec3(0, 0, z)).size(), 2u);
+    EXPECT_EQ(counting(touch, solids, Vec3(0, 0, z)).size(), 2u);
   }
 }
 
@@ -151,7 +152,7 @@ TEST(SolidTouch, OfLevelSlabsOneHoldsThePointAndAsDeepAsOneWould) {
     while (left < 0.05) {
       const double wide = random.between(0.005, 0.03);
       const Vec3 middle(left + wide / 2, 0, -high / 2);
-      solids.push_back({Box{Vec3(wide, 0.2, high)}, placed(turned, turned * middle), {}});
+      solids.push_back({Box{Vec3(wide, 0.2, high)}, turned_at(turned, turned * middle), {}});
       left += wide;
     }
     SolidTouch touch(radius, solids.size());
@@ -159,7 +160,7 @@ TEST(SolidTouch, OfLevelSlabsOneHoldsThePointAndAsDeepAsOneWould) {
     for (double x = -0.04; x < 0.04; x += step) {
       const double z = std::max(radius - deep, radius + 0.002 - 0.3 * (x + 0.04));
       int pushes = 0;
-      for (const auto& near : count(touch, solids, turned * Vec3(x, 0, z))) {
+      for (const auto& near : counting(touch, solids, turned * Vec3(x, 0, z))) {
         if (near.surface.distance > radius) continue;
         ++pushes;
         EXPECT_NEAR(near.surface.distance, z, 1e-7);
