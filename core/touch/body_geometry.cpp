@@ -458,8 +458,12 @@ bool BodyGeometry::Inside::face_below(const Solid& model, const btVector3& corne
 void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
   const auto& box = static_cast<const btBoxShape&>(*p.a->shape);
   const btTransform& at = p.a->at.getWorldTransform();
+  btVector3 normal = p.b->level.value_or(btVector3(0, 0, 0));
   const btVector3 half = box.getHalfExtentsWithMargin();
+  const btVector3 rise = normal * at.getBasis();  // rise of each axis above a plane
+  const btScalar middle = normal.dot(at.getOrigin()) - p.b->height;
   const btScalar near = p.manifold->getContactBreakingThreshold();
+  const double within = std::max(near, 0.5 * p.a->least);
   struct Corner {
     btScalar distance;
     int number;
@@ -470,16 +474,10 @@ void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
   for (int i = 0; i < 8; ++i) {
     const btVector3 own((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
                         (i & 4) != 0 ? half.z() : -half.z());
-    Corner corner{0, i, own, {}};
-    if (p.b->level) {
-      corner.normal = *p.b->level;
-      const btVector3 rise = corner.normal * at.getBasis();  // rise of each axis
-      corner.distance = corner.normal.dot(at.getOrigin()) - p.b->height + rise.dot(own);
-    } else if (!face_below(*p.b, at * own, at.getOrigin(), std::max(near, 0.5 * p.a->least),
-                           corner.normal, corner.distance)) {
-      continue;
-    }
-    if (corner.distance <= near) found[count++] = corner;
+    btScalar distance = middle + rise.dot(own);
+    const bool faces = p.b->level.has_value() ||
+                       face_below(*p.b, at * own, at.getOrigin(), within, normal, distance);
+    if (faces && distance <= near) found[count++] = {distance, i, own, normal};
   }
   if (count > kPointsOfPair) {
     std::ranges::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), {},

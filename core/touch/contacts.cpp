@@ -298,6 +298,8 @@ template <int N>
 void Contacts<N>::pass_on() {
   constexpr auto kNone = std::numeric_limits<std::size_t>::max();
   for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const auto hidden = [](const SolidTouch::Near& near) { return !near.counts; };
+    if (balls_[k].empty() && std::ranges::none_of(touches_[k].near(), hidden)) continue;
     std::size_t from = kNone, to = kNone;
     const auto take = [&](std::size_t id, bool covered, bool inside) {
       const bool pushed = !memories_[id].push.isZero(0);

@@ -32,9 +32,19 @@ double extent(const Capsule& capsule, const Vec3& n) {
   return capsule.radius + capsule.length / 2 * std::abs(n.z());
 }
 
-// Plane that touches the solid on the side of a unit vector of its frame.
-Surface plane_at(const Solid& solid, const Vec3& side, const Vec3& point) {
-  const Vec3 normal = solid.pose.linear() * side;
+// Direction in the world of a remembered side, and the other way round. What is still needs no
+// turning.
+Vec3 in_world(const Solid& solid, const Vec3& side) {
+  return solid.body == BodyContact::kStill ? side : Vec3(solid.pose.linear() * side);
+}
+Vec3 remembered(const Solid& solid, const Vec3& normal) {
+  return solid.body == BodyContact::kStill ? normal
+                                           : Vec3(solid.pose.linear().transpose() * normal);
+}
+
+// Plane that touches the solid on the side of a unit vector of the world.
+Surface plane_at(const Solid& solid, const Vec3& normal, const Vec3& point) {
+  const Vec3 side = solid.pose.linear().transpose() * normal;
   const double h = std::visit([&](const auto& shape) { return extent(shape, side); }, solid.shape);
   return {normal.dot(point - solid.pose.translation()) - h, normal};
 }
@@ -61,12 +71,13 @@ void faces(const S&, const Vec3&, const Visit&) {}
 // Surface of a solid nearest to a point inside, or to one that has gone through, of those that do
 // not face away from `side`. `nearest`: of all.
 Surface on_side(const Solid& solid, const Vec3& point, const Surface& nearest, const Vec3& side) {
-  const double along = (solid.pose.linear() * side).dot(nearest.normal);
+  const double along = side.dot(nearest.normal);
   if (side.isZero(0) || along >= (nearest.distance < 0 ? kAway : kOpposite)) return nearest;
   Surface best = plane_at(solid, side, point);
   if (nearest.distance >= 0) return best;
   const Vec3 p = solid.pose.linear().transpose() * (point - solid.pose.translation());
-  const auto take = [&](const Vec3& normal) {
+  const auto take = [&](const Vec3& own) {
+    const Vec3 normal = solid.pose.linear() * own;
     if (normal.dot(side) < kAway) return;
     const Surface face = plane_at(solid, normal, point);
     if (face.distance > best.distance) best = face;
@@ -118,7 +129,7 @@ std::span<const SolidTouch::Near> SolidTouch::settle(std::span<const Solid> soli
   for (Near& n : nears()) choose(solids, n);
   hide_covered(solids);
   for (const Near& n : near()) {
-    sides_[n.solid] = {solids[n.solid].pose.linear().transpose() * n.surface.normal, n.counts,
+    sides_[n.solid] = {remembered(solids[n.solid], n.surface.normal), n.counts,
                        n.counts && n.surface.distance < 0};
   }
   return near();
@@ -129,7 +140,8 @@ Vec3 SolidTouch::lifted(std::span<const Solid> solids, Vec3 point, bool whole) c
   for (const Near& n : near()) {
     const Side& side = sides_[n.solid];
     if (!(whole ? side.counts : side.holds)) continue;
-    const Surface s = plane_at(solids[n.solid], side.normal, point);
+    const Solid& solid = solids[n.solid];
+    const Surface s = plane_at(solid, in_world(solid, side.normal), point);
     if (s.distance < out + kAbove / 2) point += (out + kAbove - s.distance) * s.normal;
   }
   return point;
@@ -146,7 +158,7 @@ void SolidTouch::lift_out(std::span<const Solid> solids, bool by_sides) {
       const Side& side = sides_[n.solid];
       Surface s{};
       if (by_sides && side.holds) {
-        s = plane_at(solid, side.normal, free_);
+        s = plane_at(solid, in_world(solid, side.normal), free_);
       } else if (by_sides) {
         s = distance_to(solid, free_);
         if (!(s.distance < 0)) continue;
@@ -165,31 +177,31 @@ void SolidTouch::lift_out(std::span<const Solid> solids, bool by_sides) {
 // Chooses the surface of a near solid that holds the probe.
 void SolidTouch::choose(std::span<const Solid> solids, Near& near) {
   const Solid& solid = solids[near.solid];
-  const Side& side = sides_[near.solid];
-  const Surface nearest = near.surface;
-  const auto is_side = [&](const Surface& s) {
-    return (solid.pose.linear() * side.normal).dot(s.normal) > kSame;
-  };
+  const bool holds = sides_[near.solid].holds;
+  const Vec3 side = in_world(solid, sides_[near.solid].normal);
+  const auto is_side = [&](const Surface& s) { return side.dot(s.normal) > kSame; };
   const bool lifted = ball_ && free_ != near.point;
-  if (lifted && side.holds && nearest.distance >= 0) {
+  if (!lifted && is_side(near.surface)) return;
+  const Surface nearest = near.surface;
+  if (lifted && holds && nearest.distance >= 0) {
     // The point has left the solid: by another face, or below it where it is thin.
-    const Surface plane = plane_at(solid, side.normal, near.point);
+    const Surface plane = plane_at(solid, side, near.point);
     if (plane.distance < 0 && is_side(distance_to(solid, free_))) near.surface = plane;
-  } else if (lifted && !side.holds) {
+  } else if (lifted && !holds) {
     Surface seen = distance_to(solid, free_);
     if (seen.distance < 0) seen = entered(solids, near, seen);
     if (seen.normal.dot(nearest.normal) < kOne) {
       near.surface = {seen.distance + seen.normal.dot(near.point - free_), seen.normal};
     }
   } else {
-    near.surface = on_side(solid, near.point, nearest, side.normal);
+    near.surface = on_side(solid, near.point, nearest, side);
     const bool turned = near.surface.distance < 0 && !is_side(near.surface);
     // Before a side is known, solids that overlap are left each on its own.
-    const Asked asked = side.normal.isZero(0) ? Asked::not_inside : Asked::all;
+    const Asked asked = side.isZero(0) ? Asked::not_inside : Asked::all;
     const bool several = count_ > 1 || !meshes_.empty();
     if (turned && several && covered(solids, near, near.point, near.surface, asked)) {
-      near.surface = side.holds ? plane_at(solid, side.normal, near.point)
-                                : exposed(solids, near, near.point, near.surface, asked);
+      near.surface = holds ? plane_at(solid, side, near.point)
+                           : exposed(solids, near, near.point, near.surface, asked);
     }
   }
   recoverable_ = recoverable_ && near.surface.normal.dot(nearest.normal) > kSame;
@@ -199,10 +211,9 @@ void SolidTouch::choose(std::span<const Solid> solids, Near& near) {
 Surface SolidTouch::entered(std::span<const Solid> solids, const Near& near,
                             const Surface& nearest) {
   const Solid& solid = solids[near.solid];
-  const Vec3& side = sides_[near.solid].normal;
+  const Vec3 side = in_world(solid, sides_[near.solid].normal);
   const Surface s = on_side(solid, free_, nearest, side);
-  const bool known = (solid.pose.linear() * side).dot(s.normal) > kSame;
-  if (known || !covered(solids, near, free_, s, Asked::all)) return s;
+  if (side.dot(s.normal) > kSame || !covered(solids, near, free_, s, Asked::all)) return s;
   return exposed(solids, near, free_, s, Asked::all);
 }
 
@@ -225,11 +236,12 @@ bool SolidTouch::covered(std::span<const Solid> solids, const Near& near, const 
 Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
                             const Surface& else_, Asked asked) {
   const Solid& solid = solids[near.solid];
-  const Vec3& side = sides_[near.solid].normal;
+  const Vec3 side = in_world(solid, sides_[near.solid].normal);
   Surface best = else_;
   bool found = false;
   const Vec3 p = solid.pose.linear().transpose() * (point - solid.pose.translation());
-  const auto take = [&](const Vec3& normal) {
+  const auto take = [&](const Vec3& own) {
+    const Vec3 normal = solid.pose.linear() * own;
     if (normal.dot(side) < kAway) return;
     const Surface face = plane_at(solid, normal, point);
     if ((found && face.distance <= best.distance) || covered(solids, near, point, face, asked)) {

@@ -70,7 +70,7 @@ class SolidTouch {
   bool recoverable() const { return recoverable_; }
 
  private:
-  // Outward normal of the surface at which the probe was last, in the solid's frame; zero: none.
+  // Outward normal of the surface at which the probe was last, in the frame of a body; zero: none.
   // `counts`: nothing covered it; `holds`: the point was inside of it besides.
   struct Side {
     Vec3 normal = Vec3::Zero();
