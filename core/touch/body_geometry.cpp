@@ -467,17 +467,20 @@ void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
   struct Corner {
     btScalar distance;
     int number;
-    btVector3 own, normal;
+    btVector3 own;
   };
   std::array<Corner, 8> found;
+  std::array<btVector3, 8> normals;  // of a model, by number
   std::size_t count = 0;
   for (int i = 0; i < 8; ++i) {
     const btVector3 own((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
                         (i & 4) != 0 ? half.z() : -half.z());
     btScalar distance = middle + rise.dot(own);
-    const bool faces = p.b->level.has_value() ||
-                       face_below(*p.b, at * own, at.getOrigin(), within, normal, distance);
-    if (faces && distance <= near) found[count++] = {distance, i, own, normal};
+    if (!p.b->level) {
+      if (!face_below(*p.b, at * own, at.getOrigin(), within, normal, distance)) continue;
+      normals[static_cast<std::size_t>(i)] = normal;
+    }
+    if (distance <= near) found[count++] = {distance, i, own};
   }
   if (count > kPointsOfPair) {
     std::ranges::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), {},
@@ -485,7 +488,8 @@ void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
     count = kPointsOfPair;
   }
   for (const Corner& corner : std::span(found.data(), count)) {
-    result.add(corner.normal, at * corner.own - corner.distance * corner.normal, corner.distance);
+    if (!p.b->level) normal = normals[static_cast<std::size_t>(corner.number)];
+    result.add(normal, at * corner.own - corner.distance * normal, corner.distance);
   }
 }
 

@@ -178,7 +178,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     contact.ahead = contact.center + 0.5 * (contact.center - before);
     contact.holds = contact.probe >= 0 && contact.touch.holds(contact.center);
   }
-  follow(false, T);
+  if (!meshes_.empty()) follow(false, T);
   for (std::size_t k = 0; k < probes_.size(); ++k) {
     const std::size_t first = k * solids_.size();
     for (const auto& near : touches_[k].settle(solids_)) {
@@ -197,7 +197,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
           arm, f);
     }
   }
-  follow(true, T);
+  if (!meshes_.empty()) follow(true, T);
   std::size_t id = probes_.size() * solids_.size();
   for (const auto& [stop, material] : stops_) {
     Contact<N>& c = contacts_[count_++];
@@ -216,7 +216,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     look(contact, arm, f);
     if (contact.body != BodyContact::kStill && contact.touch.near()) world_->touch(contact.body);
   }
-  pass_on();
+  if (rub_) pass_on();
   if (world_ && T > 0) look_for_magnet(arm, f);
   potential_ = stored();
   if (world_ && T > 0) world_->begin(T);

@@ -127,7 +127,7 @@ void SolidTouch::look(std::span<const Solid> solids, const Vec3& from, const Vec
 
 std::span<const SolidTouch::Near> SolidTouch::settle(std::span<const Solid> solids) {
   for (Near& n : nears()) choose(solids, n);
-  hide_covered(solids);
+  if (count_ + meshes_.size() > 1) hide_covered(solids);
   for (const Near& n : near()) {
     sides_[n.solid] = {remembered(solids[n.solid], n.surface.normal), n.counts,
                        n.counts && n.surface.distance < 0};
@@ -257,7 +257,6 @@ Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, con
 // Hides solids whose nearest point, seen from the free place, something else holds that is nearer.
 // Two that hold the point both push if they face different ways: it is in a corner of them.
 void SolidTouch::hide_covered(std::span<const Solid> solids) {
-  if (count_ + meshes_.size() < 2) return;
   bool inside = false;
   const Vec3 centre = count_ > 0 ? near_[0].point : free_;
   free_ = centre;
