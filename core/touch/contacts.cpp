@@ -286,9 +286,9 @@ bool Contacts<N>::covered(const MeshContact<N>& mesh, const Vec3& place, const V
     const std::optional<Vec3> its = other->touch.nearest_to(free);
     if (other == &mesh || !its) return false;
     const double further = (free - place).norm() - (free - *its).norm();
-    if (further < -kTied || !other->touch.meets(place, kMeet)) return false;
+    if (further < -kTied || !other->touch.meets(place, kMeeting)) return false;
     // The first counts of two that hold each other's nearest point.
-    return further > kTied || other->id < mesh.id || !mesh.touch.meets(*its, kMeet);
+    return further > kTied || other->id < mesh.id || !mesh.touch.meets(*its, kMeeting);
   });
 }
 

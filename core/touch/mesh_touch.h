@@ -59,7 +59,7 @@ class FreeSpace {
 // Height of a free place above the surfaces that hold it. Distance within which two things meet: a
 // gap or a step of less is none. Difference of distances that says nothing: models are rounded by
 // less. All in [m].
-inline constexpr double kAbove = 2e-6, kMeet = 1e-6, kTied = 1e-8;
+inline constexpr double kAbove = 2e-6, kMeeting = 1e-6, kTied = 1e-8;
 
 // Tracks one ball on one mesh. A free point g follows the ball's centre c as near as the surface
 // lets it (after Zilles and Salisbury's god object). It never crosses the mesh, so it knows the

@@ -221,14 +221,14 @@ Surface SolidTouch::entered(std::span<const Solid> solids, const Near& near,
 bool SolidTouch::covered(std::span<const Solid> solids, const Near& near, const Vec3& point,
                          const Surface& surface, Asked asked) {
   const Vec3 foot = point - surface.distance * surface.normal;
-  const Vec3 place = foot + kMeet * surface.normal;
+  const Vec3 place = foot + kMeeting * surface.normal;
   const auto in_solid = [&](const Near& other) {
     if (other.solid == near.solid) return false;
     const Solid& solid = solids[other.solid];
     if (asked == Asked::not_inside && distance_to(solid, point).distance < 0) return false;
     return distance_to(solid, place).distance <= 0;
   };
-  const auto on_mesh = [&](const MeshTouch* mesh) { return mesh->meets(foot, kMeet); };
+  const auto on_mesh = [&](const MeshTouch* mesh) { return mesh->meets(foot, kMeeting); };
   return std::ranges::any_of(this->near(), in_solid) || std::ranges::any_of(meshes_, on_mesh);
 }
 
@@ -282,7 +282,7 @@ void SolidTouch::hide_covered(std::span<const Solid> solids) {
     return Vec3((ball_ ? free_ : n.point) - n.seen.distance * n.seen.normal);
   };
   const auto on = [&](const Near& n, const Vec3& place) {
-    return distance_to(solids[n.solid], place).distance <= kMeet;
+    return distance_to(solids[n.solid], place).distance <= kMeeting;
   };
   for (Near& n : nears()) {
     if (n.seen.distance < 0) continue;
@@ -304,8 +304,8 @@ bool SolidTouch::hidden_by_mesh(const Solid& solid, const Near& near, const Vec3
     const std::optional<Vec3> on_mesh = mesh->nearest_to(free_);
     if (!on_mesh) return false;
     const double further = near.seen.distance - (free_ - *on_mesh).norm();
-    if (further < -kTied || !mesh->meets(place, kMeet)) return false;
-    return further > kTied || distance_to(solid, *on_mesh).distance > kMeet;
+    if (further < -kTied || !mesh->meets(place, kMeeting)) return false;
+    return further > kTied || distance_to(solid, *on_mesh).distance > kMeeting;
   });
 }
 
@@ -313,7 +313,7 @@ bool SolidTouch::covers(std::span<const Solid> solids, const Vec3& place, const 
   const double distance = (free - place).norm();
   return std::ranges::any_of(near(), [&](const Near& n) {
     const Solid& solid = solids[n.solid];
-    return distance_to(solid, place).distance <= kMeet &&
+    return distance_to(solid, place).distance <= kMeeting &&
            distance_to(solid, free).distance <= distance + kTied;
   });
 }
