@@ -260,12 +260,25 @@ void Contacts<N>::follow(bool holds, double T) {
   }
   for (MeshContact<N>& contact : meshes_) {
     if (contact.holds != holds || contact.probe < 0) continue;
+    contact.covered = false;
+    if (!has_company(contact)) continue;
     Vec3 from = free_place(contact, false);
     if (from == contact.center && holds) from = contact.touch.lifted(from, kAbove);
     const std::optional<Vec3> place = contact.touch.nearest_to(from);
     contact.covered = place && covered(contact, *place, from);
     if (contact.covered) contact.touch.hide();
   }
+}
+
+// True if a mesh's ball touches something else as well, or is about to.
+template <int N>
+bool Contacts<N>::has_company(const MeshContact<N>& mesh) const {
+  constexpr double kSoon = 2e-3;  // [m]
+  const auto k = static_cast<std::size_t>(mesh.probe);
+  const double within = probes_[k].radius + kSoon;
+  const auto close = [&](const SolidTouch::Near& near) { return near.surface.distance < within; };
+  const auto other = [&](const MeshContact<N>* one) { return one != &mesh && one->touch.near(); };
+  return std::ranges::any_of(touches_[k].near(), close) || std::ranges::any_of(balls_[k], other);
 }
 
 // True if some other surface near a mesh's ball is, or was just now, covered by something.

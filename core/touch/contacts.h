@@ -109,6 +109,7 @@ class Contacts {
                             const MeshContact<N>* except, bool whole) const;
   void follow(bool holds, double T);
   Vec3 free_place(const MeshContact<N>& of, bool whole) const;
+  bool has_company(const MeshContact<N>& mesh) const;
   bool covers_others(const MeshContact<N>& mesh) const;
   void pass_on();
   bool covered(const MeshContact<N>& mesh, const Vec3& place, const Vec3& free) const;
