@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/touch/mesh_edges.h"
 #include "core/touch/triangle_mesh.h"
 
 namespace limpid {
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kNear = 1e-3;    // points further apart than this are ignored [m]
 constexpr double kMargin = 1e-4;  // radius by which Bullet rounds some edges [m]
+constexpr double kBeside = 1e-6;  // a corner this far from a face's normal is beside the face [m]
 constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
 constexpr int kPointsOfPair = 4;  // points of a pair that Bullet keeps
 constexpr double kStands = 0.7;   // rise of a cylinder's axis from which on it stands on an end [-]
@@ -35,12 +37,29 @@ Vec3 middle(const btManifoldPoint& point) {
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
 }
 
+// A model among the solids: a collision object's user pointer.
+struct Model {
+  std::shared_ptr<const TriangleMesh> mesh;
+  MeshEdges edges;
+  double size;
+};
+
 // Result of a pair without the friction and other values that Bullet's own class computes for each
 // point.
 class Points : public btManifoldResult {
  public:
   using btManifoldResult::btManifoldResult;
+
+  bool only_edges = false;  // takes no points on faces of models
+
   void addContactPoint(const btVector3& normal, const btVector3& on_b, btScalar distance) override {
+    const btVector3 on_a = on_b + normal * distance;
+    if (touchable(*m_body1Wrap, m_index1, on_b, normal) &&
+        touchable(*m_body0Wrap, m_index0, on_a, -normal)) {
+      add(normal, on_b, distance);
+    }
+  }
+  void add(const btVector3& normal, const btVector3& on_b, btScalar distance) {
     btPersistentManifold& all = *getPersistentManifold();
     if (distance > all.getContactBreakingThreshold()) return;
     const btVector3 on_a = on_b + normal * distance;
@@ -65,6 +84,19 @@ class Points : public btManifoldResult {
   }
 
  private:
+  // False if one of the two is a triangle of a model that cannot be touched there in this
+  // direction.
+  bool touchable(const btCollisionObjectWrapper& wrap, int triangle, const btVector3& place,
+                 const btVector3& direction) const {
+    const auto* model = static_cast<const Model*>(wrap.getCollisionObject()->getUserPointer());
+    if (model == nullptr) return true;
+    const btTransform& at = wrap.getCollisionObject()->getWorldTransform();
+    const Vec3 there = from_bullet(at.invXform(place));
+    const auto t = static_cast<std::uint32_t>(triangle);
+    return model->edges.touchable(t, model->size, there, from_bullet(direction * at.getBasis()),
+                                  2 * kMargin) &&
+           (!only_edges || model->edges.sharp(t, model->size, there, 2 * kMargin));
+  }
   // Returns the existing point that a point there replaces, or null.
   static btManifoldPoint* near(btPersistentManifold& all, const btVector3& own) {
     btScalar least = all.getContactBreakingThreshold() * all.getContactBreakingThreshold();
@@ -108,6 +140,7 @@ struct BodyGeometry::Inside {
     Pose in_object = Pose::Identity();
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btTriangleMesh> triangles;
+    std::unique_ptr<Model> model;
     btCollisionObject at;
     std::optional<btVector3> level;  // normal of a plane
     btScalar height = 0;             // the plane's coordinate along it [m]
@@ -124,8 +157,8 @@ struct BodyGeometry::Inside {
     btPersistentManifold* manifold = nullptr;
     bool single = false;   // the two meet in one point at most
     bool refresh = true;   // its search does not remove points that are gone
-    bool corners = false;  // a box on a plane: only the box's corners are tested
-    bool rolls = false;    // a cylinder or a capsule: its points are new in every tick
+    bool corners = false;  // a box on a plane or a model: its corners are tested
+    bool rolls = false;    // a round shape: points do not stay where they are on it
     int points = 0;        // points of its manifold
   };
 
@@ -138,6 +171,8 @@ struct BodyGeometry::Inside {
   static bool overlap(const Solid& a, const Solid& b);
   static void slide_along(const Pair& pair);
   static void keep_deepest(const Pair& pair);
+  static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
+                         double within, btVector3& normal, btScalar& distance);
   static void find_corners(const Pair& pair, Points& result);
   static bool find_ends(const Pair& pair, Points& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
@@ -282,6 +317,8 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
         solid->triangles->addTriangle(at[0], at[1], at[2]);
       }
       solid->shape = std::make_unique<btBvhTriangleMeshShape>(solid->triangles.get(), true);
+      solid->model.reset(new Model{mesh->triangles, MeshEdges(mesh->triangles), mesh->size()});
+      solid->at.setUserPointer(solid->model.get());
     } else {
       auto hull = std::make_unique<btConvexHullShape>();
       for (std::size_t t = 0; t < triangles.triangles(); ++t) {
@@ -312,8 +349,8 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   };
   const bool convex = a.shape->isConvex() && b.shape->isConvex();
   p.single = (ball(a) || ball(b)) && convex;
-  p.corners = a.shape->getShapeType() == BOX_SHAPE_PROXYTYPE && b.level;
-  p.rolls = convex && (a.rolls() || b.rolls());
+  p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
+  p.corners = a.shape->getShapeType() == BOX_SHAPE_PROXYTYPE && (b.level || b.model);
   p.refresh = !convex || (ball(a) && ball(b)) || p.corners;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -405,26 +442,56 @@ void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> be
   }
 }
 
-// Finds the corners of a box that are near to the plane, at most the four lowest.
+// Finds the face of a model below a corner of a box that is nearest to it; false if there is none.
+// `middle`: of the box, on the side that counts.
+bool BodyGeometry::Inside::face_below(const Solid& model, const btVector3& corner,
+                                      const btVector3& middle, double within, btVector3& normal,
+                                      btScalar& distance) {
+  const TriangleMesh& mesh = *model.model->mesh;
+  const double size = model.model->size;
+  const btTransform& at = model.at.getWorldTransform();
+  const auto in_mesh = [&](const btVector3& v) {
+    return Vec3(from_bullet(at.invXform(v)) / size - mesh.middle());
+  };
+  const Vec3 p = in_mesh(corner);
+  MeshPoint foot;
+  if (!mesh.nearest(p, within / size, MeshPoint::kNone, foot)) return false;
+  const double out = foot.normal.dot(in_mesh(middle) - foot.point) < 0 ? -1 : 1;
+  const Vec3 way = p - foot.point;
+  const double height = out * foot.normal.dot(way);
+  const bool beside = (way - foot.normal.dot(way) * foot.normal).norm() > kBeside / size;
+  normal = at.getBasis() * to_bullet(Vec3(out * foot.normal));
+  distance = size * height;
+  return !beside;
+}
+
+// Finds the corners of a box that are near to the plane or to faces of the model, at most the four
+// lowest.
 void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
   const auto& box = static_cast<const btBoxShape&>(*p.a->shape);
   const btTransform& at = p.a->at.getWorldTransform();
-  const btVector3& normal = *p.b->level;
+  btVector3 normal = p.b->level.value_or(btVector3(0, 0, 0));
   const btVector3 half = box.getHalfExtentsWithMargin();
-  const btVector3 rise = normal * at.getBasis();  // rise of each axis
+  const btVector3 rise = normal * at.getBasis();  // rise of each axis above a plane
   const btScalar middle = normal.dot(at.getOrigin()) - p.b->height;
   const btScalar near = p.manifold->getContactBreakingThreshold();
+  const double within = std::max(near, 0.5 * p.a->least);
   struct Corner {
     btScalar distance;
     int number;
     btVector3 own;
   };
   std::array<Corner, 8> found;
+  std::array<btVector3, 8> normals;  // of a model, by number
   std::size_t count = 0;
   for (int i = 0; i < 8; ++i) {
     const btVector3 own((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
                         (i & 4) != 0 ? half.z() : -half.z());
-    const btScalar distance = middle + rise.dot(own);
+    btScalar distance = middle + rise.dot(own);
+    if (!p.b->level) {
+      if (!face_below(*p.b, at * own, at.getOrigin(), within, normal, distance)) continue;
+      normals[static_cast<std::size_t>(i)] = normal;
+    }
     if (distance <= near) found[count++] = {distance, i, own};
   }
   if (count > kPointsOfPair) {
@@ -433,7 +500,8 @@ void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
     count = kPointsOfPair;
   }
   for (const Corner& corner : std::span(found.data(), count)) {
-    result.addContactPoint(normal, at * corner.own - corner.distance * normal, corner.distance);
+    if (!p.b->level) normal = normals[static_cast<std::size_t>(corner.number)];
+    result.add(normal, at * corner.own - corner.distance * normal, corner.distance);
   }
 }
 
@@ -468,12 +536,13 @@ void BodyGeometry::Inside::meet(Pair& p) {
                                       p.a->at.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
                                       p.b->at.getWorldTransform(), -1, -1);
+  if (p.rolls) p.manifold->clearManifold();
   Points result(&on_a, &on_b);
   result.setPersistentManifold(p.manifold);
-  if (p.rolls) p.manifold->clearManifold();
-  if (p.corners) {
-    find_corners(p, result);
-  } else if (!find_ends(p, result)) {
+  const bool ends = find_ends(p, result);
+  if (p.corners) find_corners(p, result);
+  if (!ends && (!p.corners || !p.b->level)) {
+    result.only_edges = p.corners;
     p.algorithm->processCollision(&on_a, &on_b, info, &result);
   }
   if (p.refresh) result.refreshContactPoints();

@@ -9,8 +9,6 @@
 namespace limpid {
 namespace {
 
-// Distance beyond which nothing touches within a tick [m].
-constexpr double kReach = 0.02;
 // Spacing of the balls that replace a capsule, in radii, and their largest number.
 constexpr double kSpacing = 0.75;
 constexpr int kMostBalls = 24;
@@ -64,6 +62,7 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
   }
   Contact<N> empty;
   empty.gradient = Vec<N>::Zero(arm.dof());
+  for (const Probe& probe : probes_) touches_.emplace_back(probe.radius, solids_.size());
   contacts_.assign(solids_.size() * probes_.size() + stops_.size(), empty);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!has_shape<Mesh>(scene.objects[i])) continue;
@@ -71,6 +70,15 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
     add_mesh_contacts(scene.objects[i], body, arm);
   }
   memories_.resize(contacts_.size() + meshes_.size());
+  balls_.resize(probes_.size());
+  for (MeshContact<N>& contact : meshes_) {
+    if (contact.probe >= 0) balls_[static_cast<std::size_t>(contact.probe)].push_back(&contact);
+  }
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    std::vector<const MeshTouch*> touches;
+    for (const MeshContact<N>* contact : balls_[k]) touches.push_back(&contact->touch);
+    touches_[k].set_meshes(std::move(touches));
+  }
 }
 
 template <int N>
@@ -97,6 +105,7 @@ void Contacts<N>::add_mesh_contacts(const Object& mesh, int body, const ArmDescr
       contact.id = contacts_.size() + meshes_.size();
       contact.link = probe.link;
       contact.body = body;
+      if (length == 0) contact.probe = static_cast<int>(&probe - probes_.data());
       contact.on_link = probe.from + part * (probe.to - probe.from);
       meshes_.push_back(std::move(contact));
     }
@@ -111,6 +120,7 @@ void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, con
     contact.touch.place(contact.center);
     contact.force.setZero();
   }
+  for (SolidTouch& touch : touches_) touch.forget();
   forget();
   find(arm, f, x, 0);
   for (Contact<N>& contact : contacts_) contact.force = 0;
@@ -134,8 +144,9 @@ void Contacts<N>::take_over(const Contacts& other) {
 
 template <int N>
 bool Contacts<N>::recoverable() const {
-  return std::ranges::all_of(meshes_,
-                             [](const MeshContact<N>& c) { return c.touch.recoverable(); });
+  const auto mesh = [](const MeshContact<N>& c) { return c.touch.recoverable(); };
+  const auto solid = [](const SolidTouch& touch) { return touch.recoverable(); };
+  return std::ranges::all_of(meshes_, mesh) && std::ranges::all_of(touches_, solid);
 }
 
 template <int N>
@@ -154,25 +165,40 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
                        double T) {
   if (world_) follow_bodies();
   count_ = 0;
-  std::size_t id = 0;
-  for (const Probe& probe : probes_) {
-    const Vec3 from = Arm<N>::point(f, probe.link, probe.from);
-    const Vec3 to = Arm<N>::point(f, probe.link, probe.to);
-    const bool ball = from == to;
-    const auto touch = [&](const auto& shape, const Solid& solid) {
-      const Vec3 point = ball ? from : nearest_on_segment(shape, solid.pose, from, to);
-      const Surface s = distance_to(shape, solid.pose, point);
-      const double depth = probe.radius - s.distance;
-      if (depth > -kReach) {
-        add({depth, {}, solid.material, point, s.normal, probe.link, id, solid.body}, arm, f);
-        if (solid.body != BodyContact::kStill && depth > -kWakes) world_->touch(solid.body);
-      }
-      ++id;
-    };
-    for (const Solid& solid : solids_) {
-      std::visit([&](const auto& shape) { touch(shape, solid); }, solid.shape);
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const Vec3 from = Arm<N>::point(f, probes_[k].link, probes_[k].from);
+    const Vec3 to = Arm<N>::point(f, probes_[k].link, probes_[k].to);
+    touches_[k].look(solids_, from, to, lifted_out_of_meshes(from, from, k, nullptr, false));
+  }
+  // First those meshes that do not hold the ball: they may take it over from what does.
+  for (MeshContact<N>& contact : meshes_) {
+    const Vec3 before = contact.center;
+    contact.center = Arm<N>::point(f, contact.link, contact.on_link);
+    // Planes that are right in the middle of the tick give and take equally over it.
+    contact.ahead = contact.center + 0.5 * (contact.center - before);
+    contact.holds = contact.probe >= 0 && contact.touch.holds(contact.center);
+  }
+  if (!meshes_.empty()) follow(false, T);
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const std::size_t first = k * solids_.size();
+    for (const auto& near : touches_[k].settle(solids_)) {
+      const Solid& solid = solids_[near.solid];
+      const double depth = probes_[k].radius - near.surface.distance;
+      if (solid.body != BodyContact::kStill && depth > -kWakes) world_->touch(solid.body);
+      if (!near.counts) continue;
+      add({depth,
+           {},
+           solid.material,
+           near.point,
+           near.surface.normal,
+           probes_[k].link,
+           first + near.solid,
+           solid.body},
+          arm, f);
     }
   }
+  if (!meshes_.empty()) follow(true, T);
+  std::size_t id = probes_.size() * solids_.size();
   for (const auto& [stop, material] : stops_) {
     Contact<N>& c = contacts_[count_++];
     c.depth = stop.direction * (x[stop.joint] - stop.angle);
@@ -187,16 +213,134 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     c.touching = c.depth > 0;
   }
   for (MeshContact<N>& contact : meshes_) {
-    const Vec3 before = contact.center;
-    contact.center = Arm<N>::point(f, contact.link, contact.on_link);
-    // Planes that are right in the middle of the tick give and take equally over it.
-    contact.touch.follow(contact.center + 0.5 * (contact.center - before), T);
     look(contact, arm, f);
     if (contact.body != BodyContact::kStill && contact.touch.near()) world_->touch(contact.body);
   }
+  if (rub_) pass_on();
   if (world_ && T > 0) look_for_magnet(arm, f);
   potential_ = stored();
   if (world_ && T > 0) world_->begin(T);
+}
+
+// Lifts a point out of the meshes that hold the centre of a ball, or, `whole`, the ball.
+template <int N>
+Vec3 Contacts<N>::lifted_out_of_meshes(Vec3 point, const Vec3& centre, std::size_t probe,
+                                       const MeshContact<N>* except, bool whole) const {
+  const double above = kAbove + (whole ? probes_[probe].radius : 0);
+  for (const MeshContact<N>* other : balls_[probe]) {
+    if (other == except || !other->touch.near() || other->touch.held()) continue;
+    if (whole || other->touch.holds(centre)) point = other->touch.lifted(point, above);
+  }
+  return point;
+}
+
+// Free place of a mesh's ball: lifted out of what else holds its centre, or, `whole`, the ball.
+template <int N>
+Vec3 Contacts<N>::free_place(const MeshContact<N>& of, bool whole) const {
+  const auto k = static_cast<std::size_t>(of.probe);
+  const Vec3 out = touches_[k].lifted(solids_, of.center, whole);
+  return lifted_out_of_meshes(out, of.center, k, &of, whole);
+}
+
+// Lets meshes follow that do or do not hold their ball. What else holds it leaves only a free place
+// to be looked at from; a surface that something else covers there does not push.
+template <int N>
+void Contacts<N>::follow(bool holds, double T) {
+  for (MeshContact<N>& contact : meshes_) {
+    if (contact.holds != holds) continue;
+    if (contact.probe < 0) {
+      contact.touch.follow(contact.ahead, T);
+      continue;
+    }
+    // Near a seam the place now says which of two surfaces is below, not the one ahead. A surface
+    // that is covered waits below the whole ball.
+    const Vec3 here = free_place(contact, contact.covered);
+    const bool beside = here != contact.center || covers_others(contact);
+    contact.touch.follow(beside ? here : contact.ahead, T);
+  }
+  for (MeshContact<N>& contact : meshes_) {
+    if (contact.holds != holds || contact.probe < 0) continue;
+    contact.covered = false;
+    if (!has_company(contact)) continue;
+    Vec3 from = free_place(contact, false);
+    if (from == contact.center && holds) from = contact.touch.lifted(from, kAbove);
+    const std::optional<Vec3> place = contact.touch.nearest_to(from);
+    contact.covered = place && covered(contact, *place, from);
+    if (contact.covered) contact.touch.hide();
+  }
+}
+
+// True if a mesh's ball touches something else as well, or is about to.
+template <int N>
+bool Contacts<N>::has_company(const MeshContact<N>& mesh) const {
+  constexpr double kSoon = 2e-3;  // [m]
+  const auto k = static_cast<std::size_t>(mesh.probe);
+  const double within = probes_[k].radius + kSoon;
+  const auto close = [&](const SolidTouch::Near& near) { return near.surface.distance < within; };
+  const auto other = [&](const MeshContact<N>* one) { return one != &mesh && one->touch.near(); };
+  return std::ranges::any_of(touches_[k].near(), close) || std::ranges::any_of(balls_[k], other);
+}
+
+// True if some other surface near a mesh's ball is, or was just now, covered by something.
+template <int N>
+bool Contacts<N>::covers_others(const MeshContact<N>& mesh) const {
+  const auto k = static_cast<std::size_t>(mesh.probe);
+  const auto hidden = [](const SolidTouch::Near& near) { return !near.counts; };
+  const auto covered = [](const MeshContact<N>* other) { return other->covered; };
+  return std::ranges::any_of(touches_[k].near(), hidden) || std::ranges::any_of(balls_[k], covered);
+}
+
+// True if something else covers a place of a mesh, seen from a free place.
+template <int N>
+bool Contacts<N>::covered(const MeshContact<N>& mesh, const Vec3& place, const Vec3& free) const {
+  const auto k = static_cast<std::size_t>(mesh.probe);
+  if (touches_[k].covers(solids_, place, free)) return true;
+  return std::ranges::any_of(balls_[k], [&](const MeshContact<N>* other) {
+    const std::optional<Vec3> its = other->touch.nearest_to(free);
+    if (other == &mesh || !its) return false;
+    const double further = (free - place).norm() - (free - *its).norm();
+    if (further < -kTied || !other->touch.meets(place, kMeeting)) return false;
+    // The first counts of two that hold each other's nearest point.
+    return further > kTied || other->id < mesh.id || !mesh.touch.meets(*its, kMeeting);
+  });
+}
+
+// Gives the force and the friction of a contact that something else now covers to the one that took
+// the probe over. Friction's spring keeps its force, or gets less where that would take energy.
+template <int N>
+void Contacts<N>::pass_on() {
+  constexpr auto kNone = std::numeric_limits<std::size_t>::max();
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const auto hidden = [](const SolidTouch::Near& near) { return !near.counts; };
+    if (balls_[k].empty() && std::ranges::none_of(touches_[k].near(), hidden)) continue;
+    std::size_t from = kNone, to = kNone;
+    const auto take = [&](std::size_t id, bool covered, bool inside) {
+      const bool pushed = !memories_[id].push.isZero(0);
+      if (covered && pushed) from = id;
+      if (!covered && inside && !pushed) to = id;
+    };
+    for (const auto& near : touches_[k].near()) {
+      const bool inside = near.surface.distance < probes_[k].radius;
+      take(k * solids_.size() + near.solid, !near.counts, inside);
+    }
+    for (const MeshContact<N>* mesh : balls_[k]) take(mesh->id, mesh->covered, mesh->rank > 0);
+    if (from == kNone || to == kNone) continue;
+    const auto stiffness = [&](std::size_t id) {
+      return friction_stiffness(id < contacts_.size() ? solids_[id % solids_.size()].material
+                                                      : meshes_[id - contacts_.size()].material);
+    };
+    // A wall remembers the size of its force, a mesh a vector; the solve corrects both.
+    ContactMemory& now = memories_[to];
+    now = memories_[from];
+    memories_[from] = {};
+    const bool to_mesh = to >= contacts_.size(), from_mesh = from >= contacts_.size();
+    if (to_mesh && !from_mesh) {
+      now.push = now.push.norm() * meshes_[to - contacts_.size()].direction.col(0);
+    } else if (from_mesh && !to_mesh) {
+      now.push = now.push.norm() * Vec3::UnitX();
+    }
+    now.anchor *= std::min(1.0, stiffness(from) / stiffness(to));
+  }
 }
 
 // Lets the magnet take the nearest magnetic body at the tip's place.

@@ -12,28 +12,10 @@
 #include "core/touch/magnet_contact.h"
 #include "core/touch/mesh_contact.h"
 #include "core/touch/scene.h"
+#include "core/touch/solid_touch.h"
 #include "core/touch/wall_contact.h"
 
 namespace limpid {
-
-// Signed distance of a point to the surface, negative inside, and the outward normal there.
-struct Surface {
-  double distance;  // [m]
-  Vec3 normal;
-};
-Surface distance_to(const Plane& plane, const Pose& pose, const Vec3& point);
-Surface distance_to(const Sphere& sphere, const Pose& pose, const Vec3& point);
-Surface distance_to(const Box& box, const Pose& pose, const Vec3& point);
-Surface distance_to(const Cylinder& cylinder, const Pose& pose, const Vec3& point);
-Surface distance_to(const Capsule& capsule, const Pose& pose, const Vec3& point);
-
-// Point of the segment from-to nearest to a shape.
-Vec3 nearest_on_segment(const Plane& plane, const Pose& pose, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Sphere& sphere, const Pose& pose, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Box& box, const Pose& pose, const Vec3& from, const Vec3& to);
-Vec3 nearest_on_segment(const Cylinder& cylinder, const Pose& pose, const Vec3& from,
-                        const Vec3& to);
-Vec3 nearest_on_segment(const Capsule& capsule, const Pose& pose, const Vec3& from, const Vec3& to);
 
 // Share of the contacts' torque f2 that acts on the proxy with a law's feedforward:
 //     direct f2 + shared M2 M_L^-1 f2.
@@ -115,14 +97,6 @@ class Contacts {
   double potential() const { return potential_; }
 
  private:
-  // An object in the form that a tick needs.
-  struct Solid {
-    std::variant<Plane, Sphere, Box, Cylinder, Capsule> shape;  // shapes of distance_to()
-    Pose pose;
-    Material material;
-    int body = BodyContact::kStill;
-    Pose in_body = Pose::Identity();
-  };
   struct Stop {
     JointStop at;
     Material material;
@@ -131,6 +105,14 @@ class Contacts {
   double stored() const;
   void add(const Contact<N>& found, const Arm<N>& arm, const typename Arm<N>::Frames& f);
   void add_mesh_contacts(const Object& mesh, int body, const ArmDescription& arm);
+  Vec3 lifted_out_of_meshes(Vec3 point, const Vec3& centre, std::size_t probe,
+                            const MeshContact<N>* except, bool whole) const;
+  void follow(bool holds, double T);
+  Vec3 free_place(const MeshContact<N>& of, bool whole) const;
+  bool has_company(const MeshContact<N>& mesh) const;
+  bool covers_others(const MeshContact<N>& mesh) const;
+  void pass_on();
+  bool covered(const MeshContact<N>& mesh, const Vec3& place, const Vec3& free) const;
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
 
   void add_solid(const Shape& shape, const Pose& in_object, const Object& object, int body);
@@ -139,11 +121,13 @@ class Contacts {
 
   std::vector<Probe> probes_;  // the tip first
   std::vector<Solid> solids_;
+  std::vector<SolidTouch> touches_;  // of each probe
   std::vector<Stop> stops_;
   std::vector<Contact<N>> contacts_;
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
-  std::vector<ContactMemory> memories_;  // by id
+  std::vector<std::vector<MeshContact<N>*>> balls_;  // the contacts with meshes of each probe
+  std::vector<ContactMemory> memories_;              // by id
   std::unique_ptr<BodyWorld> world_;
   std::vector<Material> of_bodies_;
   bool magnet_wanted_ = false;

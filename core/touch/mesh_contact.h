@@ -21,9 +21,13 @@ struct MeshContact {
   int link = 0;        // index
   std::size_t id = 0;  // among all contacts
   int body = BodyContact::kStill;
+  int probe = -1;               // index of a probe that is a ball; -1: part of a capsule
   Vec3 on_link = Vec3::Zero();  // the ball's centre, in the link's frame [m]
   Material material;
   Vec3 center = Vec3::Zero();         // [m]
+  Vec3 ahead = Vec3::Zero();          // the same in the middle of the tick, as it moves [m]
+  bool holds = false;                 // the centre was behind the surface before the last follow()
+  bool covered = false;               // by something else: the surface does not push
   Jacobian<N> J;                      // of the centre
   FreeSpace::Active active;           // planes that push
   Mat3 direction = Mat3::Identity();  // orthonormal columns along which it pushes

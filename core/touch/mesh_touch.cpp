@@ -346,6 +346,39 @@ bool MeshTouch::recoverable() const {
   return (p_ - g_).norm() < 0.5 * r_;
 }
 
+bool MeshTouch::holds(const Vec3& c) const {
+  if (!near_ || held_) return false;
+  for (int i = 0; i < world_.count(); ++i) {
+    if (world_.normal(i).dot(c) < world_.offset(i) - r_ * scale_) return true;
+  }
+  return false;
+}
+
+Vec3 MeshTouch::lifted(Vec3 point, double above) const {
+  for (int i = 0; i < world_.count(); ++i) {
+    const double height = world_.normal(i).dot(point) - world_.offset(i) + r_ * scale_;
+    if (height < above - kAbove / 2) point += (above - height) * world_.normal(i);
+  }
+  return point;
+}
+
+std::optional<Vec3> MeshTouch::nearest_to(const Vec3& from) const {
+  MeshPoint at;
+  if (!near_ || held_ || world_.count() != 1) return std::nullopt;
+  if (!shape_->nearest(to_mesh(from), r_ + look_, hint_, at)) return std::nullopt;
+  return to_world(at.point);
+}
+
+bool MeshTouch::meets(const Vec3& point, double within) const {
+  MeshPoint at;
+  return shape_->nearest(to_mesh(point), within / scale_, MeshPoint::kNone, at);
+}
+
+void MeshTouch::hide() {
+  world_.clear();
+  near_ = held_ = false;
+}
+
 void MeshTouch::publish() {
   world_.clear();
   for (int i = 0; i < space_.count(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "core/math/sizes.h"
 #include "core/touch/scene.h"
@@ -55,6 +56,11 @@ class FreeSpace {
   int count_ = 0;
 };
 
+// Height of a free place above the surfaces that hold it. Distance within which two things meet: a
+// gap or a step of less is none. Difference of distances that says nothing: models are rounded by
+// less. All in [m].
+inline constexpr double kAbove = 2e-6, kMeeting = 1e-6, kTied = 1e-8;
+
 // Tracks one ball on one mesh. A free point g follows the ball's centre c as near as the surface
 // lets it (after Zilles and Salisbury's god object). It never crosses the mesh, so it knows the
 // side, even of a sheet without thickness. Planes stop g: on a face one, in a groove two, in a
@@ -88,6 +94,18 @@ class MeshTouch {
   // True if a start from here would find the same side.
   bool recoverable() const;
   double radius() const { return radius_; }
+
+  // The following serve things that meet. True if the centre c is itself behind a plane of the
+  // room.
+  bool holds(const Vec3& c) const;
+  // Lifts a point out of all planes of the surface, to `above` them.
+  Vec3 lifted(Vec3 point, double above) const;
+  // Place of the surface nearest to a free point, if the room has one plane.
+  std::optional<Vec3> nearest_to(const Vec3& from) const;
+  // True if a point is within a distance of the mesh.
+  bool meets(const Vec3& point, double within) const;
+  // Lets nothing push until the next follow(): the surface here is inside of something else.
+  void hide();
 
  private:
   MeshTouch(const Mesh& mesh, const Pose& pose, double radius);

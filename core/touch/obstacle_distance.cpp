@@ -1,7 +1,7 @@
+#include "core/touch/obstacle_distance.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "core/touch/contacts.h"
 
 namespace limpid {
 namespace {
