@@ -96,6 +96,15 @@ Passivity of_feedforward(const Analysis& a, const Parameters& p) {
   return {true, "eta is at or above eta_min, (25), and condition (3) holds"};
 }
 
+// A value of every joint: what is set, else the arm's own.
+Eigen::VectorXd of_joints(const ArmDescription& arm, double Joint::*own, double set) {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(arm.joints.size()));
+  for (Eigen::Index i = 0; i < all.size(); ++i) {
+    all[i] = std::isnan(set) ? arm.joints[static_cast<std::size_t>(i)].*own : set;
+  }
+  return all;
+}
+
 }  // namespace
 
 double eta_min_compliant(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d,
@@ -109,12 +118,11 @@ double eta_min_compliant(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d,
 }
 
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p) {
-  Eigen::VectorXd b_d(static_cast<Eigen::Index>(arm.joints.size()));
-  for (Eigen::Index i = 0; i < b_d.size(); ++i) {
-    const Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    b_d[i] = std::isnan(p.damping) ? joint.damping : p.damping;
-  }
-  return b_d;
+  return of_joints(arm, &Joint::damping, p.damping);
+}
+
+Eigen::VectorXd device_friction(const ArmDescription& arm, const Parameters& p) {
+  return of_joints(arm, &Joint::friction, p.friction);
 }
 
 double device_delay(const ArmDescription& arm, const Parameters& p) {

@@ -48,6 +48,8 @@ Passivity passivity(const Analysis& a, const Parameters& p);
 
 // Returns b_d of every joint: the setting, or the value of the arm's file [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
+// Returns the Coulomb friction of every joint, likewise [N m].
+Eigen::VectorXd device_friction(const ArmDescription& arm, const Parameters& p);
 
 // Returns the delay from a reading to the torque that answers it, beyond the tick [s]: as measured
 // on the arm, else by model.delay or the virtual arm's device.delay.

@@ -90,6 +90,25 @@ Parameters with_changed(Parameters other, const Parameters& began, const Paramet
   return other;
 }
 
+// Whether the predictive law ran with encoder steps and without a memory of its own, in a session
+// from before readings were weighed.
+bool had_another_filter(const Session& session, const std::string& where) {
+  for (std::size_t i = 0; i < session.lanes(); ++i) {
+    const Session& lane = session.lane(i);
+    if (!has_retired(lane.info.config, where)) continue;
+    Parameters p = session_parameters(lane, where);
+    const auto weighs = [&p] {
+      return p.kind == CouplingKind::predictive && p.gains(p.encoder_step).weighs();
+    };
+    if (weighs()) return true;
+    for (const SettingChange& change : lane.changes) {
+      apply_change(p, change);
+      if (weighs()) return true;
+    }
+  }
+  return false;
+}
+
 RigStart start_of(const Session& run) {
   RigStart start = start_of(run.layout, run.row(0));
   start.world = run.world;
@@ -134,6 +153,9 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.start = start_of(session);
   plan.rows = session.size();
   plan.note = other_build(session.info.build, where);
+  if (had_another_filter(session, where)) {
+    plan.note += "; its filter of encoder steps is no longer the program's, so the numbers differ";
+  }
   plan.seed = session.info.seed;
   // A real device has no measured hand torque: the observer's estimate acts in its place.
   const bool measured = !std::isnan(session.at(0, Column::hand_torque)[0]);

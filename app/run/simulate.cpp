@@ -166,6 +166,7 @@ void run_paced(Run& run, double tick) {
 
 // A setting without a value goes back to the arm's own.
 void apply_change(Parameters& p, const SettingChange& change) {
+  if (is_retired(change.key())) return;
   if (!change.setting.ends_with("= ")) return apply_setting(p, change.setting);
   const ParameterInfo* info = find_parameter(change.key());
   if (info == nullptr) throw ParameterError(std::string(change.key()) + ": no such key");

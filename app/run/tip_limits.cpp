@@ -11,22 +11,36 @@
 namespace limpid {
 namespace {
 
-TipLimits::Wall predictive_wall(const TipMoved& tip, const WallSetting& s, const Parameters& p) {
-  const double q = p.encoder_step;
-  const BoundedWall wall = predictive_wall(
-      tip, {s, q, p.gains(q), p.coarse(q), p.hand_mass, p.delay * p.tick, p.inertia_ratio});
+// Friction at the tip of a Touch, as an example for arms without any [N].
+constexpr double kUsualFriction = 0.26;
+
+TipLimits::Wall predictive_wall(const TipMoved& tip, const WallSetting& s, double friction,
+                                const Parameters& p) {
+  PredictiveWallSetting setting{s,           p.encoder_step,   friction,
+                                p.hand_mass, p.delay * p.tick, p.inertia_ratio};
+  const BoundedWall wall = predictive_wall(tip, setting);
+  const double q_t = 1000 * p.encoder_step * tip.lever;  // [mm]
   const auto why = [&]() -> std::string {
     switch (wall.by) {
       case WallBound::tried:
-        return p.tick > 1.001e-3 ? "the stiffest wall that was tried at so long a tick"
-                                 : "the stiffest wall that was tried";
+        return fmt::format("the stiffest wall that was tried{}{}",
+                           p.encoder_step > 0 ? " with encoder steps" : "",
+                           p.tick > 1.001e-3 ? " at so long a tick" : "");
       case WallBound::quick:
         return fmt::format("the tip's {:.2g} g move far in a tick, and the hand is not known",
                            1000 * tip.mass);
       case WallBound::proxy: return "the proxy's inertia is felt through k_vc from there on";
-      case WallBound::encoder: return fmt::format("the encoder's step of {:.2g} rad", q);
-      case WallBound::rough:
-        return "the encoder's step, too coarse for so short a tick: see predictor.preset";
+      case WallBound::step:
+        return fmt::format("step: one of {:.2g} mm of the encoder at the tip pushes with 0.25 N",
+                           q_t);
+      case WallBound::friction:
+        return fmt::format("friction: {:.2g} N at the tip still hold it inside a cell of {:.2g} mm",
+                           friction, q_t);
+      case WallBound::cell:
+        setting.friction = kUsualFriction;
+        return fmt::format(
+            "cell: the tip swings within {:.2g} mm, unseen; with {} N of friction {:.0f} N/m", q_t,
+            kUsualFriction, predictive_wall(tip, setting).stiffness);
       case WallBound::hand: return "a hand that is heavier than the predictor takes it for";
       case WallBound::delay: break;
     }
@@ -52,6 +66,8 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   const WallSetting s{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, p.hand_mass_at_tip, l.delay};
   WallSetting through_link = s;
   through_link.delay += 2 * p.oldest() * p.tick;
+  const double friction =
+      (1 - p.friction_share) * friction_at_tip(arm.J, device_friction(description, p));
   const Condition3 c = condition3(description, p);
   const auto wall = [&](CouplingKind kind) -> TipLimits::Wall {
     switch (kind) {
@@ -66,7 +82,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
       case CouplingKind::proposed:
         return {proposed_wall(l.tip, through_link),
                 "the damping there is against the lag of the contact"};
-      case CouplingKind::predictive: return predictive_wall(easiest(arm.J, arm.M), s, p);
+      case CouplingKind::predictive: return predictive_wall(easiest(arm.J, arm.M), s, friction, p);
     }
     return {};
   };

@@ -178,59 +178,51 @@ struct ProposedLaw {
   class Of;  // proposed.h
 };
 
-enum class PredictorPreset : std::uint8_t { by_encoder, fine, coarse };
-inline constexpr std::array<const char*, 3> kPredictorPresets{"auto", "fine", "coarse"};
-
-// Constants of a preset; see PredictorSettings::gains().
+// Constants of the predictor; see PredictorSettings::gains().
 struct PredictorGains {
-  double p;        // least memory of a fading-memory filter, 0 none [-]
+  double p;        // memory of a filter whose memory fades; NaN: see encoder_filter.h [-]
   double mu;       // factor on the device's inertia in the predictor [-]
   double damping;  // of walls, as a part of m_n/T [-]
+
+  bool weighs() const { return std::isnan(p); }  // readings, by the encoders' step
 };
 
 inline constexpr int kMostDelay = 20;  // largest delay of a device [ticks]
 
 struct PredictorSettings {
-  PredictorPreset preset = PredictorPreset::by_encoder;
-  double memory = kAsPreset;   // p [-]
-  double inertia = kAsPreset;  // mu [-]
+  double memory = kUnset;      // p [-]
+  double inertia = kUnset;     // mu [-]
   double hand_mass = 0.2;      // in the second predictor [kg]
   int delay = 0;               // known delay between command and motor [ticks]
   double delay_most = kUnset;  // largest delay possible [ticks]
 
-  // NaN, which stands for "as the preset has it", or "as far as it is known".
-  static constexpr double kAsPreset = std::numeric_limits<double>::quiet_NaN();
+  // NaN, which stands for "as usual", or "as far as it is known".
   static constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
-  // Encoders coarser than this ask for the coarse preset [rad].
-  static constexpr double kCoarse = 1.5e-4;
 
-  bool coarse(double encoder_step) const {
-    return preset == PredictorPreset::coarse ||
-           (preset == PredictorPreset::by_encoder && encoder_step > kCoarse);
-  }
   PredictorGains gains(double encoder_step) const {
-    PredictorGains g =
-        coarse(encoder_step) ? PredictorGains{0.45, 0.5, 0.1} : PredictorGains{0.2, 1, 0.2};
-    if (!std::isnan(memory)) g.p = memory;
+    constexpr double kExact = 0.2, kCoarse = 1.5e-4;  // p of exact encoders; step [rad]
+    PredictorGains g{memory, 1, 0.2};
+    if (g.weighs() && !(encoder_step > 0)) {
+      g.p = kExact;
+    } else if (!g.weighs() && encoder_step > kCoarse) {  // as recordings with a p have it
+      g.mu = 0.5;
+      g.damping = 0.1;
+    }
     if (!std::isnan(inertia)) g.mu = inertia;
     return g;
   }
 
   template <class P>
-  static constexpr std::array<Field<P>, 6> settings() {
+  static constexpr std::array<Field<P>, 5> settings() {
     return {
-        {{"predictor.preset", "predictor", "Predictor", choice<P, &P::preset>(kPredictorPresets),
-          "-", 0, 2, 0, 2, false, true,
-          "Predictive coupling: fine for encoders down from 1e-4 rad, coarse above 1.5e-4 rad "
-          "(walls up to 2000 N/m); auto goes by device.encoder_step."},
-         {"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
-          "Predictive coupling: memory of the filter that corrects the predicted position, 0 "
-          "none. More is quieter and later. Default: the preset's, 0.2 or 0.45, and up to 0.85 "
-          "where a step of the encoder would shake a heavy arm on the scene's stiffest wall."},
+        {{"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
+          "Predictive coupling: memory of a filter whose memory fades, 0 none, as recordings of "
+          "Limpid 0.2 may have it. Default: with encoder steps none, each reading counts by the "
+          "step and by what the hand may do; with exact encoders 0.2."},
          {"predictor.mu", "inertia \xCE\xBC", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3,
           true, true,
           "Predictive coupling: factor on the device's inertia in the predictor. Default: "
-          "the preset's, 1 or 0.5."},
+          "1."},
          {"predictor.hand_mass", "hand mass m_h", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1,
           false, true,
           "Predictive coupling: mass of hand and handle in the second predictor, which takes "

@@ -39,13 +39,22 @@ double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
   return limit.dot(x.cwiseAbs());
 }
 
-// Memory p of the predictors at the next reading. on_tip: response of the device to a force at the
-// tip.
+// Tells the predictor what the hand may do. on_tip: response of the device to a force at the tip;
+// K: the stiffest wall [N/m].
 template <int N>
-double chosen_memory(const WallMemory& wall, double least, const Jacobian<N>& J,
-                     const Levers<N>& on_tip) {
-  if (!(wall.q > 0)) return least;
-  return wall.chosen(least, tip_moved(J * on_tip, J * J.transpose()));
+void expect_hand(Predictor<N>& predictor, const LawInput<N>& in, const Jacobian<N>& J,
+                 const Levers<N>& on_tip, double hand_mass, double K) {
+  const TipMoved tip = tip_moved(J * on_tip, J * J.transpose());
+  const double at_rest = resting_rate(K, tip.mass, in.encoder_step * tip.lever);
+  predictor.expect_hand(on_tip, J, hand_mass, at_rest);
+}
+
+// Jump of a joint's velocity when an encoder makes a step [rad/s].
+template <int N>
+double jump_at_step(const Predictor<N>& predictor, const PredictorGains& gains,
+                    const LawInput<N>& in) {
+  if (gains.weighs()) return predictor.weighed_jump(in.encoder_step);
+  return velocity_jump(gains.p, in.encoder_step, in.tick);
 }
 
 // Energy given to bodies over the last tick [J].
@@ -171,7 +180,6 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   slip_ = tau1_ = cut_ = wanted_ = apart_ = zero;
   limit_ = Vec<N>::Constant(zero.size(), std::numeric_limits<double>::infinity());
   spring_ = 0;
-  memory_ = -1;
   limited_ = goes_on_ = false;
   solved_ = TickSolve::usual;
   unsettled_ = 0;
@@ -184,10 +192,9 @@ template <int N>
 DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<N>& in) {
   elapsed_ = in.elapsed;
   both_ = p.hand_mass > 0;
-  if (memory_ < 0) memory_ = p.gains(in.encoder_step).p;
   if (elapsed_ > 0) {
     slip_ = in.x1 - y_ - elapsed_ * predictor_.w();
-    predictor_.correct(in.x1, elapsed_, in.encoder_step, memory_, both_);
+    predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step).p, both_);
   } else {  // the first reading, perhaps not quite at the position of start()
     predictor_.begin_at(in.x1);
     ledger_.start(in.x1, std::nullopt);
@@ -243,12 +250,14 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   Jacobian<N> J;
   const Arm<N>& arm = proxy.arm();
   arm.point_jacobian(in.frames, arm.dof() - 1, arm.tip(in.frames), J);
-  predictor_.model(in.device.M, in.device.C, in.b_d, J, T, memory_, gains.mu, p.hand_mass, p.delay,
+  predictor_.model(in.device.M, in.device.C, in.b_d, J, T, gains.p, gains.mu, p.hand_mass, p.delay,
                    quick_);
   proxy.look(T);
   const Locked<N> d(in.device.M, in.device.C, proxy.M(), proxy.C());
   const Levers<N> on_tip =
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // response to a force at the tip
+  const double K = proxy.contacts().stiffest();
+  if (gains.weighs()) expect_hand(predictor_, in, J, on_tip, p.hand_mass, K);
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
   // The velocity predicted for a late torque is no newer knowledge: the present one damps.
@@ -270,7 +279,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   if (contacts_.any()) {
     answer.inertia = &d.M_L_factor;
     answer.damping = gains.damping;
-    answer.jump = velocity_jump(memory_, in.encoder_step, T);
+    answer.jump = jump_at_step(predictor_, gains, in);
     answer.most_damping = kMostDamping;
   }
   const TorqueLimits<N> motors(in.limit, J, in.tip_force);
@@ -307,8 +316,6 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
                            (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
   }
   limited_ = limited;
-  const WallMemory wall{proxy.contacts().stiffest(), T, in.encoder_step, gains.damping};
-  memory_ = std::isnan(p.memory) ? chosen_memory<N>(wall, gains.p, J, on_tip) : gains.p;
   contacts_.finish(proxy.contacts());
   proxy.step(T, motion.u, f2);
   return share * tau1_;

@@ -55,7 +55,6 @@ class PredictiveLaw::Of {
   Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
   double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
   bool both_ = true;      // both predictors run
-  double memory_ = 0;     // p of the predictors at this reading [-]
   Vec<N> b_d_;            // the damping for which quick_ is known
   bool quick_ = false;    // the device is overdamped, see dies_within_a_tick()
   bool limited_ = false;  // the last tick had motors at their limit

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/coupling/encoder_filter.h"
 #include "core/coupling/laws.h"
 #include "core/math/elementary.h"
 #include "core/math/solve.h"
@@ -19,24 +20,11 @@ struct TipMoved {
 // Bounds by mobility J M^-1 J' and levers J J'.
 TipMoved tip_moved(const Mat3& mobility, const Mat3& levers);
 
-// Jump of the velocity when an encoder makes a step q: 1.5 (1 - p)^2 (1 + p) q/T [rad/s].
+// Jump of the velocity when an encoder makes a step q, of a filter with memory p: 1.5 (1 - p)^2 (1
+// + p) q/T [rad/s].
 inline double velocity_jump(double p, double q, double T) {
   return 1.5 * (1 - p) * (1 - p) * (1 + p) * q / T;
 }
-
-// Memory p that the filter needs with encoders of step q. A jump of the reading makes the force of
-// a wall K jump by
-//     F_q = (K T/2 + B) g_v q L/T,   g_v = 1.5 (1 - p)^2 (1 + p),
-// B the wall's own damper. A light arm is held by the damping of the hand. From 40 g on a jump may
-// change the tip's velocity by at most 0.1 mm/s; from 20 g on that counts in part. The filter must
-// be quicker than the wall: T sqrt(K/m_n) <= 1 - p.
-struct WallMemory {
-  double K, T, q, damping;  // [N/m, s, rad]; the wall's damper, in m_n/T [-]
-  double shaken(double p, const TipMoved& tip) const;      // change of velocity, F_q T/m_n [m/s]
-  double needed(double least, const TipMoved& tip) const;  // needed p, at least `least`
-  double possible(const TipMoved& tip) const;              // largest p
-  double chosen(double least, const TipMoved& tip) const;  // p by both, at least `least`
-};
 
 // True if some joint that moves alone, the others free, loses its motion to its damping b_d within
 // a tick: T b_d_j (M^-1)_jj > 1. From 2 on the midpoint rule predicts oscillation; with little
@@ -74,7 +62,8 @@ class Predictor {
   void start(const Vec<N>& x, const Vec<N>& v, const Vec<N>& f) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
     ahead_ = Vec<N>::Constant(x.size(), kMidpoint);
-    tracks_.fill({x, v, zero, f, x, v, 0, zero, x, v});
+    tracks_.fill({x, v, zero, f, x, v, 0, zero, zero, {}, x, v});
+    rest_rate_ = doubt_ = 0;
     sent_.fill(zero);
     active_ = 0;
   }
@@ -83,26 +72,51 @@ class Predictor {
     for (Track& t : tracks_) t.x = t.x_ahead = t.x_met = y;
   }
 
-  // Corrects by a reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad];
-  // inside a cell an encoder says nothing. both: the second predictor runs too.
+  // Corrects by a reading y, `elapsed` after the last one [rad, s]. q: the encoders' step [rad]; p:
+  // memory of the filter, NaN where it weighs the step; both: the second predictor runs too.
   void correct(const Vec<N>& y, double elapsed, double q, double p, bool both) {
     const double forget = exponential(-elapsed / kJudged);
+    const bool weighs = std::isnan(p);
+    double doubt = 0;
     for (Track& t : tracks_) {
       t.x_ahead = t.x + elapsed * t.w;  // as predicted
       t.v_ahead = end_velocity(t.v, t.w);
-      t.error = y - t.x_ahead;
-      if (q > 0) t.error -= t.error.cwiseMin(q / 2).cwiseMax(-q / 2);
-      t.x = t.x_ahead + (1 - p * p * p) * t.error;
-      t.v = t.v_ahead + 1.5 * (1 - p) * (1 - p) * (1 + p) / elapsed * t.error;
-      t.misses = forget * t.misses + t.error.squaredNorm();
+      t.news = y - t.x_ahead;
+      if (weighs) {
+        doubt += (&t == &tracks_[0] ? 1 : -1) * weigh(t, elapsed, q);
+      } else {
+        fade(t, elapsed, q, p);
+        t.misses = forget * t.misses + t.news.squaredNorm();
+      }
       if (!both) break;
     }
+    doubt_ = both ? forget * doubt_ + doubt : 0;
     if (!both) {
       active_ = 0;
-    } else if (active_ == 0 ? 2 * tracks_[1].misses < tracks_[0].misses
-                            : tracks_[0].misses < tracks_[1].misses) {
+    } else if (weighs ? other_is_surer() : other_missed_less()) {
       active_ = 1 - active_;
     }
+  }
+
+  // Sets how fast the hand's force may change until the next reading. on_tip: response of the
+  // device to a force at the tip; J: of the tip; at_rest: the rate at rest [N/s].
+  void expect_hand(const Levers<N>& on_tip, const Jacobian<N>& J, double hand_mass,
+                   double at_rest) {
+    const Mat3 yields = Mat3::Identity() + hand_mass * (J * on_tip), carried = yields.inverse();
+    rest_rate_ = at_rest * std::sqrt(on_tip.rowwise().squaredNorm().maxCoeff());
+    const double light = at_rest + kHandHold * (J * tracks_[0].v).norm();
+    const double heavy = at_rest + kHandHold * (J * tracks_[1].v).norm();
+    for (Eigen::Index i = 0; i < on_tip.rows(); ++i) {
+      const Vec3 moved = on_tip.row(i).transpose();
+      tracks_[0].rate[i] = light * moved.norm();
+      tracks_[1].rate[i] = heavy * (carried * moved).norm();
+    }
+  }
+  // Jump of a joint's velocity when an encoder makes a step q, at rest, where the coming torque
+  // meets the device [rad/s].
+  double weighed_jump(double q) const {
+    const double w = std::min(filter_bandwidth(rest_rate_, q), quickest(T_));
+    return q * w * (1 + w * delay_ * T_);
   }
 
   // State of the device now, by the active predictor [rad, rad/s].
@@ -110,8 +124,8 @@ class Predictor {
   const Vec<N>& v_now() const { return active().v; }
 
   // Sets the model of the device at x_now(): M, C, its damping b_d, the tip's J; T of the coming
-  // tick [s]. quick: see dies_within_a_tick(). If the coming torque is known to be late, goes on to
-  // where it will meet the device.
+  // tick [s]. p: as correct() had it. quick: see dies_within_a_tick(). If the coming torque is
+  // known to be late, goes on to where it will meet the device.
   void model(const Mat<N>& M, const Mat<N>& C, const Vec<N>& b_d, const Jacobian<N>& J, double T,
              double p, double mu, double hand_mass, int delay, bool quick) {
     T_ = T;
@@ -121,12 +135,12 @@ class Predictor {
     } else {
       ahead_.setConstant(M.rows(), kMidpoint);
     }
-    const double fresh = 1 - p, gain = fresh * fresh * fresh / (T * T);
+    const double fresh = 1 - p, gain = std::isnan(p) ? 1 : fresh * fresh * fresh / (T * T);
     for (std::size_t m = 0; m < (hand_mass > 0 ? 2 : 1); ++m) {
       Track& t = tracks_[m];
       t.Mp = mu * M;
       if (m == 1) add_mass(hand_mass, J, t.Mp);
-      t.f += gain * (t.Mp * t.error);
+      t.f += gain * (t.Mp * t.news);
       t.Mp = (t.Mp * (ahead_ / T).asDiagonal()).eval();
       t.D0 = t.Mp + C;
       t.D0.diagonal() += b_d;
@@ -176,13 +190,46 @@ class Predictor {
     Vec<N> f;                 // torque of the hand and of all that the model lacks [N m]
     Vec<N> x_ahead, v_ahead;  // predicted for the next reading
     double misses = 0;        // squared errors, fading [rad^2]
-    Vec<N> error{};           // of the last reading [rad]
+    Vec<N> news{};            // of the last reading: see fade() and weigh()
+    Vec<N> rate{};            // of the acceleration by a hand [rad/s^3]
+    std::array<EncoderFilter, kCapacity<N>> filters{};  // of each joint
     Vec<N> x_met{}, v_met{};  // state where the coming torque meets the device
     Mat<N> Mp{}, D0{};        // Mp: inertia over the tick's length [N m s/rad]; D0: Mp + C + b_d
   };
   static constexpr double kJudged = 0.05;  // time constant of judging predictions [s]
+  static constexpr double kSurer = 1;      // doubt from which on the other predictor is active
 
   static constexpr double kMidpoint = 2;  // exact_decay() of the midpoint rule
+
+  // Corrects by the error in `news` with a memory p that fades; inside a cell an encoder says
+  // nothing.
+  static void fade(Track& t, double T, double q, double p) {
+    if (q > 0) t.news -= t.news.cwiseMin(q / 2).cwiseMax(-q / 2);
+    t.x = t.x_ahead + (1 - p * p * p) * t.news;
+    t.v = t.v_ahead + 1.5 * (1 - p) * (1 - p) * (1 + p) / T * t.news;
+  }
+  // Corrects by the error in `news`, joint by joint, and leaves there the change of the
+  // acceleration [rad/s^2]. Returns the surprise.
+  static double weigh(Track& t, double T, double q) {
+    double surprise = 0;
+    const double most = filter_rate(quickest(T), q);
+    for (Eigen::Index i = 0; i < t.news.size(); ++i) {
+      const double e = t.news[i];
+      const auto gains =
+          t.filters[static_cast<std::size_t>(i)].take(T, q, std::min(t.rate[i], most));
+      t.x[i] = t.x_ahead[i] + gains.x * e;
+      t.v[i] = t.v_ahead[i] + gains.v * e;
+      t.news[i] = gains.a * e;
+      surprise += gains.surprise(e);
+    }
+    return surprise;
+  }
+
+  bool other_is_surer() const { return active_ == 0 ? doubt_ > kSurer : doubt_ < -kSurer; }
+  bool other_missed_less() const {
+    return active_ == 0 ? 2 * tracks_[1].misses < tracks_[0].misses
+                        : tracks_[0].misses < tracks_[1].misses;
+  }
 
   const Track& active() const { return tracks_[active_]; }
   Vec<N> mean_velocity(const Track& t, const Vec<N>& v, const Vec<N>& tau) const {
@@ -228,7 +275,9 @@ class Predictor {
   Levers<N> of_tip_;            // response of the first predictor to a force at the tip
   Mat3 held_;                   // see carry()
   std::size_t active_ = 0;
-  Vec<N> ahead_;  // see exact_decay()
+  double doubt_ = 0;      // surprise of the first predictor less the second one's, fading
+  double rest_rate_ = 0;  // largest rate of a joint's acceleration by a hand at rest [rad/s^3]
+  Vec<N> ahead_;          // see exact_decay()
   // Torques that were sent, in a ring: the delay may turn out to be another one [N m].
   std::array<Vec<N>, kMostDelay + 1> sent_;
   std::size_t newest_ = 0;

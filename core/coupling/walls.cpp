@@ -21,6 +21,15 @@ TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M) {
   return {1 / largest(J * M.llt().solve(J.transpose())), std::sqrt(largest(J * J.transpose()))};
 }
 
+double friction_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& friction) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < friction.size(); ++i) {
+    const double lever = J.col(i).norm();
+    if (lever > 0) least = std::min(least, friction[i] / lever);
+  }
+  return std::isinf(least) ? 0 : least;
+}
+
 Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d) {
   const Mat3 mobility = J * b_d.cwiseInverse().asDiagonal() * J.transpose();
   return Eigen::SelfAdjointEigenSolver<Mat3>(mobility).eigenvectors().col(2);
@@ -45,33 +54,43 @@ double mistaken_wall(const TipAlong& tip, const WallSetting& s) {
 
 namespace {
 
-// Stiffest walls that were tried: with exact encoders, with steps, and with coarse ones.
-constexpr double kTried = 20000, kTriedStepped = 10000, kCoarseWall = 2000;  // [N/m]
-// Wall for encoder steps too coarse for a tick, and the speed q/T from which they are.
-constexpr double kSoftest = 100, kFineSpeed = 0.3;  // [N/m], [rad/s]
-constexpr double kTriedTick = 0.001;                // of these trials [s]
+// Stiffest walls that were tried: with exact encoders, and with steps.
+constexpr double kTried = 20000, kTriedStepped = 10000;  // [N/m]
+constexpr double kTriedTick = 0.001;                     // of these trials [s]
 // Bounds of K in m_n over the square of a time [-]. kQuick: of a tick, found with 24 arms, failing
-// from 3 on. The others, found with the built-in arm: of a delay that is not known to the law, and
-// of a known one without and with encoder steps.
-constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2, kForeseenStepped = 0.08;
+// from 3 on. The others: of a delay that is not known to the law, of a known one, and of one with
+// encoder steps that make the estimate jump by more than kJump.
+constexpr double kQuick = 2, kUnforeseen = 0.3, kForeseen = 0.2, kForeseenCoarse = 0.08;
+constexpr double kJump = 0.01;        // [m/s]
 constexpr double kSofter = 1.0 / 25;  // part of a wall that the proxy's inertia may take off
-// Largest change of the tip's velocity by an encoder's step through the wall [m/s]: for arms below
-// kLight [kg], held by the damping of the hand, and for heavier ones.
-constexpr double kLight = 0.02, kLightShaken = 1e-2, kShaken = 3e-4;
+// Largest force that a step of the encoder may make of a wall, and largest speed of a tip inside a
+// cell, which in theory swings there with kSwing of step times natural frequency.
+constexpr double kStepForce = 0.25, kCellSpeed = 5e-3, kSwing = 0.6;  // [N], [m/s], [-]
 
-// Stiffest wall for which the predictors have a memory long enough for the encoder's steps and
-// short enough for the wall [N/m].
-double quiet_wall(const TipMoved& tip, WallMemory wall, double least) {
-  const bool light = tip.mass < kLight;
-  double low = 1, high = kTried;
-  while (high / low > 1.001) {
-    wall.K = std::sqrt(low * high);
-    const double p = light ? least : wall.possible(tip);
-    const bool quiet = p >= least && wall.shaken(p, tip) <= (light ? kLightShaken : kShaken);
-    (quiet ? low : high) = wall.K;
+// Walls of a tip whose encoders have a step q [m]; t_d: delay of the torque [s].
+struct StepWalls {
+  double mass, q, t_d;  // [kg, m, s]
+
+  double bandwidth(double K) const { return filter_bandwidth(resting_rate(K, mass, q) / mass, q); }
+  // Growth of an error of the position until the torque meets the device.
+  double growth(double K) const {
+    const double a = bandwidth(K) * t_d;
+    return 1 + a + a * a / 2;
   }
-  return low;
-}
+  // Stiffest wall of which an error by a step makes at most a force F.
+  double by_force(double F) const {
+    double low = 0, high = 2 * kTried;
+    for (int i = 0; i < 40; ++i) {
+      const double K = (low + high) / 2;
+      (K * q * growth(K) <= F ? low : high) = K;
+    }
+    return low;
+  }
+  double by_cell() const {
+    const double w = kCellSpeed / (kSwing * q);
+    return mass * w * w;
+  }
+};
 
 }  // namespace
 
@@ -83,12 +102,13 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
   };
   bound(kQuick * tip.mass / (T * T), WallBound::quick);
   bound(kSofter * s.at.k_vc / (s.inertia_ratio * tip.lever * tip.lever), WallBound::proxy);
+  const StepWalls steps{tip.mass, q * tip.lever, s.at.delay};
   if (q > 0) {
-    bound(kTriedStepped, WallBound::encoder);
-    bound(quiet_wall(tip, {0, T, q, s.gains.damping}, s.gains.p), WallBound::encoder);
-    if (!s.coarse && q > kFineSpeed * T) bound(kSoftest, WallBound::rough);
+    bound(kTriedStepped, WallBound::tried);
+    bound(steps.by_force(kStepForce), WallBound::step);
+    const double cell = steps.by_cell(), held = steps.by_force(2 * s.friction);
+    bound(std::max(cell, held), held > cell ? WallBound::friction : WallBound::cell);
   }
-  if (s.coarse) bound(kCoarseWall, WallBound::encoder);
   if (s.at.hand_mass > s.mass_foreseen) {
     const TipAlong along{tip.mass, 0, tip.lever * tip.lever};
     bound(mistaken_wall(along, s.at) / 2, WallBound::hand);
@@ -97,9 +117,10 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
     if (by > T / 4) bound(part * tip.mass / (by * by), WallBound::delay);
   };
   late(std::abs(s.at.delay - s.delay_foreseen), kUnforeseen);
-  late(s.at.delay, s.at.delay > s.delay_foreseen ? kUnforeseen
-                   : q > 0                       ? kForeseenStepped
-                                                 : kForeseen);
+  const bool jumps = q > 0 && steps.q * steps.bandwidth(0) > kJump;
+  late(s.at.delay, jumps                                     ? kForeseenCoarse
+                   : q == 0 && s.at.delay > s.delay_foreseen ? kUnforeseen
+                                                             : kForeseen);
   return wall;
 }
 

@@ -19,6 +19,9 @@ TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eig
                    const Vec3& n);
 // Mass of the easiest direction, and the longest lever.
 TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M);
+// Coulomb friction with which joints hold the tip, however it is pushed: the least of each joint's
+// over its lever [N]. friction: of each joint [N m].
+double friction_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& friction);
 // Unit vector along which the joints' own dampers hold the tip least: there walls are hardest to
 // render.
 Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d);
@@ -47,19 +50,19 @@ double mistaken_wall(const TipAlong& tip, const WallSetting& s);
 struct PredictiveWallSetting {
   WallSetting at;
   double encoder_step = 0;    // [rad]
-  PredictorGains gains{};     // by this step
-  bool coarse = false;        // gains are the coarse ones
+  double friction = 0;        // see friction_at_tip() [N]
   double mass_foreseen = 0;   // mass of the hand in the predictor [kg]
   double delay_foreseen = 0;  // delay known to the predictor [s]
   double inertia_ratio = 0;   // M2 / M1 [-]
 };
 enum class WallBound {
-  tried,    // no stiffer wall was tried
-  quick,    // the tip's mass moves too far in a tick for a prediction that does not know the hand
-  proxy,    // the proxy's inertia is felt through the spring k_vc
-  encoder,  // a step of the encoder shakes the tip
-  rough,    // the encoder's step is too coarse for so short a tick
-  hand,     // the hand is heavier than foreseen
+  tried,     // no stiffer wall was tried
+  quick,     // the tip's mass moves too far in a tick for a prediction that does not know the hand
+  proxy,     // the proxy's inertia is felt through the spring k_vc
+  step,      // a step of the encoder pushes the hand
+  cell,      // the tip moves inside a cell of the encoder, where no reading tells of it
+  friction,  // as before, and friction no longer stops it
+  hand,      // the hand is heavier than foreseen
   delay,
 };
 struct BoundedWall {

@@ -13,6 +13,7 @@ namespace limpid {
 namespace {
 
 constexpr std::size_t kLongestConfig = 1 << 20;  // [bytes]
+constexpr std::string_view kRetired = "predictor.preset";
 
 std::optional<ParameterValue> value_of(const toml::node& node) {
   if (const auto x = node.value_exact<bool>()) return *x;
@@ -45,6 +46,7 @@ void take_table(Parameters& p, const toml::table& table, const std::string& pref
                 const std::string& where, const Untaken& untaken) {
   for (const auto& [name, node] : table) {
     const std::string key = prefix + std::string(name.str());
+    if (is_retired(key)) continue;
     if (node.is_table() && find_parameter(key) == nullptr) {
       take_table(p, *node.as_table(), key + ".", where, untaken);
       continue;
@@ -76,6 +78,12 @@ ParameterValue parse_value(const std::string& text) {
 }
 
 }  // namespace
+
+bool is_retired(std::string_view key) { return key == kRetired; }
+
+bool has_retired(std::string_view text, const std::string& where) {
+  return static_cast<bool>(parse_toml(text, where).at_path(kRetired));
+}
 
 void apply_config(Parameters& p, const std::filesystem::path& file) {
   apply_config_text(p, read_text(file, kLongestConfig), file.string());

@@ -21,6 +21,12 @@ namespace limpid {
 void apply_config(Parameters& p, const std::filesystem::path& file);
 void apply_config_text(Parameters& p, std::string_view text, const std::string& where);
 
+// True of a key that files of Limpid 0.2 may have, and that sets nothing any more: it chose among
+// constants of the predictive law's former filter. The functions for text pass over it.
+bool is_retired(std::string_view key);
+// True of text that has such a key. Errors: FileError for text that is not TOML.
+bool has_retired(std::string_view text, const std::string& where);
+
 // A key of a table that was not applied, and why, in the words of apply_config(). The key is empty
 // if the table is no table.
 struct UntakenKey {

@@ -69,11 +69,10 @@ DrawSection device_section(Desktop& d) {
           parameters, arm,
           {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
     }
-    draw_parameters(
-        parameters, arm,
-        {"device.torque_limit", "observer.anti_windup", "device.damping", "device.friction",
-         "device.encoder_step", "device.delay", "model.delay", "predictor.preset",
-         "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
+    draw_parameters(parameters, arm,
+                    {"device.torque_limit", "observer.anti_windup", "device.damping",
+                     "device.friction", "device.encoder_step", "device.delay", "model.delay",
+                     "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
   };
 }
 

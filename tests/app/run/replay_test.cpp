@@ -6,6 +6,7 @@
 #include "app/run/analysis.h"
 #include "app/run/recorder.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "devices/files/config_file.h"
 #include "tests/app/run/recorded.h"
 #include "tests/devices/files/test_files.h"
 #include "tests/support/test_session.h"
@@ -255,6 +256,29 @@ TEST(Replay, GivesTheVirtualArmTheForcesThatTheMotorsHeld) {
     EXPECT_EQ(p.holds_springs, p.springy);
     EXPECT_EQ(p.holds_weight, p.weighs);
   }
+}
+
+// Limpid 0.2 recorded a key that chose among constants of its filter of encoder steps.
+TEST(Replay, SaysWhereAFormerFilterMadeTheRows) {
+  const test::TempDir dir;
+  RunPlan plan = test::plan("table.toml", "touch.csv", 0.05);
+  plan.parameters.kind = CouplingKind::predictive;
+  Session session = recorded(plan, dir / "a.h5");
+  const auto says = [&](double step, const std::string& own) {
+    Parameters p = plan.parameters;
+    p.encoder_step = step;
+    const std::string table = "[predictor]\n";
+    session.info.config = config_text(p);
+    session.info.config.insert(session.info.config.find(table) + table.size(), own);
+    const std::string note = replay(session, "a.h5", p).note;
+    return note.find("filter") != std::string::npos;
+  };
+  EXPECT_TRUE(says(1e-4, "preset = \"auto\"\n"));
+  EXPECT_FALSE(says(0, "preset = \"auto\"\n")) << "exact encoders";
+  EXPECT_FALSE(says(1e-4, "preset = \"auto\"\np = 0.3\n")) << "a memory of its own";
+  EXPECT_FALSE(says(1e-4, "")) << "recorded now";
+  session.changes = {{20, "device.encoder_step = 1e-4"}, {30, "predictor.preset = \"fine\""}};
+  EXPECT_TRUE(says(0, "preset = \"auto\"\n")) << "set while it ran";
 }
 
 }  // namespace

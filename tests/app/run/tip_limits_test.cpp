@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/dynamics/arm.h"
 #include "tests/support/built_in.h"
 
@@ -47,11 +49,7 @@ TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   using enum CouplingKind;
   const Parameters exact;
   EXPECT_GE(wall(limits(exact), predictive), 10000);
-  Parameters fine, coarse, heavy, late;
-  fine.encoder_step = 1e-4;
-  expect_named(fine, 7400);
-  coarse.encoder_step = 5e-4;
-  expect_named(coarse, 2000);
+  Parameters heavy, late;
   heavy.hand_mass_at_tip = 0.5;
   heavy.hand_mass = 0.05;
   EXPECT_LT(wall(limits(heavy), predictive), wall(limits(exact), predictive));
@@ -65,6 +63,49 @@ TEST(TipLimits, OfThePredictiveLawFallByWhatItDoesNotKnow) {
   expect_named(late, 2300);
   late.device_delay = late.delay = 5;
   EXPECT_LE(wall(limits(late), predictive), 100);
+}
+
+// Devices that people own, as the theory of encoder steps has them: 0.25 N for a step, 5 mm/s
+// inside a cell, friction over half a step.
+TEST(TipLimits, OfThePredictiveLawCountStepsAndFriction) {
+  const auto named = [](const char* file, double step, double friction) {
+    const ArmDescription arm = read_urdf(test::assets_dir() / "devices" / file);
+    Parameters p;
+    p.encoder_step = step;
+    p.friction = friction;
+    return tip_limits(arm, rest_pose(arm), p, {})
+        .walls[static_cast<std::size_t>(CouplingKind::predictive)];
+  };
+  const auto expect = [](const TipLimits::Wall& wall, double stiffness, const char* bound) {
+    EXPECT_NEAR(wall.stiffness / stiffness, 1, 0.1) << wall.bound;
+    EXPECT_TRUE(wall.bound.starts_with(bound)) << wall.bound;
+  };
+  expect(named("touch.urdf", 4.19e-4, kFromArm), 0.25 / 9.2e-5, "step: ");
+  expect(named("touch.urdf", 4.19e-4, 0), 0.036 * std::pow(5e-3 / 0.6 / 9.2e-5, 2), "cell: ");
+  expect(named("touch.urdf", 4.19e-4, 0.02), 2 * (0.02 / 0.191) / 9.2e-5, "friction: 0.1 N");
+  expect(named("omni.urdf", 4.19e-4, kFromArm), 0.036 / 5 * std::pow(5e-3 / 0.6 / 9.2e-5, 2),
+         "cell: ");
+  expect(named("falcon.urdf", 3.84e-4, kFromArm), 6500, "step: ");
+  for (const char* file : {"omega.urdf", "inverse3.urdf"}) {
+    expect(named(file, 1e-4, kFromArm), 10000,
+           "the stiffest wall that was tried with encoder steps");
+  }
+  EXPECT_NE(named("touch.urdf", 4.19e-4, 0).bound.find("with 0.26 N of friction 27"),
+            std::string::npos)
+      << named("touch.urdf", 4.19e-4, 0).bound;
+}
+
+// Friction that the motors take off no longer holds the tip.
+TEST(TipLimits, DoNotCountFrictionThatIsTakenOff) {
+  const ArmDescription arm = read_urdf(test::assets_dir() / "devices/touch.urdf");
+  Parameters p;
+  p.encoder_step = 4.19e-4;
+  p.friction = 0.02;
+  const auto wall_with = [&](double share) {
+    p.friction_share = share;
+    return wall(tip_limits(arm, rest_pose(arm), p, {}), CouplingKind::predictive);
+  };
+  EXPECT_NEAR(wall_with(0.5), wall_with(0) / 2, 1e-6 * wall_with(0));
 }
 
 TEST(TipLimits, OfThePapersLawsAreItsSpringAndItsLag) {

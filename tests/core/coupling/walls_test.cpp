@@ -65,5 +65,77 @@ TEST(Walls, OfEveryHandAreTwiceTheDampingOverATick) {
               1e-9);
 }
 
+// Bounds of a wall by encoder steps: the tip of 51.6 g and 0.2 m that a Touch has, or another mass.
+struct Stepped {
+  double mass = 0.0516, friction = 0, q_t = 8.4e-5, delay = 0, T = 0.001;  // [kg, N, m, s, s]
+
+  BoundedWall named() const {
+    constexpr double kLever = 0.2;
+    PredictiveWallSetting s{.at = {.T = T, .k_vc = 10, .delay = delay}};
+    s.encoder_step = q_t / kLever;
+    s.friction = friction;
+    s.delay_foreseen = delay;
+    s.inertia_ratio = 1e-9;
+    return predictive_wall({mass, kLever}, s);
+  }
+};
+
+// The tip swings with 0.6 of a step times its natural frequency, which may be 5 mm/s.
+TEST(Walls, ThatNoFrictionHoldsEndWhereTheTipSwingsInsideACell) {
+  for (const double mass : {0.01, 0.0516, 0.3}) {
+    const BoundedWall wall = Stepped{.mass = mass}.named();
+    EXPECT_NEAR(0.6 * 8.4e-5 * std::sqrt(wall.stiffness / mass), 5e-3, 1e-8);
+    EXPECT_EQ(wall.by, WallBound::cell);
+  }
+}
+
+TEST(Walls, ThroughFineEncodersEndWhereTheyWereTried) {
+  for (const double friction : {0.0, 0.1}) {
+    const BoundedWall wall = Stepped{.friction = friction, .q_t = 2e-6}.named();
+    EXPECT_EQ(wall.stiffness, 10000);
+    EXPECT_EQ(wall.by, WallBound::tried);
+  }
+}
+
+TEST(Walls, AreHeldByFrictionUpToItsForceOverHalfAStep) {
+  const BoundedWall wall = Stepped{.friction = 0.06}.named();
+  EXPECT_NEAR(wall.stiffness * 8.4e-5 / 2, 0.06, 1e-8);
+  EXPECT_EQ(wall.by, WallBound::friction);
+  const BoundedWall little = Stepped{.friction = 0.02}.named();
+  EXPECT_EQ(little.by, WallBound::cell);
+  EXPECT_EQ(little.stiffness, Stepped{}.named().stiffness) << "less than without";
+}
+
+TEST(Walls, EndWhereAStepPushesWithAQuarterOfANewton) {
+  for (const double friction : {0.26, 5.0}) {
+    const BoundedWall wall = Stepped{.friction = friction}.named();
+    EXPECT_NEAR(wall.stiffness * 8.4e-5, 0.25, 1e-8);
+    EXPECT_EQ(wall.by, WallBound::step);
+  }
+}
+
+// An error of position grows with the filter's bandwidth until a late torque meets the device.
+TEST(Walls, OfStepsAreSofterByWhatADelayMakesOfThem) {
+  constexpr double kDelay = 0.001;
+  const double K = Stepped{.friction = 0.26, .delay = kDelay}.named().stiffness;
+  const double rest = std::cbrt(std::sqrt(12.0) * 10 / 0.0516 / 8.4e-5);
+  const double a = kDelay * std::max(rest, std::sqrt(K / 0.0516));
+  EXPECT_NEAR(K * 8.4e-5 * (1 + a + a * a / 2), 0.25, 1e-6);
+}
+
+TEST(Walls, OfStepsAreTheSameForEveryTickUpToAMillisecond) {
+  for (const double friction : {0.0, 0.06, 0.26}) {
+    const double usual = Stepped{.friction = friction}.named().stiffness;
+    EXPECT_EQ((Stepped{.friction = friction, .T = 2.5e-4}.named().stiffness), usual);
+  }
+}
+
+TEST(Walls, KnowTheFrictionOfTheJointThatHoldsTheTipLeast) {
+  Eigen::MatrixXd J(3, 3);
+  J << 0.1, 0, 0, 0, 0.2, 0, 0, 0, 0;
+  EXPECT_NEAR(friction_at_tip(J, Eigen::Vector3d(0.02, 0.03, 0)), 0.15, 1e-12)
+      << "the last one does not move it";
+}
+
 }  // namespace
 }  // namespace limpid

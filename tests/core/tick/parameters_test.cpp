@@ -57,7 +57,6 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
                                        "device.torque_limit",
                                        "coupling.damping",
                                        "coupling.band",
-                                       "predictor.preset",
                                        "predictor.p",
                                        "predictor.mu",
                                        "predictor.hand_mass",

@@ -142,6 +142,49 @@ TEST(Inverse3, HasTheCursorOfItsServiceForJointsAndFeelsAlikeInAllDirections) {
   }
 }
 
+TEST(Touch, IsAnOmniFiveTimesAsHeavyWithTheFrictionOfItsDataSheet) {
+  const ArmDescription light = omni(), real = read_urdf(test::assets() / "devices/touch.urdf");
+  ASSERT_EQ(real.dof(), 3);
+  EXPECT_TRUE(real.warnings.empty());
+  const Vec3 lever(0.2, std::hypot(0.2, 0.04), kLength);  // of the joints at (0.2, 0, -0.04) [m]
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(real.links[i].mass, 5 * light.links[i].mass, 1e-12);
+    EXPECT_LT((real.links[i].inertia - 5 * light.links[i].inertia).norm(), 1e-12);
+    EXPECT_NEAR(real.joints[i].friction / lever[static_cast<Eigen::Index>(i)], 0.26, 1e-3);
+    EXPECT_EQ(real.joints[i].damping, light.joints[i].damping);
+    EXPECT_EQ(real.joints[i].lower, light.joints[i].lower);
+    EXPECT_EQ(real.joints[i].upper, light.joints[i].upper);
+  }
+}
+
+// Slides that stand where the Inverse3's do, with the middle of their travel where the scenes are.
+TEST(SlidingDevices, HaveTheMassForceAndFrictionThatTheirFilesSay) {
+  struct Expected {
+    const char* file;
+    double mass, effort, friction, damping;  // [kg, N, N, N s/m]
+    Vec3 travel;                             // [m]
+  };
+  for (const Expected& e : {Expected{"omega.urdf", 0.2, 12, 0.4, 1, {0.16, 0.16, 0.11}},
+                            Expected{"falcon.urdf", 0.25, 9, 0.5, 1.5, {0.102, 0.102, 0.102}}}) {
+    const ArmDescription arm = read_urdf(test::assets() / "devices" / e.file);
+    ASSERT_EQ(arm.dof(), 3) << e.file;
+    EXPECT_TRUE(arm.warnings.empty()) << e.file;
+    EXPECT_LT((Arm<3>(arm).tip_at(rest(arm)) - rest_tip()).norm(), 0.002) << e.file;
+    double mass = 0;
+    for (std::size_t i = 3; i-- > 0;) {
+      const Joint& joint = arm.joints[i];
+      mass += arm.links[i].mass;
+      EXPECT_NEAR(mass, e.mass, 0.0021) << e.file << ", what slide " << i << " moves [kg]";
+      EXPECT_NEAR(joint.effort / kSlideUnit, e.effort, 1e-9) << e.file;
+      EXPECT_NEAR(joint.friction / kSlideUnit, e.friction, 1e-9) << e.file;
+      EXPECT_NEAR(joint.damping / kSlideUnit / kSlideUnit, e.damping, 1e-9) << e.file;
+      EXPECT_NEAR((joint.upper - joint.lower) * kSlideUnit, e.travel[static_cast<Eigen::Index>(i)],
+                  1e-9)
+          << e.file;
+    }
+  }
+}
+
 TEST(Scenes, AllReadWithTheOmni) {
   const ArmDescription arm = omni();
   int scenes = 0;

@@ -63,6 +63,20 @@ TEST(Config, RefusesWithFileLineKeyFoundAndAllowed) {
   }
 }
 
+// Recordings and settings of Limpid 0.2 have a key that is no more.
+TEST(Config, PassesOverARetiredKey) {
+  const std::string text = "[predictor]\npreset = \"coarse\"\np = 0.3\n";
+  Parameters p;
+  apply_config_text(p, text, "x.toml");
+  EXPECT_EQ(p.memory, 0.3);
+  EXPECT_TRUE(
+      take_config_table(p, "[parameters.predictor]\npreset = \"auto\"\n", "parameters", "x.toml")
+          .empty());
+  EXPECT_TRUE(has_retired(text, "x.toml"));
+  EXPECT_FALSE(has_retired("[predictor]\np = 0.3\n", "x.toml"));
+  EXPECT_THROW(apply_setting(p, "predictor.preset=fine"), ParameterError) << "by hand it is a slip";
+}
+
 TEST(Config, RefusesAFileThatIsNotThere) {
   Parameters p;
   EXPECT_THAT(refusal([&] { apply_config(p, "/nowhere/x.toml"); }), HasSubstr("/nowhere/x.toml"));

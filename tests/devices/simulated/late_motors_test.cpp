@@ -61,8 +61,7 @@ class LateMotors : public testing::Test {
     return predictive_wall(
                tip_, {{p.tick, p.k_vc, p.b_v, p.eta, p.hand_damping, 0, p.device_delay * p.tick},
                       p.encoder_step,
-                      p.gains(p.encoder_step),
-                      p.coarse(p.encoder_step),
+                      0,
                       p.hand_mass,
                       p.delay * p.tick,
                       p.inertia_ratio})

@@ -13,13 +13,13 @@ import numpy as np
 
 from .decomposition import apply, transposed
 from .dynamics import coriolis, inertia, tip_jacobian
-from .memory import Tip, chosen, stiffest
 from .session import Session
+from .steps import HELD, Tip, faded_jump, quickest, resting_rate, stiffest, weighed_jump
 from .urdf import Array
 
-_COARSE = 1.5e-4  # encoders coarser than this take the coarse preset [rad]
+_COARSE = 1.5e-4  # encoders coarser than this have other constants where a memory is set [rad]
 _FORGETTING = 0.05  # time constant of the predictors' errors [s]
-_PRESETS = {"fine": (0.2, 1.0, 0.2), "coarse": (0.45, 0.5, 0.1)}
+_SURER = 1.0  # log of the likelihoods' ratio at which the other predictor takes over
 _ROUNDS = 20
 # Number of ticks that are brought to agree with their model at a time. Between two encoder steps
 # nothing corrects a predictor, and its error grows: rounds over the whole session need not settle.
@@ -32,8 +32,7 @@ _SAME = 1e-9  # a predictor this near to the observed place was the active one [
 class Gains:
     """Gains of every row (N,)."""
 
-    p: Array  # lowest memory
-    own: Array  # bool: memory is set, and no other is chosen
+    p: Array  # memory; not a number where readings are weighed by the encoder's step
     mu: Array
     wall: Array  # damper of a wall, as a part of m_n / T
 
@@ -49,7 +48,7 @@ class Prediction:
     met_x: Array  # x and v where the coming torque meets the device
     met_v: Array
     heavy: Array  # bool (N,): the predictor with a hand's mass
-    memory: Array  # p (N,)
+    jump: Array  # of a joint's velocity at a step of the encoder (N,) [rad/s]
     ahead: Array  # theta^-1 (N, n): 2 by the midpoint rule
     jacobian: Array  # of the tip (N, 3, n)
     m1: Array  # M1 and C1 as the controller believes them, at (x, v)
@@ -66,16 +65,13 @@ class Prediction:
 
 
 def gains(s: Session) -> Gains:
-    """Gains of the settings, or of the preset where nothing is set."""
-    steps = s.number("device.encoder_step")[:, 0]
-    named = [
-        _PRESETS[name if name in _PRESETS else "coarse" if step > _COARSE else "fine"]
-        for name, step in zip(s.settings["predictor.preset"], steps)
-    ]
-    p, mu, wall = np.array(named).T
+    """Gains of the settings, or as usual where nothing is set."""
+    step = s.number("device.encoder_step")[:, 0]
     own_p, own_mu = (s.number(f"predictor.{name}")[:, 0] for name in ("p", "mu"))
-    return Gains(np.where(np.isnan(own_p), p, own_p), ~np.isnan(own_p),
-                 np.where(np.isnan(own_mu), mu, own_mu), wall)  # fmt: skip
+    coarse = ~np.isnan(own_p) & (step > _COARSE)
+    p = np.where(np.isnan(own_p) & ~(step > 0), 0.2, own_p)
+    mu = np.where(np.isnan(own_mu), np.where(coarse, 0.5, 1.0), own_mu)
+    return Gains(p, mu, np.where(coarse, 0.1, 0.2))
 
 
 def _model(s: Session, x: Array, v: Array) -> tuple[Array, Array]:
@@ -92,13 +88,21 @@ class _Pair:
     v: Array
     f: Array
     error: Array  # J (2,)
+    known: Array  # covariance of position, velocity and acceleration of each joint (2, n, 3, 3)
+    rate: Array  # of the acceleration by a hand
+    doubt: float = 0.0  # log of the likelihood of the heavy one over that of the light one
     active: int = 0
 
-    def correct(self, e: Array, p: float, tick: float, keep: float, both: bool) -> None:
-        """Corrects all but f, whose inertia depends on the next active predictor's place."""
+    def correct(self, e: Array, p: float, step: float, tick: float, keep: float, both: bool) -> Array:
+        """Corrects all but f by the readings' distance, and returns by how much f changes the
+        acceleration; f's inertia depends on the next active predictor's place."""
+        if np.isnan(p):
+            return self._weigh(e, step, tick, keep, both)
+        e = e - np.clip(e, -step / 2, step / 2)
         self.x = self.x + (1 - p**3) * e
         self.v = self.v + 1.5 * (1 - p) ** 2 * (1 + p) / tick * e
         self.error = keep * self.error + np.sum(e * e, axis=1)
+        self.doubt = keep * self.doubt if both else 0.0
         light, heavy = self.error
         if not both:
             self.active = 0
@@ -106,6 +110,25 @@ class _Pair:
             self.active = int(2 * heavy < light)
         else:
             self.active = int(not light < heavy)
+        return (1 - p) ** 3 / tick**2 * e
+
+    def _weigh(self, e: Array, step: float, tick: float, keep: float, both: bool) -> Array:
+        """Kalman's filter of each joint."""
+        moves = np.array([[1, tick, tick**2 / 2], [0, 1, tick], [0, 0, 1]])
+        known = moves @ self.known @ moves.T
+        most = quickest(tick) ** 3 * step / np.sqrt(12)
+        known[..., 2, 2] += (np.minimum(self.rate, most) * tick) ** 2
+        variance = known[..., 0, 0] + step**2 / 12
+        gain = known[..., 0] / variance[..., None]
+        self.known = known - gain[..., None] * known[..., :1, :]
+        self.x, self.v = self.x + gain[..., 0] * e, self.v + gain[..., 1] * e
+        light, heavy = np.sum(np.log(variance) + e * e / variance, axis=1) / 2
+        self.doubt = keep * self.doubt + light - heavy if both else 0.0
+        if not both:
+            self.active = 0
+        elif (self.doubt > _SURER) if self.active == 0 else (self.doubt < -_SURER):
+            self.active = 1 - self.active
+        return gain[..., 2] * e
 
 
 def _decays(s: Session, m1: Array) -> Array:
@@ -160,12 +183,14 @@ class _Model:
     mt: Array  # Mp theta^-1/T
     d0: Array
     ahead: Array  # theta^-1 (N, n)
-    memory: Array  # p (N,)
-    after: float  # p of the next row
+    p: Array  # as Gains have it
+    jump: Array  # as Prediction has it
+    rest: Array  # rate of the force of a hand at rest (N,) [N/s]
+    levers: Array  # acceleration by a force at the tip, of both predictors (N, 2, n)
 
 
-def _model_at(s: Session, x: Array, v: Array, m2: Array, quick: Array, p0: float) -> _Model:
-    """The model with the device at `x`; M2 of the proxy and p of the first row are given."""
+def _model_at(s: Session, x: Array, v: Array, m2: Array, quick: Array) -> _Model:
+    """The model with the device at `x`; M2 of the proxy is given."""
     g = gains(s)
     m1, c1 = _model(s, x, v)
     jacobian, ahead = tip_jacobian(s.chain, x), _ahead(s, m1, quick)
@@ -173,9 +198,15 @@ def _model_at(s: Session, x: Array, v: Array, m2: Array, quick: Array, p0: float
     mt = mp * ahead[:, None, None, :] / s.tick
     d0 = mt + (c1 + np.eye(s.dof) * s.damping[:, :, None])[:, None]
     step = s.number("device.encoder_step")[:, 0]
-    p = chosen(stiffest(s), Tip.of(jacobian, m1 + m2), step, g.p, g.wall, s.tick)
-    p = np.concatenate([[p0], np.where(g.own, g.p, p)])
-    return _Model(m1, c1, jacobian, mp, mt, d0, ahead, p[:-1], float(p[-1]))
+    rest = resting_rate(stiffest(s), Tip.of(jacobian, m1 + m2), step)
+    on_tip = np.linalg.solve(m1 + m2, transposed(jacobian))
+    hand = s.number("predictor.hand_mass")[:, :, None]
+    carried = on_tip @ np.linalg.inv(np.eye(3) + hand * (jacobian @ on_tip))
+    levers = np.linalg.norm(np.stack([on_tip, carried], axis=1), axis=3)
+    late = s.number("model.delay")[:, 0] * s.tick
+    jump = np.where(np.isnan(g.p), weighed_jump(rest * np.max(levers[:, 0], axis=1), step, late, s.tick),
+                    faded_jump(g.p, step, s.tick))  # fmt: skip
+    return _Model(m1, c1, jacobian, mp, mt, d0, ahead, g.p, jump, rest, levers)
 
 
 @dataclass(frozen=True)
@@ -185,7 +216,7 @@ class _Input:
     y: Array
     tau: Array  # torque that left for the motors
     delay: Array  # known delay (N,) [ticks]
-    half: Array  # half an encoder's step (N,) [rad]
+    step: Array  # of the encoders (N,) [rad]
     both: Array  # bool (N,): the heavy predictor exists
     quick: Array  # bool (N,)
     tick: float
@@ -200,12 +231,11 @@ class _Input:
         out = np.zeros((6, len(rows), self.y.shape[1]))
         heavy = np.zeros(len(rows), dtype=bool)
         for i, k in enumerate(rows):
-            p, ahead = model.memory[i], model.ahead[i]
-            e = self.y[k] - pair.x
-            e = e - np.clip(e, -self.half[k], self.half[k])
-            stayed = pair.active
-            pair.correct(e, p, t, keep, bool(self.both[k]))
-            pair.f = pair.f + (1 - p) ** 3 / t**2 * (model.mp[i] @ e[..., None])[..., 0]
+            ahead, stayed = model.ahead[i], pair.active
+            if k > 0:  # the first reading is where the device is taken to be
+                change = pair.correct(self.y[k] - pair.x, model.p[i], self.step[k], t, keep,
+                                      bool(self.both[k]))  # fmt: skip
+                pair.f = pair.f + (model.mp[i] @ change[..., None])[..., 0]
 
             def mean(v: Array, tau: Array, i: int = i) -> Array:
                 push = (model.mt[i] @ v[..., None])[..., 0] + pair.f + tau
@@ -229,6 +259,8 @@ class _Input:
                 a = pair.active
                 out[:, i] = pair.x[a], pair.v[a], pair.f[a], w[a], met_x[a], met_v[a]
             heavy[i] = a == 1
+            speed = np.linalg.norm(pair.v @ model.jacobian[i].T, axis=1)
+            pair.rate = (model.rest[i] + HELD * speed)[:, None] * model.levers[i]
             pair.x = pair.x + t * w
             pair.v = pair.v + ahead * (w - pair.v)
         return *out, heavy
@@ -251,12 +283,14 @@ def _input(s: Session, seen: Seen | None = None) -> tuple[_Input, _Pair]:
     """Input of the recursion, and the pair at the first row."""
     given = _Input(s["/device/measured_position"], s.law_torque,
                    s.number("model.delay")[:, 0].astype(int),
-                   s.number("device.encoder_step")[:, 0] / 2,
+                   s.number("device.encoder_step")[:, 0],
                    s.number("predictor.hand_mass")[:, 0] > 0, _quick(s), s.tick, seen,
                    np.zeros(len(s), dtype=bool))  # fmt: skip
     start = (s[f"/{name}"][0] for name in ("device/measured_position", "device/velocity",
                                            "hand/torque_estimate"))  # fmt: skip
-    return given, _Pair(*(np.tile(value, (2, 1)) for value in start), np.zeros(2))
+    known = np.tile(np.diag([1e-8, 1.0, 1e4]), (2, s.dof, 1, 1))
+    state = [np.tile(value, (2, 1)) for value in start]
+    return given, _Pair(*state, np.zeros(2), known, np.zeros((2, s.dof)))
 
 
 def _apart(s: Session, a: tuple[Array, Array], b: tuple[Array, Array]) -> float:
@@ -268,25 +302,23 @@ _Fields = tuple[Array, ...]  # those of Prediction up to d0
 
 def _fields(model: _Model, moved: tuple[Array, ...]) -> _Fields:
     each, which = np.arange(len(moved[0])), moved[-1].astype(int)
-    return (*moved, model.memory, model.ahead, model.jacobian, model.m1, model.c1,
+    return (*moved, model.jump, model.ahead, model.jacobian, model.m1, model.c1,
             model.mt[each, which], model.d0[each, which])  # fmt: skip
 
 
-def _window(s: Session, m2: Array, given: _Input, pair: _Pair, rows: range, p0: float) -> (
-    tuple[_Pair, float, _Fields]
-):
-    """The pair and p after these rows, and the fields of the rows."""
+def _window(s: Session, m2: Array, given: _Input, pair: _Pair, rows: range) -> tuple[_Pair, _Fields]:
+    """The pair after these rows, and the fields of the rows."""
     which = slice(rows.start, rows.stop)
     part = s.rows(which)
     x, v = given.y[which], np.tile(pair.v[pair.active], (len(rows), 1))
     for _ in range(_ROUNDS):
-        model = _model_at(part, x, v, m2[which], given.quick[which], p0)
+        model = _model_at(part, x, v, m2[which], given.quick[which])
         after, before = copy.copy(pair), (x, v)
         moved = given.recur(after, rows, model)
         x, v = moved[:2]
         if _apart(s, (x, v), before) < _SETTLED:
             break
-    return after, model.after, _fields(model, moved)
+    return after, _fields(model, moved)
 
 
 def _prediction(s: Session, fields: _Fields, w: Array, confirmed: Array) -> Prediction:
@@ -300,10 +332,10 @@ def predict(s: Session, m2: Array) -> Prediction:
     """Both predictors over a whole session with this law from the first row on; M2 of the proxy (N,
     n, n)."""
     given, pair = _input(s)
-    parts, p0 = [], float(gains(s).p[0])
+    parts = []
     for begin in range(0, len(s), _WINDOW):
         rows = range(begin, min(begin + _WINDOW, len(s)))
-        pair, p0, part = _window(s, m2, given, pair, rows, p0)
+        pair, part = _window(s, m2, given, pair, rows)
         parts.append(part)
     fields = tuple(np.concatenate(field) for field in zip(*parts))
     return _prediction(s, fields, fields[3], given.confirmed)
@@ -324,7 +356,7 @@ def predict_seen(s: Session, m2: Array, model: Prediction, seen: Seen) -> tuple[
 
 def _from(s: Session, m2: Array, x: Array, v: Array, seen: Seen) -> Prediction:
     given, pair = _input(s, seen)
-    model = _model_at(s, x, v, m2, given.quick, float(gains(s).p[0]))
+    model = _model_at(s, x, v, m2, given.quick)
     moved = given.recur(pair, range(len(s)), model)
     used = np.where(seen.known[:, None], seen.w, moved[3])
     return _prediction(s, _fields(model, moved), used, given.confirmed)

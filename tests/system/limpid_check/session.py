@@ -93,7 +93,6 @@ _DEFAULTS: Mapping[str, Any] = {
     "device.delay": 0,
     "coupling.damping": None,
     "coupling.band": 5.3,
-    "predictor.preset": "auto",
     "predictor.p": None,
     "predictor.mu": None,
     "predictor.hand_mass": 0.2,

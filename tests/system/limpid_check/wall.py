@@ -10,9 +10,9 @@ import numpy as np
 
 from .decomposition import apply
 from .dynamics import tip_jacobian, tip_position
-from .memory import jump, own_damper
 from .predictor import Prediction, gains
 from .session import Session
+from .steps import own_damper
 from .urdf import Array
 
 _OTHERS = ("sphere", "box", "mesh", "joint_contact", "probe")
@@ -50,8 +50,7 @@ def only_wall(s: Session, p: Prediction, m2: Array) -> Wall | None:
     stiffness = float(plane.get("stiffness", 600))
     eased = np.linalg.solve(p.m1 + m2, push[:, :, None])[:, :, 0]
     mass = 1 / np.sum(push * eased, axis=1)  # m_n
-    stepped = jump(p.memory, s.number("device.encoder_step")[:, 0], s.tick)
-    stepped = stepped * np.linalg.norm(push, axis=1)
+    stepped = p.jump * np.linalg.norm(push, axis=1)
     damper = own_damper(stiffness, mass, gains(s).wall, stepped, s.tick) + plane.get("damping", 0)
     damper = np.minimum(damper, _MOST_DAMPING * mass / s.tick)
     depth = scene.get("tip_radius", 0) - height

@@ -1,6 +1,5 @@
-"""Memory of the predictors: an encoder's steps, which reach the tip through a wall, ask for a long
-one, the wall itself for a short one. Also the damper of a wall, which an encoder's steps excite as
-well. SI; stacks over rows."""
+"""An encoder's steps: how quick a filter weighs them, by how much it makes the velocity jump, and the
+damper of a wall, which that jump excites. SI; stacks over rows."""
 
 from __future__ import annotations
 
@@ -16,13 +15,12 @@ from .urdf import Array
 _SURFACES = ("plane", "sphere", "box", "mesh")
 _STIFFNESS = 600.0  # default of a surface [N/m]
 _PUSH = 0.05  # bound of a wall damper's force by an encoder's step [N]
-_LONGEST = 0.85  # longest memory that is chosen
-_QUIET = 1e-4  # bound of the change of the tip's velocity by an encoder's step [m/s]
-_LIGHT, _FULL = 0.02, 0.04  # masses at which the effect begins, and is complete [kg]
+_HAND = 10.0  # rate of the force of a hand at rest [N/s]
+HELD = 800.0  # and what its speed adds [N/m]
 
 
-def jump(p: Array, step: Array, tick: float) -> Array:
-    """Jump of a joint's predicted velocity at a step of its encoder [rad/s]."""
+def faded_jump(p: Array, step: Array, tick: float) -> Array:
+    """Jump of a joint's predicted velocity at a step of its encoder, by a filter with memory p [rad/s]."""
     return 1.5 * (1 - p) ** 2 * (1 + p) * step / tick
 
 
@@ -53,12 +51,6 @@ def _largest(symmetric: Array) -> Array:
     return size * np.sum((values / size[:, None]) ** 8, axis=1) ** (1 / 8)
 
 
-def _with_jump(share: Array) -> Array:
-    """p of (1 - p)^2 (1 + p) = share, in [0, 1]: the middle root of the cubic, by its cosine."""
-    angle = (2 * np.pi - np.arccos(27 / 16 * share - 1)) / 3
-    return (1 + 4 * np.cos(angle)) / 3
-
-
 @dataclass(frozen=True)
 class Tip:
     """Mass along the easiest direction [kg] and longest lever [m] of every row."""
@@ -73,17 +65,19 @@ class Tip:
                    np.sqrt(_largest(jacobian @ turned)))  # fmt: skip
 
 
-def chosen(stiffness: float, tip: Tip, step: Array, least: Array, part: Array, tick: float) -> Array:
-    """p of the tick after each row (N,), from `least` on."""
-    if stiffness <= 0:
-        return least
-    # without memory: the force by a step, and the tip's motion by that force in a tick
-    force = stiffness * tick / 2 + own_damper(stiffness, tip.mass, part, 0 * step, tick)
-    force = force * jump(0 * least, step, tick) * tip.lever
-    shaken = force * tick / tip.mass
-    share = np.minimum(_QUIET / np.where(shaken > 0, shaken, _QUIET), 1)
-    quiet = np.where(share < 1, np.clip(_with_jump(share), least, 1), least)
-    counts = np.clip((tip.mass - _LIGHT) / (_FULL - _LIGHT), 0, 1)
-    short = np.minimum(_LONGEST, 1 - tick * np.sqrt(stiffness / tip.mass))
-    needed = np.minimum(least + counts * (quiet - least), short)
-    return np.where(step > 0, np.maximum(least, needed), least)
+def resting_rate(stiffness: float, tip: Tip, step: Array) -> Array:
+    """Rate of the force of a hand at rest (N,) [N/s]: on a wall the filter is as quick as that."""
+    swings = np.sqrt(stiffness / tip.mass)  # [rad/s]
+    return np.maximum(_HAND, tip.mass * swings**3 * step * tip.lever / np.sqrt(12))
+
+
+def quickest(tick: float) -> float:
+    """Largest bandwidth of a filter that weighs readings [rad/s]."""
+    return 1.2 / tick
+
+
+def weighed_jump(rate: Array, step: Array, late: Array, tick: float) -> Array:
+    """The jump by a filter whose acceleration changes at this rate [rad/s^3], a time `late` later."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        w = np.minimum(np.cbrt(np.sqrt(12) * rate / step), quickest(tick))
+        return np.where(step > 0, step * w * (1 + w * late), 0)
