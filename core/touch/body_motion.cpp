@@ -171,9 +171,11 @@ BodyMotion::Lever BodyMotion::rolling(const Vec3& point, const Vec3& center, con
 
 double BodyMotion::yields(const Vec3& point, const Vec3& n) const {
   const Vec3 arm = point - p_;
-  if (kind_ == Kind::slider) return std::pow(joint_.axis.dot(n), 2) / reflected_;
-  if (kind_ == Kind::hinge) {
-    return std::pow(joint_.axis.cross(point - pivot_).dot(n), 2) / reflected_;
+  if (on_joint()) {
+    const bool slides = kind_ == Kind::slider;
+    const Vec3 moved = slides ? joint_.axis : Vec3(joint_.axis.cross(point - pivot_));
+    const double along = moved.dot(n);
+    return along * along / reflected_;
   }
   const Vec3 turned = pose_.linear().transpose() * arm.cross(n);
   return (kind_ == Kind::free ? 1 / m_ : 0) + turned.dot(inverse_ * turned);
@@ -296,7 +298,10 @@ double BodyMotion::kinetic() const {
 }
 
 double BodyMotion::kinetic_after() const {
-  if (on_joint()) return 0.5 * reflected_ * std::pow(sd_ + (U_ - sd_) / theta_, 2);
+  if (on_joint()) {
+    const double after = sd_ + (U_ - sd_) / theta_;
+    return 0.5 * reflected_ * after * after;
+  }
   const Vec3 w = w_ + (pose_.linear().transpose() * o_ - w_) / theta_;
   return 0.5 * m_ * (v_ + (u_ - v_) / theta_).squaredNorm() + 0.5 * w.dot(I_ * w);
 }
