@@ -22,7 +22,8 @@ void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
   }
 }
 
-constexpr double kPlastic = 2;  // damping ratio of an impact without restitution: it sinks less
+constexpr double kHeaviest = 1e6;  // mass of what cannot move along the normal [kg]
+constexpr double kPlastic = 2;     // damping ratio of an impact without restitution: it sinks less
 
 double stiffness(const BodyContact& contact, const Bodies& bodies) {
   const double one = bodies.about[Bodies::at(contact.a)].contact_stiffness;
@@ -146,7 +147,7 @@ void BodyPair::finish(Bodies& bodies) {
 }
 
 double BodyPair::mass(const Bodies& bodies) const {
-  return BodyMotion::kTheta * bodies.T / W(0, 0);
+  return std::min(kHeaviest, BodyMotion::kTheta * bodies.T / W(0, 0));
 }
 
 bool BodyPair::turns(const Bodies& bodies) {
@@ -166,7 +167,9 @@ bool BodyPair::turns(const Bodies& bodies) {
 double BodyPair::part(Bodies& bodies) const {
   const Vec3& n = contact->normal;
   const double more = parting - apart(bodies);
-  const Vec3 impulse = more / (bodies.yields(a, now, n) + bodies.yields(b, now, n)) * n;
+  const double yields = bodies.yields(a, now, n) + bodies.yields(b, now, n);
+  if (!(yields > 0)) return 0;
+  const Vec3 impulse = more / yields * n;
   bodies.strike(a, now, impulse);
   bodies.strike(b, now, -impulse);
   return std::abs(more);
