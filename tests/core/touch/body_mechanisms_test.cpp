@@ -49,6 +49,30 @@ TEST(BodyImpact, LeavesItOfACubeThatFallsFlat) {
   }
 }
 
+// A body on a rail, hit from a side where the rail holds it, stays; what hit it bounces.
+TEST(BodyImpact, OnWhatCannotGiveWayIsAsOnTheFloor) {
+  Scene scene;
+  Object shelf = body("shelf", Box{{0.2, 0.2, 0.02}}, 0.01, {0, 0, -0.01});
+  BodyJoint& joint = shelf.body->joint.emplace();
+  joint.axis = Vec3::UnitX();
+  scene.add(shelf);
+  scene.add(body("ball", Sphere{0.01}, 0.02, {0, 0, 0.06}));
+  scene.objects.back().body->restitution = 0.5;
+  scene.objects.back().material.friction_static = scene.objects.back().material.friction_kinetic =
+      0;
+  scene.objects.front().material.friction_static = 0;
+  scene.objects.front().material.friction_kinetic = 0;
+  BodyWorld world(scene);
+  double down = 0, up = 0;
+  for (int k = 0; k < 200 && (up == 0 || world.speed(1).z() > 0); ++k) {
+    EXPECT_LT(run(world, 1), 1e-12);
+    down = std::max(down, -world.speed(1).z());
+    up = std::max(up, world.speed(1).z());
+  }
+  EXPECT_NEAR(up / down, 0.5, 0.03);
+  EXPECT_EQ(world.pose(0).translation(), shelf.pose.translation());
+}
+
 // At rest it has sunk by its weight over its contacts' stiffness again.
 TEST(BodyImpact, SinksInNoFurtherThanItsWeightInTheEnd) {
   Scene scene;
