@@ -41,9 +41,9 @@ Balance balance(const WallTick& w, double F) {
   return {F * D - stored - damped, F * way + (w.K + w.B / w.T) * way * way};
 }
 
-enum Case { kStays, kBreaks, kMakes, kApart, kCases };
+enum WallCase { kStays, kBreaks, kMakes, kApart, kCases };
 
-Case case_of(const WallTick& w, double F) {
+WallCase case_of(const WallTick& w, double F) {
   const double end = w.d + w.a - w.c * F;
   if (w.d >= 0) return end >= 0 ? kStays : kBreaks;
   return end > 0 ? kMakes : kApart;
@@ -56,7 +56,7 @@ TEST(WallForce, DoesTheWorkThatTheSpringLosesAndTheDamperTakesInAllCases) {
     const WallTick w = some_tick(random);
     const double F = wall_force(w);
     ASSERT_TRUE(F >= 0) << "it pulls: " << F;
-    const Case now = case_of(w, F);
+    const WallCase now = case_of(w, F);
     ++met[now];
     const Balance b = balance(w, F);
     if (F > 0) {
