@@ -38,7 +38,9 @@ double sweep_joint(const BodyJoint& joint, const JointPotential& potential, doub
     potential.over_a_tick(s, T * (along.speed - w * forces.potential), c, F);
     set(forces.potential, F);
   }
-  const bool up = joint.high - s < s - joint.low;  // the nearer stop
+  // The stop that is pressed, or else the one ahead: a quick joint may reach the further one.
+  const bool within = joint.low <= s && s <= joint.high;
+  const bool up = within ? along.speed > w * forces.stop : s > joint.high;
   const double depth = up ? s - joint.high : joint.low - s;
   if (std::isfinite(depth) || forces.stop != 0) {
     const double m_eff = BodyMotion::kTheta * T / w;
