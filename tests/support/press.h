@@ -101,10 +101,10 @@ struct Press {
 
  private:
   struct Sample {
-    Eigen::VectorXd x;  // [rad]
-    Vec3 tip;           // [m]
-    double force;       // of the motors at the tip, out of the wall [N]
-    double port;        // [J]
+    Eigen::VectorXd x{};      // [rad]
+    Vec3 tip = Vec3::Zero();  // [m]
+    double force = 0;         // of the motors at the tip, out of the wall [N]
+    double port = 0;          // [J]
   };
   static Sample sample(const Arm<kAnyDof>& arm, const RowLayout& layout,
                        std::span<const double> row, const Vec3& out) {
