@@ -129,6 +129,23 @@ void Contacts<N>::place(const Arm<N>& arm, const typename Arm<N>::Frames& f, con
 template <int N>
 void Contacts<N>::take_over(const Contacts& other) {
   if (world_ && other.world_) world_->take_over(*other.world_);
+  const auto alike = [](const Solid& one, const Solid& two) {
+    const bool moves = one.body != BodyContact::kStill;
+    return one.body == two.body && one.shape == two.shape &&
+           (moves ? one.in_body.matrix() == two.in_body.matrix()
+                  : one.pose.matrix() == two.pose.matrix());
+  };
+  // Keeps the sides on which probes are; of other solids, and beside meshes, the nearest ones will
+  // do. place() saw bodies where they start, so its sides are not those of now.
+  const bool same =
+      touches_.size() == other.touches_.size() && std::ranges::equal(solids_, other.solids_, alike);
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    if (same && balls_[k].empty() && other.balls_[k].empty()) {
+      touches_[k] = other.touches_[k];
+    } else {
+      touches_[k].forget();
+    }
+  }
   for (MeshContact<N>& mine : meshes_) {
     for (const MeshContact<N>& theirs : other.meshes_) {
       if (!mine.touch.same_surface(theirs.touch) || mine.link != theirs.link ||
