@@ -330,19 +330,11 @@ void BodyWorld::hold_touched() {
 }
 
 void BodyWorld::settle() {
-  bool settled = sweep(true, kEnough, kMostSweeps) <= kEnough;
+  sweep(true, kEnough, kMostSweeps);
   const auto many =
       static_cast<int>(kMostRowsSwept / std::max<std::size_t>(1, constraints_.pairs.size()));
-  const int most = std::clamp(many, kFewSweeps, kManySweeps);
-  settled = sweep(false, enough_else_, most) <= enough_else_ && settled;
-  // Forces that are found make no energy; only the weight on a ball joint may.
-  std::ranges::fill(made_, 0);
-  for (int i = 0; settled && i < count(); ++i) {
-    if (!moves(i)) continue;
-    made_[at(root(i))] += bodies_[i].made(bodies_.T);
-    settled = made_[at(root(i))] <= right_;
-  }
-  if (!settled) settle_what_makes_energy();
+  sweep(false, enough_else_, std::clamp(many, kFewSweeps, kManySweeps));
+  settle_what_makes_energy();
 }
 
 void BodyWorld::add_up_made() {
