@@ -68,22 +68,30 @@ void faces(const Cylinder&, const Vec3& p, const Visit& visit) {
 template <class S, class Visit>
 void faces(const S&, const Vec3&, const Visit&) {}
 
-// Surface of a solid nearest to a point inside, or to one that has gone through, of those that do
-// not face away from `side`. `nearest`: of all.
-Surface on_side(const Solid& solid, const Vec3& point, const Surface& nearest, const Vec3& side) {
-  const double along = side.dot(nearest.normal);
-  if (side.isZero(0) || along >= (nearest.distance < 0 ? kAway : kOpposite)) return nearest;
-  Surface best = plane_at(solid, side, point);
-  if (nearest.distance >= 0) return best;
+// Face nearest to a point inside, of those that do not face away from `side` and that `may` be;
+// `best`, if none is nearer than that one.
+template <class May>
+std::optional<Surface> nearest_face(const Solid& solid, const Vec3& point, const Vec3& side,
+                                    std::optional<Surface> best, const May& may) {
   const Vec3 p = solid.pose.linear().transpose() * (point - solid.pose.translation());
   const auto take = [&](const Vec3& own) {
     const Vec3 normal = solid.pose.linear() * own;
     if (normal.dot(side) < kAway) return;
     const Surface face = plane_at(solid, normal, point);
-    if (face.distance > best.distance) best = face;
+    if ((!best || face.distance > best->distance) && may(face)) best = face;
   };
   std::visit([&](const auto& shape) { faces(shape, p, take); }, solid.shape);
   return best;
+}
+
+// Surface of a solid nearest to a point inside, or to one that has gone through, of those that do
+// not face away from `side`. `nearest`: of all.
+Surface on_side(const Solid& solid, const Vec3& point, const Surface& nearest, const Vec3& side) {
+  const double along = side.dot(nearest.normal);
+  if (side.isZero(0) || along >= (nearest.distance < 0 ? kAway : kOpposite)) return nearest;
+  const Surface same = plane_at(solid, side, point);
+  if (nearest.distance >= 0) return same;
+  return *nearest_face(solid, point, side, same, [](const Surface&) { return true; });
 }
 
 }  // namespace
@@ -237,21 +245,8 @@ Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, con
                             const Surface& else_, Asked asked) {
   const Solid& solid = solids[near.solid];
   const Vec3 side = in_world(solid, sides_[near.solid].normal);
-  Surface best = else_;
-  bool found = false;
-  const Vec3 p = solid.pose.linear().transpose() * (point - solid.pose.translation());
-  const auto take = [&](const Vec3& own) {
-    const Vec3 normal = solid.pose.linear() * own;
-    if (normal.dot(side) < kAway) return;
-    const Surface face = plane_at(solid, normal, point);
-    if ((found && face.distance <= best.distance) || covered(solids, near, point, face, asked)) {
-      return;
-    }
-    best = face;
-    found = true;
-  };
-  std::visit([&](const auto& shape) { faces(shape, p, take); }, solid.shape);
-  return best;
+  const auto bare = [&](const Surface& face) { return !covered(solids, near, point, face, asked); };
+  return nearest_face(solid, point, side, std::nullopt, bare).value_or(else_);
 }
 
 // Hides solids whose nearest point, seen from the free place, something else holds that is nearer.
