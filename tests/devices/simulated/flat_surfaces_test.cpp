@@ -81,43 +81,32 @@ Scene let_into_a_plane(Random& random, const Material& material, bool model) {
   return scene;
 }
 
+Floor slabs(const char* name, double wide, double high, const std::vector<bool>& models) {
+  return {name, [=](Random& random, const Material& material) {
+            return row_of_slabs(random, material, wide, high, models);
+          }};
+}
+
+Floor inlay(const char* name, bool model) {
+  return {name, [=](Random& random, const Material& material) {
+            return let_into_a_plane(random, material, model);
+          }};
+}
+
 std::vector<Floor> floors_of_solids() {
-  return {{"two boxes",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.1, 0.02, {false, false});
-           }},
-          {"tiles",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.01, 0.02, std::vector<bool>(9));
-           }},
-          {"thin tiles",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.01, 0.001, std::vector<bool>(9));
-           }},
-          {"a box let into a plane",
-           [](Random& r, const Material& m) { return let_into_a_plane(r, m, false); }}};
+  return {slabs("two boxes", 0.1, 0.02, {false, false}),
+          slabs("tiles", 0.01, 0.02, std::vector<bool>(9)),
+          slabs("thin tiles", 0.01, 0.001, std::vector<bool>(9)),
+          inlay("a box let into a plane", false)};
 }
 
 std::vector<Floor> floors_of_models() {
-  return {{"two models",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.1, 0.02, {true, true});
-           }},
-          {"tiles that are models",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.01, 0.02, std::vector<bool>(9, true));
-           }},
-          {"a box beside a model",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.1, 0.02, {false, true});
-           }},
-          {"tiles of both kinds",
-           [](Random& r, const Material& m) {
-             return row_of_slabs(r, m, 0.01, 0.02,
-                                 {true, false, true, false, true, true, false, false, true});
-           }},
-          {"a model let into a plane",
-           [](Random& r, const Material& m) { return let_into_a_plane(r, m, true); }}};
+  return {slabs("two models", 0.1, 0.02, {true, true}),
+          slabs("tiles that are models", 0.01, 0.02, std::vector<bool>(9, true)),
+          slabs("a box beside a model", 0.1, 0.02, {false, true}),
+          slabs("tiles of both kinds", 0.01, 0.02,
+                {true, false, true, false, true, true, false, false, true}),
+          inlay("a model let into a plane", true)};
 }
 
 using Hand = std::function<Vec3(double)>;  // target of the tip at a time
