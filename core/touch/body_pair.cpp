@@ -8,8 +8,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kFade = 0.05;  // time in which a depth that was not pressed in fades [s]
-constexpr double kRise = 0.01;  // speed at which a body rises by that at most [m/s]
+constexpr double kFade = 0.05;     // time in which a depth that was not pressed in fades [s]
+constexpr double kRise = 0.01;     // speed at which a body rises by that at most [m/s]
+constexpr double kHeaviest = 1e6;  // mass of what cannot move along the normal [kg]
+constexpr double kPlastic = 2;     // damping ratio of an impact without restitution: it sinks less
 
 // F^T W F, number by number in the order of Eigen's sums.
 void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
@@ -21,9 +23,6 @@ void turn_into(const Mat3& F, const Mat3& W, Mat3& out) {
     for (int j = 0; j < 3; ++j) out(i, j) = T[0] * F(0, j) + (T[1] * F(1, j) + T[2] * F(2, j));
   }
 }
-
-constexpr double kHeaviest = 1e6;  // mass of what cannot move along the normal [kg]
-constexpr double kPlastic = 2;     // damping ratio of an impact without restitution: it sinks less
 
 double stiffness(const BodyContact& contact, const Bodies& bodies) {
   const double one = bodies.about[Bodies::at(contact.a)].contact_stiffness;
@@ -116,10 +115,6 @@ void BodyPair::hold(const Bodies&) {
   friction = frame.rightCols<2>().transpose() * contact->friction;
 }
 
-double BodyPair::deeper(const Bodies& bodies) const {
-  return -bodies.T * frame.col(0).dot(bodies.velocity(end_a) - bodies.velocity(end_b));
-}
-
 double BodyPair::made(const Bodies& bodies) const {
   const Vec3 v = frame.transpose() * (bodies.velocity(end_a) - bodies.velocity(end_b));
   const double before = std::max(0.0, depth), after = std::max(0.0, depth - bodies.T * v.x());
@@ -134,7 +129,7 @@ void BodyPair::finish(Bodies& bodies) {
   c.friction = frame.rightCols<2>() * friction;
   c.anchor = -c.friction / K;
   c.slipping = force > 0 && radius > 0 && friction.norm() >= radius * force * (1 - 1e-9);
-  const double D = deeper(bodies);
+  const double D = -bodies.T * frame.col(0).dot(bodies.velocity(end_a) - bodies.velocity(end_b));
   const double before = std::max(0.0, depth), after = std::max(0.0, depth + D);
   c.pressed = after;
   const double lost = force * D - 0.5 * K * (after * after - before * before);

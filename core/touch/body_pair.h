@@ -39,9 +39,8 @@ struct BodyPair {
 
  private:
   void fade(const Bodies& bodies);
-  double deeper(const Bodies& bodies) const;  // over the tick [m]
-  double apart(const Bodies& bodies) const;   // speed of parting after the tick [m/s]
-  double mass(const Bodies& bodies) const;    // that the contact moves [kg]
+  double apart(const Bodies& bodies) const;  // speed of parting after the tick [m/s]
+  double mass(const Bodies& bodies) const;   // that the contact moves [kg]
 };
 
 }  // namespace limpid

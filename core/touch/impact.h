@@ -6,8 +6,8 @@
 
 namespace limpid {
 
-// An impact at a contact or a stop, from the tick in which they meet until they part. Its spring
-// takes and gives energy without loss. In the tick in which the approach turns into parting, speed
+// An impact at a contact, from the tick in which things meet until they part. Its spring takes and
+// gives energy without loss. In the tick in which the approach turns into parting, speed
 // and depth are multiplied by the restitution e: from there on all goes on e times as fast, for any
 // mass, stiffness and tick. An impact lasts no longer than half a swing of mass and spring: what
 // presses longer is at rest.
@@ -15,8 +15,7 @@ class Impact {
  public:
   static constexpr double kSlowest = 0.02;  // speed at which things meet without impact [m/s]
 
-  // Begins a tick with the force of the last one [N] and the speed of approach [m/s]; all of them
-  // along a joint for its stop.
+  // Begins a tick with the force of the last one [N] and the speed of approach [m/s].
   void begin(double force, double approach) {
     approach_ = approach;
     if (force == 0) left_ = approach > kSlowest ? kNew : kNone;
