@@ -24,6 +24,7 @@ struct LawStart {
   const Vec<N>& f1_hat;  // human torque, if known [N m]
   // Energy that the human may still be given [J]; none: as left by the loop so far.
   std::optional<double> reserve{};
+  bool owed = false;  // the human has not put in the energy that is stored
 };
 
 // Reading of the device at t_k.

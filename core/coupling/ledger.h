@@ -23,7 +23,9 @@ template <int N>
 class Ledger {
  public:
   // Begins anew. left: reserve left by an earlier part of the run [J]; none: this ledger's own.
-  void start(const Vec<N>& y, std::optional<double> left) {
+  // owed: the human has not put in the energy that is stored now.
+  void start(const Vec<N>& y, std::optional<double> left, bool owed) {
+    owed_ = owed;
     if (left) {
       left_ = *left;
     } else if (!fresh_) {
@@ -71,13 +73,13 @@ class Ledger {
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
-  // Takes the energy that is stored now [J]. The first one is no debt. Neither is its growth while
-  // no torque reaches the motors (idle): the hand alone brought it there.
+  // Takes the energy that is stored now [J]. The first one is a debt where it is owed. Its growth
+  // while no torque reaches the motors (idle) is none: the hand alone brought it there.
   void settle(double E0, double stored, bool idle = false) {
     E0_ = E0;
     const double added = stored - std::exchange(stored_, stored);
     if (fresh_) {
-      H_ = std::min(E0, left_);
+      H_ = std::min(E0, left_) - (owed_ ? stored : 0);
       E_.fill(H_ + stored);
       fresh_ = false;
       return;
@@ -151,7 +153,7 @@ class Ledger {
   double& at(int delay) { return E_[static_cast<std::size_t>(delay)]; }
   double E() const { return *std::min_element(E_.begin() + least_, E_.begin() + most_ + 1); }
 
-  bool fresh_ = true;
+  bool fresh_ = true, owed_ = false;
   int least_ = 0, most_ = 0;
   std::array<double, kMostDelay + 1> E_{};  // by delay [J]
   double E0_ = 0, stored_ = 0, on_its_way_ = 0;

@@ -175,7 +175,8 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   const Vec<N> zero = Vec<N>::Zero(at.x1.size());
   predictor_.start(at.x1, at.v1, at.f1_hat);
   network_.start(at.x1.size());
-  ledger_.start(at.x1, at.reserve);
+  ledger_.start(at.x1, at.reserve, at.owed);
+  owed_ = at.owed;
   y_ = at.x1;
   slip_ = tau1_ = cut_ = wanted_ = apart_ = zero;
   limit_ = Vec<N>::Constant(zero.size(), std::numeric_limits<double>::infinity());
@@ -197,7 +198,7 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
     predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step).p, both_);
   } else {  // the first reading, perhaps not quite at the position of start()
     predictor_.begin_at(in.x1);
-    ledger_.start(in.x1, std::nullopt);
+    ledger_.start(in.x1, std::nullopt, owed_);
   }
   y_ = in.x1;
   return {predictor_.x_now(), predictor_.v_now()};

@@ -54,6 +54,7 @@ class PredictiveLaw::Of {
   Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
   Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
   double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
+  bool owed_ = false;     // see LawStart
   bool both_ = true;      // both predictors run
   Vec<N> b_d_;            // the damping for which quick_ is known
   bool quick_ = false;    // the device is overdamped, see dies_within_a_tick()

@@ -96,6 +96,7 @@ void TankLaw::Of<N>::start(const LawStart<N>& at) {
     left_ = device_.energy() + proxy_ + on_its_way() - work2_;
   }
   fresh_ = true;
+  owed_ = at.owed;
   device_.start(at.x1, 0);
   work2_ = sent1_ = got1_ = sent2_ = got2_ = 0;
   freely_ = share_ = 1;
@@ -104,12 +105,13 @@ void TankLaw::Of<N>::start(const LawStart<N>& at) {
 
 // Closes the books of the tick that just ended.
 template <int N>
-void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in) {
+void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in,
+                            const Proxy<N>& proxy) {
   device_.expect(delay, in.delay_most);
   if (fresh_) {
     const double half = std::min(p.tank_energy, left_) / 2;
     device_.start(in.x1, half);
-    proxy_ = half;
+    proxy_ = half - (owed_ ? proxy.kinetic_energy() + proxy.contact_potential() : 0);
     fresh_ = false;
   } else if (elapsed_ > 0) {
     device_.settle(in.x1, in.b_d_sure, in.encoder_step, elapsed_, p.tank_most);
@@ -166,7 +168,7 @@ Vec<N> TankLaw::Of<N>::pull(const Settings& p, const SpringDamper& c, const LawI
 template <int N>
 Vec<N> TankLaw::Of<N>::step(const Settings& p, const SpringDamper& c, int delay,
                             const LawInput<N>& in, Proxy<N>& proxy) {
-  settle(p, delay, in);
+  settle(p, delay, in, proxy);
   FromDevice<N> device = told(in);
   FromProxy<N> here = told(in, proxy);
   const double surplus = p.tank_share * std::max(0.0, device_.energy() - p.tank_energy / 2);

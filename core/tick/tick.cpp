@@ -62,7 +62,7 @@ void Tick<N>::restart_here(const Parameters& p, const Start<N>& start) {
   tau1_ = vbar2_ = loads_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
-  start_law({start.x1, start.v1, start.f1_hat, start.reserve});
+  start_law({start.x1, start.v1, start.f1_hat, start.reserve, start.owed});
   k_ = period_ = 0;
   diverged_ = false;
   restarted_ = true;

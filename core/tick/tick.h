@@ -70,11 +70,14 @@ struct Start {
   // Energy that the laws with an account may still give the human; they start with no more [J].
   double reserve = std::numeric_limits<double>::infinity();
   std::span<const double>
-      world{};  // state of all bodies, see BodyWorld::write(); empty: as in the scene
+      world{};        // state of all bodies, see BodyWorld::write(); empty: as in the scene
+  bool owed = false;  // the human has not put in the energy that is stored
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
-    return {x, zero, x, zero, zero};
+    Start start{x, zero, x, zero, zero};
+    start.owed = true;
+    return start;
   }
 };
 

@@ -176,7 +176,7 @@ void Rig::start(const Parameters& p, const RigStart& start) {
       [&](auto& of) {
         const bool armed = start.armed && !of->device->traits().guarded;
         of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed,
-                           start.reserve, start.world});
+                           start.reserve, start.world, start.owed});
         of->begin_at(start, start.target);
       },
       of_);
@@ -197,6 +197,7 @@ void Rig::present(RigStart& into) const {
   std::visit(
       [&](const auto& of) {
         const auto truth = of->device->truth();
+        into.owed = false;
         into.x1 = truth ? of->of_joints(truth->x) : of->x_before;
         into.v1 = truth ? of->of_joints(truth->v) : of->v;
         into.x2 = of->tick.proxy().x();
@@ -254,7 +255,9 @@ RigStart rest_at(const ArmDescription& arm, const Vec3& target) {
   const auto x = inverse_kinematics(arm, target, rest_pose(arm));
   if (!x) throw std::invalid_argument("out of reach");
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
-  return {*x, zero, *x, zero, zero, target};
+  RigStart start{*x, zero, *x, zero, zero, target};
+  start.owed = true;
+  return start;
 }
 
 RigStart start_of(const RowLayout& layout, std::span<const double> row) {

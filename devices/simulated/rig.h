@@ -42,6 +42,7 @@ struct RigStart {
   double reserve = std::numeric_limits<double>::infinity();
   // State of all bodies, as the loop keeps it; empty: as the scene has them.
   std::vector<double> world{};
+  bool owed = false;  // the hand has not put in the energy that is stored
 };
 
 // Everything that a rig's arm can touch, prepared for a running loop to take in.

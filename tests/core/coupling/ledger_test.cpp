@@ -25,7 +25,7 @@ class LedgerOfJoints : public testing::TestWithParam<int> {
   void SetUp() override {
     y_ = random_.vector(n(), 1);
     b_lo_ = random_.vector(n(), 0.01).cwiseAbs();
-    ledger_.start(y_, std::nullopt);
+    ledger_.start(y_, std::nullopt, false);
   }
   // Adds a tick under the torque `tau`, which was also sent for it.
   void add(const Any& y, const Any& x, const Any& tau, const Any& b_lo, double q) {
@@ -301,23 +301,31 @@ TEST_P(LedgerOfJoints, StartsAnewWithNoMoreThanIsLeft) {
   EXPECT_LT(ledger_.reserve(), 0);
   EXPECT_EQ(ledger_.contact(), 0);
   const double left = ledger_.reserve();
-  ledger_.start(y_, std::nullopt);
-  ledger_.start(y_, std::nullopt);  // a second start before any use
+  ledger_.start(y_, std::nullopt, false);
+  ledger_.start(y_, std::nullopt, false);  // a second start before any use
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), left);
   EXPECT_EQ(ledger_.contact(), 1);
   EXPECT_EQ(ledger_.damping(), 1);
   EXPECT_EQ(ledger_.torque(), 1);
   EXPECT_EQ(ledger_.dx(), Any::Zero(n()));
-  ledger_.start(y_, 0.002);  // the balance of a recording
+  ledger_.start(y_, 0.002, false);  // the balance of a recording
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), 0.002);
-  ledger_.start(y_, 1.0);
+  ledger_.start(y_, 1.0, false);
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), 0.003);
-  ledger_.start(y_, std::numeric_limits<double>::infinity());  // a new loop
+  ledger_.start(y_, std::numeric_limits<double>::infinity(), false);  // a new loop
   ledger_.settle(0.003, 0.7);
   EXPECT_EQ(ledger_.reserve(), 0.003);
+}
+
+TEST_P(LedgerOfJoints, OwesWhatIsStoredAtAStartUntilItIsStoredNoMore) {
+  ledger_.start(y_, std::nullopt, true);
+  ledger_.settle(kE0, 3.6);
+  EXPECT_NEAR(ledger_.reserve(), kE0 - 3.6, 1e-14);
+  ledger_.settle(kE0, 0);  // nothing of it went to the hand
+  EXPECT_NEAR(ledger_.reserve(), kE0, 1e-14);
 }
 
 }  // namespace
