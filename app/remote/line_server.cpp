@@ -28,6 +28,9 @@ constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kPiece = std::size_t{16} << 10;  // bytes read at once
 constexpr std::size_t kLongestOwner = 200;
 constexpr std::size_t kMostEvents = 1024;  // for the owner; with more, no new client is accepted
+// Pause for the owner after a turn that left lines waiting. Else a client that floods would have
+// the lock taken again before the owner gets it.
+constexpr std::chrono::milliseconds kBreath{1};
 constexpr mode_t kFolderMode = 0700, kFileMode = 0600;
 
 ListenError failed(const fs::path& path) {
@@ -254,7 +257,7 @@ void LineServer::let_go(Connections::iterator which) {
 void LineServer::live() {
   std::vector<pollfd> files;
   std::vector<Client> ids;
-  while (true) {
+  for (bool crowded = false;; crowded = false) {
     files.assign({{wake_, POLLIN, 0}, {socket_.file(), POLLIN, 0}});
     ids.clear();
     int longest = -1;  // no timeout [ms]
@@ -275,14 +278,18 @@ void LineServer::live() {
     poll(files.data(), files.size(), longest);
     std::uint64_t count = 0;
     [[maybe_unused]] const ssize_t woken = ::read(wake_, &count, sizeof(count));
-    const std::lock_guard lock(mutex_);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const auto found = connections_.find(ids[i]);
-      if (found == connections_.end()) continue;
-      serve(found->second, ids[i], files[i + 2].revents);
-      if (done(found->second)) let_go(found);
+    {
+      const std::lock_guard lock(mutex_);
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        const auto found = connections_.find(ids[i]);
+        if (found == connections_.end()) continue;
+        serve(found->second, ids[i], files[i + 2].revents);
+        crowded = crowded || found->second.looked > 0;
+        if (done(found->second)) let_go(found);
+      }
+      if ((files[1].revents & POLLIN) != 0) greet();
     }
-    if ((files[1].revents & POLLIN) != 0) greet();
+    if (crowded) std::this_thread::sleep_for(kBreath);
   }
 }
 
