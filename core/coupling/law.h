@@ -15,6 +15,8 @@ template <int N>
 class Proxy;
 template <int N>
 class ProxyLink;
+template <int N>
+class Ledger;
 
 // State in which a law begins: device and proxy as they are.
 template <int N>
@@ -24,7 +26,8 @@ struct LawStart {
   const Vec<N>& f1_hat;  // human torque, if known [N m]
   // Energy that the human may still be given [J]; none: as left by the loop so far.
   std::optional<double> reserve{};
-  bool owed = false;  // the human has not put in the energy that is stored
+  bool owed = false;        // the human has not put in the energy that is stored
+  bool takes_over = false;  // another law has been in force until now
 };
 
 // Reading of the device at t_k.
@@ -61,6 +64,7 @@ struct LawInput {
   double encoder_step;                    // [rad]
   int delay_most;                         // largest delay between command and motor [ticks]
   ProxyLink<N>* link = nullptr;           // link between device and proxy; null: none
+  Ledger<N>* ledger = nullptr;            // account of energy that all laws share
   bool armed_anew = false;                // force was off and has just been requested
   // Largest force that the motors may make at the tip, beside `limit` [N].
   double tip_force = std::numeric_limits<double>::infinity();
@@ -88,6 +92,12 @@ struct LawReport {
 // Defaults for functions that most laws need not define.
 template <int N>
 struct PlainLaw {
+  // Whether the law books its own ticks in the ledger, of which it knows more than what is
+  // measured.
+  static constexpr bool kKeepsLedger = false;
+  // Reserve below which the ledger forgives what the law gives [E0]. A law of springs and dampers
+  // returns what was put in, unless its gains are beyond condition (3); then its debt has an end.
+  static constexpr double kLeastLeft = -4;
   void start(const LawStart<N>&) {}
   template <class P>
   DeviceEstimate<N> locate(const P&, const LawReading<N>& in) {

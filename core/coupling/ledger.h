@@ -33,12 +33,17 @@ class Ledger {
     }
     fresh_ = true;
     dy_ = dx_ = Vec<N>::Zero(y.size());
-    contact_ = damping_ = torque_ = 1;
+    let_through();
     still_.fill(0);
     on_its_way_ = 0;
     y_ = x_ = rests_at_ = y;
     rested_ = 0;
   }
+
+  // Moves to the first reading after start().
+  void begin_at(const Vec<N>& y) { y_ = x_ = rests_at_ = y; }
+  // Lets everything through again, for another law.
+  void let_through() { contact_ = damping_ = torque_ = 1; }
 
   // Sets the least and the largest delay between command and motor [ticks].
   void expect(int least, int most) {
@@ -109,8 +114,12 @@ class Ledger {
     const double owed = std::min(kForgiven * E0_ - H_, E0_);
     if (rested_ < kRest || !(owed > 0)) return;
     rested_ = 0;
-    H_ += owed;
-    for (int d = least_; d <= most_; ++d) at(d) += owed;
+    add(owed);
+  }
+  // After settle(): forgives what a law that keeps no account gave below `least` [E0]. before: the
+  // reserve before the tick [J].
+  void forgive(double before, double least) {
+    add(std::max(0.0, std::min(before, least * E0_) - H_));
   }
 
   // Updates the shares. `slip`: error of the last prediction [rad]; f2: the last contact torque;
@@ -136,19 +145,24 @@ class Ledger {
   // would be work that no torque has done [rad].
   const Vec<N>& dx() const { return dx_; }
 
+  // Least reserve of a hand at rest, in E0: enough for all force but not for g_b.
+  static constexpr double kForgiven = 0.4;
+
  private:
   // Levels of H, in E0. kCap: the most it may be, as a heavy arm on a wall needs, else small
   // prediction errors would cut the force. kWhole and kNone: g_b is 1 and 0; kGone: all torque is
   // 0.
   static constexpr double kCap = 4, kWhole = 0.8, kNone = 0.35, kGone = 0.25;
-  // Least reserve of a hand at rest, in E0: enough for all force but not for g_b.
-  static constexpr double kForgiven = 0.4;
   static constexpr double kRest = 0.5, kStill = 5e-4;  // duration and bound of rest [s, rad]
 
   // Moves g to `target`: down at once, up slowly.
   static void follow(double target, double rate, double& g) {
     target = std::clamp(target, 0.0, 1.0);
     g = target < g ? target : g + std::min(rate, 1.0) * (target - g);
+  }
+  void add(double energy) {
+    H_ += energy;
+    for (int d = least_; d <= most_; ++d) at(d) += energy;
   }
   double& at(int delay) { return E_[static_cast<std::size_t>(delay)]; }
   double E() const { return *std::min_element(E_.begin() + least_, E_.begin() + most_ + 1); }

@@ -21,18 +21,6 @@ Vec<N> clip(const Vec<N>& x, const Vec<N>& limit) {
   return x.cwiseMin(limit).cwiseMax(-limit);
 }
 
-// Energy of the coupling's spring, whose torque is at most the motor's.
-template <int N>
-double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
-  double V = 0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double pull = k_vc * std::abs(x[i]);
-    V += pull > limit[i] ? limit[i] * std::abs(x[i]) - limit[i] * limit[i] / (2 * k_vc)
-                         : pull * std::abs(x[i]) / 2;
-  }
-  return V;
-}
-
 // Energy of a spring whose torque is the motor's limit everywhere.
 template <int N>
 double limit_energy(const Vec<N>& x, const Vec<N>& limit) {
@@ -55,13 +43,6 @@ double jump_at_step(const Predictor<N>& predictor, const PredictorGains& gains,
                     const LawInput<N>& in) {
   if (gains.weighs()) return predictor.weighed_jump(in.encoder_step);
   return velocity_jump(gains.p, in.encoder_step, in.tick);
-}
-
-// Energy given to bodies over the last tick [J].
-template <int N>
-double given_to(const Proxy<N>& proxy) {
-  const BodyWorld* world = proxy.contacts().world();
-  return world != nullptr ? world->given() : 0;
 }
 
 }  // namespace
@@ -175,15 +156,12 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
   const Vec<N> zero = Vec<N>::Zero(at.x1.size());
   predictor_.start(at.x1, at.v1, at.f1_hat);
   network_.start(at.x1.size());
-  ledger_.start(at.x1, at.reserve, at.owed);
-  owed_ = at.owed;
+  report_ = {};
   y_ = at.x1;
   slip_ = tau1_ = cut_ = wanted_ = apart_ = zero;
   limit_ = Vec<N>::Constant(zero.size(), std::numeric_limits<double>::infinity());
   spring_ = 0;
   limited_ = goes_on_ = false;
-  solved_ = TickSolve::usual;
-  unsettled_ = 0;
   elapsed_ = 0;
   b_d_ = zero;
   quick_ = false;
@@ -198,7 +176,6 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
     predictor_.correct(in.x1, elapsed_, in.encoder_step, p.gains(in.encoder_step).p, both_);
   } else {  // the first reading, perhaps not quite at the position of start()
     predictor_.begin_at(in.x1);
-    ledger_.start(in.x1, std::nullopt, owed_);
   }
   y_ = in.x1;
   return {predictor_.x_now(), predictor_.v_now()};
@@ -208,23 +185,28 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
 template <int N>
 void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                                    const Proxy<N>& proxy, double surprise) {
+  Ledger<N>& ledger = *in.ledger;
   if (!limited_) limit_ = in.limit;
-  ledger_.expect(p.delay, in.delay_most);
+  ledger.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
     const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
-    const double given = in.authority > 0 ? given_to(proxy) : 0;
-    ledger_.add(y_, predictor_.x_now(), sent, in.b_d_sure, given, in.encoder_step, elapsed_);
-    network_.advance(ledger_.dx(), elapsed_);
-    network_.lose(-cut_.dot(ledger_.dx()));
+    const double given = in.authority > 0 ? given_to_bodies(proxy) : 0;
+    ledger.add(y_, predictor_.x_now(), sent, in.b_d_sure, given, in.encoder_step, elapsed_);
+    network_.advance(ledger.dx(), elapsed_);
+    network_.lose(-cut_.dot(ledger.dx()));
   }
-  ledger_.settle(p.energy,
-                 held(c.k_vc, y_ - proxy.x()) + network_.storage() + proxy.kinetic_energy() +
-                     proxy.contact_potential(),
-                 in.authority == 0);
-  if (in.armed_anew) ledger_.refill();
+  ledger.settle(p.energy,
+                held(c.k_vc, y_ - proxy.x()) + network_.storage() + proxy.kinetic_energy() +
+                    proxy.contact_potential(),
+                in.authority == 0);
+  if (in.armed_anew) ledger.refill();
   const bool sure = (in.b_d_sure.array() >= in.b_d.array()).all();
-  if (!sure && in.authority > 0) ledger_.forgive_at_rest(in.encoder_step, in.tick);
-  ledger_.govern(proxy.f(), slip_, surprise, elapsed_ > 0 ? elapsed_ : in.tick);
+  if (!sure && in.authority > 0) ledger.forgive_at_rest(in.encoder_step, in.tick);
+  ledger.govern(proxy.f(), slip_, surprise, elapsed_ > 0 ? elapsed_ : in.tick);
+  report_.reserve = ledger.reserve();
+  report_.contact_governor = ledger.contact();
+  report_.damping_governor = ledger.damping();
+  report_.torque_governor = ledger.torque();
 }
 
 // Energy stored by spring and motors. While motors are at their limit, from the point where they
@@ -260,18 +242,18 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   const double K = proxy.contacts().stiffest();
   if (gains.weighs()) expect_hand(predictor_, in, J, on_tip, p.hand_mass, K);
   balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
-  network_.set(added_mass(eta, in.delay_most, T), d.M_L, ledger_.damping(), T, p.band);
+  network_.set(added_mass(eta, in.delay_most, T), d.M_L, in.ledger->damping(), T, p.band);
   // The velocity predicted for a late torque is no newer knowledge: the present one damps.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
-  const double share = ledger_.torque();
+  const double share = in.ledger->torque();
   solve.authority *= share;
   solve.c = c.b_vc + c.k_vc * T / 2;
   solve.s0 = c.k_vc * (predictor_.x() - proxy.x());
-  solve.g_f = ledger_.contact();
+  solve.g_f = in.ledger->contact();
   solve.b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
   if (!proxy.contacts().engaged()) {
-    solve.b_w -= ledger_.damping() * (1 - p.damping_share(eta)) * (in.b_d + solve.b_w);
+    solve.b_w -= in.ledger->damping() * (1 - p.damping_share(eta)) * (in.b_d + solve.b_w);
   }
 
   ContactAnswer<N> answer = solve.system();
@@ -301,9 +283,9 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   }
   limit_ = limited ? motors.along(wanted_) : in.limit;
   goes_on_ = false;
-  solved_ = TickSolve::usual;
+  report_.solved = TickSolve::usual;
   if (limited || !settled) {
-    solved_ = limited ? TickSolve::limited : TickSolve::together;
+    report_.solved = limited ? TickSolve::limited : TickSolve::together;
     const double stiffer = std::max(0.0, c.k_vc * T / 2 - c.b_vc);
     LimitedSolve<N> both = limited ? solve.limited(stiffer, c.b_v) : solve.limited(0, 0);
     both.limit = limit_;
@@ -340,8 +322,8 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
   if (!settled) {
     contacts_.hold_bodies();
     both.stand_still(contacts_, T, found);
-    ++unsettled_;
-    solved_ = TickSolve::stood_still;
+    ++report_.unsettled;
+    report_.solved = TickSolve::stood_still;
   }
   motion = last_ = found;
 }
@@ -360,12 +342,6 @@ bool PredictiveLaw::Of<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Mo
 template <int N>
 void PredictiveLaw::Of<N>::applied(const Vec<N>& tau) {
   predictor_.applied(tau, both_);
-}
-
-template <int N>
-LawReport PredictiveLaw::Of<N>::report() const {
-  return {ledger_.reserve(), ledger_.contact(), ledger_.damping(),
-          ledger_.torque(),  solved_,           unsettled_};
 }
 
 template class PredictiveLaw::Of<3>;

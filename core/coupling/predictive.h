@@ -29,7 +29,9 @@ class PredictiveLaw::Of {
     return step(p.eta, p, p, in, proxy);
   }
   void applied(const Vec<N>& tau);
-  LawReport report() const;
+  const LawReport& report() const { return report_; }
+  static constexpr bool kKeepsLedger = true;
+  static constexpr double kLeastLeft = -std::numeric_limits<double>::infinity();
 
  private:
   struct Solve;
@@ -45,7 +47,6 @@ class PredictiveLaw::Of {
 
   Predictor<N> predictor_;
   InertiaNetwork<N> network_;
-  Ledger<N> ledger_;
   ContactSolve<N> contacts_;
   Vec<N> y_;              // the last reading [rad]
   Vec<N> slip_;           // error of its prediction [rad]
@@ -54,18 +55,16 @@ class PredictiveLaw::Of {
   Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
   Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
   double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
-  bool owed_ = false;     // see LawStart
   bool both_ = true;      // both predictors run
   Vec<N> b_d_;            // the damping for which quick_ is known
   bool quick_ = false;    // the device is overdamped, see dies_within_a_tick()
   bool limited_ = false;  // the last tick had motors at their limit
   bool goes_on_ = false;  // the next tick counts as limited in any case
-  TickSolve solved_ = TickSolve::usual;
+  LawReport report_;
   Motion<N> last_;  // motion of the last tick solved together
   // State of the spring in the last tick without motors at their limit, see held().
   Vec<N> apart_;       // [rad]
   double spring_ = 0;  // [J]
-  int unsettled_ = 0;  // ticks without a solution, see LimitedSolve::stand_still()
 };
 
 extern template class PredictiveLaw::Of<3>;

@@ -4,6 +4,7 @@
 // The feedforward keeps device and proxy together and scales the impedance felt in slow motion.
 #pragma once
 
+#include "core/coupling/ledger.h"
 #include "core/coupling/standard.h"
 
 namespace limpid {
@@ -24,6 +25,8 @@ Feedforward<N> feedforward(double eta, const Decomposition<N>& d, const Vec<N>& 
 template <int N>
 class ProposedLaw::Of : public PlainLaw<N> {
  public:
+  // This law may give energy below eta_min and wherever it takes over.
+  static constexpr double kLeastLeft = Ledger<N>::kForgiven;
   // p: Settings and a SpringDamper.
   template <class P>
   Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {

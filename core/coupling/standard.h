@@ -1,6 +1,8 @@
 // The virtual coupling by spring and damper, (1)-(2). All laws of the paper add to it.
 #pragma once
 
+#include <cmath>
+
 #include "core/coupling/law.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/link.h"
@@ -41,6 +43,25 @@ FromDevice<N> told(const LawInput<N>& in) {
 template <int N>
 FromProxy<N> told(const LawInput<N>& in, const Proxy<N>& proxy) {
   return {proxy.x(), in.vbar2, {proxy.M(), proxy.C(), proxy.v()}, Vec<N>::Zero(in.x1.size())};
+}
+
+// Energy of the coupling's spring, whose torque is at most the motors' [J].
+template <int N>
+double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
+  double V = 0;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double pull = k_vc * std::abs(x[i]);
+    V += pull > limit[i] ? limit[i] * std::abs(x[i]) - limit[i] * limit[i] / (2 * k_vc)
+                         : pull * std::abs(x[i]) / 2;
+  }
+  return V;
+}
+
+// Energy given to bodies over the last tick [J].
+template <int N>
+double given_to_bodies(const Proxy<N>& proxy) {
+  const BodyWorld* world = proxy.contacts().world();
+  return world != nullptr ? world->given() : 0;
 }
 
 // The standard coupling: spring and damper alone, (1)-(2).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/coupling/ledger.h"
 #include "core/math/solve.h"
 
 namespace limpid {
@@ -97,6 +98,7 @@ void TankLaw::Of<N>::start(const LawStart<N>& at) {
   }
   fresh_ = true;
   owed_ = at.owed;
+  takes_over_ = at.takes_over;
   device_.start(at.x1, 0);
   work2_ = sent1_ = got1_ = sent2_ = got2_ = 0;
   freely_ = share_ = 1;
@@ -105,12 +107,16 @@ void TankLaw::Of<N>::start(const LawStart<N>& at) {
 
 // Closes the books of the tick that just ended.
 template <int N>
-void TankLaw::Of<N>::settle(const Settings& p, int delay, const LawInput<N>& in,
-                            const Proxy<N>& proxy) {
+void TankLaw::Of<N>::settle(const Settings& p, const SpringDamper& c, int delay,
+                            const LawInput<N>& in, const Proxy<N>& proxy) {
   device_.expect(delay, in.delay_most);
   if (fresh_) {
-    const double half = std::min(p.tank_energy, left_) / 2;
-    device_.start(in.x1, half);
+    if (takes_over_) left_ = in.ledger->reserve();
+    const double all = std::min(p.tank_energy, left_), half = std::max(0.0, all / 2);
+    // Tanks pay for the spring as it returns, so they get what the hand has put into it.
+    const double in_spring =
+        takes_over_ ? spring_energy<N>(c.k_vc, in.x1 - proxy.x(), in.limit) : 0;
+    device_.start(in.x1, all - half + in_spring);
     proxy_ = half - (owed_ ? proxy.kinetic_energy() + proxy.contact_potential() : 0);
     fresh_ = false;
   } else if (elapsed_ > 0) {
@@ -168,7 +174,7 @@ Vec<N> TankLaw::Of<N>::pull(const Settings& p, const SpringDamper& c, const LawI
 template <int N>
 Vec<N> TankLaw::Of<N>::step(const Settings& p, const SpringDamper& c, int delay,
                             const LawInput<N>& in, Proxy<N>& proxy) {
-  settle(p, delay, in, proxy);
+  settle(p, c, delay, in, proxy);
   FromDevice<N> device = told(in);
   FromProxy<N> here = told(in, proxy);
   const double surplus = p.tank_share * std::max(0.0, device_.energy() - p.tank_energy / 2);

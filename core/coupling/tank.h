@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "core/coupling/standard.h"
 
@@ -64,11 +65,14 @@ class TankLaw::Of {
   }
   void applied(const Vec<N>& torque) { device_.sent(torque); }
   LawReport report() const;
+  static constexpr bool kKeepsLedger = false;
+  static constexpr double kLeastLeft = -std::numeric_limits<double>::infinity();
 
  private:
   Vec<N> step(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
               Proxy<N>& proxy);
-  void settle(const Settings& p, int delay, const LawInput<N>& in, const Proxy<N>& proxy);
+  void settle(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
+              const Proxy<N>& proxy);
   void move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
             const FromDevice<N>& device, Proxy<N>& proxy);
   Vec<N> pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
@@ -82,7 +86,7 @@ class TankLaw::Of {
   double sent2_ = 0, got1_ = 0;  // energy from proxy to device
   double reserve_ = 0;           // energy in both tanks and between them when the tick began [J]
   double left_ = std::numeric_limits<double>::infinity();  // of an earlier part of the run [J]
-  bool fresh_ = true, owed_ = false;                       // see LawStart
+  bool fresh_ = true, owed_ = false, takes_over_ = false;  // see LawStart
   double elapsed_ = 0;  // since the previous reading; 0 at the first [s]
   double freely_ = 1;   // the proxy's damping over that with its tank's damper [-]
   double share_ = 1;    // share of the device's torque [-]

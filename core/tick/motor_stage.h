@@ -20,6 +20,7 @@ class MotorStage {
     slewing_ = true;
     slewed_ = 0;
   }
+  void end_slew() { slewing_ = false; }
   bool steady() const { return !slewing_; }
 
   // Returns the motors' torque for this command [N m]. `gain`: the part of the limited torque that

@@ -102,9 +102,7 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   if (!goes_on) velocity_.reset(in.measured);
   if (p.kind != kind_) switch_law(p.kind, in.measured);
   const DeviceEstimate<N> at = coupling_.locate(
-      p.kind, p,
-      {in.measured, velocity_.estimate(), goes_on && !fresh_law_ ? T : 0, p.encoder_step});
-  fresh_law_ = false;
+      p.kind, p, {in.measured, velocity_.estimate(), goes_on ? T : 0, p.encoder_step});
   device_.v = at.v;
   proxy_.catch_up_beside(at.x, at.v, frames_, device_.M, device_.C);
   device_.M *= p.inertia_error;
@@ -207,9 +205,8 @@ template <int N>
 void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
   motors_.begin_slew();
   proxy_.contacts().forget();
-  start_law({x1, velocity_.estimate(), f1_hat_});
+  start_law({x1, velocity_.estimate(), f1_hat_, std::nullopt, false, true});
   kind_ = to;
-  fresh_law_ = true;
 }
 
 // Takes the command to the motors.
@@ -224,6 +221,8 @@ void Tick<N>::pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wi
   const bool barred = against.fault != ForceState::on || !(against.ceiling > 0);
   unbarred_ = std::exchange(barred_, barred) && !barred && in.health.guarded;
   const bool limited = in.health.guarded && !diverged_;
+  // Nothing is left to give: torque on its way from one law to another must not go on giving.
+  if (!(coupling_.report(p.kind).torque_governor > 0)) motors_.end_slew();
   // A restart asks for another torque than a tick ago. Rows of a virtual arm follow from where they
   // begin, so there the earlier torque does not count.
   if (std::exchange(restarted_, false) && limited) motors_.begin_slew();

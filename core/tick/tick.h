@@ -157,7 +157,6 @@ class Tick {
   // State of the last tick, for the books and for the delayed terms of (1).
   Vec<N> x1_before_, tau1_, vbar2_, b_d_, limit_;
   CouplingKind kind_ = CouplingKind::standard;
-  bool fresh_law_ = false;    // the law took over at this tick
   bool barred_ = false;       // no force may leave, even if armed
   bool unbarred_ = false;     // force may leave again from the coming tick on
   bool restarted_ = false;    // a recording begins with this tick

@@ -43,8 +43,11 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
     PredictiveLaw::Of<3> law;
     law.start({x1, v1, zero});
     law.locate(p, {x1, v1, 0, 0});
-    const Eigen::VectorXd tau1 =
-        law.step(p, {x1, v1, device, zero, zero, T, frames, b_d, zero, most, 1, T, 0, 0}, proxy);
+    Ledger<3> ledger;
+    ledger.start(x1, std::nullopt, false);
+    LawInput<3> in{x1, v1, device, zero, zero, T, frames, b_d, zero, most, 1, T, 0, 0};
+    in.ledger = &ledger;
+    const Eigen::VectorXd tau1 = law.step(p, in, proxy);
     const Eigen::VectorXd tau2 = proxy.tau(), u = (proxy.x() - x2) / T;
 
     const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(3, 3), M1 = device.M, C1 = device.C;

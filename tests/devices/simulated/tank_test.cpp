@@ -147,20 +147,19 @@ TEST(Tanks, ThatAreFullLeaveTheStandardCouplingAsItIs) {
 // The next part of a run starts with the energy left by the one before.
 TEST(Tanks, AreNotFilledByStartingAnew) {
   Tapping t{.arm = test::omni()};
-  RigStart start;
-  start.x1 = start.x2 = rest_pose(t.arm);
-  start.v1 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(3);
+  RigStart start = rest_at(t.arm, Vec3(0.19, 0, 0));
   start.reserve = 1e-3;
   t.p.kind = CouplingKind::tank;
   Rig rig(t.arm, {});
   rig.start(t.p, start);
+  const RigInput still{{start.target, 1}};
   Rows rows(rig.layout());
-  rig.step(t.p, {}, rows.add());
+  rig.step(t.p, still, rows.add());
   EXPECT_EQ(rows.at(0, Column::energy_ledger), 1e-3);
   t.p.kind = CouplingKind::standard;
-  for (int k = 0; k < 3; ++k) rig.step(t.p, {}, rows.add());
+  for (int k = 0; k < 3; ++k) rig.step(t.p, still, rows.add());
   t.p.kind = CouplingKind::tank;
-  rig.step(t.p, {}, rows.add());
+  rig.step(t.p, still, rows.add());
   EXPECT_LT(rows.at(4, Column::energy_ledger), 1.1e-3);
 }
 
