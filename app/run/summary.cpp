@@ -16,6 +16,7 @@ constexpr double kWildTorque = 1e4;  // [N m]
 constexpr double kWildError = 10;    // [rad]
 constexpr double kLost = 1e3;        // times those
 constexpr std::uint64_t kCalm = 10;  // rows; what swings ever higher passes through small values
+constexpr double kWhole = 0.995;     // share of a force that counts as all of it
 
 struct Excess {
   double times = 0;  // over its limit; not a number where the value is none
@@ -129,6 +130,10 @@ bool Summary::add(std::span<const double> row) {
   t.energy_total = at(Column::energy_total)[0];
   t.energy_commanded = at(Column::energy_commanded)[0];
   t.highest_total = std::max(t.highest_total, t.energy_total);
+  const bool walls =
+      static_cast<CouplingKind>(at(Column::kind)[0]) == CouplingKind::predictive && contact > 0;
+  t.walls_held += walls && at(Column::governor)[0] < kWhole ? 1 : 0;
+  t.torque_held += at(Column::torque_governor)[0] < kWhole ? 1 : 0;
   if (layout_.bodies() > 0) {
     t.to_objects = at(Column::energy_to_objects)[0];
     t.objects_gain = std::max(t.objects_gain, at(Column::objects_gain)[0]);
@@ -158,6 +163,12 @@ std::string Summary::text() const {
       100 * t.share_in_contact(), 1e3 * units_.angles * t.largest_error, units_.milliangle,
       units_.torques * t.largest_contact, units_.torque, units_.torques * t.human_rms(),
       units_.torque, 1e3 * t.energy_total, 1e3 * t.highest_total, 1e3 * t.energy_commanded);
+  const auto held = [&](const char* what, std::uint64_t ticks) {
+    if (ticks == 0) return;
+    text += fmt::format("{:<24} {} ticks: the hand may be given little more energy\n", what, ticks);
+  };
+  held("walls held back in", t.walls_held);
+  held("torque held back in", t.torque_held);
   if (layout_.bodies() == 0) return text;
   text += fmt::format(
       "to objects               {:.3f} mJ\n"

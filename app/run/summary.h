@@ -86,6 +86,8 @@ class Summary {
     double most_awake = 0;                    // bodies
     double left_out = 0;                      // most points at which bodies meet without pushing
     double stood_still = 0;                   // ticks in which forces of bodies were not found
+    // Ticks in which the account of energy held back the walls' force, and torque.
+    std::uint64_t walls_held = 0, torque_held = 0;
     std::vector<double> memorable;
 
     double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }

@@ -92,8 +92,8 @@ struct LawReport {
 // Defaults for functions that most laws need not define.
 template <int N>
 struct PlainLaw {
-  // Whether the law books its own ticks in the ledger, of which it knows more than what is
-  // measured.
+  // Whether the law books its own ticks in the ledger, as one that locates the device between the
+  // encoders' steps does.
   static constexpr bool kKeepsLedger = false;
   // Reserve below which the ledger forgives what the law gives [E0]. A law of springs and dampers
   // returns what was put in, unless its gains are beyond condition (3); then its debt has an end.

@@ -500,8 +500,9 @@ class TestStudies(unittest.TestCase):
 
             def record(self, file):
                 (x, z), (to_x, to_z) = ways.pop(0)
+                # A hand that begins inside of the table would not feel it.
                 limpid.run(scene=scene, coupling="predictive", record=file, hand=[
-                    (0, x, 0, z), (1, x, 0, z), (2, to_x, 0, to_z), (3, to_x, 0, to_z)])
+                    (0, x, 0, max(z, -0.039)), (0.2, x, 0, z), (1, x, 0, z), (2, to_x, 0, to_z), (3, to_x, 0, to_z)])
 
             def stop(self):
                 """Ends the run, which is complete."""

@@ -162,6 +162,7 @@ TEST(Summary, IsTheLargestTheMeanAndTheLastOfWhatTheRowsSay) {
     put(Column::hand_torque, 1, torques[k]);
     put(Column::energy_total, 0, totals[k]);
     put(Column::energy_commanded, 0, -totals[k]);
+    put(Column::torque_governor, 0, 1);
     summary.add(values);
   }
   EXPECT_EQ(summary.text(),
