@@ -160,9 +160,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::energy_port, "/energy/port", ColumnWidth::one, "J",
      "energy given to the human: work of the motors less the device's own damping"},
     {Column::energy_ledger, "/energy/ledger", ColumnWidth::one, "J",
-     "reserve of the predictive law's ledger, or what is in both tanks and on its way between "
-     "them; "
-     "0 with other laws"},
+     "reserve of the ledger, or what is in both tanks and on its way between them; 0 until a law "
+     "with an account was in force"},
     {Column::proxy_kinetic, "/energy/proxy_kinetic", ColumnWidth::one, "J",
      "kinetic energy of the proxy"},
     {Column::contact_potential, "/energy/contact_potential", ColumnWidth::one, "J",
