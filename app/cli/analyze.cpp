@@ -17,8 +17,18 @@ namespace {
 struct AnalyzeOptions {
   InputOptions input;
   std::optional<double> band, mass;
-  bool json = false;
+  bool json = false, all = false;
 };
+
+// Laws that are told of: those of the panel's buttons and the one that is set, or all.
+std::vector<CouplingKind> laws_told(const Parameters& p, bool all) {
+  std::vector<CouplingKind> told;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
+    if (all || kind == p.kind || !info(kind).for_comparison) told.push_back(kind);
+  }
+  return told;
+}
 
 void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   const auto list = [](const std::vector<double>& values) {
@@ -54,12 +64,13 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
 
 constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
 
-void print(const TipLimits& tip, const Parameters& p) {
+void print(const TipLimits& tip, const Parameters& p, bool all) {
+  const std::vector<CouplingKind> told = laws_told(p, all);
   fmt::print("\nat the tip: {:.3g} g, {:.3g} N s/m of its own damping\n", 1e3 * tip.tip.mass,
              tip.tip.damping);
-  for (std::uint8_t i = 0; i < kLaws; ++i) {
-    fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", kLawKeys[i], tip.walls[i].stiffness,
-               tip.walls[i].bound);
+  for (const CouplingKind kind : told) {
+    const TipLimits::Wall& wall = tip.walls[static_cast<std::size_t>(kind)];
+    fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
   }
   fmt::print(
       "stiffest wall, in any hand {:>6.0f} N/m  no linear law is passive beyond b_d/(T/2 + "
@@ -70,12 +81,12 @@ void print(const TipLimits& tip, const Parameters& p) {
     fmt::print("eta, predictive            {}\n", late);
   }
   fmt::print("\nfelt in free motion     ");
-  for (const char* key : kLawKeys) fmt::print(" {:>20}", key);
+  for (const CouplingKind kind : told) fmt::print(" {:>20}", name(kind));
   fmt::print("\n");
   for (const double f : kFelt) {
     fmt::print("{:>10} Hz              ", f);
-    for (std::uint8_t i = 0; i < kLaws; ++i) {
-      const FeltAtTip felt = felt_at_tip(tip, p, static_cast<CouplingKind>(i), f);
+    for (const CouplingKind kind : told) {
+      const FeltAtTip felt = felt_at_tip(tip, p, kind, f);
       fmt::print(" {:>8.2f} g {:>5.2f} N s/m", 1e3 * felt.mass, felt.damping);
     }
     fmt::print("\n");
@@ -153,7 +164,7 @@ int analyze_command(const AnalyzeOptions& options) {
   if (!options.json) {
     print(a, arm, p);
     if (options.mass) return 0;
-    if (tip) print(*tip, p);
+    if (tip) print(*tip, p, options.all);
     if (!tip) fmt::print("\n{}\n", still_tip(arm));
     return 0;
   }
@@ -201,6 +212,7 @@ Command declare_analyze(CLI::App& app) {
                    ->type_name("KG_M2");
   require_above_zero(band, 1e6, "Hz");
   require_above_zero(mass, 1e6, "kg m^2");
+  command->add_flag("--all", options->all, "laws for comparison too; JSON always has them");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(parameter_help());
   return [options] { return analyze_command(*options); };

@@ -263,12 +263,9 @@ void say_about(const RunPlan& plan) {
   for (const std::string& warning : plan.arm.warnings) {
     fmt::print(stderr, "limpid: warning: {}\n", warning);
   }
-  if (plan.parameters.linked() && info(plan.parameters.kind).solves_together) {
-    fmt::print(
-        stderr,
-        "limpid: note: link.* does nothing here: the {} law solves device and proxy at once, "
-        "and knows no link\n",
-        info(plan.parameters.kind).key);
+  if (const LawInfo& law = info(plan.parameters.kind);
+      plan.parameters.linked() && !law.knows_link()) {
+    fmt::print(stderr, "limpid: note: link.* does nothing here: {}\n", law.through_link);
   }
   const bool again = plan.hand.tick > 0;  // a recording has its own settings
   const std::string fit = again ? "" : fit_text(fitted(plan.arm, plan.parameters));

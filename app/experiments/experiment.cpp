@@ -37,6 +37,7 @@ Outcome transparency(TrialRunner& lab);
 Outcome eta_min_map(TrialRunner& lab);
 Outcome lightness(TrialRunner& lab);
 Outcome zwidth(TrialRunner& lab);
+Outcome approaches(TrialRunner& lab);
 Outcome switching(TrialRunner& lab);
 Outcome friction(TrialRunner& lab);
 Outcome delay(TrialRunner& lab);
@@ -95,6 +96,8 @@ constexpr std::array kExperiments{
     Experiment{"lightness", "inertia and damping felt, and what a passive law pays for lightness",
                lightness},
     Experiment{"zwidth", "the stiffest wall that is rendered well", zwidth},
+    Experiment{"approaches", "the field's laws beside these: stiffness felt and energy given",
+               approaches},
     Experiment{"switching", "contacts made and broken, couplings switched while pressing",
                switching},
     Experiment{"friction", "sticking, slipping, and the energy that friction takes", friction},

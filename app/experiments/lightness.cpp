@@ -29,7 +29,7 @@ Multisine shaking() {
   return signal;
 }
 
-struct Law {
+struct LawAtEta {
   CouplingKind kind;
   double eta;
   std::vector<FeltMotion> felt = {};  // empty if it diverged
@@ -53,15 +53,15 @@ struct Law {
 };
 
 // The standard coupling, then both others at each eta.
-std::vector<Law> all_laws() {
-  std::vector<Law> laws{{CouplingKind::standard, 1}};
+std::vector<LawAtEta> all_laws() {
+  std::vector<LawAtEta> laws{{CouplingKind::standard, 1}};
   for (const CouplingKind kind : {CouplingKind::proposed, CouplingKind::predictive}) {
     for (const double eta : kLightEtas) laws.push_back({kind, eta});
   }
   return laws;
 }
 
-Trial shaken(const Law& law) {
+Trial shaken(const LawAtEta& law) {
   Parameters p;
   p.kind = law.kind;
   p.eta = law.eta;
@@ -77,11 +77,11 @@ Trial shaken(const Law& law) {
                   hand_path(source, kShakenTick, kSettle + kShakenPeriod + kShakenTick, at), p)};
 }
 
-std::vector<Law> shake(TrialRunner& lab) {
-  std::vector<Law> laws = all_laws();
+std::vector<LawAtEta> shake(TrialRunner& lab) {
+  std::vector<LawAtEta> laws = all_laws();
   std::vector<Trial> trials;
   trials.reserve(laws.size());
-  for (const Law& law : laws) trials.push_back(shaken(law));
+  for (const LawAtEta& law : laws) trials.push_back(shaken(law));
   const RunPlan& plan = trials.front().plan;
   const Eigen::MatrixXd M =
       (1 + plan.parameters.inertia_ratio) * inertia_at(plan.arm, rest_at(plan.arm, kHome).x1);
@@ -94,10 +94,10 @@ std::vector<Law> shake(TrialRunner& lab) {
   return laws;
 }
 
-std::vector<Law> of(const std::vector<Law>& laws, CouplingKind kind) {
-  std::vector<Law> some;
+std::vector<LawAtEta> of(const std::vector<LawAtEta>& laws, CouplingKind kind) {
+  std::vector<LawAtEta> some;
   std::ranges::copy_if(laws, std::back_inserter(some),
-                       [kind](const Law& law) { return law.kind == kind; });
+                       [kind](const LawAtEta& law) { return law.kind == kind; });
   return some;
 }
 
@@ -106,11 +106,11 @@ double least_damping(double eta, double mass) {
   return std::max(0.0, 1 - eta) * mass * 2 * std::numbers::pi * Parameters{}.band;
 }
 
-FigurePanel over_frequency(const std::vector<Law>& laws, const std::string& title,
+FigurePanel over_frequency(const std::vector<LawAtEta>& laws, const std::string& title,
                            const std::string& y, double FeltMotion::*value) {
   FigurePanel panel{.title = title, .x_label = "frequency [Hz]", .y_label = y, .log_x = true};
   panel.x_range = {0.45, 11};
-  for (const Law& law : laws) {
+  for (const LawAtEta& law : laws) {
     const bool standard = law.kind == CouplingKind::standard;
     const auto ink = std::ranges::find(kLightEtas, law.eta) - std::begin(kLightEtas);
     const char* color = standard ? kStandardInk : kFamilyInk[ink];
@@ -128,13 +128,13 @@ FigurePanel over_frequency(const std::vector<Law>& laws, const std::string& titl
 
 // A curve over eta for each law.
 template <class Value>
-FigurePanel against_eta(const std::vector<Law>& laws, const std::string& title,
+FigurePanel against_eta(const std::vector<LawAtEta>& laws, const std::string& title,
                         const std::string& y, const Value& value) {
   FigurePanel panel{.title = title, .x_label = "eta [-]", .y_label = y, .log_x = true};
   panel.x_range = {0.1, 10};
   const auto add = [&](CouplingKind kind, const char* ink) {
     Series line{name(kind), ink, Series::Style::line, {}};
-    for (const Law& law : of(laws, kind)) {
+    for (const LawAtEta& law : of(laws, kind)) {
       if (!law.felt.empty()) line.points.push_back({law.eta, value(law)});
     }
     if (line.points.size() == 1) {
@@ -159,7 +159,7 @@ Series eta_itself() {
   return line;
 }
 
-FigurePanel price_panel(const std::vector<Law>& laws) {
+FigurePanel price_panel(const std::vector<LawAtEta>& laws) {
   FigurePanel panel{.title = "What lightness costs: damping at 0.5 Hz against inertia at 2 Hz",
                     .x_label = "inertia felt, of the arm's own [-]",
                     .y_label = "damping felt [N m s/rad]"};
@@ -174,7 +174,7 @@ FigurePanel price_panel(const std::vector<Law>& laws) {
                                   {CouplingKind::predictive, kPredictiveInk}}) {
     Series line{
         fmt::format("{}, eta {} to 1", name(kind), kLightEtas[0]), ink, Series::Style::line, {}};
-    for (const Law& law : of(laws, kind)) {
+    for (const LawAtEta& law : of(laws, kind)) {
       if (law.eta > 1 || law.felt.empty()) continue;
       line.points.push_back({law.at(kMiddle).inertia, law.at(kSlow).damping});
     }
@@ -187,9 +187,9 @@ FigurePanel price_panel(const std::vector<Law>& laws) {
 constexpr const char *kInertia = "inertia, of the arm's own [-]", *kDamping = "damping [N m s/rad]";
 
 // Panels of the proposed coupling, lighter and heavier apart: their sizes differ.
-std::vector<FigurePanel> proposed_panels(const std::vector<Law>& laws) {
-  std::vector<Law> papers = of(laws, CouplingKind::proposed), light, heavy;
-  for (const Law& law : papers) (law.eta <= 1 ? light : heavy).push_back(law);
+std::vector<FigurePanel> proposed_panels(const std::vector<LawAtEta>& laws) {
+  std::vector<LawAtEta> papers = of(laws, CouplingKind::proposed), light, heavy;
+  for (const LawAtEta& law : papers) (law.eta <= 1 ? light : heavy).push_back(law);
   light.push_back(laws.front());
   papers.push_back(laws.front());
   FigurePanel lighter =
@@ -204,9 +204,9 @@ std::vector<FigurePanel> proposed_panels(const std::vector<Law>& laws) {
   drag.log_y = true;
   drag.y_range = {0.003, 0.3};
   FigurePanel slow = against_eta(laws, "Torque over speed at 0.5 Hz, by that at eta = 1",
-                                 "|Z(eta)| / |Z(1)| [-]", [&](const Law& law) {
+                                 "|Z(eta)| / |Z(1)| [-]", [&](const LawAtEta& law) {
                                    const auto own = of(laws, law.kind);
-                                   const auto one = std::ranges::find(own, 1.0, &Law::eta);
+                                   const auto one = std::ranges::find(own, 1.0, &LawAtEta::eta);
                                    return law.impedance(kSlow) / one->impedance(kSlow);
                                  });
   slow.log_y = true;
@@ -215,8 +215,8 @@ std::vector<FigurePanel> proposed_panels(const std::vector<Law>& laws) {
   return {lighter, heavier, drag, slow};
 }
 
-std::vector<FigurePanel> panels(const std::vector<Law>& laws) {
-  const std::vector<Law> ours = of(laws, CouplingKind::predictive);
+std::vector<FigurePanel> panels(const std::vector<LawAtEta>& laws) {
+  const std::vector<LawAtEta> ours = of(laws, CouplingKind::predictive);
   FigurePanel inertia = over_frequency(ours, "Predictive: inertia felt (dashed: eta)", kInertia,
                                        &FeltMotion::inertia);
   inertia.log_y = true;
@@ -225,11 +225,11 @@ std::vector<FigurePanel> panels(const std::vector<Law>& laws) {
       over_frequency(ours, "Predictive: damping felt", kDamping, &FeltMotion::damping);
   damping.y_range = {0, 0.06};
   FigurePanel scaled = against_eta(laws, "Inertia felt at 2 Hz", kInertia,
-                                   [](const Law& law) { return law.at(kMiddle).inertia; });
+                                   [](const LawAtEta& law) { return law.at(kMiddle).inertia; });
   scaled.y_range = {-12, 6};
   scaled.series.insert(scaled.series.begin(), eta_itself());
   FigurePanel damped = against_eta(laws, "Damping felt at 0.5 Hz", kDamping,
-                                   [](const Law& law) { return law.at(kSlow).damping; });
+                                   [](const LawAtEta& law) { return law.at(kSlow).damping; });
   damped.log_y = true;
   damped.y_range = {0.0005, 0.3};
   Series least{"least of any passive law with that inertia", kHandInk, Series::Style::dashed, {}};
@@ -244,8 +244,8 @@ std::vector<FigurePanel> panels(const std::vector<Law>& laws) {
   return all;
 }
 
-void judge_predictive(const std::vector<Law>& laws, std::vector<Check>& checks) {
-  for (const Law& law : laws) {
+void judge_predictive(const std::vector<LawAtEta>& laws, std::vector<Check>& checks) {
+  for (const LawAtEta& law : laws) {
     if (law.eta == 1) continue;
     double off = std::abs(law.at(kSlow).inertia / law.eta - 1);
     for (const FeltMotion& m : law.felt) {
@@ -255,7 +255,7 @@ void judge_predictive(const std::vector<Law>& laws, std::vector<Check>& checks) 
         fmt::format("predictive, eta = {}: inertia felt off eta, 0.5 to 5 Hz, of it", law.eta), off,
         0.1));
   }
-  for (const Law& law : laws) {
+  for (const LawAtEta& law : laws) {
     if (law.eta >= 1) continue;
     const FeltMotion m = law.at(kSlow);
     checks.push_back(
@@ -267,9 +267,9 @@ void judge_predictive(const std::vector<Law>& laws, std::vector<Check>& checks) 
 }
 
 // Under the proposed coupling damping scales with eta; inertia does not.
-void judge_proposed(const std::vector<Law>& laws, std::vector<Check>& checks) {
-  const auto one = std::ranges::find(laws, 1.0, &Law::eta);
-  for (const Law& law : laws) {
+void judge_proposed(const std::vector<LawAtEta>& laws, std::vector<Check>& checks) {
+  const auto one = std::ranges::find(laws, 1.0, &LawAtEta::eta);
+  for (const LawAtEta& law : laws) {
     if (law.eta == 1) continue;
     const double damping = law.at(kSlow).damping / one->at(kSlow).damping;
     checks.push_back(at_most(
@@ -277,7 +277,7 @@ void judge_proposed(const std::vector<Law>& laws, std::vector<Check>& checks) {
                     law.eta),
         std::abs(damping / law.eta - 1), 0.05));
   }
-  for (const Law& law : laws) {
+  for (const LawAtEta& law : laws) {
     if (law.eta <= 1) continue;
     checks.push_back(at_most(
         fmt::format("proposed, eta = {}: inertia felt at 0.5 Hz, which is not eta", law.eta),
@@ -288,7 +288,7 @@ void judge_proposed(const std::vector<Law>& laws, std::vector<Check>& checks) {
 }  // namespace
 
 Outcome lightness(TrialRunner& lab) {
-  const std::vector<Law> laws = shake(lab);
+  const std::vector<LawAtEta> laws = shake(lab);
   Outcome outcome;
   outcome.figure.title = "How light the arm can be made";
   outcome.figure.caption = fmt::format(

@@ -171,16 +171,22 @@ Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Para
 }
 
 Passivity passivity(const Analysis& a, const Parameters& p) {
-  switch (p.kind) {
-    case CouplingKind::standard: return by_condition3(a.condition3);
-    case CouplingKind::proposed: return of_feedforward(a, p);
-    case CouplingKind::predictive:
+  switch (info(p.kind).promise) {
+    case Promise::condition3: return by_condition3(a.condition3);
+    case Promise::eta_min: return of_feedforward(a, p);
+    case Promise::ledger:
       if (p.tick > kTriedTick) {
         return {std::nullopt, "no bound is known: its ledger was tried at ticks of up to 1 ms"};
       }
       return {true, fmt::format("its ledger: at most {:.3g} mJ are given", 1e3 * p.energy)};
-    case CouplingKind::tank:
+    case Promise::tanks:
       return {true, fmt::format("its tanks: at most {:.3g} mJ are given", 1e3 * p.tank_energy)};
+    case Promise::port:
+      return {true, "its account: the hand is given nothing, as far as the damping is right"};
+    case Promise::observer:
+      return {std::nullopt, "no bound is known: its damper may be too small or too late"};
+    case Promise::none:
+      return {std::nullopt, "no bound is known: it depends on how the hand damps"};
   }
   return {};
 }

@@ -130,10 +130,10 @@ void swing(Stand& stand, const Parameters& p, Truth& truth) {
 }
 
 // Factors on inertia and damping that the law promises to leave felt [-].
-struct Promise {
+struct PromisedShare {
   double inertia, damping;
 };
-Promise promise(const Parameters& p) {
+PromisedShare promise(const Parameters& p) {
   if (!info(p.kind).takes_eta) return {1, 1};
   return {p.eta, info(p.kind).observes ? p.eta : p.damping_share(p.eta)};
 }
@@ -143,7 +143,7 @@ Promise promise(const Parameters& p) {
 void explain_what_is_felt(const Truth& truth, const Stand& stand, const Parameters& p,
                           Rehearsal& result) {
   const Index n = stand.rest().size(), ticks = static_cast<Index>(truth.x.size()) - 1;
-  const Promise promised = promise(p);
+  const PromisedShare promised = promise(p);
   MatrixXd A = MatrixXd::Zero(n * ticks, 3 + 2 * n);
   VectorXd b = VectorXd::Zero(n * ticks);
   Arm<kAnyDof>::Frames frames;

@@ -17,8 +17,11 @@ constexpr std::size_t kTipVelocity = 1;  // of the device, in kDerivedInfo
 
 // Returns the largest E_c that the law allows [J].
 double promised(const Parameters& p) {
-  if (!info(p.kind).keeps_ledger) return 0;
-  return p.kind == CouplingKind::tank ? p.tank_energy : p.energy;
+  switch (info(p.kind).promise) {
+    case Promise::ledger: return p.energy;
+    case Promise::tanks: return p.tank_energy;
+    default: return 0;
+  }
 }
 
 std::string joules_text(double joules) {

@@ -69,6 +69,11 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   const double friction =
       (1 - p.friction_share) * friction_at_tip(arm.J, device_friction(description, p));
   const Condition3 c = condition3(description, p);
+  const double stepped = stepped_wall(p.encoder_step * std::sqrt(lever2), friction);
+  const auto on_device = [&](double stiffness, const char* bound) -> TipLimits::Wall {
+    if (stepped < stiffness) return {stepped, "a step of the encoder pushes the hand"};
+    return {stiffness, bound};
+  };
   const auto wall = [&](CouplingKind kind) -> TipLimits::Wall {
     switch (kind) {
       case CouplingKind::standard:
@@ -83,6 +88,14 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
         return {proposed_wall(l.tip, through_link),
                 "the damping there is against the lag of the contact"};
       case CouplingKind::predictive: return predictive_wall(easiest(arm.J, arm.M), s, friction, p);
+      case CouplingKind::direct:
+        return on_device(direct_wall(l.tip, s), "the damping of arm and hand: (b_d + b_h)/(T/2 + "
+                                                "delay)");
+      case CouplingKind::eba:
+        return {bounded_wall(l.tip, s), "the arm's damping: 2 b_d/(T + delay)"};
+      case CouplingKind::popc:
+        return on_device(braked_wall(l.tip, s, p.popc_damping),
+                         "the damping of arm and hand, and its own damper, held for a tick");
     }
     return {};
   };
@@ -128,6 +141,9 @@ FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind
       Z = l.felt.predictive(f, l.added, p.damping_share(p.eta), p.band,
                             {l.delay, std::max(0.0, l.delay - p.delay * p.tick)});
       break;
+    case CouplingKind::direct:
+    case CouplingKind::eba:
+    case CouplingKind::popc: return {l.tip.mass, l.tip.damping};  // the arm alone
   }
   return {Z.imag() / (2 * std::numbers::pi * f), Z.real()};
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/coupling/laws.h"
+#include "core/coupling/observer_settings.h"
 #include "core/math/sizes.h"
 #include "core/math/solve.h"
 

@@ -1,5 +1,5 @@
-// Interface of a coupling law: its inputs in a tick, and its report. Each law is one file; laws.h
-// lists them with their settings.
+// Interface of a coupling law: its inputs in a tick, its verbs, and its report. laws.h lists all laws
+// with their settings.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 namespace limpid {
 
+struct LawSettings;
 template <int N>
 class Proxy;
 template <int N>
@@ -89,23 +90,34 @@ struct LawReport {
   int unsettled = 0;  // ticks so far in which the proxy stood still for want of a solution
 };
 
-// Defaults for functions that most laws need not define.
+// A coupling law, in the order of its verbs in a tick.
 template <int N>
-struct PlainLaw {
-  // Whether the law books its own ticks in the ledger, as one that locates the device between the
-  // encoders' steps does.
-  static constexpr bool kKeepsLedger = false;
+class Law {
+ public:
   // Reserve below which the ledger forgives what the law gives [E0]. A law of springs and dampers
   // returns what was put in, unless its gains are beyond condition (3); then its debt has an end.
-  static constexpr double kLeastLeft = -4;
-  void start(const LawStart<N>&) {}
-  template <class P>
-  DeviceEstimate<N> locate(const P&, const LawReading<N>& in) {
+  static constexpr double kSpringsLeastLeft = -4;
+
+  Law() = default;
+  Law(const Law&) = delete;
+  Law& operator=(const Law&) = delete;
+  virtual ~Law() = default;
+
+  virtual void start(const LawStart<N>&) {}
+  // Locates the device as the law models it.
+  virtual DeviceEstimate<N> locate(const LawSettings&, const LawReading<N>& in) {
     return {in.x1, in.v1};
   }
+  // Steps the proxy over the tick; returns the torque asked of the motors [N m].
+  virtual Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) = 0;
   // Takes the torque that really left, for the tick that begins [N m].
-  void applied(const Vec<N>&) {}
-  LawReport report() const { return {}; }
+  virtual void applied(const Vec<N>&) {}
+  virtual LawReport report() const { return {}; }
+
+  // Whether the law books its own ticks in the ledger, as one that locates the device between the
+  // encoders' steps does.
+  virtual bool books_itself() const { return false; }
+  virtual double least_left() const { return kSpringsLeastLeft; }
 };
 
 }  // namespace limpid

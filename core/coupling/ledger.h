@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/coupling/laws.h"
+#include "core/coupling/law_info.h"
 #include "core/math/sizes.h"
 
 namespace limpid {

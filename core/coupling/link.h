@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/coupling/decomposition.h"
-#include "core/coupling/laws.h"
+#include "core/coupling/spring_damper.h"
 
 namespace limpid {
 

@@ -1,5 +1,14 @@
 #include "core/coupling/predictive.h"
 
+#include <limits>
+
+#include "core/coupling/decomposition.h"
+#include "core/coupling/inertia_network.h"
+#include "core/coupling/laws.h"
+#include "core/coupling/ledger.h"
+#include "core/coupling/limited_solve.h"
+#include "core/coupling/predictor.h"
+#include "core/coupling/spring_coupling.h"
 #include "core/dynamics/torque_limits.h"
 #include "core/touch/proxy.h"
 
@@ -45,7 +54,47 @@ double jump_at_step(const Predictor<N>& predictor, const PredictorGains& gains,
   return velocity_jump(gains.p, in.encoder_step, in.tick);
 }
 
-}  // namespace
+template <int N>
+class Predictive final : public Law<N> {
+ public:
+  void start(const LawStart<N>& at) override;
+  DeviceEstimate<N> locate(const LawSettings& p, const LawReading<N>& in) override;
+  Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override;
+  void applied(const Vec<N>& tau) override { predictor_.applied(tau, both_); }
+  LawReport report() const override { return report_; }
+  bool books_itself() const override { return true; }
+  double least_left() const override { return -std::numeric_limits<double>::infinity(); }
+
+ private:
+  struct Solve;
+  double held(double k_vc, const Vec<N>& apart);
+  void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
+                      double T, bool resumed, Motion<N>& motion);
+  bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
+  void balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
+               double surprise);
+
+  Predictor<N> predictor_;
+  InertiaNetwork<N> network_;
+  ContactSolve<N> contacts_;
+  Vec<N> y_;              // the last reading [rad]
+  Vec<N> slip_;           // error of its prediction [rad]
+  Vec<N> tau1_;           // torque wanted for this tick [N m]
+  Vec<N> cut_;            // part of tE + tL of that tick that the motors' limit cuts off [N m]
+  Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
+  Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
+  double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
+  bool both_ = true;      // both predictors run
+  Vec<N> b_d_;            // the damping for which quick_ is known
+  bool quick_ = false;    // the device is overdamped, see dies_within_a_tick()
+  bool limited_ = false;  // the last tick had motors at their limit
+  bool goes_on_ = false;  // the next tick counts as limited in any case
+  LawReport report_;
+  Motion<N> last_;  // motion of the last tick solved together
+  // State of the spring in the last tick without motors at their limit, see held().
+  Vec<N> apart_;       // [rad]
+  double spring_ = 0;  // [J]
+};
 
 // The joint system of a tick, with the mean velocities (w, u) of device and proxy unknown:
 //     D0 w               = drive + tau1,               tau1 = tE + tL
@@ -62,7 +111,7 @@ double jump_at_step(const Predictor<N>& predictor, const PredictorGains& gains,
 //     [ Z2 - C_LE^T + phi^T K_N     Z2 + c + phi^T C_LE - C_LE^T phi ],    Z2 = 2/T M2 + S2.
 // The motors give the share `authority` a of tau1: a times the proxy's rows are added.
 template <int N>
-struct PredictiveLaw::Of<N>::Solve {
+struct Predictive<N>::Solve {
   const InertiaNetwork<N>& network;
   const Mat<N>& D0;
   const Vec<N>&f1_hat, &limit;
@@ -152,7 +201,7 @@ struct PredictiveLaw::Of<N>::Solve {
 };
 
 template <int N>
-void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
+void Predictive<N>::start(const LawStart<N>& at) {
   const Vec<N> zero = Vec<N>::Zero(at.x1.size());
   predictor_.start(at.x1, at.v1, at.f1_hat);
   network_.start(at.x1.size());
@@ -168,7 +217,7 @@ void PredictiveLaw::Of<N>::start(const LawStart<N>& at) {
 }
 
 template <int N>
-DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReading<N>& in) {
+DeviceEstimate<N> Predictive<N>::locate(const LawSettings& p, const LawReading<N>& in) {
   elapsed_ = in.elapsed;
   both_ = p.hand_mass > 0;
   if (elapsed_ > 0) {
@@ -183,8 +232,8 @@ DeviceEstimate<N> PredictiveLaw::Of<N>::locate(const Settings& p, const LawReadi
 
 // Closes the books of the tick just ended, and sets the shares for the one that begins.
 template <int N>
-void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-                                   const Proxy<N>& proxy, double surprise) {
+void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
+                            double surprise) {
   Ledger<N>& ledger = *in.ledger;
   if (!limited_) limit_ = in.limit;
   ledger.expect(p.delay, in.delay_most);
@@ -196,7 +245,7 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
     network_.lose(-cut_.dot(ledger.dx()));
   }
   ledger.settle(p.energy,
-                held(c.k_vc, y_ - proxy.x()) + network_.storage() + proxy.kinetic_energy() +
+                held(p.k_vc, y_ - proxy.x()) + network_.storage() + proxy.kinetic_energy() +
                     proxy.contact_potential(),
                 in.authority == 0);
   if (in.armed_anew) ledger.refill();
@@ -212,7 +261,7 @@ void PredictiveLaw::Of<N>::balance(const Settings& p, const SpringDamper& c, con
 // Energy stored by spring and motors. While motors are at their limit, from the point where they
 // reached it, they return energy as a constant torque does.
 template <int N>
-double PredictiveLaw::Of<N>::held(double k_vc, const Vec<N>& apart) {
+double Predictive<N>::held(double k_vc, const Vec<N>& apart) {
   const double spring = spring_energy<N>(k_vc, apart, limit_);
   if (limited_) {
     const double since = spring_ - limit_energy<N>(apart_, limit_);
@@ -224,8 +273,7 @@ double PredictiveLaw::Of<N>::held(double k_vc, const Vec<N>& apart) {
 }
 
 template <int N>
-Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDamper& c,
-                                  const LawInput<N>& in, Proxy<N>& proxy) {
+Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) {
   const double T = in.tick;
   if (in.b_d != b_d_) quick_ = dies_within_a_tick<N>(in.device.M, in.b_d, T);
   b_d_ = in.b_d;
@@ -241,19 +289,19 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // response to a force at the tip
   const double K = proxy.contacts().stiffest();
   if (gains.weighs()) expect_hand(predictor_, in, J, on_tip, p.hand_mass, K);
-  balance(p, c, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
-  network_.set(added_mass(eta, in.delay_most, T), d.M_L, in.ledger->damping(), T, p.band);
+  balance(p, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
+  network_.set(added_mass(p.eta, in.delay_most, T), d.M_L, in.ledger->damping(), T, p.band);
   // The velocity predicted for a late torque is no newer knowledge: the present one damps.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = in.ledger->torque();
   solve.authority *= share;
-  solve.c = c.b_vc + c.k_vc * T / 2;
-  solve.s0 = c.k_vc * (predictor_.x() - proxy.x());
+  solve.c = p.b_vc + p.k_vc * T / 2;
+  solve.s0 = p.k_vc * (predictor_.x() - proxy.x());
   solve.g_f = in.ledger->contact();
-  solve.b_w = Vec<N>::Constant(in.b_d.size(), c.b_v);
+  solve.b_w = Vec<N>::Constant(in.b_d.size(), p.b_v);
   if (!proxy.contacts().engaged()) {
-    solve.b_w -= in.ledger->damping() * (1 - p.damping_share(eta)) * (in.b_d + solve.b_w);
+    solve.b_w -= in.ledger->damping() * (1 - p.damping_share(p.eta)) * (in.b_d + solve.b_w);
   }
 
   ContactAnswer<N> answer = solve.system();
@@ -286,8 +334,8 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
   report_.solved = TickSolve::usual;
   if (limited || !settled) {
     report_.solved = limited ? TickSolve::limited : TickSolve::together;
-    const double stiffer = std::max(0.0, c.k_vc * T / 2 - c.b_vc);
-    LimitedSolve<N> both = limited ? solve.limited(stiffer, c.b_v) : solve.limited(0, 0);
+    const double stiffer = std::max(0.0, p.k_vc * T / 2 - p.b_vc);
+    LimitedSolve<N> both = limited ? solve.limited(stiffer, p.b_v) : solve.limited(0, 0);
     both.limit = limit_;
     solve_together(both, answer, solve.right(), T, resumed, motion);
     f2 = both.f2;
@@ -296,7 +344,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
     cut_ = both.given - both.tau1;
     const Vec<N> apart = predictor_.x() - proxy.x() + T * (motion.w - motion.u);
     goes_on_ = limited && (both.at_limit() ||
-                           (c.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
+                           (p.k_vc * apart.array().abs() > kStillPulled * in.limit.array()).any());
   }
   limited_ = limited;
   contacts_.finish(proxy.contacts());
@@ -307,7 +355,7 @@ Vec<N> PredictiveLaw::Of<N>::step(double eta, const Settings& p, const SpringDam
 // Solves contacts and motors together. motion: in, a first guess; out, the solution. `resumed`: the
 // last tick's motion is a better guess, and the contacts have not been solved yet.
 template <int N>
-void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
+void Predictive<N>::solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
                                           const Motion<N>& right, double T, bool resumed,
                                           Motion<N>& motion) {
   contacts_.prepare(answer, T);
@@ -331,7 +379,7 @@ void PredictiveLaw::Of<N>::solve_together(LimitedSolve<N>& both, const ContactAn
 // Solves bodies of the scene in turn with the rest: each turn they get the forces found, and answer
 // with their motion.
 template <int N>
-bool PredictiveLaw::Of<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found) {
+bool Predictive<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found) {
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (!both.solve(contacts_, T, found)) return false;
     if (contacts_.push_bodies(turn) < kSameForce) return true;
@@ -339,13 +387,15 @@ bool PredictiveLaw::Of<N>::solve_with_bodies(LimitedSolve<N>& both, double T, Mo
   return false;
 }
 
+}  // namespace
+
 template <int N>
-void PredictiveLaw::Of<N>::applied(const Vec<N>& tau) {
-  predictor_.applied(tau, both_);
+std::unique_ptr<Law<N>> PredictiveLaw::make() {
+  return std::make_unique<Predictive<N>>();
 }
 
-template class PredictiveLaw::Of<3>;
-template class PredictiveLaw::Of<7>;
-template class PredictiveLaw::Of<kAnyDof>;
+template std::unique_ptr<Law<3>> PredictiveLaw::make();
+template std::unique_ptr<Law<7>> PredictiveLaw::make();
+template std::unique_ptr<Law<kAnyDof>> PredictiveLaw::make();
 
 }  // namespace limpid

@@ -6,69 +6,141 @@
 // energy that the human is given.
 #pragma once
 
-#include "core/coupling/decomposition.h"
-#include "core/coupling/inertia_network.h"
-#include "core/coupling/laws.h"
-#include "core/coupling/ledger.h"
-#include "core/coupling/limited_solve.h"
-#include "core/coupling/predictor.h"
-#include "core/coupling/standard.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "core/base/field.h"
+#include "core/coupling/law_info.h"
 
 namespace limpid {
 
-template <int N>
-class PredictiveLaw::Of {
- public:
-  void start(const LawStart<N>& at);
-  template <class P>
-  DeviceEstimate<N> locate(const P& p, const LawReading<N>& in) {
-    return locate(static_cast<const Settings&>(p), in);
-  }
-  template <class P>
-  Vec<N> step(const P& p, const LawInput<N>& in, Proxy<N>& proxy) {
-    return step(p.eta, p, p, in, proxy);
-  }
-  void applied(const Vec<N>& tau);
-  const LawReport& report() const { return report_; }
-  static constexpr bool kKeepsLedger = true;
-  static constexpr double kLeastLeft = -std::numeric_limits<double>::infinity();
+// Constants of the predictor; see PredictorSettings::gains().
+struct PredictorGains {
+  double p;        // memory of a filter whose memory fades; NaN: see encoder_filter.h [-]
+  double mu;       // factor on the device's inertia in the predictor [-]
+  double damping;  // of walls, as a part of m_n/T [-]
 
- private:
-  struct Solve;
-  DeviceEstimate<N> locate(const Settings& p, const LawReading<N>& in);
-  Vec<N> step(double eta, const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-              Proxy<N>& proxy);
-  double held(double k_vc, const Vec<N>& apart);
-  void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
-                      double T, bool resumed, Motion<N>& motion);
-  bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
-  void balance(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-               const Proxy<N>& proxy, double surprise);
+  bool weighs() const { return std::isnan(p); }  // readings, by the encoders' step
+};
+struct PredictorSettings {
+  double memory = kUnset;      // p [-]
+  double inertia = kUnset;     // mu [-]
+  double hand_mass = 0.2;      // in the second predictor [kg]
+  int delay = 0;               // known delay between command and motor [ticks]
+  double delay_most = kUnset;  // largest delay possible [ticks]
 
-  Predictor<N> predictor_;
-  InertiaNetwork<N> network_;
-  ContactSolve<N> contacts_;
-  Vec<N> y_;              // the last reading [rad]
-  Vec<N> slip_;           // error of its prediction [rad]
-  Vec<N> tau1_;           // torque wanted for this tick [N m]
-  Vec<N> cut_;            // part of tE + tL of that tick that the motors' limit cuts off [N m]
-  Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
-  Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
-  double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
-  bool both_ = true;      // both predictors run
-  Vec<N> b_d_;            // the damping for which quick_ is known
-  bool quick_ = false;    // the device is overdamped, see dies_within_a_tick()
-  bool limited_ = false;  // the last tick had motors at their limit
-  bool goes_on_ = false;  // the next tick counts as limited in any case
-  LawReport report_;
-  Motion<N> last_;  // motion of the last tick solved together
-  // State of the spring in the last tick without motors at their limit, see held().
-  Vec<N> apart_;       // [rad]
-  double spring_ = 0;  // [J]
+  // NaN, which stands for "as usual", or "as far as it is known".
+  static constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
+
+  PredictorGains gains(double encoder_step) const {
+    constexpr double kExact = 0.2, kCoarse = 1.5e-4;  // p of exact encoders; step [rad]
+    PredictorGains g{memory, 1, 0.2};
+    if (g.weighs() && !(encoder_step > 0)) {
+      g.p = kExact;
+    } else if (!g.weighs() && encoder_step > kCoarse) {  // as recordings with a p have it
+      g.mu = 0.5;
+      g.damping = 0.1;
+    }
+    if (!std::isnan(inertia)) g.mu = inertia;
+    return g;
+  }
+
+  template <class P>
+  static constexpr std::array<Field<P>, 5> settings() {
+    return {
+        {{"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
+          "Predictive coupling: memory of a filter whose memory fades, 0 none, as recordings of "
+          "Limpid 0.2 may have it. Default: with encoder steps none, each reading counts by the "
+          "step and by what the hand may do; with exact encoders 0.2."},
+         {"predictor.mu", "inertia \xCE\xBC", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3,
+          true, true,
+          "Predictive coupling: factor on the device's inertia in the predictor. Default: "
+          "1."},
+         {"predictor.hand_mass", "hand mass m_h", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1,
+          false, true,
+          "Predictive coupling: mass of hand and handle in the second predictor, which takes "
+          "over when it is the better one. 0 does without."},
+         {"model.delay", "known delay", "Delay that is known", &P::delay, "ticks", 0, 20, 0, 5,
+          false, true,
+          "Predictive coupling: delay between command and motor that it reckons with, in "
+          "ticks."},
+         {"model.delay_most", "possible delay", "possible delay", &P::delay_most, "ticks", 0, 20, 0,
+          5, false, true,
+          "Predictive coupling: the most that the delay between command and motor may be, in "
+          "ticks. The energy given is accounted for every delay from model.delay to this one, and "
+          "eta above 1 is felt in a narrower band. Default: of the virtual arm device.delay; of a "
+          "real device one tick more than was identified, or 3."}}};
+  }
 };
 
-extern template class PredictiveLaw::Of<3>;
-extern template class PredictiveLaw::Of<7>;
-extern template class PredictiveLaw::Of<kAnyDof>;
+struct LedgerSettings {
+  double energy = 0.005;  // E0, the most that the human may be given [J]
+
+  template <class P>
+  static constexpr std::array<Field<P>, 1> settings() {
+    return {{{"ledger.energy", "ledger E\xE2\x82\x80", "Energy allowed E\xE2\x82\x80", &P::energy,
+              "J", 1e-4, 0.02, 1e-3, 0.02, true, true,
+              "Predictive coupling: the human is given at most this energy beyond what came in, "
+              "since the loop was started, and at most four times of it in any part of that time. "
+              "When the reserve runs low the contact force, the cancelled damping and the added "
+              "inertia are cut."}}};
+  }
+};
+
+struct PredictiveLaw {
+  static constexpr std::array kSliders{"coupling.eta",  "coupling.damping", "coupling.band",
+                                       "coupling.k_vc", "coupling.b_vc",    "coupling.b_v",
+                                       "ledger.energy"};
+  static constexpr LawInfo kInfo{
+      .key = "predictive",
+      .label = "Predictive",
+      .meaning =
+          "device and proxy solved together for the coming tick, inertia shaped by passive "
+          "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
+      .verdict = "Recommended: no drift, stiff walls, light, passive.",
+      .promise = Promise::ledger,
+      .takes_eta = true,
+      .solves_together = true,
+      .through_link =
+          "the predictive law solves device and proxy at once, and knows no link",
+      .sliders = kSliders,
+  };
+
+  // Settings without eta, which is the proposed law's.
+  struct Settings : PredictorSettings, LedgerSettings {
+    double felt_damping = kFollowsEta;  // share of b_d + b_v that is felt [-]
+    double band = 5.3;                  // edge of the band in which eta holds [Hz]
+
+    // NaN, which stands for "as eta has it".
+    static constexpr double kFollowsEta = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double kLeastDamping = 1.0 / 3;
+
+    double damping_share(double eta) const {
+      if (!std::isnan(felt_damping)) return felt_damping;
+      return 1 - std::clamp(2 * (1 - eta), 0.0, 1.0) * (1 - kLeastDamping);
+    }
+
+    template <class P>
+    static constexpr auto settings() {
+      constexpr std::array<Field<P>, 2> own{
+          {{"coupling.damping", "damping", "Damping felt", &P::felt_damping, "-", kLeastDamping, 1,
+            kLeastDamping, 1, false, true,
+            "Predictive coupling: share of the damping b_d + b_v that stays felt in free motion. "
+            "Default: falls with eta, from 1 at eta 1 to 1/3 at eta 0.5 and below."},
+           {"coupling.band", "band", "Band of the inertia", &P::band, "Hz", 0.5, 20, 1, 10, true,
+            true,
+            "Predictive coupling: up to this frequency the inertia felt is eta times the natural "
+            "one; a wider band costs more damping."}}};
+      return joined<P>(own, PredictorSettings::settings<P>(), LedgerSettings::settings<P>());
+    }
+  };
+
+  // Makes the law.
+  template <int N>
+  static std::unique_ptr<Law<N>> make();
+};
 
 }  // namespace limpid

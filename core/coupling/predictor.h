@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/coupling/encoder_filter.h"
-#include "core/coupling/laws.h"
+#include "core/coupling/predictive.h"
 #include "core/math/elementary.h"
 #include "core/math/solve.h"
 

@@ -1,95 +1,33 @@
 #include "core/coupling/standard.h"
 
-#include <algorithm>
-#include <limits>
-
-#include "core/touch/proxy.h"
+#include "core/coupling/laws.h"
+#include "core/coupling/spring_coupling.h"
 
 namespace limpid {
-
 namespace {
 
-// Drive of (2), for a proxy at x2.
 template <int N>
-ProxyDrive<N> drive(const SpringDamper& p, double T, const Vec<N>& x2, const Vec<N>& x1,
-                    const Vec<N>& v1, const Feedforward<N>& ff) {
-  return {p.b_vc * v1 - p.k_vc * (x2 - x1) + ff.tau2, p.b_v + p.b_vc + p.k_vc * T / 2, ff.on_proxy};
-}
-
-// Torque of (1), without f2.
-template <int N>
-Vec<N> pull(const SpringDamper& p, const LawInput<N>& in, const Vec<N>& x2, const Vec<N>& vbar2,
-            const Feedforward<N>& ff) {
-  return -p.b_vc * (in.v1 - vbar2) - p.k_vc * (in.x1 - x2) + ff.tau1;
-}
+class Standard final : public Law<N> {
+ public:
+  Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override {
+    const auto none = Feedforward<N>::none(in.x1.size());
+    if (in.link == nullptr) return couple<N>(p, in, none, proxy);
+    FromProxy<N> here = told(in, proxy);
+    move_proxy<N>(p, in.T, in.link->to_proxy(told(in)), none, proxy);
+    here.f2 = proxy.f();
+    return on_device<N>(p, in, in.link->to_device(here), none);
+  }
+};
 
 }  // namespace
 
 template <int N>
-Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
-              Proxy<N>& proxy) {
-  const Vec<N> x2 = proxy.x();
-  proxy.advance(in.T, drive<N>(p, in.T, x2, in.x1, in.v1, ff));
-  return pull<N>(p, in, x2, in.vbar2, ff) + ff.on_device.of(proxy.f(), proxy.M());
+std::unique_ptr<Law<N>> StandardLaw::make() {
+  return std::make_unique<Standard<N>>();
 }
 
-template <int N>
-void move_proxy(const SpringDamper& p, double T, const FromDevice<N>& device,
-                const Feedforward<N>& ff, Proxy<N>& proxy) {
-  proxy.advance(T, drive<N>(p, T, proxy.x(), device.x1, device.v1, ff));
-}
-
-template <int N>
-Vec<N> on_device(const SpringDamper& p, const LawInput<N>& in, const FromProxy<N>& proxy,
-                 const Feedforward<N>& ff) {
-  return pull<N>(p, in, proxy.x2, proxy.vbar2, ff) + ff.on_device.of(proxy.f2, proxy.proxy.M);
-}
-
-template <int N>
-Vec<N> StandardLaw::Of<N>::step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy) {
-  const auto none = Feedforward<N>::none(in.x1.size());
-  if (in.link == nullptr) return couple<N>(p, in, none, proxy);
-  FromProxy<N> here = told(in, proxy);
-  move_proxy<N>(p, in.T, in.link->to_proxy(told(in)), none, proxy);
-  here.f2 = proxy.f();
-  return on_device<N>(p, in, in.link->to_device(here), none);
-}
-
-template Vec<3> couple(const SpringDamper&, const LawInput<3>&, const Feedforward<3>&, Proxy<3>&);
-template void move_proxy(const SpringDamper&, double, const FromDevice<3>&, const Feedforward<3>&,
-                         Proxy<3>&);
-template Vec<3> on_device(const SpringDamper&, const LawInput<3>&, const FromProxy<3>&,
-                          const Feedforward<3>&);
-template Vec<3> StandardLaw::Of<3>::step(const Settings&, const LawInput<3>&, Proxy<3>&);
-template Vec<7> couple(const SpringDamper&, const LawInput<7>&, const Feedforward<7>&, Proxy<7>&);
-template void move_proxy(const SpringDamper&, double, const FromDevice<7>&, const Feedforward<7>&,
-                         Proxy<7>&);
-template Vec<7> on_device(const SpringDamper&, const LawInput<7>&, const FromProxy<7>&,
-                          const Feedforward<7>&);
-template Vec<7> StandardLaw::Of<7>::step(const Settings&, const LawInput<7>&, Proxy<7>&);
-template Vec<kAnyDof> couple(const SpringDamper&, const LawInput<kAnyDof>&,
-                             const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
-template void move_proxy(const SpringDamper&, double, const FromDevice<kAnyDof>&,
-                         const Feedforward<kAnyDof>&, Proxy<kAnyDof>&);
-template Vec<kAnyDof> on_device(const SpringDamper&, const LawInput<kAnyDof>&,
-                                const FromProxy<kAnyDof>&, const Feedforward<kAnyDof>&);
-template Vec<kAnyDof> StandardLaw::Of<kAnyDof>::step(const Settings&, const LawInput<kAnyDof>&,
-                                                     Proxy<kAnyDof>&);
-
-Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d, double delay,
-                      const LinkSettings& link) {
-  const double least = *std::ranges::min_element(b_d);
-  const double old = link.oldest() * T, again = 0.5 * link.link_jitter;
-  const double device_needs = (2 + again) * p.b_vc + p.k_vc * (T + 1.5 * delay + old);
-  const double proxy_needs = again * p.b_vc + p.k_vc * (T + delay + 2 * old) / 2;
-  Condition3 c;
-  c.device_margin = least - device_needs;
-  c.proxy_margin = p.b_v - proxy_needs;
-  c.known = !(link.link_loss > 0);
-  constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
-  c.holds = c.known && c.device_margin >= -kRoundOff * device_needs &&
-            c.proxy_margin >= -kRoundOff * proxy_needs;
-  return c;
-}
+template std::unique_ptr<Law<3>> StandardLaw::make();
+template std::unique_ptr<Law<7>> StandardLaw::make();
+template std::unique_ptr<Law<kAnyDof>> StandardLaw::make();
 
 }  // namespace limpid

@@ -1,73 +1,29 @@
-// The virtual coupling by spring and damper, (1)-(2). All laws of the paper add to it.
+// The standard coupling: spring and damper alone, (1)-(2).
 #pragma once
 
-#include <cmath>
+#include <memory>
 
-#include "core/coupling/law.h"
-#include "core/coupling/laws.h"
-#include "core/coupling/link.h"
-#include "core/touch/proxy.h"
+#include "core/coupling/law_info.h"
+#include "core/coupling/spring_damper.h"
 
 namespace limpid {
 
-// Feedforward that (14)-(15) add to (1)-(2): torques without f2, and shares of f2, which is known
-// only after the proxy's step. The proxy's share includes the f2 that acts on it anyway.
-template <int N>
-struct Feedforward {
-  Vec<N> tau1, tau2;  // [N m]
-  ContactShare<N> on_device{0}, on_proxy{1};
+struct StandardLaw {
+  static constexpr LawInfo kInfo{
+      .key = "standard",
+      .label = "Standard",
+      .meaning = "spring and damper alone, (1)-(2).",
+      .verdict = "The usual one: hand and world drift apart.",
+      .promise = Promise::condition3,
+      .through_link = "passive where (3) holds",
+      .sliders = kPaperSliders,
+  };
 
-  static Feedforward none(Eigen::Index n) { return {Vec<N>::Zero(n), Vec<N>::Zero(n)}; }
-};
+  using Settings = SpringDamper;
 
-// Steps the proxy, (4), with the springs and dampers of (2) at the midpoint. Returns the torque
-// asked of the motors, (1) without the device's own damping [N m].
-template <int N>
-Vec<N> couple(const SpringDamper& p, const LawInput<N>& in, const Feedforward<N>& ff,
-              Proxy<N>& proxy);
-
-// The proxy's half of couple(), (2), from its side's knowledge of the device.
-template <int N>
-void move_proxy(const SpringDamper& p, double T, const FromDevice<N>& device,
-                const Feedforward<N>& ff, Proxy<N>& proxy);
-// The device's half, (1), from its side's knowledge of the proxy.
-template <int N>
-Vec<N> on_device(const SpringDamper& p, const LawInput<N>& in, const FromProxy<N>& proxy,
-                 const Feedforward<N>& ff);
-// State of each side for the other. The proxy's is the one before its step, with f2 left to fill
-// in.
-template <int N>
-FromDevice<N> told(const LawInput<N>& in) {
-  return {in.x1, in.v1, in.device, in.f1_hat};
-}
-template <int N>
-FromProxy<N> told(const LawInput<N>& in, const Proxy<N>& proxy) {
-  return {proxy.x(), in.vbar2, {proxy.M(), proxy.C(), proxy.v()}, Vec<N>::Zero(in.x1.size())};
-}
-
-// Energy of the coupling's spring, whose torque is at most the motors' [J].
-template <int N>
-double spring_energy(double k_vc, const Vec<N>& x, const Vec<N>& limit) {
-  double V = 0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double pull = k_vc * std::abs(x[i]);
-    V += pull > limit[i] ? limit[i] * std::abs(x[i]) - limit[i] * limit[i] / (2 * k_vc)
-                         : pull * std::abs(x[i]) / 2;
-  }
-  return V;
-}
-
-// Energy given to bodies over the last tick [J].
-template <int N>
-double given_to_bodies(const Proxy<N>& proxy) {
-  const BodyWorld* world = proxy.contacts().world();
-  return world != nullptr ? world->given() : 0;
-}
-
-// The standard coupling: spring and damper alone, (1)-(2).
-template <int N>
-struct StandardLaw::Of : PlainLaw<N> {
-  Vec<N> step(const Settings& p, const LawInput<N>& in, Proxy<N>& proxy);
+  // Makes the law.
+  template <int N>
+  static std::unique_ptr<Law<N>> make();
 };
 
 }  // namespace limpid

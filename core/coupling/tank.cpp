@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "core/coupling/device_tank.h"
+#include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
-#include "core/math/solve.h"
+#include "core/coupling/spring_coupling.h"
 
 namespace limpid {
 namespace {
@@ -17,80 +20,44 @@ constexpr double kMostRefill = 0.2;
 // maximum is c^2 T / (4 b).
 double damping_for(double c2, double T, double energy) { return c2 * T / (4 * energy); }
 
-}  // namespace
-
 template <int N>
-void DeviceTank<N>::start(const Vec<N>& x1, double energy) {
-  in_ = energy;
-  out_ = 0;
-  spent_.fill(0);
-  x1_ = x1;
-  dx_ = change_ = Vec<N>::Zero(x1.size());
-  still_.fill(0);
-  torques_.fill(dx_);
-}
-
-template <int N>
-void DeviceTank<N>::expect(int least, int most) {
-  if (least == least_ && most == most_) return;
-  spent_.fill(out_);
-  least_ = least;
-  most_ = most;
-}
-
-template <int N>
-void DeviceTank<N>::settle(const Vec<N>& x1, const Vec<N>& damping, double q, double T,
-                           double most) {
-  const Vec<N> dx = x1 - x1_;
-  change_ = dx - dx_;
-  dx_ = dx;
-  x1_ = x1;
-  // An unchanged reading says nothing.
-  for (Eigen::Index i = 0; i < dx.size(); ++i) {
-    int& n = still_[static_cast<std::size_t>(i)];
-    ++n;
-    if (q > 0 && dx[i] == 0) continue;
-    in_ += damping[i] * dx[i] * dx[i] / (n * T);
-    n = 0;
+class Tank final : public Law<N> {
+ public:
+  void start(const LawStart<N>& at) override;
+  DeviceEstimate<N> locate(const LawSettings&, const LawReading<N>& in) override {
+    elapsed_ = in.elapsed;
+    return {in.x1, in.v1};
   }
-  out_ = -std::numeric_limits<double>::infinity();
-  for (int d = least_; d <= most_; ++d) {
-    const auto place = static_cast<std::size_t>(d);
-    spent_[place] += torques_[(newest_ + place) % torques_.size()].dot(dx);
-    out_ = std::max(out_, spent_[place]);
-  }
-  in_ = std::min(in_, out_ + most);
-}
+  Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override;
+  void applied(const Vec<N>& torque) override { device_.sent(torque); }
+  LawReport report() const override;
+  double least_left() const override { return -std::numeric_limits<double>::infinity(); }
+
+ private:
+  using Settings = TankLaw::Settings;
+  void settle(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
+              const Proxy<N>& proxy);
+  void move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+            const FromDevice<N>& device, Proxy<N>& proxy);
+  Vec<N> pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+              const FromProxy<N>& proxy);
+  double on_its_way() const { return (sent1_ - got2_) + (sent2_ - got1_); }
+
+  DeviceTank<N> device_;
+  double proxy_ = 0;             // energy in the tank of the proxy's side [J]
+  double work2_ = 0;             // work of tau2 over the last tick [J]
+  double sent1_ = 0, got2_ = 0;  // energy from device to proxy, in all so far [J]
+  double sent2_ = 0, got1_ = 0;  // energy from proxy to device
+  double reserve_ = 0;           // energy in both tanks and between them when the tick began [J]
+  double left_ = std::numeric_limits<double>::infinity();  // of an earlier part of the run [J]
+  bool fresh_ = true, owed_ = false, takes_over_ = false;  // see LawStart
+  double elapsed_ = 0;  // since the previous reading; 0 at the first [s]
+  double freely_ = 1;   // the proxy's damping over that with its tank's damper [-]
+  double share_ = 1;    // share of the device's torque [-]
+};
 
 template <int N>
-void DeviceTank<N>::sent(const Vec<N>& torque) {
-  newest_ = (newest_ + torques_.size() - 1) % torques_.size();
-  torques_[newest_] = torque;
-}
-
-template <int N>
-double DeviceTank<N>::share(const Vec<N>& torque, const Mat<N>& M, double T) const {
-  const auto spends = [&](const Vec<N>& tau) {
-    return std::max({0.0, tau.dot(dx_), tau.dot(dx_ + change_)});
-  };
-  double has = energy();
-  for (int d = 0; d < most_; ++d) {
-    has -= spends(torques_[(newest_ + static_cast<std::size_t>(d)) % torques_.size()]);
-  }
-  if (!(has > 0)) return 0;
-  const double along = spends(torque), n = 1 + most_;
-  const double alone = n * n * T * T / 2 * torque.dot(solve_symmetric<N>(M, torque));
-  if (along + alone <= has) return 1;
-  // Solves s along + s^2 alone = has.
-  return 2 * has / (along + std::sqrt(along * along + 4 * alone * has));
-}
-
-template class DeviceTank<3>;
-template class DeviceTank<7>;
-template class DeviceTank<kAnyDof>;
-
-template <int N>
-void TankLaw::Of<N>::start(const LawStart<N>& at) {
+void Tank<N>::start(const LawStart<N>& at) {
   if (at.reserve) {
     left_ = *at.reserve;
   } else if (!fresh_) {
@@ -107,7 +74,7 @@ void TankLaw::Of<N>::start(const LawStart<N>& at) {
 
 // Closes the books of the tick that just ended.
 template <int N>
-void TankLaw::Of<N>::settle(const Settings& p, const SpringDamper& c, int delay,
+void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay,
                             const LawInput<N>& in, const Proxy<N>& proxy) {
   device_.expect(delay, in.delay_most);
   if (fresh_) {
@@ -135,7 +102,7 @@ void TankLaw::Of<N>::settle(const Settings& p, const SpringDamper& c, int delay,
 // is pressed as hard as ever, which takes no energy. While no torque reaches the motors the hand
 // alone moves it, and the tank does not pay.
 template <int N>
-void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                           const FromDevice<N>& device, Proxy<N>& proxy) {
   const double T = in.T;
   const bool idle = in.authority == 0;
@@ -159,7 +126,7 @@ void TankLaw::Of<N>::move(const Settings& p, const SpringDamper& c, const LawInp
 
 // Returns the torque on the device's side.
 template <int N>
-Vec<N> TankLaw::Of<N>::pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
+Vec<N> Tank<N>::pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                             const FromProxy<N>& proxy) {
   device_.add(proxy.sent - got1_);
   got1_ = proxy.sent;
@@ -172,23 +139,22 @@ Vec<N> TankLaw::Of<N>::pull(const Settings& p, const SpringDamper& c, const LawI
 }
 
 template <int N>
-Vec<N> TankLaw::Of<N>::step(const Settings& p, const SpringDamper& c, int delay,
-                            const LawInput<N>& in, Proxy<N>& proxy) {
-  settle(p, c, delay, in, proxy);
+Vec<N> Tank<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) {
+  settle(p, p, p.delay, in, proxy);
   FromDevice<N> device = told(in);
   FromProxy<N> here = told(in, proxy);
   const double surplus = p.tank_share * std::max(0.0, device_.energy() - p.tank_energy / 2);
   device_.add(-surplus);
   sent1_ += surplus;
   device.sent = sent1_;
-  move(p, c, in, in.link != nullptr ? in.link->to_proxy(device) : device, proxy);
+  move(p, p, in, in.link != nullptr ? in.link->to_proxy(device) : device, proxy);
   here.f2 = proxy.f();
   here.sent = sent2_;
-  return pull(p, c, in, in.link != nullptr ? in.link->to_device(here) : here);
+  return pull(p, p, in, in.link != nullptr ? in.link->to_device(here) : here);
 }
 
 template <int N>
-LawReport TankLaw::Of<N>::report() const {
+LawReport Tank<N>::report() const {
   LawReport report;
   report.reserve = fresh_ ? left_ : reserve_;
   report.contact_governor = freely_;
@@ -196,8 +162,15 @@ LawReport TankLaw::Of<N>::report() const {
   return report;
 }
 
-template class TankLaw::Of<3>;
-template class TankLaw::Of<7>;
-template class TankLaw::Of<kAnyDof>;
+}  // namespace
+
+template <int N>
+std::unique_ptr<Law<N>> TankLaw::make() {
+  return std::make_unique<Tank<N>>();
+}
+
+template std::unique_ptr<Law<3>> TankLaw::make();
+template std::unique_ptr<Law<7>> TankLaw::make();
+template std::unique_ptr<Law<kAnyDof>> TankLaw::make();
 
 }  // namespace limpid

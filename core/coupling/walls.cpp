@@ -44,6 +44,26 @@ double every_hands_wall(const TipAlong& tip, double T, double delay) {
   return tip.damping / (T / 2 + delay);
 }
 
+double direct_wall(const TipAlong& tip, const WallSetting& s) {
+  return (tip.damping + s.hand_damping) / (s.T / 2 + s.delay);
+}
+
+double bounded_wall(const TipAlong& tip, const WallSetting& s) {
+  return 2 * tip.damping / (s.T + s.delay);
+}
+
+double braked_wall(const TipAlong& tip, const WallSetting& s, double part) {
+  constexpr double kFound = 0.6;  // part of the bound up to which it was found to be quiet
+  const double brake = part * tip.mass / (s.T + s.delay);
+  return kFound * (tip.damping + s.hand_damping + brake) / (s.T / 2 + s.delay);
+}
+
+double stepped_wall(double q, double friction) {
+  constexpr double kHardlyFelt = 0.25;  // [N]
+  if (!(q > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(kHardlyFelt, 2 * friction) / q;
+}
+
 double mistaken_wall(const TipAlong& tip, const WallSetting& s) {
   if (s.hand_mass <= 0) return std::numeric_limits<double>::infinity();
   const double walls = 0.2 * tip.mass / s.T;  // damper that the law gives every wall

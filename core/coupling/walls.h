@@ -42,6 +42,18 @@ double proposed_wall(const TipAlong& tip, const WallSetting& s);
 // Stiffest wall that any linear law can render passively in every hand (Colgate), with its torque a
 // delay late [N/m]: b_d / (T/2 + delay).
 double every_hands_wall(const TipAlong& tip, double T, double delay = 0);
+// Stiffest wall on the device itself that stays quiet in this hand [N/m]: (b_d + b_h) / (T/2 +
+// delay).
+double direct_wall(const TipAlong& tip, const WallSetting& s);
+// Stiffest wall that energy bounding shows to a slow hand [N/m]: 2 b_d / (T + delay).
+double bounded_wall(const TipAlong& tip, const WallSetting& s);
+// Stiffest wall of the passivity controller, whose damper is at most `part` of m_n / (T + delay)
+// [N/m].
+double braked_wall(const TipAlong& tip, const WallSetting& s, double part);
+// Force of a step q of the encoder at the tip [m] that a wall on the device may make: what friction
+// f_c holds (Abbott and Okamura 2005), or what a hand hardly feels. Stiffest wall for it [N/m];
+// infinite without steps.
+double stepped_wall(double q, double friction);
 // Stiffest wall of a prediction that takes the arm to move alone while a mass is in the hand. It is
 // bounded by the energy that this error gives away; infinite without a mass.
 double mistaken_wall(const TipAlong& tip, const WallSetting& s);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/coupling/laws.h"
+#include "core/coupling/observer_settings.h"
 
 namespace limpid {
 

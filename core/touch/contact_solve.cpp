@@ -257,6 +257,29 @@ Vec<N> ContactSolve<N>::f2(Eigen::Index n) const {
 }
 
 template <int N>
+HeldContacts<N> ContactSolve<N>::held(const Vec<N>& u, double T) const {
+  HeldContacts<N> held{Vec<N>::Zero(u.size())};
+  for (const Row& row : rows()) {
+    const Vec3 v = row.speed(u) - row.of_body();
+    const Vec3 spring =
+        std::visit([&](const auto* c) { return c->spring_after(row, T * v); }, row.source);
+    const double size = spring.norm();
+    if (!(size > 0)) continue;
+    const Vec3 normal = spring / size;
+    const double approach = -T * normal.dot(v);
+    const double force = std::max(0.0, size + row.material.damping * approach / T);
+    const double most = row.radius * force, rubs = row.friction.norm();
+    const Vec3 friction = rubs > most ? Vec3(most / rubs * row.friction) : row.friction;
+    const Vec3 all = force * normal + friction;
+    for (int i = 0; i < row.axes; ++i) held.torque += all[i] * row.g[static_cast<std::size_t>(i)];
+    held.stored += size * size / (2 * row.material.stiffness) +
+                   friction.squaredNorm() / (2 * friction_stiffness(row.material));
+    held.spring_work += row.material.stiffness * approach * approach / 2;
+  }
+  return held;
+}
+
+template <int N>
 void ContactSolve<N>::finish(Contacts<N>& contacts) const {
   if (world_ != nullptr) {
     world_->settle();

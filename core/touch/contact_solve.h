@@ -10,6 +10,14 @@
 
 namespace limpid {
 
+// Contacts as they hold the arm where a tick ends.
+template <int N>
+struct HeldContacts {
+  Vec<N> torque;           // [N m]
+  double stored = 0;       // by their springs and by friction's [J]
+  double spring_work = 0;  // 1/2 D.K D: by touching springs K over one more tick's motion D [J]
+};
+
 template <int N>
 class ContactSolve {
  public:
@@ -37,6 +45,9 @@ class ContactSolve {
   // velocity u [rad/s]; f2() and finish() refer to the last call. `slope`: derivative over u [N m
   // s/rad], on the present piece of the forces' laws; may be null.
   Vec<N> push(const Vec<N>& u, double T, Mat<N>* slope);
+  // After push() for the same u: the springs where the tick ends, not their mean over it, with the
+  // materials' dampers and with friction.
+  HeldContacts<N> held(const Vec<N>& u, double T) const;
   // Torque of the forces found [N m].
   Vec<N> f2(Eigen::Index n) const;
   bool any() const { return count_ > 0; }

@@ -71,6 +71,9 @@ struct MagnetContact {
     row.push = slope / k * (K * stretch + k * v);
     return slope;
   }
+  Vec3 spring_after(const ContactRow<N>& row, const Vec3& moved) const {
+    return -row.material.stiffness * (stretch + moved);
+  }
   void finish(const ContactRow<N>& row) {
     force = row.push;
     row.world->pulled(row.push);

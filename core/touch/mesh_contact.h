@@ -124,6 +124,13 @@ struct MeshContact {
     room_push(touch, {K, row.B, T, center, T * (v + row.W_body * row.push), Mat3::Zero()}, on_D);
     return T * (Mat3::Identity() - T * on_D * row.W_body).inverse() * on_D;
   }
+  Vec3 spring_after(const ContactRow<N>& row, const Vec3& moved) const {
+    const Vec3 there = center + moved;
+    Vec3 x = touch.anchor();
+    FreeSpace::Active by;
+    if (!touch.held()) touch.space().project(there, x, by);
+    return row.material.stiffness * (x - there);
+  }
   void finish(const ContactRow<N>& row) { force = row.push + row.friction; }
 
   // Computes the directions of the planes that push, and the centre's depth along them.

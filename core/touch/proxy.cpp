@@ -156,6 +156,17 @@ void Proxy<N>::step(double T, const Vec<N>& vbar, const Vec<N>& f) {
   behind_ = true;
 }
 
+template <int N>
+void Proxy<N>::carry(double T, const Vec<N>& u, const Vec<N>& f2) {
+  vbar_ = u;
+  f_ = f2;
+  tau_ = -f2;
+  nu_ = factor_.turned_times(u);
+  x_ += T * u;
+  behind_ = true;
+  stood_still_ = false;
+}
+
 // Solves for vbar with the contacts assumed to touch. True if they are those inside at the
 // midpoint.
 template <int N>

@@ -62,6 +62,9 @@ class Proxy {
   Vec<N> momentum(double T) const { return 2 / T * factor_.times(nu_); }
   // Last, steps with the mean velocity and contact forces of the tick [rad/s, N m].
   void step(double T, const Vec<N>& vbar, const Vec<N>& f);
+  // Or, last, carries the proxy along: without a mass of its own it moves with u over the tick, and
+  // tau2 holds f2.
+  void carry(double T, const Vec<N>& u, const Vec<N>& f2);
   Contacts<N>& contacts() { return *contacts_; }
 
   const Vec<N>& x() const { return x_; }

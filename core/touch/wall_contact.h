@@ -124,6 +124,10 @@ struct Contact {
     slope(0, 0) = -T * F.slope;
     return slope;
   }
+  // Force of the spring alone after a motion along the row's axes, relative to the body [m, N].
+  Vec3 spring_after(const ContactRow<N>& row, const Vec3& moved) const {
+    return row.material.stiffness * std::max(0.0, depth - moved.x()) * Vec3::UnitX();
+  }
   void finish(const ContactRow<N>& row) {
     force = row.push.x();
     friction = row.frame * row.friction;

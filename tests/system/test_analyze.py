@@ -139,6 +139,9 @@ class Analyze(SystemTest):
             (["--set", "loop.tick=0.1"], False),  # b_d >= 2 b_vc + k_vc T is broken
             (["--coupling", "tank", "--eta", "0.1", "--set", "link.delay=20"], True),
             (["--coupling", "standard", "--set", "link.loss=0.1"], None),
+            (["--coupling", "eba"], True),
+            (["--coupling", "direct"], None),
+            (["--coupling", "popc"], None),
             (["--set", "link.delay=1", "--set", "coupling.k_vc=1"], None),
         ]
         for options, passive in cases:

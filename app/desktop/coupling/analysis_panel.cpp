@@ -45,6 +45,15 @@ std::vector<ChartPoint> over_frequency(const Value& value) {
 
 CouplingKind law(std::size_t i) { return static_cast<CouplingKind>(i); }
 
+// Laws that are drawn: those with a button of their own, and the one in force.
+std::vector<std::size_t> drawn_laws(const Parameters& p) {
+  std::vector<std::size_t> drawn;
+  for (std::size_t i = 0; i < kLaws; ++i) {
+    if (law(i) == p.kind || !info(law(i)).for_comparison) drawn.push_back(i);
+  }
+  return drawn;
+}
+
 Rgb law_colour(const Palette& colours, std::size_t i, const Parameters& p) {
   return law(i) == p.kind ? colours.text : mix(colours.muted, colours.panel, 0.35f);
 }
@@ -89,7 +98,8 @@ void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const S
 // Draws one bar a law on a logarithmic axis, and the scene's stiffest wall across them.
 void AnalysisPanel::draw_walls(const Parameters& p) const {
   const Palette& colours = current_palette();
-  const double rows = kLaws;
+  const std::vector<std::size_t> drawn = drawn_laws(p);
+  const auto rows = static_cast<double>(drawn.size());
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   {
     const Chart chart("stiffest wall [N/m]", {kSoftest, kStiffest, true}, {0, rows, false, false},
@@ -102,8 +112,9 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
     };
     across(tip_.every_hand, colours.axis);
     if (tip_.scene > 0) across(tip_.scene, ink(colours, Ink::contact));
-    for (std::size_t i = 0; i < tip_.walls.size(); ++i) {
-      const double y = rows - 0.5 - static_cast<double>(i);
+    double y = rows + 0.5;
+    for (const std::size_t i : drawn) {
+      y -= 1;
       const ImVec2 end = chart.place({std::min(tip_.walls[i].stiffness, kStiffest), y});
       const Rgb ink = law_colour(colours, i, p);
       draw.AddRectFilled({chart.inside().min.x, end.y - thick / 2}, {end.x, end.y + thick / 2},
@@ -123,7 +134,7 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());
   if (tip_.scene <= 0) return;
-  const bool soft = !info(p.kind).solves_together && !info(p.kind).observes;
+  const bool soft = info(p.kind).knows_link() && !info(p.kind).observes;
   const bool over = !soft && tip_.scene > mine.stiffness;
   read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
            over ? fmt::format("Stiffer than what {} renders well here, {:.0f} N/m: {}.",
@@ -143,7 +154,7 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
   const double natural = kGram * tip_.felt.m, wanted = p.eta * natural;
   const double least = tip_.felt.least_damping(p.eta, p.band);
   const auto draw_all = [&](const Chart& chart, auto part) {
-    for (std::size_t i = 0; i < kLaws; ++i) {
+    for (const std::size_t i : drawn_laws(p)) {
       if (law(i) != p.kind) chart.line(curve(law(i), part), colour(law_colour(colours, i, p)));
     }
     chart.line(curve(p.kind, part), colour(colours.text), 2.4f);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
@@ -76,36 +77,71 @@ void slider(Parameters& p, const char* key, const std::string& broken = {}) {
   }
 }
 
+void push_chosen(Rgb law) {
+  ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(law));
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(law));
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, colour_vector(law));
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(text_on(law)));
+}
+
+// Draws a button for each law but those for comparison.
 void kind_buttons(Parameters& p) {
   const Palette& colours = palette(current_theme());
+  std::vector<CouplingKind> laws;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    if (!info(CouplingKind{i}).for_comparison) laws.push_back(CouplingKind{i});
+  }
+  const auto count = static_cast<float>(laws.size());
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float width = ImGui::GetContentRegionAvail().x;
   // Buttons are as wide as their words, with the rest of the width shared: so they fit into the
   // narrowest panel.
-  float left = width - gap * (kLaws - 1);
-  for (std::uint8_t i = 0; i < kLaws; ++i) {
-    left -= ImGui::CalcTextSize(info(static_cast<CouplingKind>(i)).label).x;
-  }
+  float left = ImGui::GetContentRegionAvail().x - gap * (count - 1);
+  for (const CouplingKind kind : laws) left -= ImGui::CalcTextSize(info(kind).label).x;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
-  for (std::uint8_t i = 0; i < kLaws; ++i) {
-    const auto kind = static_cast<CouplingKind>(i);
+  for (const CouplingKind kind : laws) {
     const bool chosen = p.kind == kind;
-    const Rgb law = law_ink(colours, i);
-    if (i > 0) ImGui::SameLine();
-    if (chosen) {
-      ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(law));
-      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(law));
-      ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(text_on(law)));
-    }
-    const ImVec2 size(ImGui::CalcTextSize(info(kind).label).x + left / kLaws,
+    const Rgb law = law_ink(colours, static_cast<int>(kind));
+    if (kind != laws.front()) ImGui::SameLine();
+    if (chosen) push_chosen(law);
+    const ImVec2 size(ImGui::CalcTextSize(info(kind).label).x + left / count,
                       ImGui::GetFrameHeight() * 1.2f);
     if (ImGui::Button(info(kind).label, size)) p.kind = kind;
-    if (chosen) ImGui::PopStyleColor(3);
+    if (chosen) ImGui::PopStyleColor(4);
     underline_button(law);
     tooltip(fmt::format("{}: {} C switches.", info(kind).label, info(kind).meaning).c_str());
   }
   ImGui::PopStyleVar();
-  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+}
+
+// Draws the list of the laws for comparison: the field's own, beside those with buttons.
+void comparison_list(Parameters& p) {
+  const Palette& colours = palette(current_theme());
+  const LawInfo& now = info(p.kind);
+  ImGui::SetNextItemWidth(-1);
+  if (now.for_comparison) push_chosen(law_ink(colours, static_cast<int>(p.kind)));
+  const bool open =
+      ImGui::BeginCombo("##comparison", now.for_comparison ? now.label : "For comparison");
+  if (now.for_comparison) ImGui::PopStyleColor(4);
+  if (!open) {
+    tooltip("Laws that other programs and papers have, live on the same hand.");
+    return;
+  }
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
+    if (!info(kind).for_comparison) continue;
+    if (ImGui::Selectable(info(kind).label, p.kind == kind)) p.kind = kind;
+    tooltip(fmt::format("{}: {}", info(kind).label, info(kind).meaning).c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+    ImGui::TextUnformatted(info(kind).verdict);
+    ImGui::PopStyleColor();
+  }
+  ImGui::EndCombo();
+}
+
+void law_choice(Parameters& p) {
+  kind_buttons(p);
+  comparison_list(p);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
   // The verdict has the same height for every law, so that nothing below it moves.
   const float below = ImGui::GetCursorPosY() + 2 * ImGui::GetTextLineHeightWithSpacing();
   ImGui::TextWrapped("%s", info(p.kind).verdict);
@@ -149,9 +185,11 @@ void draw_link(Parameters& p) {
       p.linked() ? fmt::format("Link: {:.4g} ms each way###link", 1e3 * p.tick * p.link_delay)
                  : "Link###link";
   if (!section(set.c_str(), false)) return;
-  if (info(p.kind).solves_together) {
+  if (!info(p.kind).knows_link()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped("This law solves device and proxy at once, and knows no link.");
+    ImGui::TextWrapped("This law %s, and knows no link.",
+                       info(p.kind).on_device ? "renders walls on the device itself"
+                                              : "solves device and proxy at once");
     ImGui::PopStyleColor();
     return;
   }
@@ -166,7 +204,8 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   // Condition (3) does not apply to the tanks, nor to laws that solve both sides together, unless
   // linked.
   const LawInfo& law = info(p.kind);
-  const bool asked = !law.keeps_ledger || (law.solves_together && !p.linked());
+  const bool asked =
+      !law.on_device && (!law.keeps_ledger() || (law.solves_together && !p.linked()));
   const std::string device = asked ? device_broken(p, a) : "";
   const std::string proxy = asked ? proxy_broken(p, a) : "";
   const auto draw = [&](bool which) {
@@ -182,12 +221,18 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   };
   draw(false);
   const bool broken = !device.empty() || !proxy.empty();
-  if (section(broken ? "Advanced: condition (3) broken###advanced" : "Advanced###advanced",
+  if (!law.on_device &&
+      section(broken ? "Advanced: condition (3) broken###advanced" : "Advanced###advanced",
               false)) {
     draw(true);
     draw_fit(p, arm, a);
   }
   draw_link(p);
+}
+
+// Returns whether the law's passivity is a matter of conditions on its gains.
+bool has_conditions(const LawInfo& law) {
+  return law.promise == Promise::condition3 || law.promise == Promise::eta_min;
 }
 
 void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
@@ -233,6 +278,21 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
 
 void share(const char* label, double part, const char* cut, const char* meaning) {
   read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
+}
+
+// Draws the shares that a law for comparison tells.
+void draw_shares(const CouplingReading& now, const LawInfo& law) {
+  if (law.torque_share == nullptr && law.damper_share == nullptr) return;
+  heading(law.label);
+  if (law.torque_share != nullptr) {
+    share("Torque let through", now.torque_governor,
+          "A part of the walls' torque is held back: they feel softer than set.",
+          law.torque_share);
+  }
+  if (law.damper_share != nullptr) {
+    share("Damper not needed", now.damping_governor, "It brakes what the walls gave.",
+          law.damper_share);
+  }
 }
 
 void draw_tanks(const CouplingReading& now) {
@@ -295,6 +355,7 @@ void draw_ledger(const CouplingReading& now) {
 
 // Returns a way out of a coupling that gives energy.
 const char* way_out(const Parameters& p) {
+  if (info(p.kind).on_device) return "A softer wall, a hand that damps, or the predictive law, avoid it.";
   if (p.linked()) return "A shorter link, a softer k_vc, more damping, or the tank, avoid it.";
   return info(p.kind).observes
              ? "Raise \xCE\xB7, lower the observer's gain, or take the predictive law."
@@ -306,7 +367,7 @@ void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis
   const EnergyAccount& energy = now.energy;
   const bool at_fault = now.chatters || passivity(a, p).passive == false;
   // A law with a ledger makes another promise, which the ledger shows.
-  const bool judged = now.chatters || !info(p.kind).keeps_ledger;
+  const bool judged = now.chatters || !info(p.kind).keeps_ledger();
   const double own = at_fault ? energy.without_limits() : energy.own();
   const std::string broken =
       judged && own > kGivenEnergy
@@ -364,8 +425,10 @@ void draw_break(bool broken, const Act& act) {
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
   if (p.kind == CouplingKind::tank) {
     draw_tanks(reading);
-  } else if (info(p.kind).keeps_ledger) {
+  } else if (info(p.kind).keeps_ledger()) {
     draw_ledger(reading);
+  } else {
+    draw_shares(reading, info(p.kind));
   }
   draw_energy(reading, p, analysis);
   draw_limited(reading.limited);
@@ -373,19 +436,19 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
 
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
                    const Act& act) {
-  kind_buttons(p);
+  law_choice(p);
   ImGui::Spacing();
   draw_sliders(p, now.analysis, now.arm);
   if (!now.real) draw_break(now.broken, act);
-  if (!info(p.kind).keeps_ledger) draw_passivity(p, now.analysis, now.real);
+  if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
   draw_reading(reading, p, now.analysis);
 }
 
 void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now) {
-  kind_buttons(p);
+  law_choice(p);
   ImGui::Spacing();
   draw_sliders(p, now.analysis, now.arm);
-  if (!info(p.kind).keeps_ledger) draw_passivity(p, now.analysis, now.real);
+  if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
 }
 
 }  // namespace limpid

@@ -30,8 +30,9 @@ Tuning::Tuning(Settings& settings, Notices& notices, LiveStage& live, DeviceCont
 void Tuning::next_law() {
   if (passivity_broken(settings_)) return end_break();
   Parameters& p = edited();
-  p.kind = next(p.kind);
-  while (info(p.kind).for_links && !p.linked()) p.kind = next(p.kind);
+  do {
+    p.kind = next(p.kind);
+  } while (info(p.kind).for_comparison || (info(p.kind).for_links && !p.linked()));
 }
 
 void Tuning::toggle_twin() {

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy
 
 # As /coupling/kind has them.
-LAWS = ("standard", "proposed", "predictive", "tank")
+LAWS = ("standard", "proposed", "predictive", "tank", "direct", "eba", "popc")
 # The runs that a recording keeps, by what the names of their channels begin with.
 MAIN, TWIN = "", "twin/"
 LANES = (MAIN, TWIN, "lane3/")

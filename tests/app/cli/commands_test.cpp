@@ -23,7 +23,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank"};
+constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct", "eba", "popc"};
 
 class Commands : public test::Program {
  protected:
@@ -299,7 +299,7 @@ TEST_F(Commands, AnalyzeHasTheobserversBandwidthOfOneMass) {
 
 TEST_F(Commands, AnalyzeSaysInLinesWhatItSaysInJson) {
   const std::vector<std::string> words{"analyze", "--coupling", "proposed", "--eta",
-                                       "0.8",     "--band",     "5"};
+                                       "0.8",     "--band",     "5",        "--all"};
   std::vector<std::string> as_json = words;
   as_json.emplace_back("--json");
   const json told = parsed(as_json);

@@ -231,7 +231,7 @@ TEST(EnergyAccount, FindsNoFaultInAnyLawThatIsSwitchedToWhilePressing) {
         account.follow(history, history.end());
         // The predictive law's promise concerns its ledger, not E_c.
         const auto kind = static_cast<CouplingKind>(channels.layout().in(row, Column::kind)[0]);
-        if (!info(kind).keeps_ledger) worst = std::max(worst, account.own());
+        if (!info(kind).keeps_ledger()) worst = std::max(worst, account.own());
         most_given = std::max(most_given, account.total());
         return true;
       });

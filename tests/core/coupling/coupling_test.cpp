@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/coupling/feedforward.h"
+#include "core/coupling/link.h"
 #include "core/touch/proxy.h"
 #include "tests/support/random_arm.h"
 
@@ -247,7 +249,8 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
 }
 
 TEST(Laws, AreKnownByTheirKeysAndTakenByTurns) {
-  EXPECT_THAT(kLawKeys, testing::ElementsAre("standard", "proposed", "predictive", "tank"));
+  EXPECT_THAT(kLawKeys, testing::ElementsAre("standard", "proposed", "predictive", "tank", "direct",
+                                            "eba", "popc"));
   CouplingKind kind = CouplingKind::standard;
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     EXPECT_STREQ(info(kind).key, kLawKeys[i]);

@@ -305,13 +305,13 @@ TEST(Link, DoesNothingUnderThePredictiveLaw) {
 TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
   constexpr int kDelay = 4, n = 2;
   const double T = 0.001;
-  SpringDamper p;
+  LawSettings p;
   p.b_vc = 0.02;
   Proxy<kAnyDof> proxy(test::random_arm(n, 9), Scene{});
   proxy.place(Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n), 0.1);
   ProxyLink<kAnyDof> link_of(n);
   link_of.start();
-  StandardLaw::Of<kAnyDof> law;
+  const auto law = StandardLaw::make<kAnyDof>();
   Random random(3);
   std::vector<Vec<kAnyDof>> x1{Eigen::VectorXd::Zero(n)}, x2, vbar2{Eigen::VectorXd::Zero(n)};
   const Vec<kAnyDof> b = Eigen::VectorXd::Zero(n), limit = Eigen::VectorXd::Constant(n, 1);
@@ -325,7 +325,7 @@ TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
     const Vec<kAnyDof> v1 = k > 0 ? Vec<kAnyDof>((x1[k] - x1[k - 1]) / T) : b;
     LawInput<kAnyDof> in{x1[k], v1, device, b, vbar2[k], T, frames, b, b, limit, 1, T, 0, 0};
     in.link = link_of.of(link(kDelay, 0, 0));
-    const Eigen::VectorXd tau1 = law.step(p, in, proxy);
+    const Eigen::VectorXd tau1 = law->step(p, in, proxy);
     vbar2.push_back(proxy.vbar());
     const std::size_t old = k > kDelay ? k - kDelay : 0;  // until then the state at the start
     const Eigen::VectorXd v1_old =

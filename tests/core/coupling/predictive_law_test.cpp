@@ -3,6 +3,8 @@
 
 #include <Eigen/LU>
 
+#include "core/coupling/law.h"
+#include "core/coupling/ledger.h"
 #include "core/coupling/predictive.h"
 #include "core/tick/parameters.h"
 #include "core/touch/proxy.h"
@@ -40,14 +42,14 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
     arm.frames(x1, frames);
     arm.inertia_coriolis(frames, v1, device.M, device.C);
 
-    PredictiveLaw::Of<3> law;
-    law.start({x1, v1, zero});
-    law.locate(p, {x1, v1, 0, 0});
+    const auto law = PredictiveLaw::make<3>();
+    law->start({x1, v1, zero});
+    law->locate(p, {x1, v1, 0, 0});
     Ledger<3> ledger;
     ledger.start(x1, std::nullopt, false);
     LawInput<3> in{x1, v1, device, zero, zero, T, frames, b_d, zero, most, 1, T, 0, 0};
     in.ledger = &ledger;
-    const Eigen::VectorXd tau1 = law.step(p, in, proxy);
+    const Eigen::VectorXd tau1 = law->step(p, in, proxy);
     const Eigen::VectorXd tau2 = proxy.tau(), u = (proxy.x() - x2) / T;
 
     const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(3, 3), M1 = device.M, C1 = device.C;

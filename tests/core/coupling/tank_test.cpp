@@ -1,5 +1,5 @@
 // The account of one side's tank, tick by tick, against sums by hand.
-#include "core/coupling/tank.h"
+#include "core/coupling/device_tank.h"
 
 #include <gtest/gtest.h>
 

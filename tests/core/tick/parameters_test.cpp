@@ -48,7 +48,8 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
       "model.gravity",       "device.down",         "model.friction",       "model.springs",
       "device.gravity",      "device.springs",      "link.delay",           "link.jitter",
       "link.loss",           "link.seed",           "tank.energy",          "tank.most",
-      "tank.share",          "tank.damping"};
+      "tank.share",          "tank.damping",        "eba.damping",          "popc.damping",
+      "popc.reference"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;

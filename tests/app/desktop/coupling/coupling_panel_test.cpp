@@ -65,7 +65,7 @@ TEST_F(CouplingWords, AreOfTheLawThatIsChosen) {
     EXPECT_EQ(p_.kind, kind);
     const std::string verdict = info(kind).verdict;
     EXPECT_THAT(words(), HasSubstr(verdict.substr(0, 12)));
-    EXPECT_EQ(find("Passivity").has_value(), !info(kind).keeps_ledger) << label;
+    EXPECT_EQ(find("Passivity").has_value(), !info(kind).keeps_ledger()) << label;
     EXPECT_EQ(find("Energy tanks").has_value(), kind == CouplingKind::tank);
     EXPECT_EQ(find("Energy ledger").has_value(), kind == CouplingKind::predictive);
     EXPECT_TRUE(find("Energy given E_c")) << label;

@@ -1,0 +1,34 @@
+#include "core/coupling/direct.h"
+
+#include "core/coupling/device_walls.h"
+#include "core/coupling/laws.h"
+#include "core/coupling/ledger.h"
+
+namespace limpid {
+namespace {
+
+template <int N>
+class Direct final : public Law<N> {
+ public:
+  double least_left() const override { return Ledger<N>::kForgiven; }
+  Vec<N> step(const LawSettings&, const LawInput<N>& in, Proxy<N>& proxy) override {
+    return walls_.step(in, proxy).torque;
+  }
+  LawReport report() const override { return {.unsettled = walls_.unsettled()}; }
+
+ private:
+  DeviceWalls<N> walls_;
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<Law<N>> DirectLaw::make() {
+  return std::make_unique<Direct<N>>();
+}
+
+template std::unique_ptr<Law<3>> DirectLaw::make();
+template std::unique_ptr<Law<7>> DirectLaw::make();
+template std::unique_ptr<Law<kAnyDof>> DirectLaw::make();
+
+}  // namespace limpid

@@ -1,0 +1,43 @@
+// The law of most programs: walls on the device itself, as a god-object has them (Zilles and Salisbury
+// 1995; Ruspini, Kolarov and Khatib 1997).
+//
+// A torque held for a tick, and late, gives energy: a wall K is passive in every hand up to
+// K = 2 b_d/T, and quiet in a hand that damps with b_h up to (b_d + b_h)/(T/2 + delay).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+
+#include "core/base/field.h"
+#include "core/coupling/law_info.h"
+
+namespace limpid {
+
+struct DirectLaw {
+  static constexpr std::array<const char*, 0> kSliders{};
+  static constexpr LawInfo kInfo{
+      .key = "direct",
+      .label = "Direct",
+      .meaning = "the walls' springs on the device itself (god-object), without a virtual mass.",
+      .verdict = "What most programs do: as stiff as the hand damps.",
+      .promise = Promise::none,
+      .on_device = true,
+      .for_comparison = true,
+      .through_link = "the law renders walls on the device itself, and knows no link",
+      .sliders = kSliders,
+  };
+
+  struct Settings {
+    template <class P>
+    static constexpr std::array<Field<P>, 0> settings() {
+      return {};
+    }
+  };
+
+  // Makes the law.
+  template <int N>
+  static std::unique_ptr<Law<N>> make();
+};
+
+}  // namespace limpid

@@ -1,0 +1,96 @@
+// Settings of spring, damper and link between device and proxy, and condition (3) on them.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/base/field.h"
+
+namespace limpid {
+
+struct SpringDamper {
+  double k_vc = 10;     // [N m/rad]
+  double b_vc = 0.001;  // [N m s/rad]
+  double b_v = 0.012;   // [N m s/rad]
+
+  template <class P>
+  static constexpr std::array<Field<P>, 3> settings() {
+    return {{{"coupling.k_vc", "k_vc", "Coupling spring k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1,
+              100, true, true,
+              "Spring between device and proxy, (1)-(2). Stiffer keeps them closer, until "
+              "condition (3) breaks: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2."},
+             {"coupling.b_vc", "b_vc", "Coupling damper b_vc", &P::b_vc, "N m s/rad", 0, 100, 1e-5,
+              0.1, true, true,
+              "Damper between device and proxy, (1)-(2). It acts on a delayed velocity, so it "
+              "costs device damping twice: condition (3)."},
+             {"coupling.b_v", "b_v", "Proxy damper b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1,
+              true, true,
+              "Damping of the proxy, (2). Felt through the coupling; condition (3) asks for "
+              "at least k_vc T / 2."}}};
+  }
+};
+
+inline constexpr int kMostLinkDelay = 200, kMostLinkJitter = 50;  // [ticks]
+
+// A delay between device and proxy, see link.h.
+struct LinkSettings {
+  int link_delay = 0;    // delay each way [ticks]
+  int link_jitter = 0;   // largest extra delay of a packet [ticks]
+  double link_loss = 0;  // share of the packets that never arrive [-]
+  int link_seed = 1;     // seed of the random numbers for jitter and loss
+
+  bool linked() const { return link_delay > 0 || link_jitter > 0 || link_loss > 0; }
+  // Largest age of a side's knowledge of the other, unless packets are lost [ticks].
+  int oldest() const { return link_delay + link_jitter; }
+
+  template <class P>
+  static constexpr std::array<Field<P>, 4> settings() {
+    return {
+        {{"link.delay", "link delay", "Link delay, each way", &P::link_delay, "ticks", 0,
+          kMostLinkDelay, 0, 100, false, true,
+          "Delay between device and proxy, each way, as if the world were far away. The predictive "
+          "coupling solves both at once and knows no link."},
+         {"link.jitter", "link jitter", "Link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter,
+          0, 20, false, true,
+          "Each packet between device and proxy takes up to so many ticks more, at random; each "
+          "side goes by the packet that was sent last of those that it has."},
+         {"link.loss", "link loss", "Packets lost", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
+          "Share of the packets between device and proxy that never arrive; what has nothing new "
+          "keeps the last one."},
+         {"link.seed", "link seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
+          "Whole number from which the random numbers of link.jitter and link.loss follow."}}};
+  }
+};
+
+// Condition (3) for a constant tick: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2. With a torque
+// that answers its reading t_d late, and knowledge of the other side up to t_l old, j ticks of it
+// jitter,
+//     b_d >= (2 + j/2) b_vc + k_vc (T + 3/2 t_d + t_l),
+//     b_v >= j/2 b_vc + k_vc ((T + t_d) / 2 + t_l).
+//
+// With a delay of d ticks the device's torque lacks k_vc (x_E,k - x_E,k-d), whose work on dx1_k is
+// at most
+//     k_vc sum_j |dx1_k (dx1_k-j - dx2_k-j)| <= k_vc d (3/2 dx1^2 + 1/2 dx2^2),
+// summed over the ticks; the dampers b_d, b_v take b/T dx^2. The bound of (3) itself is derived in
+// the same way. Through a link the device lacks k_vc (x2_k - x2_k-d) and the proxy k_vc (x1_k -
+// x1_k-d), together at most k_vc d (dx1^2 + dx2^2). For d ticks each way this agrees with Lee and
+// Spong (2006) and Nuno et al. (2009) for such couplings in continuous time. Velocities that are
+// held for want of newer ones act up to j + 1 times.
+//
+// The condition covers spring and damper alone: no bound is known for torques that the proposed law
+// feeds forward through a link.
+struct Condition3 {
+  double device_margin = 0;  // b_d less the bound, at the joint with the least [N m s/rad]
+  double proxy_margin = 0;   // b_v less the bound [N m s/rad]
+  bool known = true;         // false where packets are lost: then their age has no bound
+  bool holds = false;        // to round-off: the paper's own gains are on the edge
+};
+// Evaluates the condition. b_d: of every joint [N m s/rad]; T and delay [s].
+Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d,
+                      double delay = 0, const LinkSettings& link = {});
+
+// Sliders of the paper's laws, the same for all; some have no effect in one law.
+inline constexpr std::array kPaperSliders{"coupling.eta",  "observer.alpha", "coupling.k_vc",
+                                          "coupling.b_vc", "coupling.b_v",   "link.delay",
+                                          "link.jitter",   "link.loss"};
+}  // namespace limpid
