@@ -1,5 +1,6 @@
 // Colours of the coupling laws: one table, by the law's number in recordings
-// (core/coupling/laws.h), for buttons, bands, curves, names of runs and figures.
+// (core/coupling/laws.h), for buttons, bands, curves, names of runs and figures. A new law is a
+// line at its end.
 //
 // Each has a contrast of 3 to 1 at least with its background, and none is a thing's colour. People
 // who see no red, no green or no blue tell them apart. A test computes both.
@@ -17,13 +18,17 @@ struct LawColour {
   const char* on_dark;
 };
 
-// The last one is of all laws for comparison: more colours than these people could not tell apart.
-inline constexpr std::array<LawColour, 5> kLawColours{{
+// All laws for comparison share a colour: these people could tell no more of them apart.
+inline constexpr LawColour kForComparison{"#274060", "#93A5BC", "#6C8EBF"};
+
+inline constexpr std::array<LawColour, 7> kLawColours{{
     {"#6B7280", "#B4B9C2", "#98A3AF"},  // standard
     {"#6A3D9A", "#B79BD3", "#9D72D6"},  // proposed
     {"#6B9100", "#B5CC6A", "#A3CC2F"},  // predictive
     {"#7A2E0E", "#C79A85", "#BF6A40"},  // tank
-    {"#274060", "#93A5BC", "#6C8EBF"},  // for comparison
+    kForComparison,                     // direct
+    kForComparison,                     // eba
+    kForComparison,                     // popc
 }};
 
 // Returns "#rrggbb" as a number.

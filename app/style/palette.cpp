@@ -7,6 +7,7 @@
 
 namespace limpid {
 
+static_assert(kLawColours.size() == kLaws, "each law has a colour");
 namespace {
 
 double luminance(Rgb c) {

@@ -4,13 +4,11 @@
 // tint that reads well on its background. Red is kept for broken promises.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "app/style/law_colours.h"
-#include "core/coupling/laws.h"
 #include "render/theme.h"
 
 namespace limpid {
@@ -135,8 +133,8 @@ constexpr Rgb ink(const Palette& palette, Ink which, float shade = 0) {
 
 // Returns the ink of a coupling law by its number; a number without a law has no colour of its own.
 constexpr Rgb law_ink(const Palette& palette, int law) {
-  if (law < 0 || law >= kLaws) return palette.muted;
-  const auto i = std::min(static_cast<std::size_t>(law), kLawColours.size() - 1);
+  const auto i = static_cast<std::size_t>(law);
+  if (law < 0 || i >= kLawColours.size()) return palette.muted;
   return rgb(hex_colour(palette.dark ? kLawColours[i].on_dark : kLawColours[i].on_light));
 }
 
