@@ -182,7 +182,7 @@ Passivity passivity(const Analysis& a, const Parameters& p) {
     case Promise::tanks:
       return {true, fmt::format("its tanks: at most {:.3g} mJ are given", 1e3 * p.tank_energy)};
     case Promise::port:
-      return {true, "its account: the hand is given nothing, as far as the damping is right"};
+      return {true, "its account: nothing is given, as far as the device's damping is right"};
     case Promise::observer:
       return {std::nullopt, "no bound is known: its damper may be too small or too late"};
     case Promise::none:

@@ -88,6 +88,13 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
         return {proposed_wall(l.tip, through_link),
                 "the damping there is against the lag of the contact"};
       case CouplingKind::predictive: return predictive_wall(easiest(arm.J, arm.M), s, friction, p);
+      case CouplingKind::wave:
+        return {line_at_tip(l.tip, p.k_vc, p.line(), (p.oldest() + 0.5) * p.tick),
+                "felt through the spring k_vc and the line: 1/(1/k_vc + (link + T/2)/b)"};
+      case CouplingKind::tdpn:
+        return {spring_at_tip(l.tip, p.k_vc),
+                p.linked() ? "felt through the spring k_vc; falls with the link's delay"
+                           : "felt through the spring k_vc"};
       case CouplingKind::direct:
         return on_device(direct_wall(l.tip, s), "the damping of arm and hand: (b_d + b_h)/(T/2 + "
                                                 "delay)");
@@ -135,7 +142,14 @@ FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind
   std::complex<double> Z;
   switch (kind) {
     case CouplingKind::standard:
-    case CouplingKind::tank: Z = l.felt.standard(f); break;
+    case CouplingKind::tank:
+    case CouplingKind::tdpn: Z = l.felt.standard(f); break;
+    case CouplingKind::wave: {
+      // The line adds a mass where it is not matched, and its own damper.
+      const double line = p.line() / l.tip.lever2;
+      const double mass = p.oldest() * p.tick * (line - l.felt.b_v * l.felt.b_v / line);
+      return {l.tip.mass + mass, l.tip.damping + l.felt.b_v + (p.wave_matched ? line : 0)};
+    }
     case CouplingKind::proposed: Z = l.felt.proposed(f, p.eta, l.w_f); break;
     case CouplingKind::predictive:
       Z = l.felt.predictive(f, l.added, p.damping_share(p.eta), p.band,

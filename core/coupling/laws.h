@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <tuple>
@@ -16,12 +17,14 @@
 #include "core/coupling/proposed.h"
 #include "core/coupling/standard.h"
 #include "core/coupling/tank.h"
+#include "core/coupling/tdpn.h"
+#include "core/coupling/wave.h"
 
 namespace limpid {
 
 // Kinds of law, numbered in the order of Laws; recordings keep the number.
-enum class CouplingKind : std::uint8_t { standard, proposed, predictive, tank, direct, eba, popc };
-using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw, DirectLaw, EbaLaw, PopcLaw>;
+enum class CouplingKind : std::uint8_t { standard, proposed, predictive, tank, direct, eba, popc, wave, tdpn };
+using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw, DirectLaw, EbaLaw, PopcLaw, WaveLaw, TdpnLaw>;
 
 namespace detail {
 
@@ -54,7 +57,11 @@ consteval auto text_of_all(std::string_view between, PutLaw put_law) {
 }  // namespace detail
 
 // Settings of all laws: a law finds its own among them.
-struct LawSettings : detail::AllLaws::Settings {};
+struct LawSettings : detail::AllLaws::Settings {
+  // Impedance of the line of `wave` [N m s/rad].
+  double line() const { return std::isnan(wave_b) ? std::max(b_v, kLeastLine) : wave_b; }
+  static constexpr double kLeastLine = 1e-5;
+};
 
 // Descriptions of LawSettings, law by law, for an owner that inherits them.
 template <class P>

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -31,11 +32,13 @@ struct FromDevice {
   Dynamics<N> device;  // M1, C1, and the estimated velocity
   Vec<N> f1_hat;       // human torque, as observed [N m]
   double sent = 0;     // energy sent to the proxy's side, in all since the start [J]
+  double number = 0;   // ticks since the start
+  Vec<N> waves;        // sum of the waves sent, see wave.h [sqrt(W) s]
 
   static FromDevice zero(Eigen::Index joints) {
     const Vec<N> v = Vec<N>::Zero(joints);
     const Mat<N> M = Mat<N>::Zero(joints, joints);
-    return {v, v, {M, M, v}, v};
+    return {v, v, {M, M, v}, v, 0, 0, v};
   }
   // All parts of a packet, const or not.
   static auto parts(auto& p) {
@@ -45,7 +48,9 @@ struct FromDevice {
                       numbers(p.device.C),
                       numbers(p.device.v),
                       numbers(p.f1_hat),
-                      std::span(&p.sent, std::size_t{1})};
+                      std::span(&p.sent, std::size_t{1}),
+                      std::span(&p.number, std::size_t{1}),
+                      numbers(p.waves)};
   }
   void come_to_rest() {
     v1.setZero();
@@ -61,11 +66,13 @@ struct FromProxy {
   Dynamics<N> proxy;  // M2, C2, v2 at t_k
   Vec<N> f2;          // of the contacts over the tick that begins [N m]
   double sent = 0;    // energy sent to the device's side, in all since the start [J]
+  double number = 0;  // ticks since the start
+  Vec<N> waves;       // see FromDevice
 
   static FromProxy zero(Eigen::Index joints) {
     const Vec<N> v = Vec<N>::Zero(joints);
     const Mat<N> M = Mat<N>::Zero(joints, joints);
-    return {v, v, {M, M, v}, v};
+    return {v, v, {M, M, v}, v, 0, 0, v};
   }
   // All parts of a packet, see FromDevice::parts().
   static auto parts(auto& p) {
@@ -75,7 +82,9 @@ struct FromProxy {
                       numbers(p.proxy.C),
                       numbers(p.proxy.v),
                       numbers(p.f2),
-                      std::span(&p.sent, std::size_t{1})};
+                      std::span(&p.sent, std::size_t{1}),
+                      std::span(&p.number, std::size_t{1}),
+                      numbers(p.waves)};
   }
   void come_to_rest() {
     vbar2.setZero();
@@ -201,6 +210,11 @@ class ProxyLink {
     to_proxy_.forget();
     to_device_.forget();
     return nullptr;
+  }
+  // Delay after which waves are played out, see PlayedWaves [ticks].
+  double wave_delay() const {
+    const double spare = s_.link_loss > 0 ? std::ceil(std::log(1e-6) / std::log(s_.link_loss)) : 0;
+    return s_.oldest() + spare;
   }
   // Each once a tick: the packet that the other side uses in it.
   const FromDevice<N>& to_proxy(const FromDevice<N>& now) { return to_proxy_.pass(now, s_); }

@@ -29,11 +29,12 @@ Vec<N> on_device(const SpringDamper& p, const LawInput<N>& in, const FromProxy<N
 // in.
 template <int N>
 FromDevice<N> told(const LawInput<N>& in) {
-  return {in.x1, in.v1, in.device, in.f1_hat};
+  return {in.x1, in.v1, in.device, in.f1_hat, 0, 0, Vec<N>::Zero(in.x1.size())};
 }
 template <int N>
 FromProxy<N> told(const LawInput<N>& in, const Proxy<N>& proxy) {
-  return {proxy.x(), in.vbar2, {proxy.M(), proxy.C(), proxy.v()}, Vec<N>::Zero(in.x1.size())};
+  const Vec<N> zero = Vec<N>::Zero(in.x1.size());
+  return {proxy.x(), in.vbar2, {proxy.M(), proxy.C(), proxy.v()}, zero, 0, 0, zero};
 }
 
 // Energy of the coupling's spring, whose torque is at most the motors' [J].

@@ -144,6 +144,10 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
   return wall;
 }
 
+double line_at_tip(const TipAlong& tip, double k_vc, double b, double t) {
+  return 1 / (1 / k_vc + t / b) / tip.lever2;
+}
+
 double spring_at_tip(const TipAlong& tip, double k_vc) { return k_vc / tip.lever2; }
 
 }  // namespace limpid

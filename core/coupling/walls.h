@@ -85,6 +85,9 @@ struct BoundedWall {
 // direction. tip: along the easiest direction.
 BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s);
 
+// Stiffness at the tip of a spring k_vc behind a line of impedance b and delay t, at every joint
+// [N/m].
+double line_at_tip(const TipAlong& tip, double k_vc, double b, double t);
 // Stiffness at the tip of a spring k_vc at every joint: any wall felt through it is softer [N/m].
 double spring_at_tip(const TipAlong& tip, double k_vc);
 

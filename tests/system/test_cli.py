@@ -302,7 +302,7 @@ class Warnings(SystemTest):
                          str(kept).splitlines())  # fmt: skip
 
     def test_a_run_as_it_should_be_says_nothing(self) -> None:
-        for law in ("standard", "proposed", "predictive", "tank", "eba", "popc"):
+        for law in ("standard", "proposed", "predictive", "tank", "eba", "popc", "wave", "tdpn"):
             out = self.out(".h5")
             done = limpid("run", "--coupling", law, "--record", out)
             self.assertEqual((done.status, done.err), (0, ""), law)

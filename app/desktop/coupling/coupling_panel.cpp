@@ -199,13 +199,17 @@ void draw_link(Parameters& p) {
   if (p.linked()) read_out("Through it", info(p.kind).through_link);
 }
 
+// Returns whether the law's passivity is a matter of conditions on its gains.
+bool has_conditions(const LawInfo& law) {
+  return law.promise == Promise::condition3 || law.promise == Promise::eta_min;
+}
+
 void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   const std::string eta = eta_broken(p, a);
   // Condition (3) does not apply to the tanks, nor to laws that solve both sides together, unless
   // linked.
   const LawInfo& law = info(p.kind);
-  const bool asked =
-      !law.on_device && (!law.keeps_ledger() || (law.solves_together && !p.linked()));
+  const bool asked = has_conditions(law) || (law.solves_together && !p.linked());
   const std::string device = asked ? device_broken(p, a) : "";
   const std::string proxy = asked ? proxy_broken(p, a) : "";
   const auto draw = [&](bool which) {
@@ -228,11 +232,6 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
     draw_fit(p, arm, a);
   }
   draw_link(p);
-}
-
-// Returns whether the law's passivity is a matter of conditions on its gains.
-bool has_conditions(const LawInfo& law) {
-  return law.promise == Promise::condition3 || law.promise == Promise::eta_min;
 }
 
 void draw_passivity(const Parameters& p, const Analysis& a, bool real) {

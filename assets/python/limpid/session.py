@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import numpy
 
 # As /coupling/kind has them.
-LAWS = ("standard", "proposed", "predictive", "tank", "direct", "eba", "popc")
+LAWS = ("standard", "proposed", "predictive", "tank", "direct", "eba", "popc", "wave", "tdpn")
 # The runs that a recording keeps, by what the names of their channels begin with.
 MAIN, TWIN = "", "twin/"
 LANES = (MAIN, TWIN, "lane3/")

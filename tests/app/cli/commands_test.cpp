@@ -23,7 +23,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct", "eba", "popc"};
+constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct", "eba", "popc", "wave", "tdpn"};
 
 class Commands : public test::Program {
  protected:

@@ -80,7 +80,7 @@ TEST_F(Usage, FitsIntoTheColumnsOfATerminal) {
 TEST_F(Usage, OfParametersNamesDefaultsAndWhatIsAllowed) {
   const std::string help = done({"analyze", "--help"});
   EXPECT_TRUE(std::regex_search(
-      help, std::regex("coupling\\.kind +default \\S+ +standard, proposed, predictive, tank, direct, eba, popc")));
+      help, std::regex("coupling\\.kind +default \\S+ +standard, proposed, predictive, tank, direct, eba, popc, wave, tdpn")));
   EXPECT_TRUE(
       std::regex_search(help, std::regex("observer\\.anti_windup +default true +true, false")));
   EXPECT_TRUE(
@@ -158,7 +158,7 @@ TEST_F(Usage, IsCompletedWordByWord) {
   EXPECT_THAT(offered(complete({"run", "--"})), Contains("--record"));
   EXPECT_THAT(offered(complete({"analyze", "--"})), Not(Contains("--record")));
   const std::vector<std::string> laws{"standard", "proposed", "predictive", "tank",
-                                      "direct",   "eba",      "popc"};
+                                      "direct",   "eba", "popc", "wave", "tdpn"};
   EXPECT_EQ(offered(complete({"run", "--coupling", ""})), laws);
   EXPECT_EQ(offered(complete({"run", "--coupling="})), laws);
   EXPECT_EQ(complete({"run", "--scene", ""}), "\tfiles .toml\n");

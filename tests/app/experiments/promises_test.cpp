@@ -128,7 +128,7 @@ TEST_P(Promises, AreKeptAndShownInAFigure) {
 INSTANTIATE_TEST_SUITE_P(Of, Promises,
                          testing::Values("coordination", "inertia", "passivity", "spectrum",
                                          "saturation", "observer", "transparency", "eta_min",
-                                         "lightness", "switching", "friction", "delay", "walls",
+                                         "lightness", "approaches", "switching", "friction", "delay", "walls",
                                          "mass", "click", "drop", "stack"),
                          [](const auto& one) { return std::string(one.param); });
 

@@ -49,7 +49,7 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
       "device.gravity",      "device.springs",      "link.delay",           "link.jitter",
       "link.loss",           "link.seed",           "tank.energy",          "tank.most",
       "tank.share",          "tank.damping",        "eba.damping",          "popc.damping",
-      "popc.reference"};
+      "popc.reference", "wave.b", "wave.matched", "tdpn.damping", "tdpn.drift"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;

@@ -231,7 +231,7 @@ TEST(ForeignSession, IsRefusedWithWhatIsWrong) {
       {[](Vandal& v) { v.number("/time", 7, NAN); }, {"/time", "row 7", "nan"}},
       {[](Vandal& v) { v.number("/time", 7, INFINITY); }, {"/time", "row 7", "inf"}},
       {[](Vandal& v) { v.number("/time", 7, 0.006); }, {"/time", "row 7"}},
-      {[](Vandal& v) { v.number("/coupling/kind", 9, kLaws); }, {"/coupling/kind", "row 9", "7"}},
+      {[](Vandal& v) { v.number("/coupling/kind", 9, kLaws); }, {"/coupling/kind", "row 9", "9"}},
       {[](Vandal& v) { v.remove_attribute("format"); }, {"format", "missing"}},
       {[](Vandal& v) { v.remove_attribute("scene"); }, {"scene", "missing"}},
       {[](Vandal& v) { v.attribute("format", H5T_NATIVE_DOUBLE, 1.0); }, {"format", "text"}},
