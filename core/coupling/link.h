@@ -16,6 +16,7 @@
 
 #include "core/coupling/decomposition.h"
 #include "core/coupling/spring_damper.h"
+#include "core/math/elementary.h"
 
 namespace limpid {
 
@@ -213,7 +214,7 @@ class ProxyLink {
   }
   // Delay after which waves are played out, see PlayedWaves [ticks].
   double wave_delay() const {
-    const double spare = s_.link_loss > 0 ? std::ceil(std::log(1e-6) / std::log(s_.link_loss)) : 0;
+    const double spare = s_.link_loss > 0 ? std::ceil(logarithm(1e-6) / logarithm(s_.link_loss)) : 0;
     return s_.oldest() + spare;
   }
   // Each once a tick: the packet that the other side uses in it.

@@ -151,7 +151,7 @@ TEST(Link, TouchesNoPageForTheFirstTimeInATick) {
     const long before = first_touches();
     exchange(fresh, joints, 300);
     // Two directions of 256 packets; a page has 512 numbers.
-    const long pages = 2 * 256 * (4 * joints + 2 * joints * joints + 1) / 512;
+    const long pages = 2 * 256 * (5 * joints + 2 * joints * joints + 2) / 512;
     EXPECT_LT(first_touches() - before, pages / 20) << joints << " joints, " << pages << " pages";
   }
 }
@@ -159,7 +159,8 @@ TEST(Link, TouchesNoPageForTheFirstTimeInATick) {
 TEST(Link, SetsAsideWhatTheArmNeedsAndNoMore) {
   for (const int joints : {1, 6, kMaxDof}) {
     const OneWay<FromDevice<kAnyDof>> channel(1, FromDevice<kAnyDof>::zero(joints));
-    const int numbers = 4 * joints + 2 * joints * joints + 1;  // f, v, v, x; M, C; the energy
+    // f, v, v, x, waves; M, C; the energy and the number.
+    const int numbers = 5 * joints + 2 * joints * joints + 2;
     EXPECT_EQ(channel.storage().size(), 256u * static_cast<unsigned>(numbers));
   }
 }
