@@ -20,12 +20,12 @@
 namespace limpid {
 namespace {
 
-constexpr double kPress = 4;                          // at most; half of what motors bear [N]
-constexpr double kMiddle = 2000;                      // the wall of all laws' taps [N/m]
-constexpr double kSoft = 50, kStiff = 20000;          // walls tried [N/m]
+constexpr double kHardest = 4;                          // at most; half of what motors bear [N]
+constexpr double kCommonWall = 2000;                      // the wall of all laws' taps [N/m]
+constexpr double kLeastWall = 50, kMostWall = 20000;          // walls tried [N/m]
 constexpr int kHalvings = 7;                          // of the search, in its logarithm
-constexpr double kChatter = 0.02;                     // speed above 20 Hz of a quiet tip [m/s]
-constexpr double kOff = 0.2;                          // felt stiffness off the set one [-]
+constexpr double kQuiet = 0.02;                     // speed above 20 Hz of a quiet tip [m/s]
+constexpr double kFeltOff = 0.2;                          // felt stiffness off the set one [-]
 constexpr double kHeavier = 7, kPapersStep = 4.19e-4; // of the built-in arm [-]; encoder [rad]
 
 // An arm with what its file does not say.
@@ -74,13 +74,16 @@ struct Tap {
   BenchArm arm;
   CouplingKind kind;
   BenchHand hand;
-  double wall;  // [N/m]
+  double wall;       // [N/m]
+  int link = 0;      // delay between device and proxy, each way [ticks]
+  double hold = 0.5; // [s]
 
   Parameters parameters(const ArmDescription& description) const {
     Parameters p = fitted(description);
     p.kind = kind;
     p.encoder_step = arm.step;
     p.device_delay = p.delay = arm.delay;
+    p.link_delay = link;
     p.hand_stiffness = hand.stiffness;
     p.hand_damping = hand.damping;
     return p;
@@ -89,16 +92,17 @@ struct Tap {
 
 struct Came {
   double port = 0;     // most that the hand was given [J]
+  double total = 0;    // highest E_c [J]
   double felt = 0;     // force on the hand over the depth of the tip, over the stiffness set [-]
   double chatter = 0;  // rms speed of the tip above 20 Hz [m/s]
 
-  bool well() const { return chatter <= kChatter && std::abs(felt - 1) <= kOff; }
+  bool well() const { return chatter <= kQuiet && std::abs(felt - 1) <= kFeltOff; }
 };
 
 // Finds the force on the hand in the last part of a tap, from its own torque.
 Came came_of(const RunPlan& plan, const TapPlace& place, const WallTap& tap,
              const TrialResult& result) {
-  if (result.end.diverged) return {HUGE_VAL, 0, HUGE_VAL};
+  if (result.end.diverged) return {HUGE_VAL, HUGE_VAL, 0, HUGE_VAL};
   const Session& s = result.session;
   const double T = s.info.tick;
   const Arm<kAnyDof> arm(plan.arm);
@@ -109,6 +113,7 @@ Came came_of(const RunPlan& plan, const TapPlace& place, const WallTap& tap,
   Vec3 before = arm.tip_at(vector_at(s, 0, Column::device_position));
   for (std::size_t k = 0; k < s.size(); ++k) {
     came.port = worse(came.port, s.at(k, Column::energy_port)[0]);
+    came.total = worse(came.total, s.at(k, Column::energy_total)[0]);
     const Eigen::VectorXd x = vector_at(s, k, Column::device_position);
     const Vec3 tip = arm.tip_at(x);
     Vec3 v = (tip - before) / T;
@@ -126,7 +131,7 @@ Came came_of(const RunPlan& plan, const TapPlace& place, const WallTap& tap,
   return came;
 }
 
-std::vector<Came> tap_all(TrialRunner& lab, const std::vector<Tap>& taps) {
+std::vector<Came> tap_each(TrialRunner& lab, const std::vector<Tap>& taps) {
   std::vector<Trial> trials;
   std::vector<TapPlace> places;
   std::vector<WallTap> ways;
@@ -134,7 +139,8 @@ std::vector<Came> tap_all(TrialRunner& lab, const std::vector<Tap>& taps) {
     const ArmDescription arm = arm_of(tap.arm);
     const Parameters p = tap.parameters(arm);
     places.push_back(tap_place(arm, rest_pose(arm), p));
-    ways.push_back({.wall = tap.wall, .press = bearable_press(arm, places.back(), p, kPress)});
+    ways.push_back({.wall = tap.wall, .press = bearable_press(arm, places.back(), p, kHardest),
+                    .hold = tap.hold});
     trials.push_back({"", tap_plan(arm, places.back(), ways.back(), p)});
     trials.back().keep = false;
     trials.back().may_diverge = true;
@@ -151,10 +157,10 @@ struct Searched {
   CouplingKind kind;
 };
 
-// For each the stiffest wall that is rendered well in both hands that damp [N/m]; kSoft if not even
+// For each the stiffest wall that is rendered well in both hands that damp [N/m]; kLeastWall if not even
 // that one is.
 std::vector<double> stiffest(TrialRunner& lab, const std::vector<Searched>& all) {
-  std::vector<double> low(all.size(), kSoft), high(all.size(), kStiff);
+  std::vector<double> low(all.size(), kLeastWall), high(all.size(), kMostWall);
   for (int step = 0; step < kHalvings; ++step) {
     std::vector<Tap> taps;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -162,7 +168,7 @@ std::vector<double> stiffest(TrialRunner& lab, const std::vector<Searched>& all)
         taps.push_back({all[i].arm, all[i].kind, kHands[h], std::sqrt(low[i] * high[i])});
       }
     }
-    const std::vector<Came> came = tap_all(lab, taps);
+    const std::vector<Came> came = tap_each(lab, taps);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double middle = std::sqrt(low[i] * high[i]);
       const auto first = came.begin() + static_cast<std::ptrdiff_t>(kDamped * i);
@@ -202,15 +208,15 @@ Compared compare(TrialRunner& lab) {
   for (const BenchArm& arm : kArms) {
     for (const BenchLaw& law : kBenchLaws) {
       searched.push_back({arm, law.kind});
-      for (const BenchHand& hand : kHands) all.taps.push_back({arm, law.kind, hand, kMiddle});
+      for (const BenchHand& hand : kHands) all.taps.push_back({arm, law.kind, hand, kCommonWall});
     }
   }
-  all.came = tap_all(lab, all.taps);
+  all.came = tap_each(lab, all.taps);
   all.walls = stiffest(lab, searched);
   return all;
 }
 
-constexpr std::array kDelays{0, 1, 2, 3};  // [ticks]
+constexpr std::array kLateTicks{0, 1, 2, 3};  // [ticks]
 constexpr std::array kOverDelay{CouplingKind::proposed, CouplingKind::predictive,
                                 CouplingKind::direct, CouplingKind::popc};
 
@@ -218,10 +224,89 @@ const char* ink_of(CouplingKind kind) {
   return std::ranges::find(kBenchLaws, kind, &BenchLaw::kind)->ink;
 }
 
+// Laws through a link, pressed for long in a hand that damps and in one that does not.
+constexpr std::array kLinks{0, 1, 2, 5, 10, 20, 50};  // each way [ticks]
+constexpr std::array kLinked{BenchLaw{CouplingKind::standard, kStandardInk},
+                             BenchLaw{CouplingKind::tank, kTankInk},
+                             BenchLaw{CouplingKind::wave, kFamilyInk[0]},
+                             BenchLaw{CouplingKind::tdpn, kFamilyInk[2]}};
+constexpr double kFarWall = 5000, kLong = 3;  // [N/m], [s]
+
+struct Linked {
+  std::vector<Came> came;  // law by law, link by link, hand by hand
+
+  static constexpr std::array kHeld{BenchHand{300, 2}, BenchHand{300, 0}};
+  const Came& at(std::size_t law, std::size_t link, std::size_t hand) const {
+    return came[(law * kLinks.size() + link) * kHeld.size() + hand];
+  }
+};
+
+Linked press_through_links(TrialRunner& lab) {
+  std::vector<Tap> taps;
+  for (const BenchLaw& law : kLinked) {
+    for (const int link : kLinks) {
+      for (const BenchHand& hand : Linked::kHeld) {
+        taps.push_back({kArms[0], law.kind, hand, kFarWall, link, kLong});
+      }
+    }
+  }
+  return {tap_each(lab, taps)};
+}
+
+// Stiffness felt through spring and line of `wave` [N/m].
+double felt_through(int link) {
+  const Parameters p;
+  const double line = line_at_tip(tip_of(kArms[0]), p.k_vc, p.line(), (link + 0.5) * p.tick);
+  return 1 / (1 / kFarWall + 1 / line);
+}
+
+FigurePanel link_panel(const Linked& all) {
+  FigurePanel panel{.title = "Built-in arm, through a link: a wall of 5000 N/m",
+                    .x_label = "delay each way [ms]",
+                    .y_label = "stiffness felt [N/m]",
+                    .log_y = true,
+                    .x_range = std::pair(-1.0, 51.0),
+                    .y_range = std::pair(2.0, 400.0)};
+  for (std::size_t l = 0; l < kLinked.size(); ++l) {
+    Series line{info(kLinked[l].kind).key, kLinked[l].ink, Series::Style::line, {}};
+    for (std::size_t i = 0; i < kLinks.size(); ++i) {
+      const double felt = kFarWall * all.at(l, i, 0).felt;
+      if (felt > 0) line.points.push_back({double(kLinks[i]), felt});
+    }
+    panel.series.push_back(line);
+  }
+  Series theory{"wave: 1/(1/K + 1/k_vc + (link + T/2)/b)", kFamilyInk[0], Series::Style::dashed, {}};
+  for (int link = 0; link <= 50; ++link) {
+    theory.points.push_back({double(link), felt_through(link)});
+  }
+  panel.series.push_back(theory);
+  return panel;
+}
+
+void judge_links(const Linked& all, std::vector<Check>& checks) {
+  constexpr std::size_t kWave = 2, kTdpn = 3;
+  double total = 0, off = 0, port = 0, stiffer = HUGE_VAL;
+  for (std::size_t i = 0; i < kLinks.size(); ++i) {
+    for (std::size_t hand = 0; hand < Linked::kHeld.size(); ++hand) {
+      total = worse(total, all.at(kWave, i, hand).total);
+      port = worse(port, all.at(kTdpn, i, hand).port);
+    }
+    const double felt = kFarWall * all.at(kWave, i, 0).felt;
+    off = worse(off, std::abs(felt / felt_through(kLinks[i]) - 1));
+    if (kLinks[i] < 5) continue;
+    stiffer = worse_low(stiffer, kFarWall * all.at(kTdpn, i, 0).felt / felt);
+  }
+  checks.push_back(at_most("wave, links to 50 ms: highest E_c [J]", total, 1e-9));
+  checks.push_back(at_most("wave, links to 50 ms: stiffness felt off spring and line in a row", off,
+                           0.06));
+  checks.push_back(at_most("tdpn, links to 50 ms: most energy given [J]", port, 5e-3));
+  checks.push_back(at_least("tdpn, links of 5 to 50 ms: stiffness felt by that of wave", stiffer, 1));
+}
+
 // Energy given over stiffness felt at one wall, a point a law and hand.
 FigurePanel energy_panel(const Compared& all, const BenchArm& arm) {
   constexpr double kLeast = 1e-4, kMost = 1e3;  // [mJ]
-  FigurePanel panel{.title = fmt::format("{}: a wall of {} N/m", arm.name, kMiddle),
+  FigurePanel panel{.title = fmt::format("{}: a wall of {} N/m", arm.name, kCommonWall),
                     .x_label = "stiffness felt [N/m]",
                     .y_label = "most energy given [mJ]",
                     .log_x = true,
@@ -234,7 +319,7 @@ FigurePanel energy_panel(const Compared& all, const BenchArm& arm) {
       const Tap& tap = all.taps[i];
       if (tap.kind != law.kind || std::string_view(tap.arm.name) != arm.name) continue;
       const Came& came = all.came[i];
-      points.points.push_back({std::clamp(came.felt * kMiddle, 20.0, 4000.0),
+      points.points.push_back({std::clamp(came.felt * kCommonWall, 20.0, 4000.0),
                                std::clamp(1e3 * came.port, kLeast, kMost)});
     }
     panel.series.push_back(points);
@@ -248,11 +333,11 @@ FigurePanel delay_panel(const std::vector<double>& walls) {
                     .y_label = "stiffest wall [N/m]",
                     .log_y = true,
                     .x_range = std::pair(-0.2, 3.2),
-                    .y_range = std::pair(0.8 * kSoft, 1.5 * kStiff)};
+                    .y_range = std::pair(0.8 * kLeastWall, 1.5 * kMostWall)};
   std::size_t at = 0;
   for (const CouplingKind kind : kOverDelay) {
     Series line{info(kind).key, ink_of(kind), Series::Style::line, {}};
-    for (const int delay : kDelays) line.points.push_back({double(delay), walls[at++]});
+    for (const int delay : kLateTicks) line.points.push_back({double(delay), walls[at++]});
     panel.series.push_back(line);
   }
   const TipAlong tip = tip_of(kArms[0]);
@@ -275,7 +360,7 @@ FigurePanel arms_panel(const Compared& all) {
                     .y_label = "stiffest wall [N/m]",
                     .log_y = true,
                     .x_range = std::pair(-0.5, double(kArms.size()) - 0.5),
-                    .y_range = std::pair(0.8 * kSoft, 1.5 * kStiff)};
+                    .y_range = std::pair(0.8 * kLeastWall, 1.5 * kMostWall)};
   for (std::size_t a = 0; a < kArms.size(); ++a) panel.x_ticks.emplace_back(a, kArms[a].name);
   for (std::size_t l = 0; l < kBenchLaws.size(); ++l) {
     Series points{info(kBenchLaws[l].kind).key, kBenchLaws[l].ink, Series::Style::points, {}};
@@ -292,7 +377,7 @@ FigurePanel arms_panel(const Compared& all) {
 void judge_direct(const std::vector<double>& walls, std::vector<Check>& checks) {
   const TipAlong tip = tip_of(kArms[0]);
   const std::size_t first =
-      kDelays.size() * static_cast<std::size_t>(
+      kLateTicks.size() * static_cast<std::size_t>(
                            std::ranges::find(kOverDelay, CouplingKind::direct) - kOverDelay.begin());
   for (const int delay : {0, 1, 3}) {
     const WallSetting s{.hand_damping = kHands[0].damping, .delay = 1e-3 * delay};
@@ -332,7 +417,7 @@ void judge_observer(TrialRunner& lab, std::vector<Check>& checks) {
     for (const BenchHand& hand : kHands) taps.push_back({heavy, CouplingKind::popc, hand, wall});
   }
   double most = 0;
-  for (const Came& came : tap_all(lab, taps)) most = worse(most, came.port);
+  for (const Came& came : tap_each(lab, taps)) most = worse(most, came.port);
   checks.push_back(at_most("popc, 70 g, exact encoders, to 10,000 N/m: most energy given [J]", most,
                            1e-3));
   const std::vector<double> walls = stiffest(lab, {{heavy, CouplingKind::popc},
@@ -351,7 +436,7 @@ Outcome approaches(TrialRunner& lab) {
   const Compared all = compare(lab);
   std::vector<Searched> late;
   for (const CouplingKind kind : kOverDelay) {
-    for (const int delay : kDelays) {
+    for (const int delay : kLateTicks) {
       BenchArm arm = kArms[0];
       arm.delay = delay;
       late.push_back({arm, kind});
@@ -366,15 +451,19 @@ Outcome approaches(TrialRunner& lab) {
       "Touch: encoders of 4.19e-4 rad, friction, 1 ms of delay; omega: 0.01 mm; Inverse3: 0.01 mm, "
       "1 ms; delays are known to the laws. Energy: most that the hand was given, at least 1e-4 mJ "
       "and at most 1 J shown. Stiffest wall: felt within {} % of that set and the tip above 20 Hz at "
-      "most {} mm/s, in both grips that damp; of {} to {} N/m.",
-      WallTap::kSpeed, kPress, 100 * kOff, 1e3 * kChatter, kSoft, kStiff);
+      "most {} mm/s, in both grips that damp; of {} to {} N/m. Through a link: held for 3 s, 300 N/m, the paper's "
+      "gains.",
+      WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall);
   outcome.figure.columns = 2;
   for (const BenchArm& arm : kArms) outcome.figure.panels.push_back(energy_panel(all, arm));
   outcome.figure.panels.push_back(arms_panel(all));
   outcome.figure.panels.push_back(delay_panel(over_delay));
+  const Linked linked = press_through_links(lab);
+  outcome.figure.panels.push_back(link_panel(linked));
   judge_direct(over_delay, outcome.checks);
   judge_promises(all, outcome.checks);
   judge_observer(lab, outcome.checks);
+  judge_links(linked, outcome.checks);
   return outcome;
 }
 

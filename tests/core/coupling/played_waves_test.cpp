@@ -10,14 +10,14 @@
 namespace limpid {
 namespace {
 
-constexpr double kTick = 0.001;
+constexpr double kPlayTick = 0.001;
 
 // Sums of a wave as it is sent, tick by tick.
 std::vector<WaveSums<3>> sums_of(const std::vector<Vec<3>>& waves) {
   std::vector<WaveSums<3>> all;
   WaveSums<3> sums{-1, Vec<3>::Zero(), 0};
   for (const Vec<3>& u : waves) {
-    sums.add(u, kTick);
+    sums.add(u, kPlayTick);
     sums.number += 1;
     all.push_back(sums);
   }
@@ -37,7 +37,7 @@ TEST(PlayedWaves, AreThoseThatWereSentWhereEachPacketComes) {
   PlayedWaves<3> played;
   played.start(3);
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    const Vec<3> u = played.play(sums[k], static_cast<double>(k) - 4, kTick);
+    const Vec<3> u = played.play(sums[k], static_cast<double>(k) - 4, kPlayTick);
     const Vec<3> wanted = k < 4 ? Vec<3>(Vec<3>::Zero()) : waves[k - 4];
     EXPECT_LT((u - wanted).norm(), 1e-9) << k;
   }
@@ -53,7 +53,7 @@ TEST(PlayedWaves, GoEvenlyWherePacketsAreLost) {
   played.start(3);
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const std::size_t newest = k == 30 ? 29 : k;
-    const Vec<3> u = played.play(sums[newest], static_cast<double>(k) - 4, kTick);
+    const Vec<3> u = played.play(sums[newest], static_cast<double>(k) - 4, kPlayTick);
     if (k != 34 && k != 35) continue;
     EXPECT_LT((u - Vec<3>(2, 0, 0)).norm(), 1e-9) << k;
   }
@@ -70,8 +70,8 @@ TEST(PlayedWaves, NeverHaveMoreEnergyThanCame) {
   for (std::size_t k = 0; k < sums.size(); ++k) {
     if (random.between(0, 1) < 0.3) newest = k;
     const double late = random.between(0, 1) < 0.01 ? 0 : 20;
-    const Vec<3> u = played.play(sums[newest], static_cast<double>(k) - late, kTick);
-    energy += kTick / 2 * u.squaredNorm();
+    const Vec<3> u = played.play(sums[newest], static_cast<double>(k) - late, kPlayTick);
+    energy += kPlayTick / 2 * u.squaredNorm();
     ASSERT_LE(energy, sums[newest].energy * (1 + 1e-12)) << k;
   }
   EXPECT_GT(energy, 0.01 * sums.back().energy);

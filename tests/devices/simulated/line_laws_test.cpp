@@ -18,11 +18,11 @@ namespace {
 using test::Random;
 using test::Rows;
 
-const Vec3 kPlace(0.16, 0.03, -0.02);  // where the wall begins [m]
+const Vec3 kFarWallAt(0.16, 0.03, -0.02);  // where the wall begins [m]
 
-Scene wall(const Vec3& out, double stiffness) {
+Scene far_wall(const Vec3& out, double stiffness) {
   Scene scene;
-  scene.add({"", pose_at(kPlace), Plane{out}, {stiffness}});
+  scene.add({"", pose_at(kFarWallAt), Plane{out}, {stiffness}});
   return scene;
 }
 
@@ -34,23 +34,23 @@ Parameters through(CouplingKind kind, int delay) {
   return p;
 }
 
-struct Pressed {
+struct FarPress {
   double felt;   // stiffness, from the motors' torque and the device's depth [N/m]
   double total;  // highest E_c [J]
   double port;   // most that the hand was given [J]
 };
 
 // A hand that goes into the wall by `depth` in 0.2 s and stays for `seconds`.
-Pressed press(const Parameters& p, const Vec3& out, double K, double depth, double seconds) {
+FarPress press_far(const Parameters& p, const Vec3& out, double K, double depth, double seconds) {
   const ArmDescription arm = test::omni();
   const Arm<3> model(arm);
-  Rig rig(arm, wall(out, K));
-  rig.start(p, rest_at(arm, kPlace + 0.002 * out));
+  Rig rig(arm, far_wall(out, K));
+  rig.start(p, rest_at(arm, kFarWallAt + 0.002 * out));
   Rows rows(rig.layout());
-  Pressed pressed{0, 0, 0};
+  FarPress pressed{0, 0, 0};
   for (std::size_t k = 0; static_cast<double>(k) * p.tick < seconds; ++k) {
     const double in = std::min(1.0, static_cast<double>(k) * p.tick / 0.2);
-    rig.step(p, {{kPlace + (0.002 - in * (depth + 0.002)) * out, 1}}, rows.add());
+    rig.step(p, {{kFarWallAt + (0.002 - in * (depth + 0.002)) * out, 1}}, rows.add());
     pressed.total = std::max(pressed.total, rows.at(k, Column::energy_total));
     pressed.port = std::max(pressed.port, rows.at(k, Column::energy_port));
   }
@@ -62,7 +62,7 @@ Pressed press(const Parameters& p, const Vec3& out, double K, double depth, doub
   const Vec3 force = Eigen::MatrixXd(J.transpose())
                          .fullPivLu()
                          .solve(rows.vec(rows.size() - 1, Column::motor_torque));
-  pressed.felt = out.dot(force) / out.dot(kPlace - model.tip_at(x));
+  pressed.felt = out.dot(force) / out.dot(kFarWallAt - model.tip_at(x));
   return pressed;
 }
 
@@ -70,7 +70,7 @@ TipAlong tip_along_normal(const Vec3& out) {
   const ArmDescription description = test::omni();
   const Arm<3> arm(description);
   Arm<3>::Frames frames;
-  const Vec<3> x = rest_at(description, kPlace).x1;
+  const Vec<3> x = rest_at(description, kFarWallAt).x1;
   arm.frames(x, frames);
   Mat<3> M;
   arm.inertia(frames, M);
@@ -91,12 +91,12 @@ TEST(Waves, GiveNothingThroughAnyLink) {
     p.wave_b = random.log_between(0.002, 0.012);
     const double K = random.log_between(200, 10'000), pace = random.log_between(2, 60);
     const ArmDescription arm = test::omni();
-    Rig rig(arm, wall(out, K));
-    rig.start(p, rest_at(arm, kPlace));
+    Rig rig(arm, far_wall(out, K));
+    rig.start(p, rest_at(arm, kFarWallAt));
     Rows rows(rig.layout());
     for (std::size_t k = 0; k < 1500; ++k) {
       const double t = static_cast<double>(k) * p.tick;
-      rig.step(p, {{kPlace - 0.015 * std::sin(pace * t) * out, 1}}, rows.add());
+      rig.step(p, {{kFarWallAt - 0.015 * std::sin(pace * t) * out, 1}}, rows.add());
       ASSERT_LE(rows.at(k, Column::energy_total), 1e-9) << seed << " " << k;
     }
   }
@@ -111,7 +111,7 @@ TEST(Waves, AreAsSoftAsSpringAndLineInARow) {
     p.hand_damping = 4;
     const double line = line_at_tip(tip, p.k_vc, p.line(), (delay + 0.5) * p.tick);
     const double theory = 1 / (1 / 5000.0 + 1 / line);
-    const Pressed pressed = press(p, out, 5000, 0.01, 4);
+    const FarPress pressed = press_far(p, out, 5000, 0.01, 4);
     EXPECT_NEAR(pressed.felt, theory, 0.06 * theory) << delay;
     EXPECT_LE(pressed.total, 1e-9);
   }
@@ -125,12 +125,12 @@ TEST(Waves, DragAsTheirDampersDo) {
     p.hand_stiffness = 3000;
     p.wave_b = 0.02;
     Rig rig(arm, Scene{});
-    rig.start(p, rest_at(arm, kPlace));
+    rig.start(p, rest_at(arm, kFarWallAt));
     Rows rows(rig.layout());
     Eigen::VectorXd torque = Eigen::VectorXd::Zero(3), speed = torque;
     for (std::size_t k = 0; k < 700; ++k) {
       const double t = static_cast<double>(k) * p.tick;
-      rig.step(p, {{kPlace + Vec3(0, 0, 0.1 * t), 1}}, rows.add());
+      rig.step(p, {{kFarWallAt + Vec3(0, 0, 0.1 * t), 1}}, rows.add());
       if (k < 500) continue;
       torque += rows.vec(k, Column::motor_torque);
       speed += rows.vec(k, Column::device_velocity);
@@ -146,7 +146,7 @@ TEST(TwoPorts, GiveLittleThroughLinksToFiftyMilliseconds) {
       for (const double K : {600.0, 5000.0}) {
         Parameters p = through(CouplingKind::tdpn, delay);
         p.hand_damping = hand;
-        EXPECT_LE(press(p, Vec3::UnitZ(), K, 0.01, 2).port, 5e-3) << delay << " " << hand;
+        EXPECT_LE(press_far(p, Vec3::UnitZ(), K, 0.01, 2).port, 5e-3) << delay << " " << hand;
       }
     }
   }
@@ -156,9 +156,9 @@ TEST(TwoPorts, AreStifferThanMatchedWaves) {
   for (const int delay : {5, 10, 20}) {
     Parameters p = through(CouplingKind::tdpn, delay);
     p.hand_damping = 4;
-    const double mine = press(p, Vec3::UnitZ(), 5000, 0.01, 3).felt;
+    const double mine = press_far(p, Vec3::UnitZ(), 5000, 0.01, 3).felt;
     p.kind = CouplingKind::wave;
-    EXPECT_GT(mine, press(p, Vec3::UnitZ(), 5000, 0.01, 3).felt) << delay;
+    EXPECT_GT(mine, press_far(p, Vec3::UnitZ(), 5000, 0.01, 3).felt) << delay;
   }
 }
 
@@ -170,12 +170,12 @@ TEST(TwoPorts, AndWavesRunAgainBitForBit) {
     p.link_jitter = 5;
     p.link_loss = 0.3;
     const auto run = [&] {
-      Rig rig(arm, wall(Vec3::UnitZ(), 2000));
-      rig.start(p, rest_at(arm, kPlace));
+      Rig rig(arm, far_wall(Vec3::UnitZ(), 2000));
+      rig.start(p, rest_at(arm, kFarWallAt));
       Rows rows(rig.layout());
       for (std::size_t k = 0; k < 400; ++k) {
         const double t = static_cast<double>(k) * p.tick;
-        rig.step(p, {{kPlace - Vec3(0, 0, 0.02 * std::sin(9 * t)), 1}}, rows.add());
+        rig.step(p, {{kFarWallAt - Vec3(0, 0, 0.02 * std::sin(9 * t)), 1}}, rows.add());
       }
       return rows;
     };

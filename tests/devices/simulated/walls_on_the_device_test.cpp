@@ -20,19 +20,19 @@ namespace {
 using test::Random;
 using test::Rows;
 
-const Vec3 kPlace(0.16, 0.03, -0.02);  // where the wall begins [m]
+const Vec3 kWallAt(0.16, 0.03, -0.02);  // where the wall begins [m]
 constexpr double kStrong = 100;        // limit of motors that never meet it [N m]
 
-Scene wall(const Vec3& out, const Material& material) {
+Scene one_wall(const Vec3& out, const Material& material) {
   Scene scene;
-  scene.add({"", pose_at(kPlace), Plane{out}, material});
+  scene.add({"", pose_at(kWallAt), Plane{out}, material});
   return scene;
 }
 
 struct TipAt {
   Eigen::MatrixXd J, M;
 };
-TipAt tip_at(const ArmDescription& description, const Eigen::VectorXd& x) {
+TipAt tip_there(const ArmDescription& description, const Eigen::VectorXd& x) {
   const Arm<3> arm(description);
   Arm<3>::Frames frames;
   arm.frames(x, frames);
@@ -50,14 +50,14 @@ Eigen::VectorXd damping(const ArmDescription& arm) {
 }
 
 // A hand that goes into the wall by `depth` within 0.1 s and stays.
-Rows pressed(const ArmDescription& arm, const Scene& scene, const Vec3& out, double depth,
+Rows pressed_in(const ArmDescription& arm, const Scene& scene, const Vec3& out, double depth,
              double seconds, const Parameters& p) {
   Rig rig(arm, scene);
-  rig.start(p, rest_at(arm, kPlace + 0.001 * out));
+  rig.start(p, rest_at(arm, kWallAt + 0.001 * out));
   Rows rows(rig.layout());
   for (std::size_t k = 0; static_cast<double>(k) * p.tick < seconds; ++k) {
     const double in = std::min(1.0, static_cast<double>(k) * p.tick / 0.1);
-    rig.step(p, {{kPlace + (0.001 - in * (depth + 0.001)) * out, 1}}, rows.add());
+    rig.step(p, {{kWallAt + (0.001 - in * (depth + 0.001)) * out, 1}}, rows.add());
   }
   return rows;
 }
@@ -72,13 +72,13 @@ TEST(WallsOnTheDevice, PushAsTheirSpringDoesAtTheReading) {
     Parameters p;
     p.kind = CouplingKind::direct;
     p.torque_limit = kStrong;
-    const Rows rows = pressed(arm, wall(out, {K}), out, 0.02, 0.3, p);
+    const Rows rows = pressed_in(arm, one_wall(out, {K}), out, 0.02, 0.3, p);
     double deepest = 0;
     for (std::size_t k = 1; k < rows.size(); ++k) {
       const Eigen::VectorXd x = rows.vec(k, Column::device_position);
-      const double depth = out.dot(kPlace - model.tip_at(x));
+      const double depth = out.dot(kWallAt - model.tip_at(x));
       const Eigen::VectorXd wanted =
-          K * std::max(0.0, depth) * tip_at(arm, x).J.transpose() * out;
+          K * std::max(0.0, depth) * tip_there(arm, x).J.transpose() * out;
       EXPECT_LT((rows.vec(k, Column::commanded_torque) - wanted).norm(), 2e-3 * wanted.norm() + 1e-5)
           << seed << " " << k;
       deepest = std::max(deepest, depth);
@@ -92,7 +92,7 @@ TEST(WallsOnTheDevice, PushAsTheirSpringDoesAtTheReading) {
 
 // M v' = -b v - K_h x + tau over a tick, tau held: x and v after it, from series. The wall's torque
 // -K_w x of a reading acts `delay` ticks later. Returns the largest growth in a tick.
-double growth(const Eigen::MatrixXd& M, const Eigen::MatrixXd& b, const Eigen::MatrixXd& K_h,
+double growth_in_a_tick(const Eigen::MatrixXd& M, const Eigen::MatrixXd& b, const Eigen::MatrixXd& K_h,
               const Eigen::MatrixXd& K_w, double T, int delay) {
   const Eigen::Index n = M.rows();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * n, 3 * n);
@@ -133,8 +133,8 @@ TEST(WallsOnTheDevice, AreStableAsFarAsTheSampledSystemIs) {
     p.device_delay = p.delay = delay;
     p.hand_stiffness = 300;
     p.hand_damping = 1;
-    const Eigen::VectorXd x = rest_at(arm, kPlace).x1;
-    const TipAt tip = tip_at(arm, x);
+    const Eigen::VectorXd x = rest_at(arm, kWallAt).x1;
+    const TipAt tip = tip_there(arm, x);
     const Eigen::MatrixXd normal = tip.J.transpose() * out * out.transpose() * tip.J;
     const Eigen::MatrixXd all = tip.J.transpose() * tip.J;
     const Eigen::MatrixXd b =
@@ -142,13 +142,13 @@ TEST(WallsOnTheDevice, AreStableAsFarAsTheSampledSystemIs) {
     double low = 10, high = 1e5;
     for (int i = 0; i < 50; ++i) {
       const double K = std::sqrt(low * high);
-      (growth(tip.M, b, p.hand_stiffness * all, K * normal, p.tick, delay) < 1 ? low : high) = K;
+      (growth_in_a_tick(tip.M, b, p.hand_stiffness * all, K * normal, p.tick, delay) < 1 ? low : high) = K;
     }
     // Trembling in the last tenth of a second over that a second before [-].
     const auto lasts = [&](double K) {
       const double force = 3;  // presses so deep that the tip never leaves the wall
       const Rows rows =
-          pressed(arm, wall(out, {K}), out, force / K + force / p.hand_stiffness, 1.6, p);
+          pressed_in(arm, one_wall(out, {K}), out, force / K + force / p.hand_stiffness, 1.6, p);
       const auto speed = [&](double from) {
         double most = 0;
         for (std::size_t k = 0; k < 100; ++k) {
@@ -169,13 +169,13 @@ TEST(WallsOnTheDevice, RubWithinTheConeOfFriction) {
   Parameters p;
   p.kind = CouplingKind::direct;
   p.torque_limit = kStrong;
-  Rig rig(arm, wall(Vec3::UnitZ(), {800, 0, 0.6, 0.4}));
-  rig.start(p, rest_at(arm, kPlace));
+  Rig rig(arm, one_wall(Vec3::UnitZ(), {800, 0, 0.6, 0.4}));
+  rig.start(p, rest_at(arm, kWallAt));
   Rows rows(rig.layout());
   for (std::size_t k = 0; k < 900; ++k) {
     const double t = static_cast<double>(k) * p.tick;
     const Vec3 along(0, 0.03 * std::max(0.0, t - 0.3), -0.01 * std::min(1.0, t / 0.2));
-    rig.step(p, {{kPlace + along, 1}}, rows.add());
+    rig.step(p, {{kWallAt + along, 1}}, rows.add());
     const auto touches = rows.touches(k);
     if (t < 0.7) continue;
     ASSERT_EQ(touches.size(), 1U);
@@ -200,12 +200,12 @@ TEST(EnergyBounding, GivesNoHandAnything) {
     p.hand_mass_at_tip = random.one_of({0.0, 0.1});
     const double K = random.log_between(100, 20'000), way = random.between(0.005, 0.02);
     const double pace = random.log_between(3, 100);
-    Rig rig(arm, wall(out, {K}));
-    rig.start(p, rest_at(arm, kPlace));
+    Rig rig(arm, one_wall(out, {K}));
+    rig.start(p, rest_at(arm, kWallAt));
     Rows rows(rig.layout());
     for (std::size_t k = 0; k < 1500; ++k) {
       const double t = static_cast<double>(k) * p.tick;
-      rig.step(p, {{kPlace - way * std::sin(pace * t) * out, 1}}, rows.add());
+      rig.step(p, {{kWallAt - way * std::sin(pace * t) * out, 1}}, rows.add());
       ASSERT_LE(rows.at(k, Column::energy_port), 1e-12) << seed << " " << k;
     }
   }
@@ -214,8 +214,8 @@ TEST(EnergyBounding, GivesNoHandAnything) {
 // A slow press sees 2 b_n/(T (1 + d)): the torque whose price the damping of a press just pays.
 TEST(EnergyBounding, ShowsASlowHandAsMuchAsTheDampingPaysFor) {
   const ArmDescription arm = test::omni();
-  const Eigen::VectorXd x = rest_at(arm, kPlace).x1;
-  const TipAt at = tip_at(arm, x);
+  const Eigen::VectorXd x = rest_at(arm, kWallAt).x1;
+  const TipAt at = tip_there(arm, x);
   const Vec3 out = least_damped(at.J, damping(arm));
   const TipAlong tip = tip_along(at.J, at.M, damping(arm), out);
   for (const int delay : {0, 1, 3}) {
@@ -225,19 +225,19 @@ TEST(EnergyBounding, ShowsASlowHandAsMuchAsTheDampingPaysFor) {
     p.device_delay = p.delay = delay;
     p.hand_stiffness = 1000;
     p.hand_damping = 5;
-    Rig rig(arm, wall(out, {5000}));
-    rig.start(p, rest_at(arm, kPlace));
+    Rig rig(arm, one_wall(out, {5000}));
+    rig.start(p, rest_at(arm, kWallAt));
     Rows rows(rig.layout());
     double force = 0, depth = 0;
     for (std::size_t k = 0; k < 500; ++k) {
       const double t = static_cast<double>(k) * p.tick;
-      rig.step(p, {{kPlace - 0.03 * t * out, 1}}, rows.add());
+      rig.step(p, {{kWallAt - 0.03 * t * out, 1}}, rows.add());
       if (t < 0.3) continue;
       const Eigen::VectorXd tau = rows.vec(k, Column::motor_torque);
       const Eigen::VectorXd now = rows.vec(k, Column::device_position);
-      const TipAt here = tip_at(arm, now);
+      const TipAt here = tip_there(arm, now);
       force += out.dot(here.J.transpose().fullPivLu().solve(tau));
-      depth += out.dot(kPlace - Arm<3>(arm).tip_at(now));
+      depth += out.dot(kWallAt - Arm<3>(arm).tip_at(now));
     }
     const double theory = 2 * tip.damping / (p.tick * (1 + delay));
     EXPECT_NEAR(force / depth, theory, 0.1 * theory) << delay;
@@ -253,7 +253,7 @@ TEST(EnergyBounding, IsAsGoodAsTheDampingItBelieves) {
   p.torque_limit = kStrong;
   p.hand_stiffness = 300;
   p.hand_damping = 0;
-  const Rows rows = pressed(arm, wall(Vec3::UnitZ(), {3000}), Vec3::UnitZ(), 0.02, 1, p);
+  const Rows rows = pressed_in(arm, one_wall(Vec3::UnitZ(), {3000}), Vec3::UnitZ(), 0.02, 1, p);
   double most = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     most = std::max(most, rows.at(k, Column::energy_port));
@@ -273,14 +273,14 @@ ArmDescription heavy(double by) {
 
 // The most that a hand was given in three taps [J].
 double given_in_taps(const ArmDescription& arm, double K, const Parameters& p) {
-  Rig rig(arm, wall(Vec3::UnitZ(), {K}));
-  rig.start(p, rest_at(arm, kPlace + Vec3(0, 0, 0.01)));
+  Rig rig(arm, one_wall(Vec3::UnitZ(), {K}));
+  rig.start(p, rest_at(arm, kWallAt + Vec3(0, 0, 0.01)));
   Rows rows(rig.layout());
   double most = 0;
   for (std::size_t k = 0; k < 1500; ++k) {
     const double t = static_cast<double>(k) * p.tick;
     const double in = 0.5 - 0.5 * std::cos(4 * M_PI * t);
-    rig.step(p, {{kPlace + Vec3(0, 0, 0.01 - in * (0.01 + 3 / p.hand_stiffness)), 1}}, rows.add());
+    rig.step(p, {{kWallAt + Vec3(0, 0, 0.01 - in * (0.01 + 3 / p.hand_stiffness)), 1}}, rows.add());
     most = std::max(most, rows.at(k, Column::energy_port));
   }
   return most;
@@ -315,9 +315,9 @@ TEST(PassivityController, LeavesWallsAloneThatGiveNothing) {
   p.hand_damping = 4;
   p.torque_limit = kStrong;
   p.kind = CouplingKind::direct;
-  const Rows direct = pressed(arm, wall(Vec3::UnitZ(), {100}), Vec3::UnitZ(), 0.01, 0.4, p);
+  const Rows direct = pressed_in(arm, one_wall(Vec3::UnitZ(), {100}), Vec3::UnitZ(), 0.01, 0.4, p);
   p.kind = CouplingKind::popc;
-  const Rows braked = pressed(arm, wall(Vec3::UnitZ(), {100}), Vec3::UnitZ(), 0.01, 0.4, p);
+  const Rows braked = pressed_in(arm, one_wall(Vec3::UnitZ(), {100}), Vec3::UnitZ(), 0.01, 0.4, p);
   for (std::size_t k = 0; k < direct.size(); ++k) {
     ASSERT_EQ(direct.vec(k, Column::motor_torque), braked.vec(k, Column::motor_torque)) << k;
     ASSERT_EQ(braked.at(k, Column::damping_governor), 1);
