@@ -20,13 +20,13 @@
 namespace limpid {
 namespace {
 
-constexpr double kHardest = 4;                          // at most; half of what motors bear [N]
-constexpr double kCommonWall = 2000;                      // the wall of all laws' taps [N/m]
-constexpr double kLeastWall = 50, kMostWall = 20000;          // walls tried [N/m]
-constexpr int kHalvings = 7;                          // of the search, in its logarithm
-constexpr double kQuiet = 0.02;                     // speed above 20 Hz of a quiet tip [m/s]
-constexpr double kFeltOff = 0.2;                          // felt stiffness off the set one [-]
-constexpr double kHeavier = 7, kPapersStep = 4.19e-4; // of the built-in arm [-]; encoder [rad]
+constexpr double kHardest = 4;                         // at most; half of what motors bear [N]
+constexpr double kCommonWall = 2000;                   // the wall of all laws' taps [N/m]
+constexpr double kLeastWall = 50, kMostWall = 20000;   // walls tried [N/m]
+constexpr int kHalvings = 7;                           // of the search, in its logarithm
+constexpr double kQuiet = 0.02;                        // speed above 20 Hz of a quiet tip [m/s]
+constexpr double kFeltOff = 0.2;                       // felt stiffness off the set one [-]
+constexpr double kHeavier = 7, kPapersStep = 4.19e-4;  // of the built-in arm [-]; encoder [rad]
 
 // An arm with what its file does not say.
 struct BenchArm {
@@ -36,10 +36,9 @@ struct BenchArm {
   int delay;    // known to the law [ticks]
   double heavier = 1;
 };
-constexpr std::array kArms{BenchArm{"built-in, ideal", "omni.urdf", 0, 0},
-                           BenchArm{"Touch", "touch.urdf", 4.19e-4, 1},
-                           BenchArm{"omega", "omega.urdf", 1e-4, 0},
-                           BenchArm{"Inverse3", "inverse3.urdf", 1e-4, 1}};
+constexpr std::array kArms{
+    BenchArm{"built-in, ideal", "omni.urdf", 0, 0}, BenchArm{"Touch", "touch.urdf", 4.19e-4, 1},
+    BenchArm{"omega", "omega.urdf", 1e-4, 0}, BenchArm{"Inverse3", "inverse3.urdf", 1e-4, 1}};
 
 struct BenchLaw {
   CouplingKind kind;
@@ -74,9 +73,9 @@ struct Tap {
   BenchArm arm;
   CouplingKind kind;
   BenchHand hand;
-  double wall;       // [N/m]
-  int link = 0;      // delay between device and proxy, each way [ticks]
-  double hold = 0.5; // [s]
+  double wall;        // [N/m]
+  int link = 0;       // delay between device and proxy, each way [ticks]
+  double hold = 0.5;  // [s]
 
   Parameters parameters(const ArmDescription& description) const {
     Parameters p = fitted(description);
@@ -139,7 +138,8 @@ std::vector<Came> tap_each(TrialRunner& lab, const std::vector<Tap>& taps) {
     const ArmDescription arm = arm_of(tap.arm);
     const Parameters p = tap.parameters(arm);
     places.push_back(tap_place(arm, rest_pose(arm), p));
-    ways.push_back({.wall = tap.wall, .press = bearable_press(arm, places.back(), p, kHardest),
+    ways.push_back({.wall = tap.wall,
+                    .press = bearable_press(arm, places.back(), p, kHardest),
                     .hold = tap.hold});
     trials.push_back({"", tap_plan(arm, places.back(), ways.back(), p)});
     trials.back().keep = false;
@@ -157,8 +157,8 @@ struct Searched {
   CouplingKind kind;
 };
 
-// For each the stiffest wall that is rendered well in both hands that damp [N/m]; kLeastWall if not even
-// that one is.
+// For each the stiffest wall that is rendered well in both hands that damp [N/m]; kLeastWall if not
+// even that one is.
 std::vector<double> stiffest(TrialRunner& lab, const std::vector<Searched>& all) {
   std::vector<double> low(all.size(), kLeastWall), high(all.size(), kMostWall);
   for (int step = 0; step < kHalvings; ++step) {
@@ -226,10 +226,9 @@ const char* ink_of(CouplingKind kind) {
 
 // Laws through a link, pressed for long in a hand that damps and in one that does not.
 constexpr std::array kLinks{0, 1, 2, 5, 10, 20, 50};  // each way [ticks]
-constexpr std::array kLinked{BenchLaw{CouplingKind::standard, kStandardInk},
-                             BenchLaw{CouplingKind::tank, kTankInk},
-                             BenchLaw{CouplingKind::wave, kFamilyInk[0]},
-                             BenchLaw{CouplingKind::tdpn, kFamilyInk[2]}};
+constexpr std::array kLinked{
+    BenchLaw{CouplingKind::standard, kStandardInk}, BenchLaw{CouplingKind::tank, kTankInk},
+    BenchLaw{CouplingKind::wave, kFamilyInk[0]}, BenchLaw{CouplingKind::tdpn, kFamilyInk[2]}};
 constexpr double kFarWall = 5000, kLong = 3;  // [N/m], [s]
 
 struct Linked {
@@ -275,7 +274,8 @@ FigurePanel link_panel(const Linked& all) {
     }
     panel.series.push_back(line);
   }
-  Series theory{"wave: 1/(1/K + 1/k_vc + (link + T/2)/b)", kFamilyInk[0], Series::Style::dashed, {}};
+  Series theory{
+      "wave: 1/(1/K + 1/k_vc + (link + T/2)/b)", kFamilyInk[0], Series::Style::dashed, {}};
   for (int link = 0; link <= 50; ++link) {
     theory.points.push_back({double(link), felt_through(link)});
   }
@@ -297,10 +297,11 @@ void judge_links(const Linked& all, std::vector<Check>& checks) {
     stiffer = worse_low(stiffer, kFarWall * all.at(kTdpn, i, 0).felt / felt);
   }
   checks.push_back(at_most("wave, links to 50 ms: highest E_c [J]", total, 1e-9));
-  checks.push_back(at_most("wave, links to 50 ms: stiffness felt off spring and line in a row", off,
-                           0.06));
+  checks.push_back(
+      at_most("wave, links to 50 ms: stiffness felt off spring and line in a row", off, 0.06));
   checks.push_back(at_most("tdpn, links to 50 ms: most energy given [J]", port, 5e-3));
-  checks.push_back(at_least("tdpn, links of 5 to 50 ms: stiffness felt by that of wave", stiffer, 1));
+  checks.push_back(
+      at_least("tdpn, links of 5 to 50 ms: stiffness felt by that of wave", stiffer, 1));
 }
 
 // Energy given over stiffness felt at one wall, a point a law and hand.
@@ -341,8 +342,8 @@ FigurePanel delay_panel(const std::vector<double>& walls) {
     panel.series.push_back(line);
   }
   const TipAlong tip = tip_of(kArms[0]);
-  Series theory{"direct: (b_d + b_h)/(T/2 + delay)", ink_of(CouplingKind::direct),
-                Series::Style::dashed, {}};
+  Series theory{
+      "direct: (b_d + b_h)/(T/2 + delay)", ink_of(CouplingKind::direct), Series::Style::dashed, {}};
   Series bounded{"eba: 2 b_d/(T + delay)", ink_of(CouplingKind::eba), Series::Style::dashed, {}};
   for (double ms = 0; ms <= 3.001; ms += 0.1) {
     const WallSetting s{.hand_damping = kHands[0].damping, .delay = 1e-3 * ms};
@@ -377,8 +378,9 @@ FigurePanel arms_panel(const Compared& all) {
 void judge_direct(const std::vector<double>& walls, std::vector<Check>& checks) {
   const TipAlong tip = tip_of(kArms[0]);
   const std::size_t first =
-      kLateTicks.size() * static_cast<std::size_t>(
-                           std::ranges::find(kOverDelay, CouplingKind::direct) - kOverDelay.begin());
+      kLateTicks.size() *
+      static_cast<std::size_t>(std::ranges::find(kOverDelay, CouplingKind::direct) -
+                               kOverDelay.begin());
   for (const int delay : {0, 1, 3}) {
     const WallSetting s{.hand_damping = kHands[0].damping, .delay = 1e-3 * delay};
     const double ratio = walls[first + static_cast<std::size_t>(delay)] / direct_wall(tip, s);
@@ -397,10 +399,10 @@ void judge_promises(const Compared& all, std::vector<Check>& checks) {
   const auto exact = [](const Tap& tap) {
     return tap.kind == CouplingKind::eba && tap.arm.step == 0;
   };
-  checks.push_back(at_most("eba, exact encoders: most energy given [J]", all.most(exact, given),
-                           1e-9));
   checks.push_back(
-      at_most("eba, all arms: most energy given [J]", all.most(of(CouplingKind::eba), given), 1e-3));
+      at_most("eba, exact encoders: most energy given [J]", all.most(exact, given), 1e-9));
+  checks.push_back(at_most("eba, all arms: most energy given [J]",
+                           all.most(of(CouplingKind::eba), given), 1e-3));
   for (const CouplingKind kind : {CouplingKind::predictive, CouplingKind::tank}) {
     checks.push_back(at_most(fmt::format("{}, all arms: most energy given [J]", name(kind)),
                              all.most(of(kind), given), 5e-3));
@@ -418,14 +420,14 @@ void judge_observer(TrialRunner& lab, std::vector<Check>& checks) {
   }
   double most = 0;
   for (const Came& came : tap_each(lab, taps)) most = worse(most, came.port);
-  checks.push_back(at_most("popc, 70 g, exact encoders, to 10,000 N/m: most energy given [J]", most,
-                           1e-3));
+  checks.push_back(
+      at_most("popc, 70 g, exact encoders, to 10,000 N/m: most energy given [J]", most, 1e-3));
   const std::vector<double> walls = stiffest(lab, {{heavy, CouplingKind::popc},
                                                    {heavy, CouplingKind::direct},
                                                    {stepped, CouplingKind::popc},
                                                    {stepped, CouplingKind::direct}});
-  checks.push_back(at_least("popc, 70 g, exact encoders: stiffest wall by direct's",
-                            walls[0] / walls[1], 3));
+  checks.push_back(
+      at_least("popc, 70 g, exact encoders: stiffest wall by direct's", walls[0] / walls[1], 3));
   checks.push_back(at_most("popc, 70 g, steps of 4.19e-4 rad: stiffest wall by direct's",
                            walls[2] / walls[3], 1.5));
 }
@@ -450,8 +452,10 @@ Outcome approaches(TrialRunner& lab) {
       "3,000 N/m with 2 N s/m and without damping. Gains fitted to each arm, eta 1, tick 1 ms. "
       "Touch: encoders of 4.19e-4 rad, friction, 1 ms of delay; omega: 0.01 mm; Inverse3: 0.01 mm, "
       "1 ms; delays are known to the laws. Energy: most that the hand was given, at least 1e-4 mJ "
-      "and at most 1 J shown. Stiffest wall: felt within {} % of that set and the tip above 20 Hz at "
-      "most {} mm/s, in both grips that damp; of {} to {} N/m. Through a link: held for 3 s, 300 N/m, the paper's "
+      "and at most 1 J shown. Stiffest wall: felt within {} % of that set and the tip above 20 Hz "
+      "at "
+      "most {} mm/s, in both grips that damp; of {} to {} N/m. Through a link: held for 3 s, 300 "
+      "N/m, the paper's "
       "gains.",
       WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall);
   outcome.figure.columns = 2;

@@ -96,8 +96,9 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
                 p.linked() ? "felt through the spring k_vc; falls with the link's delay"
                            : "felt through the spring k_vc"};
       case CouplingKind::direct:
-        return on_device(direct_wall(l.tip, s), "the damping of arm and hand: (b_d + b_h)/(T/2 + "
-                                                "delay)");
+        return on_device(direct_wall(l.tip, s),
+                         "the damping of arm and hand: (b_d + b_h)/(T/2 + "
+                         "delay)");
       case CouplingKind::eba:
         return {bounded_wall(l.tip, s), "the arm's damping: 2 b_d/(T + delay)"};
       case CouplingKind::popc:

@@ -42,8 +42,7 @@ DeviceEstimate<N> Coupling<N>::locate(CouplingKind kind, const LawSettings& p, L
 }
 
 template <int N>
-Vec<N> Coupling<N>::step(CouplingKind kind, const LawSettings& p, LawInput<N> in,
-                         Proxy<N>& proxy) {
+Vec<N> Coupling<N>::step(CouplingKind kind, const LawSettings& p, LawInput<N> in, Proxy<N>& proxy) {
   in.ledger = &ledger_;
   if (in.armed_anew) reserve_ = std::numeric_limits<double>::infinity();
   Law<N>& now = law(kind);

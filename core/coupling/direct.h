@@ -1,5 +1,5 @@
-// The law of most programs: walls on the device itself, as a god-object has them (Zilles and Salisbury
-// 1995; Ruspini, Kolarov and Khatib 1997).
+// The law of most programs: walls on the device itself, as a god-object has them (Zilles and
+// Salisbury 1995; Ruspini, Kolarov and Khatib 1997).
 //
 // A torque held for a tick, and late, gives energy: a wall K is passive in every hand up to
 // K = 2 b_d/T, and quiet in a hand that damps with b_h up to (b_d + b_h)/(T/2 + delay).

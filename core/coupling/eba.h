@@ -1,9 +1,9 @@
 // Energy bounding on the device itself, after Kim and Ryu (2010, IJRR 29, 666) in the least
 // conservative form for several joints, which is rebuilt here from what is public.
 //
-// The walls' torque tau_e is let through as far as an account E can pay for the coming tick. E grows
-// by what the device's damping b takes, and by what the hand puts in. With B = b/T, D_k the motion
-// in a tick, a_k the torque that acted in it and t_j the torques on their way,
+// The walls' torque tau_e is let through as far as an account E can pay for the coming tick. E
+// grows by what the device's damping b takes, and by what the hand puts in. With B = b/T, D_k the
+// motion in a tick, a_k the torque that acted in it and t_j the torques on their way,
 //     E_k = E_k-1 + D_k.B D_k - a_k.D_k,
 //     tau1 = s tau_e,  s <= 1 the largest with
 //         s^2 tau_e.B^-1 tau_e / 4 <= E_k - sum_j t_j.B^-1 t_j / 4.
@@ -32,8 +32,9 @@ struct EbaLaw {
       .on_device = true,
       .for_comparison = true,
       .through_link = "the law renders walls on the device itself, and knows no link",
-      .torque_share = "Share of the walls' torque that the account can pay for in the coming tick. A wall "
-               "that was pressed when the law took over returns as the hand presses on.",
+      .torque_share =
+          "Share of the walls' torque that the account can pay for in the coming tick. A wall "
+          "that was pressed when the law took over returns as the hand presses on.",
       .sliders = kSliders,
   };
 
@@ -43,11 +44,12 @@ struct EbaLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 1> settings() {
-      return {{{"eba.damping", "b bounded by", "Damping believed", &P::eba_damping, "N m s/rad", 0,
-                10, 0, 0.1, false, true,
-                "Energy bounding: damping of every joint that pays for the walls' torque. Default: the "
-                "device's own, as identified or as its file says. More than there is gives energy "
-                "away; of a real device no more is believed than is known."}}};
+      return {
+          {{"eba.damping", "b bounded by", "Damping believed", &P::eba_damping, "N m s/rad", 0, 10,
+            0, 0.1, false, true,
+            "Energy bounding: damping of every joint that pays for the walls' torque. Default: the "
+            "device's own, as identified or as its file says. More than there is gives energy "
+            "away; of a real device no more is believed than is known."}}};
     }
   };
 

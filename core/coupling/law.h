@@ -1,5 +1,5 @@
-// Interface of a coupling law: its inputs in a tick, its verbs, and its report. laws.h lists all laws
-// with their settings.
+// Interface of a coupling law: its inputs in a tick, its verbs, and its report. laws.h lists all
+// laws with their settings.
 #pragma once
 
 #include <cstdint>

@@ -23,8 +23,19 @@
 namespace limpid {
 
 // Kinds of law, numbered in the order of Laws; recordings keep the number.
-enum class CouplingKind : std::uint8_t { standard, proposed, predictive, tank, direct, eba, popc, wave, tdpn };
-using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw, DirectLaw, EbaLaw, PopcLaw, WaveLaw, TdpnLaw>;
+enum class CouplingKind : std::uint8_t {
+  standard,
+  proposed,
+  predictive,
+  tank,
+  direct,
+  eba,
+  popc,
+  wave,
+  tdpn
+};
+using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw, DirectLaw, EbaLaw,
+                        PopcLaw, WaveLaw, TdpnLaw>;
 
 namespace detail {
 

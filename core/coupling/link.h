@@ -214,7 +214,8 @@ class ProxyLink {
   }
   // Delay after which waves are played out, see PlayedWaves [ticks].
   double wave_delay() const {
-    const double spare = s_.link_loss > 0 ? std::ceil(logarithm(1e-6) / logarithm(s_.link_loss)) : 0;
+    const double spare =
+        s_.link_loss > 0 ? std::ceil(logarithm(1e-6) / logarithm(s_.link_loss)) : 0;
     return s_.oldest() + spare;
   }
   // Each once a tick: the packet that the other side uses in it.

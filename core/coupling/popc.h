@@ -1,5 +1,5 @@
-// Passivity observer and controller on the device itself (Hannaford and Ryu 2002), with the mends that
-// were published for it.
+// Passivity observer and controller on the device itself (Hannaford and Ryu 2002), with the mends
+// that were published for it.
 //
 // W is what came in at the device's port, U what the walls store at the reading, B = b/T, D_k the
 // motion in a tick, a_k the torque that was held in it, t_j the torques on their way, d the delay:
@@ -8,9 +8,9 @@
 //     tau1 = tau_e - alpha M1 v,  alpha = min(-S/(T v.M1 v), c/(T (1 + d))) where S < 0.
 // The held torque in W: Ryu, Kim and Hannaford (2004, T-RO 20, 772). U as reference energy, so that
 // the damper acts within the first bounce: Ryu, Preusche, Hannaford and Hirzinger (2005, T-CST 13,
-// 737). S is foretold for when the torque acts. Motions below 1.5 steps of the encoder are none. The
-// damper is bounded, as without bound it diverges on light devices. M1 v instead of v keeps it from
-// turning the motion of several joints.
+// 737). S is foretold for when the torque acts. Motions below 1.5 steps of the encoder are none.
+// The damper is bounded, as without bound it diverges on light devices. M1 v instead of v keeps it
+// from turning the motion of several joints.
 #pragma once
 
 #include <array>
@@ -40,8 +40,8 @@ struct PopcLaw {
   };
 
   struct Settings {
-    double popc_damping = 0.5;    // c, largest damper [M1/T]
-    bool popc_reference = true;   // U is the reference, not 0
+    double popc_damping = 0.5;   // c, largest damper [M1/T]
+    bool popc_reference = true;  // U is the reference, not 0
 
     template <class P>
     static constexpr std::array<Field<P>, 2> settings() {

@@ -71,8 +71,7 @@ class Predictive final : public Law<N> {
   void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
                       double T, bool resumed, Motion<N>& motion);
   bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
-  void balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
-               double surprise);
+  void balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy, double surprise);
 
   Predictor<N> predictor_;
   InertiaNetwork<N> network_;
@@ -356,8 +355,8 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
 // last tick's motion is a better guess, and the contacts have not been solved yet.
 template <int N>
 void Predictive<N>::solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer,
-                                          const Motion<N>& right, double T, bool resumed,
-                                          Motion<N>& motion) {
+                                   const Motion<N>& right, double T, bool resumed,
+                                   Motion<N>& motion) {
   contacts_.prepare(answer, T);
   Motion<N> found = resumed ? last_ : motion;
   bool settled = solve_with_bodies(both, T, found);

@@ -74,8 +74,8 @@ void Tank<N>::start(const LawStart<N>& at) {
 
 // Closes the books of the tick that just ended.
 template <int N>
-void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay,
-                            const LawInput<N>& in, const Proxy<N>& proxy) {
+void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
+                     const Proxy<N>& proxy) {
   device_.expect(delay, in.delay_most);
   if (fresh_) {
     if (takes_over_) left_ = in.ledger->reserve();
@@ -103,7 +103,7 @@ void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay,
 // alone moves it, and the tank does not pay.
 template <int N>
 void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-                          const FromDevice<N>& device, Proxy<N>& proxy) {
+                   const FromDevice<N>& device, Proxy<N>& proxy) {
   const double T = in.T;
   const bool idle = in.authority == 0;
   proxy_ += device.sent - got2_;
@@ -127,7 +127,7 @@ void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& 
 // Returns the torque on the device's side.
 template <int N>
 Vec<N> Tank<N>::pull(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
-                            const FromProxy<N>& proxy) {
+                     const FromProxy<N>& proxy) {
   device_.add(proxy.sent - got1_);
   got1_ = proxy.sent;
   const double low = std::clamp(1 - device_.energy() / (p.tank_energy / 2), 0.0, 1.0);

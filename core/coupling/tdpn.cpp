@@ -103,13 +103,13 @@ class Tdpn final : public Law<N> {
   }
 
   bool fresh_ = true;
-  double elapsed_ = 0;                // since the previous reading [s]
-  Vec<N> x1_;                         // last reading [rad]
-  Vec<N> came_;                       // the device as the proxy's side knew it last [rad]
-  Vec<N> x_d_;                        // where that side wants the proxy [rad]
-  double in1_ = 0, out1_ = 0;         // at the device, in all so far [J]
-  double in2_ = 0, out2_ = 0;         // at the proxy's spring
-  double braked_ = 0;                 // alpha over its most
+  double elapsed_ = 0;                       // since the previous reading [s]
+  Vec<N> x1_;                                // last reading [rad]
+  Vec<N> came_;                              // the device as the proxy's side knew it last [rad]
+  Vec<N> x_d_;                               // where that side wants the proxy [rad]
+  double in1_ = 0, out1_ = 0;                // at the device, in all so far [J]
+  double in2_ = 0, out2_ = 0;                // at the proxy's spring
+  double braked_ = 0;                        // alpha over its most
   std::array<Vec<N>, kMostDelay + 1> sent_;  // torques that left, the last one first [N m]
 };
 

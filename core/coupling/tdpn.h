@@ -1,9 +1,9 @@
-// Two-port time-domain passivity (Ryu, Artigas and Preusche 2010; Artigas et al. 2011): the device's
-// velocity goes to the proxy's side, the spring's force comes back.
+// Two-port time-domain passivity (Ryu, Artigas and Preusche 2010; Artigas et al. 2011): the
+// device's velocity goes to the proxy's side, the spring's force comes back.
 //
-// Each port books what goes in and what goes out; packets carry what went in. At the device a damper
-// takes what came out beyond what the other side had taken in; at the proxy the velocity is lowered.
-// With in2 as it came, D the motion in a tick and t_j the torques on their way,
+// Each port books what goes in and what goes out; packets carry what went in. At the device a
+// damper takes what came out beyond what the other side had taken in; at the proxy the velocity is
+// lowered. With in2 as it came, D the motion in a tick and t_j the torques on their way,
 //     S = in2 - out1 - sum_j (t_j.D)+ - (tau.D)+,  S < 0: tau1 = tau - alpha M1 v as in popc.h,
 //     v = v_d + fix - beta F,  beta the least with T F.v <= in1 - out2.
 // fix takes drift back, a part of it in each tick, out of what is left (Artigas, Ryu and Preusche

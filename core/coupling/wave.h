@@ -1,8 +1,9 @@
-// Wave variables between device and proxy (Niemeyer and Slotine 1991, 2004), as sums that are played
-// out evenly (Niemeyer and Slotine 1998; Chopra et al. 2003).
+// Wave variables between device and proxy (Niemeyer and Slotine 1991, 2004), as sums that are
+// played out evenly (Niemeyer and Slotine 1998; Chopra et al. 2003).
 //
-// With the impedance b of the line and r = sqrt(2 b) the device feels tau1 = -b v1 + r w, and beside
-// it a damper b that matches the line. After a tick with the motion D, in which a acted, the wave
+// With the impedance b of the line and r = sqrt(2 b) the device feels tau1 = -b v1 + r w, and
+// beside it a damper b that matches the line. After a tick with the motion D, in which a acted, the
+// wave
 //     u = r D/T - w,  cut so that T u.u/2 is at most what came in: T w.w/2 - (a + b v1).D - debt
 // leaves for the proxy's side. There
 //     F2 = k_vc (x_d - x2) + b (v_d - v2),  v_d = (r u - F2)/b,  and w = u - r F2/b goes back.

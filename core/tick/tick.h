@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/coupling/coupling.h"
-#include "core/coupling/link.h"
 #include "core/coupling/force_observer.h"
+#include "core/coupling/link.h"
 #include "core/math/sizes.h"
 #include "core/tick/compensation.h"
 #include "core/tick/motor_stage.h"

@@ -187,9 +187,9 @@ void draw_link(Parameters& p) {
   if (!section(set.c_str(), false)) return;
   if (!info(p.kind).knows_link()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped("This law %s, and knows no link.",
-                       info(p.kind).on_device ? "renders walls on the device itself"
-                                              : "solves device and proxy at once");
+    ImGui::TextWrapped("This law %s, and knows no link.", info(p.kind).on_device
+                                                              ? "renders walls on the device itself"
+                                                              : "solves device and proxy at once");
     ImGui::PopStyleColor();
     return;
   }
@@ -285,8 +285,7 @@ void draw_shares(const CouplingReading& now, const LawInfo& law) {
   heading(law.label);
   if (law.torque_share != nullptr) {
     share("Torque let through", now.torque_governor,
-          "A part of the walls' torque is held back: they feel softer than set.",
-          law.torque_share);
+          "A part of the walls' torque is held back: they feel softer than set.", law.torque_share);
   }
   if (law.damper_share != nullptr) {
     share("Damper not needed", now.damping_governor, "It brakes what the walls gave.",
@@ -354,7 +353,8 @@ void draw_ledger(const CouplingReading& now) {
 
 // Returns a way out of a coupling that gives energy.
 const char* way_out(const Parameters& p) {
-  if (info(p.kind).on_device) return "A softer wall, a hand that damps, or the predictive law, avoid it.";
+  if (info(p.kind).on_device)
+    return "A softer wall, a hand that damps, or the predictive law, avoid it.";
   if (p.linked()) return "A shorter link, a softer k_vc, more damping, or the tank, avoid it.";
   return info(p.kind).observes
              ? "Raise \xCE\xB7, lower the observer's gain, or take the predictive law."

@@ -23,7 +23,8 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct", "eba", "popc", "wave", "tdpn"};
+constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct",
+                                 "eba",      "popc",     "wave",       "tdpn"};
 
 class Commands : public test::Program {
  protected:

@@ -79,8 +79,9 @@ TEST_F(Usage, FitsIntoTheColumnsOfATerminal) {
 
 TEST_F(Usage, OfParametersNamesDefaultsAndWhatIsAllowed) {
   const std::string help = done({"analyze", "--help"});
-  EXPECT_TRUE(std::regex_search(
-      help, std::regex("coupling\\.kind +default \\S+ +standard, proposed, predictive, tank, direct, eba, popc, wave, tdpn")));
+  EXPECT_TRUE(
+      std::regex_search(help, std::regex("coupling\\.kind +default \\S+ +standard, proposed, "
+                                         "predictive, tank, direct, eba, popc, wave, tdpn")));
   EXPECT_TRUE(
       std::regex_search(help, std::regex("observer\\.anti_windup +default true +true, false")));
   EXPECT_TRUE(
@@ -157,8 +158,8 @@ TEST_F(Usage, IsCompletedWordByWord) {
   EXPECT_THAT(offered(complete({""})), Not(Contains("share")));
   EXPECT_THAT(offered(complete({"run", "--"})), Contains("--record"));
   EXPECT_THAT(offered(complete({"analyze", "--"})), Not(Contains("--record")));
-  const std::vector<std::string> laws{"standard", "proposed", "predictive", "tank",
-                                      "direct",   "eba", "popc", "wave", "tdpn"};
+  const std::vector<std::string> laws{"standard", "proposed", "predictive", "tank", "direct",
+                                      "eba",      "popc",     "wave",       "tdpn"};
   EXPECT_EQ(offered(complete({"run", "--coupling", ""})), laws);
   EXPECT_EQ(offered(complete({"run", "--coupling="})), laws);
   EXPECT_EQ(complete({"run", "--scene", ""}), "\tfiles .toml\n");

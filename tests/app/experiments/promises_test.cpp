@@ -128,8 +128,8 @@ TEST_P(Promises, AreKeptAndShownInAFigure) {
 INSTANTIATE_TEST_SUITE_P(Of, Promises,
                          testing::Values("coordination", "inertia", "passivity", "spectrum",
                                          "saturation", "observer", "transparency", "eta_min",
-                                         "lightness", "approaches", "switching", "friction", "delay", "walls",
-                                         "mass", "click", "drop", "stack"),
+                                         "lightness", "approaches", "switching", "friction",
+                                         "delay", "walls", "mass", "click", "drop", "stack"),
                          [](const auto& one) { return std::string(one.param); });
 
 TEST(PromisesOfExperiments, AreMadeByEachOfThem) {

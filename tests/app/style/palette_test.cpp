@@ -96,7 +96,9 @@ TEST_P(PaletteOf, TellsLawsApartForEveryEye) {
   for (const Seen& eye : kEyes) {
     for (int one = 0; one < static_cast<int>(kLawColours.size()); ++one) {
       for (int other = 0; other < one; ++other) {
-        const auto compares = [](int law) { return info(static_cast<CouplingKind>(law)).for_comparison; };
+        const auto compares = [](int law) {
+          return info(static_cast<CouplingKind>(law)).for_comparison;
+        };
         if (compares(one) && compares(other)) continue;  // these share a colour
         EXPECT_GE(apart(law_ink(p, one), law_ink(p, other), eye), 12) << one << " " << other;
       }

@@ -175,10 +175,10 @@ TEST(Link, LosesNoPartOfAPacket) {
     std::vector<FromProxy<kAnyDof>> of_proxy;
     for (std::size_t k = 0; k < 9; ++k) {
       const Dynamics<kAnyDof> d{random.matrix(n, 1), random.matrix(n, 1), random.vector(n, 1)};
-      of_device.push_back(
-          {random.vector(n, 1), random.vector(n, 1), d, random.vector(n, 1), random.between(0, 1), double(k), random.vector(n, 1)});
-      of_proxy.push_back(
-          {random.vector(n, 1), random.vector(n, 1), d, random.vector(n, 1), random.between(0, 1), double(k), random.vector(n, 1)});
+      of_device.push_back({random.vector(n, 1), random.vector(n, 1), d, random.vector(n, 1),
+                           random.between(0, 1), double(k), random.vector(n, 1)});
+      of_proxy.push_back({random.vector(n, 1), random.vector(n, 1), d, random.vector(n, 1),
+                          random.between(0, 1), double(k), random.vector(n, 1)});
       const auto& a = there.pass(of_device.back(), link(3, 0, 0));
       const auto& b = back.pass(of_proxy.back(), link(3, 0, 0));
       if (k < 3) continue;

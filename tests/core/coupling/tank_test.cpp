@@ -1,7 +1,7 @@
 // The account of one side's tank, tick by tick, against sums by hand.
-#include "core/coupling/device_tank.h"
-
 #include <gtest/gtest.h>
+
+#include "core/coupling/device_tank.h"
 
 namespace limpid {
 namespace {

@@ -21,7 +21,7 @@ using test::Random;
 using test::Rows;
 
 const Vec3 kWallAt(0.16, 0.03, -0.02);  // where the wall begins [m]
-constexpr double kStrong = 100;        // limit of motors that never meet it [N m]
+constexpr double kStrong = 100;         // limit of motors that never meet it [N m]
 
 Scene one_wall(const Vec3& out, const Material& material) {
   Scene scene;
@@ -51,7 +51,7 @@ Eigen::VectorXd damping(const ArmDescription& arm) {
 
 // A hand that goes into the wall by `depth` within 0.1 s and stays.
 Rows pressed_in(const ArmDescription& arm, const Scene& scene, const Vec3& out, double depth,
-             double seconds, const Parameters& p) {
+                double seconds, const Parameters& p) {
   Rig rig(arm, scene);
   rig.start(p, rest_at(arm, kWallAt + 0.001 * out));
   Rows rows(rig.layout());
@@ -79,21 +79,24 @@ TEST(WallsOnTheDevice, PushAsTheirSpringDoesAtTheReading) {
       const double depth = out.dot(kWallAt - model.tip_at(x));
       const Eigen::VectorXd wanted =
           K * std::max(0.0, depth) * tip_there(arm, x).J.transpose() * out;
-      EXPECT_LT((rows.vec(k, Column::commanded_torque) - wanted).norm(), 2e-3 * wanted.norm() + 1e-5)
+      EXPECT_LT((rows.vec(k, Column::commanded_torque) - wanted).norm(),
+                2e-3 * wanted.norm() + 1e-5)
           << seed << " " << k;
       deepest = std::max(deepest, depth);
     }
     EXPECT_GT(deepest, 0.002);
-    EXPECT_LT((rows.vec(200, Column::proxy_position) - rows.vec(199, Column::device_position)).norm(),
-              1e-12)
+    EXPECT_LT(
+        (rows.vec(200, Column::proxy_position) - rows.vec(199, Column::device_position)).norm(),
+        1e-12)
         << "the proxy is where the last reading was";
   }
 }
 
 // M v' = -b v - K_h x + tau over a tick, tau held: x and v after it, from series. The wall's torque
 // -K_w x of a reading acts `delay` ticks later. Returns the largest growth in a tick.
-double growth_in_a_tick(const Eigen::MatrixXd& M, const Eigen::MatrixXd& b, const Eigen::MatrixXd& K_h,
-              const Eigen::MatrixXd& K_w, double T, int delay) {
+double growth_in_a_tick(const Eigen::MatrixXd& M, const Eigen::MatrixXd& b,
+                        const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& K_w, double T,
+                        int delay) {
   const Eigen::Index n = M.rows();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   A.block(0, n, n, n).setIdentity();
@@ -137,12 +140,13 @@ TEST(WallsOnTheDevice, AreStableAsFarAsTheSampledSystemIs) {
     const TipAt tip = tip_there(arm, x);
     const Eigen::MatrixXd normal = tip.J.transpose() * out * out.transpose() * tip.J;
     const Eigen::MatrixXd all = tip.J.transpose() * tip.J;
-    const Eigen::MatrixXd b =
-        Eigen::MatrixXd(damping(arm).asDiagonal()) + p.hand_damping * all;
+    const Eigen::MatrixXd b = Eigen::MatrixXd(damping(arm).asDiagonal()) + p.hand_damping * all;
     double low = 10, high = 1e5;
     for (int i = 0; i < 50; ++i) {
       const double K = std::sqrt(low * high);
-      (growth_in_a_tick(tip.M, b, p.hand_stiffness * all, K * normal, p.tick, delay) < 1 ? low : high) = K;
+      (growth_in_a_tick(tip.M, b, p.hand_stiffness * all, K * normal, p.tick, delay) < 1 ? low
+                                                                                         : high) =
+          K;
     }
     // Trembling in the last tenth of a second over that a second before [-].
     const auto lasts = [&](double K) {
