@@ -39,6 +39,7 @@ struct DeviceTraits {
   std::vector<double> resolution;    // step of each joint's encoder [rad]
   std::vector<double> effort;        // torque limit of each joint [N m]; empty if it cannot push
   double rate = 0;                   // reports a second [Hz]
+  std::vector<bool> slides = {};     // joints that slide; empty: the device does not say it
 };
 
 // The step of the device's coarsest encoder, at most device.encoder_step's; 0 if it names none
@@ -49,15 +50,35 @@ inline double encoder_step_of(const DeviceTraits& traits) {
   return std::min(step, kMostEncoderStep);
 }
 
-struct DeviceReading {
-  std::array<double, kMaxDof> x{};  // joint positions [rad]
-  std::uint64_t count = 0;          // readings so far
-  double age = 0;                   // time since it arrived [s]
-  bool hand = true;                 // dead-man switch closed; true where there is none
-  bool fault = false;               // the device says that it is not well
-  std::uint32_t buttons = 0;        // one bit each
-  std::uint32_t lapses = 0;         // how often the torque ran out, as no new one came in time
+// Reason that a device gives for having no force of its own accord; numbers as in the raw protocol.
+enum class NoForce : std::uint8_t {
+  none,  // it has force
+  button,
+  velocity,
+  watchdog,
+  software,
+  connection,
+  dead_man,
+  warm,
+  other,
 };
+inline constexpr int kNoForces = 9;
+
+struct DeviceReading {
+  std::array<double, kMaxDof> x{};   // joint positions [rad]
+  std::uint64_t count = 0;           // readings so far
+  double age = 0;                    // time since it arrived [s]
+  bool hand = true;                  // dead-man switch closed; true where there is none
+  bool fault = false;                // the device says that it is not well
+  std::uint32_t buttons = 0;         // one bit each
+  std::uint32_t lapses = 0;          // how often the torque ran out, as no new one came in time
+  NoForce no_force = NoForce::none;  // why the device itself has no force
+  bool calibrated = true;            // a fault besides, if not
+  float warmth = 0;                  // of its hottest motor: 0 cold, 1 as warm as it may be [-]
+};
+
+// Sentences of the device about itself, for people, beyond what force_text() says; empty: none.
+std::string device_words(const DeviceReading& reading);
 
 // True state of a simulated device.
 struct DeviceTruth {

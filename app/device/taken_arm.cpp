@@ -22,6 +22,10 @@ std::string joints(int n) { return fmt::format("{} joint{}", n, n == 1 ? "" : "s
 
 ArmDescription built_in(const DeviceTraits& traits) {
   constexpr std::array kBuiltIn{"paddle.urdf", "joystick.urdf", "omni.urdf"};
+  if (std::ranges::find(traits.slides, true) != traits.slides.end()) {
+    throw UnknownArmError(
+        fmt::format("{} has joints that slide, and no built-in arm has", traits.name));
+  }
   if (traits.dof >= 1 && static_cast<std::size_t>(traits.dof) <= kBuiltIn.size()) {
     return shipped(kBuiltIn[static_cast<std::size_t>(traits.dof) - 1]);
   }
@@ -74,18 +78,23 @@ ArmDescription narrowed(ArmDescription arm, const DeviceTraits& traits) {
   }
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     Joint& joint = arm.joints[i];
+    const bool slides = joint.kind == Joint::Kind::prismatic;
+    if (i < traits.slides.size() && traits.slides[i] != slides) {
+      throw FileError(fmt::format("joint {} {} by the arm {}, and {} by {} itself", joint.name,
+                                  slides ? "slides" : "turns", arm.name,
+                                  slides ? "turns" : "slides", traits.name));
+    }
     if (i < traits.effort.size()) joint.effort = std::min(joint.effort, traits.effort[i]);
     if (i >= traits.lower.size() || i >= traits.upper.size()) continue;
     const double lower = std::max(joint.lower, traits.lower[i]);
     const double upper = std::min(joint.upper, traits.upper[i]);
     if (!(lower < upper)) {
-      const double unit = joint.kind == Joint::Kind::prismatic ? kSlideUnit : 1;
+      const double unit = slides ? kSlideUnit : 1;
       throw FileError(fmt::format(
           "joint {} goes from {:.4g} to {:.4g} {} by the arm {}, and from {:.4g} to {:.4g} by {} "
           "itself; needed: ranges that overlap",
-          joint.name, unit * joint.lower, unit * joint.upper,
-          joint.kind == Joint::Kind::prismatic ? "m" : "rad", arm.name, unit * traits.lower[i],
-          unit * traits.upper[i], traits.name));
+          joint.name, unit * joint.lower, unit * joint.upper, slides ? "m" : "rad", arm.name,
+          unit * traits.lower[i], unit * traits.upper[i], traits.name));
     }
     joint.lower = lower;
     joint.upper = upper;

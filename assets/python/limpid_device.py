@@ -1,11 +1,12 @@
 """A haptic device that is a program: Limpid finds it by its socket and drives it as one on USB.
 
-Standard library only. The reports are those of devices/hid/raw_protocol.h, without an id.
+Standard library only. The reports are those of devices/hid/raw_protocol.h, without an id, in
+version 1, or in version 2 for joints that slide or have no motor, buttons and warmth.
 A hand may be on what your program moves, so exchange() gives no torque once the connection has
 ended or no command came for 10 ms. Call it about every millisecond and apply what it returns, also
 while nobody is connected. Run as a program, it plays joints that springs hold:
 
-    python3 limpid_device.py [NAME [JOINTS]]
+    python3 limpid_device.py [NAME [JOINTS [VERSION]]]
 """
 
 import math
@@ -24,16 +25,40 @@ def sealed(body: bytes) -> bytes:
     return body + struct.pack("<I", zlib.crc32(body))
 
 
+def padded(values: list, size: int) -> list:
+    return [*values, *[0] * (size - len(values))]
+
+
+def feature_1(name: str, lower: list, upper: list, effort: list, rate: int) -> bytes:
+    milli = [round(1e3 * end) for pair in zip(lower, upper) for end in pair]
+    return sealed(
+        struct.pack("<4B2H12hf6H12s", 0x4C, 1, len(effort), 1, rate, round(1e3 * WATCHDOG),
+                    *padded(milli, 12), 1e-4, *padded([round(1e3 * e) for e in effort], 6),
+                    name.encode("ascii", "replace")[:12]))
+
+
+def feature_2(name: str, lower: list, upper: list, effort: list, rate: int, slides: list) -> bytes:
+    joints = len(effort)
+    return sealed(
+        struct.pack("<4B2H8B8f8f8f8f8f48s28s", 0x4C, 2, joints, any(effort), rate,
+                    round(1e3 * WATCHDOG), *padded([int(s) for s in slides], 8),
+                    *padded(lower, 8), *padded(upper, 8), *padded([1e-4] * joints, 8),
+                    *padded(effort, 8), *[0.0] * 8, name.encode("ascii", "replace")[:48],
+                    b"limpid_device.py"))
+
+
 class LimpidDevice:
-    def __init__(self, name: str, lower: list, upper: list, effort: list, rate: int = 1000):
-        """One to six joints: their ranges [rad] and torque limits [N m]."""
-        self.effort, self.joints = effort, len(effort)
-        ranges = [round(1e3 * end) for pair in zip(lower, upper) for end in pair]
-        milli = [*ranges, *[0] * (12 - len(ranges))]
-        limits = [*(round(1e3 * e) for e in effort), *[0] * (6 - self.joints)]
-        self._feature = sealed(
-            struct.pack("<4B2H12hf6H12s", 0x4C, 1, self.joints, 1, rate, round(1e3 * WATCHDOG),
-                        *milli, 1e-4, *limits, name.encode("ascii", "replace")[:12]))
+    def __init__(self, name: str, lower: list, upper: list, effort: list, rate: int = 1000,
+                 version: int = 1, slides: list = ()):
+        """One to six joints: their ranges [rad] and torque limits [N m].
+
+        Version 2: up to eight; `slides` says which slide [m, N], and an effort of 0 that a joint
+        has no motor.
+        """
+        self.effort, self.joints, self.version = effort, len(effort), version
+        self._room = 6 if version == 1 else 8
+        self._feature = (feature_1(name, lower, upper, effort, rate) if version == 1 else
+                         feature_2(name, lower, upper, effort, rate, slides))
         folder = pathlib.Path(os.environ["XDG_RUNTIME_DIR"], "limpid")
         folder.mkdir(mode=0o700, exist_ok=True)
         unready = folder / f"{name}.new"
@@ -47,13 +72,17 @@ class LimpidDevice:
         self._connection, self._sequence = None, 0
         self._hang_up()
 
-    def exchange(self, x: list, hand: bool = True, fault: bool = False) -> list:
-        """Says where the joints are [rad]; returns the torques to be held until the next call."""
+    def exchange(self, x: list, hand: bool = True, fault: bool = False, calibrated: bool = True,
+                 buttons: int = 0, no_force: int = 0, warmth: float = 0.0) -> list:
+        """Says where the joints are [rad]; returns the torques to be held until the next call.
+
+        Buttons (a bit each), the reason for no force and warmth (0 to 1) need version 2.
+        """
         try:
             self._accept()
             if self._connection:
                 self._take_commands()
-                self._send_reading(x, hand, fault)
+                self._send_reading(x, (hand, calibrated, fault), (buttons, no_force, warmth))
         except BlockingIOError:
             pass  # it does not listen at present
         except OSError:
@@ -80,13 +109,15 @@ class LimpidDevice:
         connection.send(self._feature)
         self._connection = connection
 
-    def _send_reading(self, x, hand, fault):
+    def _send_reading(self, x, state, more):
         self._sequence += 1
-        status = 1 | 2 * hand | 4 | 8 * fault | 16 * (not self._on_time())
+        hand, calibrated, fault = state
+        status = 1 | 2 * hand | 4 * calibrated | 8 * fault | 16 * (not self._on_time())
+        report = struct.pack(f"<4BIQ{self._room}fI", 0x4C, self.version, self.joints, status,
+                             self._sequence & 0xFFFFFFFF, round(1e6 * time.monotonic()),
+                             *padded(x, self._room), self._command)
         self._connection.send(sealed(
-            struct.pack("<4BIQ6fI16x", 0x4C, 1, self.joints, status, self._sequence & 0xFFFFFFFF,
-                        round(1e6 * time.monotonic()), *x, *[0.0] * (6 - self.joints),
-                        self._command)))
+            report + (bytes(16) if self.version == 1 else struct.pack("<IB3xf60x", *more))))
 
     def _take_commands(self):
         """All that wait: after a pause only the newest counts."""
@@ -98,11 +129,11 @@ class LimpidDevice:
             if not packet:
                 raise ConnectionResetError
             if len(packet) == 64 and packet == sealed(packet[:60]):
-                self._obey(struct.unpack("<4BIQ6f", packet[:40]))
+                self._obey(struct.unpack_from(f"<4BIQ{self._room}f", packet))
 
     def _obey(self, command):
         magic, version, joints, mode, sequence, _, *torque = command
-        if (magic, version, joints) != (0x4C, 1, self.joints) or mode > 1:
+        if (magic, version, joints) != (0x4C, self.version, self.joints) or mode > 1:
             return
         torque = torque[:self.joints]
         newer = 0 < (sequence - self._command) % 2**32 < 2**31
@@ -113,11 +144,11 @@ class LimpidDevice:
         self._command, self._heard = sequence, time.monotonic()
 
 
-def play(name: str, joints: int):
+def play(name: str, joints: int, version: int = 1):
     """Each joint is held in its middle by a spring, critically damped."""
     stiffness, inertia, end = 0.5, 1e-3, 0.349  # [N m/rad], [kg m^2], [rad]
     damping = 2 * math.sqrt(stiffness * inertia)
-    device = LimpidDevice(name, [-end] * joints, [end] * joints, [0.2] * joints)
+    device = LimpidDevice(name, [-end] * joints, [end] * joints, [0.2] * joints, version=version)
     x, v = [0.0] * joints, [0.0] * joints
     before = time.monotonic()
     while True:
@@ -132,4 +163,4 @@ def play(name: str, joints: int):
 
 if __name__ == "__main__":
     words = sys.argv[1:]
-    play(words[0] if words else "springs", int(words[1]) if words[1:] else 2)
+    play(words[0] if words else "springs", *map(int, words[1:] or [2]))

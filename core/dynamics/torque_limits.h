@@ -40,7 +40,7 @@ struct TorqueLimits {
     return within(tau).cwiseAbs().cwiseMax(kAside * joints);
   }
 
-  const Vec<N>& joints;            // > 0 [N m]
+  const Vec<N>& joints;            // 0 where a joint has no motor [N m]
   const Jacobian<N>* J = nullptr;  // of the tip
   double most_force = 0;           // [N]
 

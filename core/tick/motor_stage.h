@@ -1,6 +1,8 @@
 // The last stage before the motors: torques leave finite, within limits, and without jumps.
 #pragma once
 
+#include <limits>
+
 #include "core/dynamics/torque_limits.h"
 
 namespace limpid {
@@ -40,7 +42,10 @@ class MotorStage {
       const Vec<N> from = limits.within(tau_);
       const Vec<N> way = target - from;
       const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
-      const double steps = way.cwiseAbs().cwiseQuotient(step).maxCoeff();  // for the slowest joint
+      // For the slowest joint; a joint without a motor has neither way nor step.
+      const double steps = way.cwiseAbs()
+                               .cwiseQuotient(step.cwiseMax(std::numeric_limits<double>::min()))
+                               .maxCoeff();
       slewed_ += dt;
       slewing_ = slewing_ && steps > 1 && slewed_ < kLongestSlew;
       if (steps > 1) target = from + way / steps;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace limpid {
@@ -40,6 +41,7 @@ const char* explain(AxisVerdict verdict) {
              "was said, or it does not obey: it cannot be used as an arm.";
     case AxisVerdict::restless:
       return "It moved by itself. Let go of it, or hold it still, and try again.";
+    case AxisVerdict::no_motor: return "It has no motor.";
     case AxisVerdict::beyond_limit:
       return "It passed a limit of speed, range or energy that is set for it. Bring it near its "
              "middle, let go of it or hold it lightly, and try again.";
@@ -66,13 +68,28 @@ AxisCheck::AxisCheck(const DeviceTraits& traits) : device_(traits.name), dof_(tr
   for (std::size_t i = 0; i < joints; ++i) {
     const double step = i < traits.resolution.size() ? traits.resolution[i] : 0;
     const double way = traits.upper[i] - traits.lower[i];
-    if (!(way > 0 && traits.effort[i] > 0)) {
-      throw std::invalid_argument("a joint without range or effort cannot be checked");
+    if (!(way > 0 && traits.effort[i] >= 0)) {
+      throw std::invalid_argument("a joint without a range cannot be checked");
     }
     most_[i] = kShare * traits.effort[i];
+    if (most_[i] == 0) {  // the hand may move it as it likes
+      enough_[i] = allowed_[i] = std::numeric_limits<double>::infinity();
+      findings_[i].verdict = AxisVerdict::no_motor;
+      continue;
+    }
     enough_[i] = std::max(kEnough * way, kSteps * step);
     allowed_[i] = std::max(kAllowed * way, 2 * enough_[i]);
   }
+  skip_axes_without_motor();
+  if (done_) throw std::invalid_argument("a device without motors cannot be checked");
+}
+
+// Goes on to the next axis that has a motor, from this one on; ends the check if there is none.
+void AxisCheck::skip_axes_without_motor() noexcept {
+  while (axis_ < dof_ && most_[static_cast<std::size_t>(axis_)] == 0) ++axis_;
+  if (axis_ < dof_) return;
+  axis_ = dof_ - 1;
+  done_ = true;
 }
 
 AxisStage AxisCheck::stage() const {
@@ -82,7 +99,8 @@ AxisStage AxisCheck::stage() const {
 
 bool AxisCheck::passed() const {
   return std::all_of(findings_.begin(), findings_.begin() + dof_, [](const AxisFinding& one) {
-    return one.verdict == AxisVerdict::right || one.verdict == AxisVerdict::reversed;
+    return one.verdict == AxisVerdict::right || one.verdict == AxisVerdict::reversed ||
+           one.verdict == AxisVerdict::no_motor;
   });
 }
 
@@ -169,11 +187,8 @@ void AxisCheck::next() noexcept {
   if (++phase_ < kPhases) return;
   found().verdict = sense_ > 0 ? AxisVerdict::right : AxisVerdict::reversed;
   phase_ = 0;
-  if (axis_ + 1 == dof_) {
-    done_ = true;
-  } else {
-    ++axis_;
-  }
+  ++axis_;
+  skip_axes_without_motor();
 }
 
 void AxisCheck::end(AxisVerdict verdict) noexcept {

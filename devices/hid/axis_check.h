@@ -35,6 +35,7 @@ enum class AxisVerdict : std::uint8_t {
   too_far,        // the axis moved farther or faster than so little force should move it
   restless,       // the axis moved by itself
   given_up,       // cancelled, or the device was not well
+  no_motor,       // nothing can push the axis, so that it needs no check
   beyond_limit,   // passed a limit of speed, range or energy that is set for the device
 };
 
@@ -71,7 +72,7 @@ class AxisCheck {
   int axis() const { return axis_; }                     // the axis being pushed, or the last one
   AxisStage stage() const;
   bool done() const { return done_; }
-  bool passed() const;  // all axes are right or reversed
+  bool passed() const;  // all axes with motors are right or reversed
   const AxisFinding& finding(int axis) const { return findings_[static_cast<std::size_t>(axis)]; }
 
  private:
@@ -80,6 +81,7 @@ class AxisCheck {
   void push() noexcept;
   void judge() noexcept;
   void next() noexcept;
+  void skip_axes_without_motor() noexcept;
   void end(AxisVerdict verdict) noexcept;
   AxisFinding& found() { return findings_[static_cast<std::size_t>(axis_)]; }
   // Motion of an axis from a place, in parts of `limits`; the largest of all axes.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/dynamics/arm_description.h"
 #include "devices/hid/hid_transport.h"
 
 namespace limpid {
@@ -13,113 +14,126 @@ namespace limpid {
 namespace {
 
 constexpr Usage kApplication = make_usage(0xFF4C, 0x01);
-constexpr std::uint8_t kMagic = 0x4C;
-constexpr std::uint8_t kVersion = 1;
 
-enum StatusBit : std::uint8_t {
-  kHand = 1 << 1,
-  kCalibrated = 1 << 2,
-  kFault = 1 << 3,
-  kCut = 1 << 4
-};
-enum Mode : std::uint8_t { kNoTorque = 0, kTorque = 1 };
-
-// Places in a report, without its id.
-enum At : std::size_t {
-  kAtMagic = 0,
-  kAtVersion = 1,
-  kAtJoints = 2,
-  kAtFlags = 3,
-  kAtSequence = 4,
-  kAtTimeStamp = 8,
-  kAtValues = 16,
-  kAtAnswered = 40,
-  kAtCrc = 60,
-};
-enum FeatureAt : std::size_t {
-  kAtRate = 4,
-  kAtWatchdog = 6,
-  kAtRanges = 8,
-  kAtResolution = 32,
-  kAtLimits = 36,
-  kAtName = 48,
-};
-
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  std::uint32_t crc = 0xFFFFFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc ^= byte;
-    for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0u);
-  }
-  return ~crc;
-}
+// Ends of a joint of version 2 must be within these.
+constexpr double kFarthestTurn = 100;  // [rad]
+constexpr double kFarthestSlide = 10;  // [m]
+constexpr double kBeyond = 0.1;        // part of its range that a joint may be outside of it
 
 using Payload = std::span<const std::uint8_t>;
-
-bool undamaged(Payload body) {
-  return body[kAtMagic] == kMagic && body[kAtVersion] == kVersion &&
-         load_le<std::uint32_t>(body, kAtCrc) == crc32(body.first(kAtCrc));
-}
 
 void check(bool good, const std::string& found, const char* allowed) {
   if (!good) throw HidError(fmt::format("the device says {}; {}", found, allowed));
 }
 
-std::string printable_name(Payload body) {
-  std::string name;
-  for (std::size_t i = kAtName; i < kAtCrc && body[i] != 0; ++i) {
-    name += body[i] >= 0x20 && body[i] < 0x7F ? static_cast<char>(body[i]) : '?';
+std::string printable(Payload bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size() && bytes[i] != 0; ++i) {
+    text += bytes[i] >= 0x20 && bytes[i] < 0x7F ? static_cast<char>(bytes[i]) : '?';
   }
-  return name;
+  return text;
 }
 
 double milli(std::uint16_t value) { return 1e-3 * value; }
 double milli_signed(std::uint16_t value) { return 1e-3 * static_cast<std::int16_t>(value); }
 
-void read_joint(Payload body, std::size_t joint, DeviceTraits& traits) {
-  const double lower = milli_signed(load_le<std::uint16_t>(body, kAtRanges + 4 * joint));
-  const double upper = milli_signed(load_le<std::uint16_t>(body, kAtRanges + 4 * joint + 2));
-  check(lower < upper, fmt::format("joint {} goes from {} to {} rad", joint + 1, lower, upper),
-        "the lower end must be below the upper");
-  traits.lower.push_back(lower);
-  traits.upper.push_back(upper);
-  if (!traits.pushes) return;
-  const double effort = milli(load_le<std::uint16_t>(body, kAtLimits + 2 * joint));
-  check(effort > 0, fmt::format("joint {} can push with 0 N m", joint + 1),
-        "one with motors must have a torque limit above 0");
-  traits.effort.push_back(effort);
+double number_at(Payload body, std::size_t at, std::size_t joint) {
+  return static_cast<double>(load_float_le(body, at + 4 * joint));
 }
 
-DeviceTraits read_traits(Payload body) {
+DeviceTraits read_common(Payload body, const RawLayout& layout) {
   DeviceTraits traits;
-  traits.dof = body[kAtJoints];
-  check(traits.dof >= 1 && traits.dof <= static_cast<int>(RawProtocol::kMaxJoints),
-        fmt::format("it has {} joints", traits.dof), "1 to 6 are allowed");
-  traits.pushes = body[kAtFlags] & 1;
-  traits.rate = load_le<std::uint16_t>(body, kAtRate);
-  const int watchdog = load_le<std::uint16_t>(body, kAtWatchdog);
+  traits.dof = body[RawAt::joints];
+  check(traits.dof >= 1 && traits.dof <= static_cast<int>(layout.joints),
+        fmt::format("it has {} joints", traits.dof),
+        layout.joints == kRaw1.joints ? "1 to 6 are allowed" : "1 to 8 are allowed");
+  traits.pushes = body[RawAt::flags] & RawFlag::motors;
+  traits.rate = load_le<std::uint16_t>(body, RawAt::rate);
+  const int watchdog = load_le<std::uint16_t>(body, RawAt::watchdog);
   if (traits.pushes) {
     check(traits.rate >= 500 && traits.rate <= 8000, fmt::format("its rate is {} Hz", traits.rate),
           "one with motors must have 500 to 8000");
     check(watchdog >= 1 && watchdog <= 10, fmt::format("its watchdog takes {} ms", watchdog),
           "one with motors must have 1 to 10");
   }
-  const float resolution = load_float_le(body, kAtResolution);
+  return traits;
+}
+
+void read_joint(Payload body, std::size_t joint, DeviceTraits& traits) {
+  const double lower = milli_signed(load_le<std::uint16_t>(body, Raw1Feature::ranges + 4 * joint));
+  const double upper =
+      milli_signed(load_le<std::uint16_t>(body, Raw1Feature::ranges + 4 * joint + 2));
+  check(lower < upper, fmt::format("joint {} goes from {} to {} rad", joint + 1, lower, upper),
+        "the lower end must be below the upper");
+  traits.lower.push_back(lower);
+  traits.upper.push_back(upper);
+  if (!traits.pushes) return;
+  const double effort = milli(load_le<std::uint16_t>(body, Raw1Feature::limits + 2 * joint));
+  check(effort > 0, fmt::format("joint {} can push with 0 N m", joint + 1),
+        "one with motors must have a torque limit above 0");
+  traits.effort.push_back(effort);
+}
+
+DeviceTraits read_traits(Payload body) {
+  DeviceTraits traits = read_common(body, kRaw1);
+  const float resolution = load_float_le(body, Raw1Feature::resolution);
   check(std::isfinite(resolution) && resolution > 0,
         fmt::format("its resolution is {} rad", resolution), "it must be above 0");
   const auto joints = static_cast<std::size_t>(traits.dof);
   traits.resolution.assign(joints, resolution);
   for (std::size_t i = 0; i < joints; ++i) read_joint(body, i, traits);
-  traits.name = printable_name(body);
+  traits.name =
+      printable(body.subspan(Raw1Feature::name, Raw1Feature::name_end - Raw1Feature::name));
+  return traits;
+}
+
+// Reads a joint of version 2; traits have slides in units of kSlideUnit.
+void read_joint_of_any_kind(Payload body, std::size_t joint, DeviceTraits& traits) {
+  const std::uint8_t kind = body[Raw2Feature::kinds + joint];
+  check(kind <= 1, fmt::format("joint {} is of kind {}", joint + 1, kind),
+        "0 (turns) and 1 (slides) are allowed");
+  const bool slides = kind == 1;
+  const double unit = slides ? kSlideUnit : 1, farthest = slides ? kFarthestSlide : kFarthestTurn;
+  const char* const angle = slides ? "m" : "rad";
+  const double lower = number_at(body, Raw2Feature::lower, joint);
+  const double upper = number_at(body, Raw2Feature::upper, joint);
+  check(lower < upper && lower >= -farthest && upper <= farthest,
+        fmt::format("joint {} goes from {} to {} {}", joint + 1, lower, upper, angle),
+        slides ? "the lower end must be below the upper, both within 10 m"
+               : "the lower end must be below the upper, both within 100 rad");
+  const double resolution = number_at(body, Raw2Feature::resolution, joint);
+  check(std::isfinite(resolution) && resolution > 0,
+        fmt::format("the resolution of joint {} is {} {}", joint + 1, resolution, angle),
+        "it must be above 0");
+  const double effort = number_at(body, Raw2Feature::effort, joint);
+  check(std::isfinite(effort) && effort >= 0,
+        fmt::format("joint {} can push with {} {}", joint + 1, effort, slides ? "N" : "N m"),
+        "it must be 0 (no motor) or more");
+  const double speed = number_at(body, Raw2Feature::speed, joint);
+  check(std::isfinite(speed) && speed >= 0,
+        fmt::format("joint {} is as fast as {} {}/s", joint + 1, speed, angle),
+        "it must be 0 (not said) or more");
+  traits.slides.push_back(slides);
+  traits.lower.push_back(lower / unit);
+  traits.upper.push_back(upper / unit);
+  traits.resolution.push_back(resolution / unit);
+  if (traits.pushes) traits.effort.push_back(effort * unit);
+}
+
+DeviceTraits read_traits_of_any_kind(Payload body) {
+  DeviceTraits traits = read_common(body, kRaw2);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(traits.dof); ++i) {
+    read_joint_of_any_kind(body, i, traits);
+  }
+  const bool any = std::ranges::any_of(traits.effort, [](double each) { return each > 0; });
+  check(!traits.pushes || any, "it has motors, and no joint has one",
+        "one with motors must have a largest torque or force above 0");
+  traits.name =
+      printable(body.subspan(Raw2Feature::name, Raw2Feature::made_by - Raw2Feature::name));
   return traits;
 }
 
 }  // namespace
-
-void seal_raw_report(std::span<std::uint8_t, RawProtocol::kReportSize> report) {
-  const auto body = report.subspan(1);
-  store_le(body, kAtCrc, crc32(body.first(kAtCrc)));
-}
 
 bool RawProtocol::describes(const ReportDescriptor& descriptor) {
   return std::find(descriptor.applications.begin(), descriptor.applications.end(), kApplication) !=
@@ -127,60 +141,132 @@ bool RawProtocol::describes(const ReportDescriptor& descriptor) {
 }
 
 void RawProtocol::open(HidTransport& transport) {
-  std::array<std::uint8_t, kReportSize> feature{};
-  const int size = transport.get_feature(feature);
-  if (size != static_cast<int>(kReportSize)) {
+  std::array<std::uint8_t, kFeature2Size> feature{};
+  const auto ask = [&](std::size_t size) {
+    return transport.get_feature(std::span(feature).first(size)) == static_cast<int>(size);
+  };
+  const Payload body = Payload(feature).subspan(1);
+  // Firmware of version 1 is asked for as much as it has: some hang if they are asked for more.
+  bool answered = ask(kReportSize);
+  if (!answered || body[RawAt::version] == kRaw2.version) {
+    const bool more = ask(kFeature2Size);
+    answered = answered || more;
+    if (more) layout_ = kRaw2;
+  }
+  if (!answered) {
     throw HidError("the device does not answer when asked what it is (feature report)");
   }
-  const Payload body = Payload(feature).subspan(1);
-  if (!undamaged(body)) {
+  if (!raw_undamaged(body.first(layout_.feature), layout_.version, layout_.feature)) {
     throw HidError("the device's feature report has a wrong magic, version or CRC");
   }
-  traits_ = read_traits(body);
+  if (layout_.version == kRaw1.version) {
+    traits_ = read_traits(body);
+  } else {
+    traits_ = read_traits_of_any_kind(body);
+    made_by_ =
+        printable(body.subspan(Raw2Feature::made_by, Raw2Feature::end - Raw2Feature::made_by));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(traits_.dof); ++i) {
+      speed_[i] = number_at(body, Raw2Feature::speed, i);
+    }
+  }
   // Mode 0 is obeyed whatever its sequence is.
-  const auto stop = command(kNoTorque, 0);
+  const Command stop = command(RawMode::no_torque, 0);
   stop_reports_ = {Report(stop.begin(), stop.end())};
 }
 
-Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
-  if (report.size() != kReportSize || report[0] != 0) return Decoded::unusable;
-  const Payload body = report.subspan(1);
-  if (!undamaged(body) || body[kAtJoints] != traits_.dof) return Decoded::unusable;
+// Length or angle of a unit of the joint's coordinate.
+double RawProtocol::unit(std::size_t joint) const {
+  return joint < traits_.slides.size() && traits_.slides[joint] ? kSlideUnit : 1;
+}
 
+Decoded RawProtocol::decode(std::span<const std::uint8_t> report, DeviceReading& reading) noexcept {
+  if (report.empty() || report[0] != 0) return Decoded::unusable;
+  const Payload body = report.subspan(1);
+  if (!raw_undamaged(body, layout_.version, layout_.reading) ||
+      body[RawAt::joints] != traits_.dof) {
+    return Decoded::unusable;
+  }
   // Drops repetitions: frozen firmware repeats itself, which must not pass for news.
-  const auto sequence = load_le<std::uint32_t>(body, kAtSequence);
+  const auto sequence = load_le<std::uint32_t>(body, RawAt::sequence);
   if (reading_sequence_ && static_cast<std::int32_t>(sequence - *reading_sequence_) <= 0) {
     return Decoded::unusable;
   }
   const auto joints = static_cast<std::size_t>(traits_.dof);
+  Positions x{};
   for (std::size_t i = 0; i < joints; ++i) {
-    if (!std::isfinite(load_float_le(body, kAtValues + 4 * i))) return Decoded::unusable;
+    x[i] = number_at(body, RawAt::values, i);
+    if (!std::isfinite(x[i])) return Decoded::unusable;
   }
-
-  for (std::size_t i = 0; i < joints; ++i) {
-    reading.x[i] = static_cast<double>(load_float_le(body, kAtValues + 4 * i));
-  }
-  const std::uint8_t status = body[kAtFlags];
-  reading.hand = status & kHand;
-  reading.fault = (status & kFault) || !(status & kCalibrated);
+  const std::uint8_t status = body[RawAt::flags];
+  reading.hand = status & RawFlag::hand;
+  reading.calibrated = status & RawFlag::calibrated;
+  reading.fault = (status & RawFlag::fault) || !reading.calibrated;
   // The device did not get the torques sent as long as this bit is set.
-  if (status & kCut) ++reading.lapses;
+  if (status & RawFlag::cut) ++reading.lapses;
   reading_sequence_ = sequence;
-  time_stamp_ = load_le<std::uint64_t>(body, kAtTimeStamp);
+  time_stamp_ = load_le<std::uint64_t>(body, RawAt::time_stamp);
+  if (layout_.version == kRaw2.version) return take_more(body, x, sequence, reading);
+  std::copy_n(x.begin(), joints, reading.x.begin());
   return Decoded::reading;
 }
 
-std::array<std::uint8_t, RawProtocol::kReportSize> RawProtocol::command(
-    std::uint8_t mode, std::uint32_t sequence) const {
-  std::array<std::uint8_t, kReportSize> report{};
+// Takes what version 1 does not have. Positions that cannot be are a fault, and are not taken.
+Decoded RawProtocol::take_more(Payload body, const Positions& x, std::uint32_t sequence,
+                               DeviceReading& reading) noexcept {
+  reading.buttons = load_le<std::uint32_t>(body, Raw2Reading::buttons);
+  const std::uint8_t reason = body[Raw2Reading::no_force];
+  reading.no_force = reason < kNoForces ? static_cast<NoForce>(reason) : NoForce::other;
+  if (reading.no_force != NoForce::none && !(body[RawAt::flags] & RawFlag::cut)) ++reading.lapses;
+  const float warmth = load_float_le(body, Raw2Reading::warmth);
+  reading.warmth = std::isfinite(warmth) ? std::clamp(warmth, 0.f, 1.f) : 0.f;
+  for (std::size_t i = 0; i < extras_.orientation.size(); ++i) {
+    extras_.orientation[i] = load_float_le(body, Raw2Reading::orientation + 4 * i);
+  }
+  for (std::size_t i = 0; i < extras_.measured.size(); ++i) {
+    extras_.measured[i] = load_float_le(body, Raw2Reading::measured + 4 * i);
+  }
+  // The longer of two times: a device's clock may stand still.
+  const double by_clock = 1e-6 * static_cast<double>(std::max<std::int64_t>(
+                                     0, static_cast<std::int64_t>(time_stamp_ - believed_at_)));
+  const double by_count =
+      traits_.rate > 0 ? static_cast<double>(sequence - believed_sequence_) / traits_.rate : 0;
+  if (!is_where_it_can_be(x, std::max(by_clock, by_count))) {
+    reading.fault = true;
+    return Decoded::status;
+  }
+  believed_ = x;
+  believed_sequence_ = sequence;
+  believed_at_ = time_stamp_;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(traits_.dof); ++i) {
+    reading.x[i] = x[i] / unit(i);
+  }
+  return Decoded::reading;
+}
+
+// Whether the joints can be at `x`, `dt` after they were last believed.
+bool RawProtocol::is_where_it_can_be(const Positions& x, double dt) const {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(traits_.dof); ++i) {
+    const double lower = unit(i) * traits_.lower[i], upper = unit(i) * traits_.upper[i];
+    const double room = kBeyond * (upper - lower);
+    if (x[i] < lower - room || x[i] > upper + room) return false;
+    const double step = 2 * unit(i) * traits_.resolution[i];  // both ends are rounded
+    if (believed_ && speed_[i] > 0 && std::abs(x[i] - (*believed_)[i]) > speed_[i] * dt + step) {
+      return false;
+    }
+  }
+  return true;
+}
+
+RawProtocol::Command RawProtocol::command(RawMode mode, std::uint32_t sequence) const {
+  Command report{};
   const auto body = std::span(report).subspan(1);
-  body[kAtMagic] = kMagic;
-  body[kAtVersion] = kVersion;
-  body[kAtJoints] = static_cast<std::uint8_t>(traits_.dof);
-  body[kAtFlags] = mode;
-  store_le(body, kAtSequence, sequence);
-  store_le(body, kAtTimeStamp, time_stamp_);
-  store_le(body, kAtAnswered, reading_sequence_.value_or(0));
+  body[RawAt::magic] = kRawMagic;
+  body[RawAt::version] = layout_.version;
+  body[RawAt::joints] = static_cast<std::uint8_t>(traits_.dof);
+  body[RawAt::flags] = static_cast<std::uint8_t>(mode);
+  store_le(body, RawAt::sequence, sequence);
+  store_le(body, RawAt::time_stamp, time_stamp_);
+  store_le(body, layout_.answered, reading_sequence_.value_or(0));
   seal_raw_report(report);
   return report;
 }
@@ -189,10 +275,10 @@ void RawProtocol::encode(std::span<const double> torque, nanoseconds,
                          const SendReport& send) noexcept {
   if (!traits_.pushes) return;
   const bool any = std::any_of(torque.begin(), torque.end(), [](double t) { return t != 0; });
-  auto report = command(any ? kTorque : kNoTorque, ++command_sequence_);
+  Command report = command(any ? RawMode::torque : RawMode::no_torque, ++command_sequence_);
   const auto body = std::span(report).subspan(1);
-  for (std::size_t i = 0; i < std::min(torque.size(), kMaxJoints); ++i) {
-    store_float_le(body, kAtValues + 4 * i, static_cast<float>(torque[i]));
+  for (std::size_t i = 0; i < std::min(torque.size(), layout_.joints); ++i) {
+    store_float_le(body, RawAt::values + 4 * i, static_cast<float>(torque[i] / unit(i)));
   }
   seal_raw_report(report);
   send(report);

@@ -2,47 +2,30 @@
 #pragma once
 
 #include <array>
-#include <bit>
-#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "devices/hid/hid_protocol.h"
+#include "devices/hid/raw_reports.h"
 #include "devices/hid/report_descriptor.h"
 
 namespace limpid {
 
-// Little-endian numbers in bytes, on any computer. The bytes at..at + sizeof(T) - 1 must exist.
-template <std::unsigned_integral T>
-T load_le(std::span<const std::uint8_t> bytes, std::size_t at) {
-  std::uint64_t value = 0;
-  for (std::size_t i = sizeof(T); i-- > 0;) value = value << 8 | bytes[at + i];
-  return static_cast<T>(value);
-}
-
-template <std::unsigned_integral T>
-void store_le(std::span<std::uint8_t> bytes, std::size_t at, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) {
-    bytes[at + i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
-  }
-}
-
-inline float load_float_le(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return std::bit_cast<float>(load_le<std::uint32_t>(bytes, at));
-}
-
-inline void store_float_le(std::span<std::uint8_t> bytes, std::size_t at, float value) {
-  store_le(bytes, at, std::bit_cast<std::uint32_t>(value));
-}
-
-// Limpid's open protocol for haptic devices, version 1: write your firmware from this page.
+// Limpid's open protocol for haptic devices: write your firmware from this page. Version 1 has up
+// to 6 joints that turn, all with motors or none. Version 2 has up to 8 joints that turn or slide,
+// with a motor or without, buttons, and the reason why there is no force. A device speaks one of
+// them.
 //
-// USB HID with vendor usage page 0xFF4C, usage 0x01. One 64-byte input report, one 64-byte output
-// report, one 64-byte feature report, no report ids; for free use under 1209:4c50 or your own
-// vendor and product number. Numbers are little-endian, f32 is IEEE 754. Bytes 60..63 of each
-// report are the CRC-32 of bytes 0..59 (IEEE 802.3, as in zlib). Reserved bytes are sent as zero
-// and not looked at. Up to 6 joints; arrays are always sent whole.
+// USB HID with vendor usage page 0xFF4C, usage 0x01. One input report, one output report, one
+// feature report, no report ids; for free use under 1209:4c50 or your own vendor and product
+// number. Numbers are little-endian, f32 is IEEE 754. The last 4 bytes of each report are the
+// CRC-32 of all bytes before them (IEEE 802.3, as in zlib). Reserved bytes are sent as zero and not
+// looked at. Arrays are always sent whole; what is behind the device's own joints is sent as zero.
+// A program on a socket (transports.h) sends the same reports, each as a packet.
+//
+// Version 1: three reports of 64 bytes.
 //
 // Input, device to computer, at the rate that the feature report says:
 //    0 u8      0x4C, 'L'
@@ -67,7 +50,7 @@ inline void store_float_le(std::span<std::uint8_t> bytes, std::size_t at, float 
 //   40 u32     sequence of the reading that it answers
 //   44         reserved
 //
-// Feature, what the device is, read once:
+// Feature, the description of the device, read once:
 //    0 u8      0x4C
 //    1 u8      1
 //    2 u8      joints
@@ -79,6 +62,54 @@ inline void store_float_le(std::span<std::uint8_t> bytes, std::size_t at, float 
 //   36 u16[6]  torque limits [1e-3 N m]
 //   48 char[12]  name, ASCII, padded with zeros
 //
+// Version 2: an input report of 128 bytes, an output report of 64, a feature report of 256. Where
+// it says "or", the second unit is that of a joint that slides.
+//
+// Input:
+//    0 u8      0x4C
+//    1 u8      version, 2
+//    2 u8      joints, 1..8, as in the feature report
+//    3 u8      as in version 1
+//    4 u32     sequence
+//    8 u64     time stamp [us]; the speed of the joints is judged by it
+//   16 f32[8]  positions of the joints [rad or m]
+//   48 u32     sequence of the newest command received
+//   52 u32     buttons, one bit each, 1: pressed. The first one switches coupling or magnet, the
+//              second one asks for force and cuts it
+//   56 u8      why the motors do not give what they are told: 0 they do, 1 a button of the device,
+//              2 too fast, 3 its watchdog, 4 its software, 5 its connection, 6 nobody holds it,
+//              7 its motors are warm, 8 another reason
+//   57         reserved
+//   60 f32     warmth of the hottest motor, 0 cold to 1 as warm as it may be; 0 if not known
+//   64 f32[4]  orientation of the tool as a quaternion, w x y z; all zero if not known or if the
+//              joints have it already
+//   80 f32[8]  measured torques or forces at the joints [N m or N]; zero if there is no sensor
+//  112         reserved
+//
+// Output:
+//    0..15     as in version 1, the version being 2
+//   16 f32[8]  torques or forces [N m or N]
+//   48 u32     sequence of the reading that it answers
+//   52         reserved
+//
+// Feature:
+//    0..7      as in version 1, the version being 2
+//    8 u8[8]   kind of each joint: 0 turns, 1 slides
+//   16 f32[8]  lower end of each joint [rad or m]
+//   48 f32[8]  upper end [rad or m]
+//   80 f32[8]  resolution [rad or m]
+//  112 f32[8]  largest torque or force [N m or N]; 0: this joint has no motor
+//  144 f32[8]  largest speed of which the joint is capable [rad/s or m/s]; 0: not said
+//  176 char[48]  name, ASCII, padded with zeros
+//  224 char[28]  what speaks for the device, as firmware or library with its version; ASCII
+//
+// The computer asks a HID device for 64 bytes of the feature report first, and for 256 if these say
+// version 2, or nothing.
+//
+// What a device of version 2 declares is checked. A reading that is outside of a joint's range by
+// more than a tenth of it, or farther from the reading before than the joint's speed allows, is
+// taken for a fault, and the force is off until somebody arms it again.
+//
 // Since a hand is on the device, firmware must
 // - start with no torque, and limit torques itself;
 // - use no command whose magic, version, joints or CRC is wrong, whose torque is not finite, or, in
@@ -89,12 +120,21 @@ inline void store_float_le(std::span<std::uint8_t> bytes, std::size_t at, float 
 //   the next one. Better still, it then uses none in mode 1 before one in mode 0 has come, as the
 //   computer may not have heard of the cut.
 // The computer does the same. It uses no reading that is damaged, not finite or whose sequence did
-// not go up. After 5 ms without a usable one it sends mode 0; after one with bit 4 it sends mode 0,
-// then torques that begin at zero.
+// not go up. After 5 ms without a usable one it sends mode 0; after one with bit 4, or with a
+// reason why there is no force, it sends mode 0, then torques that begin at zero.
+//
+// Limpid does not use orientation and measured forces yet; RawProtocol::extras() has them.
 class RawProtocol final : public HidProtocol {
  public:
-  static constexpr std::size_t kReportSize = 1 + 64;  // with the id, which is 0
-  static constexpr std::size_t kMaxJoints = 6;
+  static constexpr std::size_t kReportSize = 1 + kRaw1.command;    // with the id, which is 0
+  static constexpr std::size_t kReading2Size = 1 + kRaw2.reading;  // likewise
+  static constexpr std::size_t kFeature2Size = 1 + kRaw2.feature;  // likewise
+
+  // Numbers that a device of version 2 sends, and that nothing uses yet.
+  struct Extras {
+    std::array<float, 4> orientation{};          // of the tool, w x y z; all zero: not known
+    std::array<float, kRaw2.joints> measured{};  // at the joints [N m or N]
+  };
 
   static bool describes(const ReportDescriptor& descriptor);
 
@@ -108,17 +148,35 @@ class RawProtocol final : public HidProtocol {
               const SendReport& send) noexcept override;
   const std::vector<Report>& stop_reports() const override { return stop_reports_; }
 
- private:
-  std::array<std::uint8_t, kReportSize> command(std::uint8_t mode, std::uint32_t sequence) const;
+  const Extras& extras() const { return extras_; }
+  // Program or library that speaks for the device, as it says itself; empty: it does not.
+  const std::string& made_by() const { return made_by_; }
 
+ private:
+  using Command = std::array<std::uint8_t, kReportSize>;
+  using Positions = std::array<double, kRaw2.joints>;
+
+  Command command(RawMode mode, std::uint32_t sequence) const;
+  double unit(std::size_t joint) const;
+  bool is_where_it_can_be(const Positions& x, double dt) const;
+  Decoded take_more(std::span<const std::uint8_t> body, const Positions& x, std::uint32_t sequence,
+                    DeviceReading& reading) noexcept;
+
+  RawLayout layout_ = kRaw1;
   DeviceTraits traits_;
+  std::array<double, kRaw2.joints> speed_{};  // largest of each joint [rad/s or m/s]; 0: not said
+  std::string made_by_;
+  Extras extras_;
+  std::optional<Positions> believed_;  // newest positions that can be [rad or m]
+  std::uint32_t believed_sequence_ = 0;
+  std::uint64_t believed_at_ = 0;  // [us]
   std::vector<Report> stop_reports_;
   std::optional<std::uint32_t> reading_sequence_;
   std::uint64_t time_stamp_ = 0;  // [us]
   std::uint32_t command_sequence_ = 0;
 };
 
-// Writes the CRC of a report, of all but its last four bytes, into these.
-void seal_raw_report(std::span<std::uint8_t, RawProtocol::kReportSize> report);
+// Writes the check sum of a report, which begins with its id, into its last four bytes.
+inline void seal_raw_report(std::span<std::uint8_t> report) { seal_raw_bytes(report.subspan(1)); }
 
 }  // namespace limpid

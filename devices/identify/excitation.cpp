@@ -48,6 +48,12 @@ Excitation::Excitation(const ArmDescription& arm, const DeviceTraits& traits,
     : arm_(arm), plan_(plan), safety_(arm), motors_(arm.dof()) {
   const int n = arm.dof();
   if (!traits.pushes) throw std::invalid_argument(fmt::format("{} has no motors", traits.name));
+  if (std::ranges::find(traits.effort, 0.0) != traits.effort.end()) {
+    throw std::invalid_argument(
+        fmt::format("{} has a joint without a motor, and can only be identified if it can move all "
+                    "of them",
+                    traits.name));
+  }
   if (traits.dof != n) {
     throw std::invalid_argument(
         fmt::format("{} has {} joints, the arm '{}' {}", traits.name, traits.dof, arm.name, n));

@@ -1,7 +1,8 @@
 // Any bytes at all from a device: readings that are finite and within the device's range, or none.
 //
 // The input is a row of reports, each after a byte that says its length. One in two goes to the raw
-// protocol with its CRC put right, or nothing would get past that.
+// protocol with its CRC put right, or nothing would get past that: once as reports of version 1,
+// once as those of version 2, the first of which describes the device.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -35,10 +36,11 @@ Reports cut(std::span<const std::uint8_t> bytes) {
   return reports;
 }
 
-void seal_every_other(Reports& reports) {
+// `first`, `size`: of the first report, of the others.
+void seal_every_other(Reports& reports, std::size_t first, std::size_t size) {
   for (std::size_t i = 0; i < reports.size(); i += 2) {
-    reports[i].resize(RawProtocol::kReportSize);
-    seal_raw_report(std::span<std::uint8_t, RawProtocol::kReportSize>(reports[i]));
+    reports[i].resize(i == 0 ? first : size);
+    seal_raw_report(reports[i]);
   }
 }
 
@@ -81,10 +83,17 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t siz
   live(space_mouse, reports, 1);
   PidJoystick joystick(stick);
   live(joystick, reports, PidSettings{}.range);
-  seal_every_other(reports);
+  Reports of_2 = reports;
+  seal_every_other(reports, RawProtocol::kReportSize, RawProtocol::kReportSize);
   try {
     RawProtocol raw;
     live(raw, reports, 3.5e38);
+  } catch (const HidError&) {
+  }
+  seal_every_other(of_2, RawProtocol::kFeature2Size, RawProtocol::kReading2Size);
+  try {
+    RawProtocol raw;
+    live(raw, of_2, 1.2 * 2 * 100);  // the widest range, and a tenth of it
   } catch (const HidError&) {
   }
   return 0;

@@ -56,6 +56,57 @@ inline RawReport raw_feature(std::uint8_t joints, bool pushes = true) {
   return report;
 }
 
+using Raw2Report = std::array<std::uint8_t, RawProtocol::kReading2Size>;
+using Raw2Description = std::array<std::uint8_t, RawProtocol::kFeature2Size>;
+
+template <std::size_t size>
+Report sealed_2(std::array<std::uint8_t, size> report) {
+  seal_raw_report(report);
+  return {report.begin(), report.end()};
+}
+
+// A reading of version 2, of a device that is well.
+inline Raw2Report raw_2_reading(std::uint32_t sequence, const std::vector<float>& x,
+                                std::uint8_t status = 1 | kRawHand | kRawCalibrated) {
+  Raw2Report report{};
+  report[byte(0)] = 0x4C;
+  report[byte(1)] = 2;
+  report[byte(2)] = static_cast<std::uint8_t>(x.size());
+  report[byte(3)] = status;
+  store_le(report, byte(4), sequence);
+  store_le(report, byte(8), std::uint64_t{1000} * sequence);
+  for (std::size_t i = 0; i < x.size(); ++i) store_float_le(report, byte(16 + 4 * i), x[i]);
+  return report;
+}
+
+struct Raw2Joint {
+  bool slides = false;
+  float end = 1, effort = 0, speed = 0;  // its range is from -end to end
+};
+
+// A feature report of version 2: 1 kHz, watchdog 5 ms, steps of 1e-4.
+inline Raw2Description raw_2_feature(const std::vector<Raw2Joint>& joints, bool pushes = true) {
+  Raw2Description report{};
+  report[byte(0)] = 0x4C;
+  report[byte(1)] = 2;
+  report[byte(2)] = static_cast<std::uint8_t>(joints.size());
+  report[byte(3)] = pushes ? 1 : 0;
+  store_le<std::uint16_t>(report, byte(4), 1000);
+  store_le<std::uint16_t>(report, byte(6), 5);
+  for (std::size_t i = 0; i < joints.size() && i < 8; ++i) {
+    report[byte(8 + i)] = joints[i].slides ? 1 : 0;
+    store_float_le(report, byte(16 + 4 * i), -joints[i].end);
+    store_float_le(report, byte(48 + 4 * i), joints[i].end);
+    store_float_le(report, byte(80 + 4 * i), 1e-4f);
+    store_float_le(report, byte(112 + 4 * i), joints[i].effort);
+    store_float_le(report, byte(144 + 4 * i), joints[i].speed);
+  }
+  report[byte(176)] = 'V';
+  report[byte(177)] = '2';
+  report[byte(224)] = 'f';
+  return report;
+}
+
 struct RawCommand {
   bool right = true;  // size, magic, version, CRC
   std::uint8_t mode = 0;

@@ -122,7 +122,9 @@ void DeviceController::watch() {
   if (Clock::now() < plugged_at_ + kSettle) return;
   const Arming before = std::exchange(arming_, snapshot.arming);
   if (live_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
-    notices_.say(fmt::format("Force is off: {}. F arms it again.", explain(snapshot.force_state)),
+    const std::string words = device_words(snapshot.reading);
+    notices_.say(fmt::format("Force is off: {}.{}{} F arms it again.",
+                             explain(snapshot.force_state), words.empty() ? "" : " ", words),
                  true);
   }
   if (!snapshot.connected) {

@@ -107,6 +107,8 @@ void status(DeviceController& devices, const LiveLoop& loop) {
   const ForceState state = loop.snapshot().force_state;
   read_out("force", explain(state), {},
            "Force is off until the hand has the device and F arms it; it then fades in.");
+  const std::string words = device_words(loop.snapshot().reading);
+  if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());
 }
 
 // Draws measured and assumed values of the device, and the delay that the law reckons with. Returns

@@ -56,6 +56,23 @@ struct ATakenArm : testing::Test {
   const DeviceTraits traits = test::pushing(3, 0.35, 3);
 };
 
+TEST_F(ATakenArm, HasJointsOfTheKindsThatTheDeviceHas) {
+  DeviceTraits sliding = traits;
+  sliding.slides = {true, true, true};
+  EXPECT_THROW(narrowed(shipped("omni.urdf"), sliding), FileError);
+  EXPECT_NO_THROW(narrowed(shipped("inverse3.urdf"), sliding));
+  try {
+    taken_arm({}, &kRaw, sliding);
+    FAIL();
+  } catch (const UnknownArmError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("joints that slide"));
+  }
+  DeviceTraits turning = traits;
+  turning.slides = {false, false, false};
+  EXPECT_NO_THROW(narrowed(shipped("omni.urdf"), turning));
+  EXPECT_THROW(narrowed(shipped("inverse3.urdf"), turning), FileError);
+}
+
 // The device's levers may be short: at 5 cm, 10 N are 0.5 N m.
 TEST_F(ATakenArm, IsABuiltInOneWithLittleForceUntilSomebodyHasSaidWhichItIs) {
   DeviceNotes notes;

@@ -42,6 +42,18 @@ TEST(MotorStage, NeverJumpsWhileACouplingIsBeingSwitched) {
   }
 }
 
+TEST(MotorStage, BoundsTheRateBesideAJointWithoutAMotor) {
+  MotorStage<kAnyDof> motors(3);
+  const Vector limit = three(0, 0.6, 0.7);
+  double before = 0;
+  for (int k = 0; k < 10; ++k) {
+    const Vector tau = motors.pass(three(1, 0.6, 0), limit, 1, T, kSlew);
+    EXPECT_EQ(tau[0], 0);
+    EXPECT_NEAR(tau[1] - before, limit[1] * T / kSlew, 1e-12) << k;
+    before = tau[1];
+  }
+}
+
 TEST(MotorStage, ArrivesAtTheNewCommandAndFollowsItFromThenOn) {
   MotorStage<kAnyDof> motors(1);
   const Vector limit = Vector::Constant(1, 0.5);

@@ -52,6 +52,23 @@ struct Springs {
   }
 };
 
+// The gimbal of a pen has no motors, and turns as the hand likes.
+TEST(AxisCheck, LeavesJointsWithoutAMotorAlone) {
+  DeviceTraits pen = traits(4);
+  pen.effort = {0, 2, 0, 0};
+  AxisCheck check(pen);
+  EXPECT_EQ(check.axis(), 1);
+  Springs springs{{0, 0.2, 0, 0}};
+  while (!check.done() && springs.time < 100) {
+    springs.tick(check);
+    springs.x[0] = springs.x[3] = 0.4 * std::sin(20 * springs.time);
+  }
+  EXPECT_TRUE(check.passed());
+  EXPECT_EQ(check.finding(0).verdict, AxisVerdict::no_motor);
+  EXPECT_EQ(check.finding(1).verdict, AxisVerdict::right);
+  EXPECT_EQ(check.finding(3).verdict, AxisVerdict::no_motor);
+}
+
 TEST(AxisCheck, FindsTheSignAndTheGiveOfEachJoint) {
   AxisCheck check(traits(3));
   Springs springs{{0.2, -0.4, 0.3}};

@@ -41,10 +41,10 @@ bool comes(const std::function<bool()>& condition) {
 }
 
 struct ASocketDevice : testing::Test {
-  ASocketDevice() {
+  explicit ASocketDevice(const char* version = "1") {
     setenv("XDG_RUNTIME_DIR", (dir / "").c_str(), 1);
     const std::string program = LIMPID_ASSETS_DIR "/python/limpid_device.py";
-    const char* words[] = {"python3", program.c_str(), "springs", "2", nullptr};
+    const char* words[] = {"python3", program.c_str(), "springs", "2", version, nullptr};
     EXPECT_EQ(posix_spawn(&client, "/usr/bin/python3", nullptr, nullptr,
                           const_cast<char* const*>(words), environ),
               0);
@@ -122,6 +122,23 @@ TEST_F(ASocketDevice, GivesWayToItsTorqueAsASpringDoes) {
     return std::abs(to.reading.x[0] - 0.1 / kSpring) < 0.01 &&
            std::abs(to.reading.x[1] + 0.05 / kSpring) < 0.01;
   }));
+}
+
+struct ASocketDeviceOfVersion2 : ASocketDevice {
+  ASocketDeviceOfVersion2() : ASocketDevice("2") {}
+};
+
+TEST_F(ASocketDeviceOfVersion2, GivesWayToItsTorqueAsASpringDoes) {
+  Connection to(find().place.path);
+  EXPECT_EQ(to.protocol.made_by(), "limpid_device.py");
+  EXPECT_EQ(to.protocol.traits().slides, (std::vector<bool>{false, false}));
+  const double torque[] = {0.1, -0.05};
+  EXPECT_TRUE(comes([&] {
+    to.turn(torque);
+    return std::abs(to.reading.x[0] - 0.1 / kSpring) < 0.01 &&
+           std::abs(to.reading.x[1] + 0.05 / kSpring) < 0.01;
+  }));
+  EXPECT_TRUE(comes([&] { return to.turn(nullptr) && std::abs(to.reading.x[0]) < 0.01; }));
 }
 
 TEST_F(ASocketDevice, HasNoTorqueOnceItHearsNothingMore) {

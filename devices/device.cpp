@@ -1,0 +1,43 @@
+#include "devices/device.h"
+
+#include <fmt/format.h>
+
+namespace limpid {
+namespace {
+
+constexpr float kWarm = 0.5f;  // warmth from which it is worth a word
+
+const char* explain(NoForce reason) {
+  switch (reason) {
+    case NoForce::none: return "";
+    case NoForce::button: return "its force is switched off by a button of its own";
+    case NoForce::velocity: return "it moved faster than it allows itself";
+    case NoForce::watchdog: return "its own watchdog has cut the force";
+    case NoForce::software: return "its software has cut the force";
+    case NoForce::connection: return "its connection was interrupted";
+    case NoForce::dead_man: return "nobody holds its dead-man switch";
+    case NoForce::warm: return "its motors are too warm";
+    case NoForce::other: return "it does not say why";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string device_words(const DeviceReading& reading) {
+  std::string words;
+  const auto say = [&](const std::string& sentence) {
+    words += (words.empty() ? "" : " ") + sentence;
+  };
+  if (!reading.calibrated) say("The device is not calibrated.");
+  if (reading.no_force != NoForce::none) {
+    say(fmt::format("The device itself gives no force: {}.", explain(reading.no_force)));
+  }
+  if (reading.warmth >= kWarm) {
+    say(fmt::format("Its hottest motor is at {:.0f} % of the warmth that it bears.",
+                    100 * reading.warmth));
+  }
+  return words;
+}
+
+}  // namespace limpid
