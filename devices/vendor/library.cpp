@@ -1,0 +1,62 @@
+#include "devices/vendor/library.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <link.h>
+
+#include "devices/vendor/back_end.h"
+
+namespace limpid {
+namespace {
+
+// The library that cannot be found, in the loader's "NAME: cannot open shared object file: ...";
+// empty if the error is another one.
+std::string not_found(const std::string& error) {
+  const auto end = error.find(": cannot open shared object file");
+  return end == std::string::npos ? std::string() : error.substr(0, end);
+}
+
+// Debian's packages of libraries that makers' libraries need.
+const char* how_to_install(const std::string& library) {
+  if (library.starts_with("libncurses.so.5") || library.starts_with("libtinfo.so.5")) {
+    return "Debian 12 has it: 'sudo apt install libncurses5 libtinfo5'; Debian 13 does not have it "
+           "any more";
+  }
+  if (library.starts_with("libusb-1.0")) return "'sudo apt install libusb-1.0-0'";
+  return "it comes with the maker's software";
+}
+
+}  // namespace
+
+void Library::load(std::span<const std::string> names, const std::string& where) {
+  std::string other;
+  for (const std::string& name : names) {
+    handle_ = ::dlopen(name.c_str(), RTLD_NOW | RTLD_GLOBAL);
+    if (handle_ != nullptr) {
+      link_map* map = nullptr;
+      path_ = ::dlinfo(handle_, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr ? map->l_name : name;
+      return;
+    }
+    const char* const said = ::dlerror();
+    const std::string error = said != nullptr ? said : "cannot be loaded";
+    const std::string missing = not_found(error);
+    if (missing == name) continue;
+    if (other.empty()) {
+      other = missing.empty() ? fmt::format("{} cannot be loaded: {}", name, error)
+                              : fmt::format("{} needs {}, which is not installed: {}", name,
+                                            missing, how_to_install(missing));
+    }
+  }
+  if (!other.empty()) throw VendorError(other);
+  throw VendorAbsent(fmt::format("{} is not installed; {}", names.front(), where));
+}
+
+void* Library::address_if_any(const char* name) const { return ::dlsym(handle_, name); }
+
+void* Library::address(const char* name) const {
+  void* const found = address_if_any(name);
+  if (found == nullptr) throw VendorError(fmt::format("{} has no function {}", path_, name));
+  return found;
+}
+
+}  // namespace limpid

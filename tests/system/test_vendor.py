@@ -1,0 +1,338 @@
+"""limpid-vendor drives stand-ins for makers' libraries: each fault, and what the motors then hold.
+
+The stand-ins record what their motors hold, also when the program is killed. Nothing here says what
+a real device does.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from vendor_link import (STAND_INS, VENDOR, Held, Link, Vendor, environment,
+                         zero_after_the_last_force)
+
+TOUCH = ("openhaptics", "Default Device")
+OMEGA = ("forcedimension", "0")
+BOTH = (TOUCH, OMEGA)
+# The safety table's times, and what a busy computer adds to those of a process that is no real-time
+# one [s].
+SILENCE, AT_ONCE = 0.005, 0.0
+BUSY = 0.02
+
+
+def own_axes(device: tuple, force: tuple) -> tuple:
+    """A force in the axes of the device's library: Limpid's are forward, left, up."""
+    x, y, z = force
+    # Touch: right, up, towards the person. omega: towards the person, right, up.
+    return (-y, z, -x) if device == TOUCH else (-x, -y, z)
+
+
+def listed(faults: str = "", libraries: Path | None = STAND_INS, config: str = "") -> list[dict]:
+    with tempfile.TemporaryDirectory() as folder:
+        if config:
+            Path(folder, ".3dsystems/config").mkdir(parents=True)
+            Path(folder, ".3dsystems/config", f"{config}.config").touch()
+        done = subprocess.run([VENDOR, "list"], capture_output=True, text=True, timeout=60,
+                              env=environment(folder, faults, libraries))
+        assert done.returncode == 0, done.stderr
+        return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+class Lists(unittest.TestCase):
+    def test_a_line_for_each_library_and_device(self) -> None:
+        lines = listed(config="Left Device")
+        libraries = {line["backend"]: line for line in lines if "library" in line}
+        devices = {(line["backend"], line["device"]) for line in lines if "device" in line}
+        self.assertEqual({key: line["missing"] for key, line in libraries.items()},
+                         {"openhaptics": "", "forcedimension": ""})
+        self.assertEqual(Path(libraries["openhaptics"]["library"]).name, "libHD.so.3.4")
+        self.assertEqual(devices, {("openhaptics", "Left Device"), ("forcedimension", "0")})
+
+    def test_what_is_missing_and_who_has_it(self) -> None:
+        missing = {line["backend"]: line["missing"] for line in listed(libraries=None)
+                   if "library" in line}
+        self.assertIn("libHD.so.3.4 is not installed", missing["openhaptics"])
+        self.assertIn("3D Systems", missing["openhaptics"])
+        self.assertIn("libdhd.so.3 is not installed", missing["forcedimension"])
+        self.assertIn("Force Dimension", missing["forcedimension"])
+
+    def test_which_library_the_library_needs(self) -> None:
+        missing = next(line["missing"] for line in listed(libraries=STAND_INS / "needs_ncurses")
+                       if line["backend"] == "openhaptics")
+        self.assertIn("needs libncurses.so.5", missing)
+        self.assertIn("Debian 13", missing)
+
+    def test_prints_of_a_library_stay_out_of_the_lines(self) -> None:
+        for line in listed("prints"):
+            self.assertIn("backend", line)
+
+    def test_no_device_is_no_line(self) -> None:
+        self.assertFalse([line for line in listed("no_device") if "device" in line])
+
+
+def on_both(*faults: str):
+    """Runs a test with each maker's device, under each of these faults."""
+    def of(test):
+        def run(self) -> None:
+            for device in BOTH:
+                for fault in faults or ("",):
+                    with self.subTest(device=device[0], fault=fault), Vendor(*device, fault) as vendor:
+                        test(self, device, vendor)
+        return run
+    return of
+
+
+class Serves(unittest.TestCase):
+    def ends(self, vendor: Vendor, status: int) -> str:
+        _, said = vendor.process.communicate(timeout=20)
+        self.assertEqual(vendor.process.returncode, status, said)
+        return said
+
+    @on_both()
+    def test_three_slides_within_the_range_and_force_of_the_device(self, device: tuple,
+                                                                  vendor: Vendor) -> None:
+        expected = {TOUCH: ((-0.07, -0.16, -0.1), 3.3, "Touch S1", "libHD.so.3.4"),
+                    OMEGA: ((-0.075,) * 3, 10, "omega.3 12", "libdrd.so.3")}
+        found = vendor.link().description
+        lower, force, name, made_by = expected[device]
+        self.assertEqual((found.joints, found.motors, found.watchdog), (3, True, 5))
+        self.assertEqual(found.kinds, (1, 1, 1))
+        for end, own in zip(found.lower, lower):
+            self.assertAlmostEqual(end, own, 6)
+        for effort in found.effort:
+            self.assertAlmostEqual(effort, force, 5)
+        self.assertEqual((found.name, found.made_by), (name, made_by))
+
+    # The stand-in's spring is 40 N/m.
+    @on_both()
+    def test_a_force_along_an_axis_moves_the_tip_along_it(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.link()
+        for axis in range(3):
+            force = tuple(0.8 if i == axis else 0.0 for i in range(3))
+            there = tuple(f / 40 for f in force)
+            arrives = lambda reading: math.dist(reading.x, there) < 2e-3
+            self.assertTrue(link.go_on(20, force, until=arrives), link.newest)
+            held = vendor.motors()[-1].force
+            self.assertLess(math.dist(held, own_axes(device, force)), 1e-6)
+
+    @on_both()
+    def test_motors_are_off_until_a_force_is_asked_for(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.link()
+        link.go_on(0.3)
+        self.assertTrue(link.readings)
+        self.assertFalse([held for held in vendor.motors() if held.on])
+        link.go_on(0.3, (0.5, 0.0, 0.0))
+        self.assertTrue([held for held in vendor.motors() if held.on])
+
+    @on_both()
+    def test_a_force_beyond_the_device_is_cut_to_it(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed((50.0, 0.0, 0.0))
+        most = 3.3 if device == TOUCH else 10
+        link.go_on(0.1, (50.0, 0.0, 0.0))
+        self.assertLessEqual(max(max(map(abs, held.force)) for held in vendor.motors()), most)
+
+    def zero_in_the_next_frame(self, device: tuple, what: str, every: list[Held]) -> None:
+        """The force was another one in each frame, so that the last one stands in the record."""
+        self.assertFalse(any(every[-1].force))
+        zero = zero_after_the_last_force(every)
+        print(f"{device[0]}: {what} {1e3 * zero:.1f} ms after the last force")
+        self.assertLess(zero, SILENCE + BUSY)
+
+    def zeros(self, device: tuple, vendor: Vendor, what: str, end) -> list[float]:
+        """Times from an end of the force until the motors hold nothing, of five [s]."""
+        times = []
+        for _ in range(50):
+            link = vendor.pushed()
+            at = end(link)
+            zero = vendor.zero_after(at)  # none: a busy computer was silent before
+            self.assertFalse(vendor.motors()[-1].on)
+            link.close()
+            times += [zero] if zero is not None else []
+            if len(times) == 5:
+                break
+        print(f"{device[0]}: {what} {1e3 * min(times):.1f} to {1e3 * max(times):.1f} ms")
+        return times
+
+    @on_both()
+    def test_no_force_5_ms_after_the_last_command(self, device: tuple, vendor: Vendor) -> None:
+        times = self.zeros(device, vendor, "silence", lambda link: link.send((1.0, 0.0, 0.0)))
+        self.assertLess(min(times), SILENCE + BUSY)
+        self.assertGreater(min(times), 0.9 * SILENCE)
+
+    @on_both()
+    def test_after_silence_a_command_of_no_force_comes_first(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed()
+        time.sleep(0.1)
+        before = len(vendor.motors())
+        link.go_on(0.1, (1.0, 0.0, 0.0), begin=False)
+        self.assertFalse([held for held in vendor.motors()[before:] if any(held.force)])
+        link.go_on(0.1, (1.0, 0.0, 0.0))
+        self.assertTrue([held for held in vendor.motors()[before:] if any(held.force)])
+
+    @on_both()
+    def test_no_force_once_the_connection_ends(self, device: tuple, vendor: Vendor) -> None:
+        def close(link: Link) -> float:
+            at = link.send((1.0, 0.0, 0.0))
+            link.close()
+            return at
+
+        self.assertLess(min(self.zeros(device, vendor, "close", close)), AT_ONCE + BUSY)
+
+    def test_signals_end_it_without_force(self) -> None:
+        for which in (signal.SIGTERM, signal.SIGINT):
+            @on_both()
+            def ended(_self, device: tuple, vendor: Vendor) -> None:
+                for _ in range(50):
+                    at = vendor.pushed().send((1.0, 0.0, 0.0))
+                    if any(vendor.motors()[-1].force):
+                        break
+                vendor.process.send_signal(which)
+                self.ends(vendor, 0)
+                zero = vendor.zero_after(at)
+                self.assertLess(zero, AT_ONCE + BUSY)
+                print(f"{device[0]}: {which.name} {1e3 * zero:.1f} ms")
+                self.assertFalse(vendor.motors()[-1].on)
+                self.assertFalse(vendor.path.exists())
+
+            ended(self)
+
+    @on_both()
+    def test_one_connection_at_a_time(self, device: tuple, vendor: Vendor) -> None:
+        first = vendor.pushed()
+        with self.assertRaises((AssertionError, OSError)):
+            vendor.link()
+        seen = len(first.readings)
+        first.go_on(0.1)
+        self.assertGreater(len(first.readings), seen)
+
+    @on_both("no_device")
+    def test_a_device_that_is_not_there_is_refused(self, device: tuple, vendor: Vendor) -> None:
+        self.assertIn("cannot", self.ends(vendor, 1))
+
+    def test_an_unknown_model_is_refused(self) -> None:
+        with Vendor(*OMEGA, "unknown_model") as vendor:
+            self.assertIn("no model whose range", self.ends(vendor, 1))
+
+    def test_a_device_that_has_to_move_is_refused_until_somebody_says_so(self) -> None:
+        with Vendor(*OMEGA, "calibration") as vendor:
+            said = self.ends(vendor, 1)
+            self.assertIn("moves by itself", said)
+            self.assertIn("--calibrate", said)
+            self.assertNotIn("the stand-in moves", said)
+        with Vendor(*OMEGA, "calibration", ("--calibrate",)) as vendor:
+            self.assertEqual(vendor.link().description.name, "omega.3 12")
+            vendor.process.terminate()
+            self.assertIn("the stand-in moves", self.ends(vendor, 0))
+
+    def test_no_force_until_a_person_has_calibrated_it(self) -> None:
+        with Vendor(*TOUCH, "calibration:1,calibrated@600") as vendor:
+            link = vendor.link()
+            link.go_on(0.3, (1.0, 0.0, 0.0))
+            self.assertFalse(link.newest.calibrated)
+            self.assertFalse([held for held in vendor.motors() if held.on])
+            self.assertTrue(link.go_on(20, until=lambda reading: reading.calibrated))
+
+    def test_a_calibration_that_is_due_is_updated(self) -> None:
+        with Vendor(*TOUCH, "update@200") as vendor:
+            link = vendor.link()
+            link.go_on(0.4)
+            self.assertTrue(link.newest.calibrated)
+
+    def test_a_pen_in_its_inkwell_is_no_hand(self) -> None:
+        with Vendor(*TOUCH, "inkwell@300") as vendor:
+            link = vendor.pushed()
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: not r.hand))
+            self.assertFalse(any(vendor.motors()[-1].force))
+
+    def test_buttons_arrive(self) -> None:
+        with Vendor(*TOUCH, "button@200") as vendor:
+            link = vendor.link()
+            self.assertTrue(link.go_on(20, until=lambda reading: reading.buttons == 2))
+
+    @on_both("frame_error@400", "unplug@400")
+    def test_an_error_in_a_frame_ends_it_without_force(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed()
+        link.push_variously(lambda: False)
+        self.assertTrue(link.gone)
+        self.ends(vendor, 1)
+        self.assertFalse(vendor.motors()[-1].on)
+        self.zero_in_the_next_frame(device, vendor.faults, vendor.motors())
+
+    def test_warm_motors_are_the_reason_for_less_force(self) -> None:
+        with Vendor(*TOUCH, "warm@400") as vendor:
+            link = vendor.pushed()
+            self.assertAlmostEqual(link.newest.warmth, 0.25, 6)
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 7))
+            self.assertAlmostEqual(link.newest.warmth, 0.95, 6)
+
+    def test_a_button_of_the_device_is_the_reason_for_no_force(self) -> None:
+        with Vendor(*OMEGA, "button_off@400") as vendor:
+            link = vendor.pushed()
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 1))
+            before = len(vendor.motors())
+            link.go_on(0.5, (1.0, 0.0, 0.0))
+            self.assertFalse([held for held in vendor.motors()[before:] if held.on], "a person's button")
+
+    @on_both("stop:20@400")
+    def test_a_pause_of_the_library_leaves_no_force(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed()
+        link.go_on(0.5)
+        self.assertFalse(link.gone, "20 ms are no hang")
+        before = len(vendor.motors())
+        link.go_on(0.5, (1.0, 0.0, 0.0))
+        self.assertTrue([held for held in vendor.motors()[before:] if any(held.force)], "it goes on")
+
+    @on_both("hang@400", "stop:1000@400")
+    def test_a_call_that_never_returns_ends_the_program(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed()
+        link.push_variously(lambda: False)
+        at = time.monotonic()
+        self.assertTrue(link.gone)
+        self.assertIn("does not return", self.ends(vendor, 3))
+        every = vendor.motors()
+        last = next(held for held in every[::-1] if any(held.force))
+        print(f"{device[0]}: {vendor.faults} ends {1e3 * (at - last.time):.0f} ms after its last force")
+        if device == OMEGA:
+            self.assertFalse(any(every[-1].force), "its own watchdog has cut it")
+            print(f"its watchdog {1e3 * (every[-1].time - last.time):.1f} ms")
+
+    @on_both("crash@400")
+    def test_a_crash_in_a_call_ends_the_program(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed()
+        link.go_on(20, (1.0, 0.0, 0.0))
+        self.assertTrue(link.gone)
+        self.ends(vendor, -signal.SIGSEGV)
+
+    @on_both("nan@400")
+    def test_a_place_that_is_no_number_is_a_fault_without_force(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.pushed()
+        link.push_variously(lambda: link.newest.fault)
+        self.assertTrue(link.newest.fault)
+        self.assertTrue(all(map(math.isfinite, link.newest.x)))
+        self.zero_in_the_next_frame(device, "nan", vendor.motors())
+
+    @on_both("prints")
+    def test_prints_of_a_library_do_no_harm(self, device: tuple, vendor: Vendor) -> None:
+        vendor.pushed()
+        vendor.process.terminate()
+        said, _ = vendor.process.communicate(timeout=20)
+        self.assertEqual(said, "")
+
+
+class Asks(unittest.TestCase):
+    def test_words_that_make_no_sense_are_refused(self) -> None:
+        for words in ([], ["list", "more"], ["nobody", "0", "--socket", "x"], ["openhaptics"]):
+            done = subprocess.run([VENDOR, *words], capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn("allowed: limpid-vendor list", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
