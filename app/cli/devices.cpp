@@ -101,7 +101,12 @@ Command declare_devices(CLI::App& app) {
       "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
       "a "
       "Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
-      "inverse3:ID@HOST:PORT.\n\nRanges and levers of its arm bound what a device's motors may do. "
+      "inverse3:ID@HOST:PORT. Touch, Omni and Premium (OpenHaptics), omega, delta, sigma, lambda "
+      "and "
+      "Falcon\n(Force Dimension) are known where their makers' libraries are installed: "
+      "limpid-vendor "
+      "loads these, and\n`limpid doctor` says which are missing.\n\nRanges and levers of its arm "
+      "bound what a device's motors may do. "
       "Which arm it is, a device that does not\nsay it itself is told once, here or in the "
       "window's Device panel; until then it is a built-in one with as many\njoints, at little "
       "force.");

@@ -257,7 +257,7 @@ std::string device_named(const std::string& words) {
 ArmDescription arm_of(const InputOptions& options) {
   std::string file = options.device;
   if (file.empty()) file = default_device().string();
-  if (!device_named(file).empty()) file = (data_dir() / "assets/devices/inverse3.urdf").string();
+  if (!device_named(file).empty()) file = DeviceHub::arm_file_of(file).string();
   return read_urdf(file, options.tip, Xacro::expand);
 }
 

@@ -14,6 +14,7 @@
 #include "devices/files/text_file.h"
 #include "devices/hid/device_list.h"
 #include "devices/hid/hid_transport.h"
+#include "devices/hid/vendor_devices.h"
 
 namespace limpid {
 namespace {
@@ -129,8 +130,14 @@ void DeviceHub::take(std::vector<FoundDevice> found, bool services) {
 }
 
 std::string DeviceHub::id_of(const std::string& words) {
+  if (vendor_kind(words) != nullptr) return words;
   const auto name = inverse_name(words);
   return name ? name->text() : std::string();
+}
+
+std::filesystem::path DeviceHub::arm_file_of(const std::string& id) {
+  const DeviceKind* const kind = vendor_kind(id);
+  return data_dir() / "assets/devices" / (kind != nullptr ? kind->arm : "inverse3.urdf");
 }
 
 const FoundDevice* DeviceHub::present() const {

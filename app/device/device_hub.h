@@ -32,9 +32,11 @@ class DeviceHub {
   void take(std::vector<FoundDevice> found, bool services = true);
   const std::vector<FoundDevice>& found() const { return found_; }
 
-  // Full id of an Inverse3, some of whose words may be missing; empty for other devices. Errors:
-  // HidError, see inverse_name().
+  // Full id of an Inverse3, some of whose words may be missing, or of a device of a maker's
+  // library; empty for other devices. Errors: HidError, see inverse_name().
   static std::string id_of(const std::string& words);
+  // File of the own arm of such a device.
+  static std::filesystem::path arm_file_of(const std::string& id);
 
   const std::string& in_use() const { return store_.in_use; }  // id; empty: the virtual arm
   // The device in use, if it is plugged in; else null.

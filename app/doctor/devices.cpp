@@ -6,6 +6,7 @@
 #include "app/base/folders.h"
 #include "app/doctor/doctor.h"
 #include "devices/hid/device_list.h"
+#include "devices/hid/vendor_devices.h"
 
 namespace limpid {
 namespace {
@@ -65,7 +66,7 @@ Finding one(const FoundDevice& device) {
   const std::string what = fmt::format("{} ({})", device.place.name, device.place.id);
   const std::string kind = fmt::format("{} at {}", device.kind->name, device.place.path);
   if (device.missing.empty()) return {kDevicesArea, what, State::fine, kind, {}, {}};
-  if (access(device.place.path.c_str(), R_OK | W_OK) == 0) {
+  if (device.kind->service || access(device.place.path.c_str(), R_OK | W_OK) == 0) {
     return {kDevicesArea, what, State::better, kind, "it is left out", device.missing};
   }
   const std::string mend =
@@ -80,12 +81,26 @@ Finding one(const FoundDevice& device) {
           "it cannot be used", mend};
 }
 
+// A maker's library: nobody without a device of that maker needs it.
+Finding library(const VendorLine& line) {
+  const std::string what = fmt::format("library for {}", line.back_end);
+  if (line.missing.empty()) return {kDevicesArea, what, State::fine, line.name, {}, {}};
+  if (line.absent) {
+    return {kDevicesArea, what, State::fine, line.missing, {}, {}};
+  }
+  return {kDevicesArea, what, State::better, "it cannot be used", "such devices are left out",
+          line.missing};
+}
+
 }  // namespace
 
 DoctorFindings look_at_devices() {
   DoctorFindings all{rule(), on_hid()};
   const std::vector<FoundDevice> found = list_devices({.udev_rule = kRule});
   for (const FoundDevice& device : found) all.push_back(one(device));
+  for (const VendorLine& line : ask_vendors()) {
+    if (!line.is_device) all.push_back(library(line));
+  }
   if (found.empty()) {
     all.push_back({kDevicesArea,
                    "haptic device",

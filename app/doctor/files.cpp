@@ -103,6 +103,7 @@ DoctorFindings look_at_files() {
       program("limpid-session", "recordings and tables of sweeps are not read"),
       program("limpid-model", "models other than glTF are not read"),
       program("limpid-video", "no videos"),
+      program("limpid-vendor", "devices of makers with a library of their own are not found"),
       tool("gnuplot", "experiments and sweeps draw no figures", "gnuplot-nox"),
       writable("settings", user_config_dir(), "devices, layouts and presets are not remembered"),
       writable("data", user_data_dir(), "nothing is kept between starts"),

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstring>
 #include <deque>
+#include <thread>
 
 #include "core/base/descriptor.h"
 
@@ -54,6 +55,18 @@ Child::~Child() {
 int Child::end() {
   ::kill(id_, SIGKILL);
   return wait();
+}
+
+int Child::end_within(std::chrono::milliseconds longest) {
+  constexpr std::chrono::milliseconds kGlance{2};
+  const auto until = std::chrono::steady_clock::now() + longest;
+  siginfo_t ended{};
+  while (std::chrono::steady_clock::now() < until) {
+    const int asked = ::waitid(P_PID, static_cast<id_t>(id_), &ended, WEXITED | WNOHANG | WNOWAIT);
+    if (asked == 0 && ended.si_pid != 0) return wait();
+    std::this_thread::sleep_for(kGlance);
+  }
+  return end();
 }
 
 int Child::wait() {

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -31,6 +32,8 @@ class Child {
   bool started() const { return id_ > 0; }
   // Waits for the program's end and returns its status as waitpid() has it; 0: all was well.
   int wait();
+  // Waits for the program's end, then kills it; returns its status.
+  int end_within(std::chrono::milliseconds longest);
   // Kills the program and returns its status; one that was ending by itself keeps its own.
   int end();
 

@@ -22,6 +22,7 @@
 #include "devices/hid/protocols.h"
 #include "devices/hid/raw_protocol.h"
 #include "devices/hid/transports.h"
+#include "devices/hid/vendor_devices.h"
 
 namespace limpid {
 
@@ -208,6 +209,10 @@ constexpr ListDevices kWaysIn[] = {
     [](const DeviceSearch& search) { return list_hid_devices(search.udev_rule); },
     [](const DeviceSearch&) { return list_socket_devices(socket_folder()); },
     of_services,
+    [](const DeviceSearch& search) {
+      return search.services ? list_vendor_devices(ask_vendors(), search.wanted)
+                             : std::vector<FoundDevice>();
+    },
 };
 
 // The program that uses a device; empty if nobody can tell, as opening it then says why.

@@ -26,7 +26,9 @@ namespace limpid {
 
 namespace {
 
-constexpr int kFirstPacket = 500;  // longest wait for the first packet [ms]
+constexpr int kFirstPacket = 500;           // longest wait for the first packet [ms]
+constexpr int kFirstOfProgram = 40 * 1000;  // of a program that has to open its device first [ms]
+constexpr std::chrono::milliseconds kLongestEnd{3000};  // of a program, then it is killed
 
 int connect_to(const std::string& path) {
   sockaddr_un address{};
@@ -48,20 +50,17 @@ int connect_to(const std::string& path) {
                              busy ? "another program uses this device" : std::strerror(error)));
 }
 
-class SocketTransport final : public HidTransport {
+class SocketTransport : public HidTransport {
  public:
   explicit SocketTransport(const std::string& path) : file_(connect_to(path)) {
-    std::array<std::uint8_t, kMaxReport> first{};
-    const int size = read(first, kFirstPacket);
-    if (size < 0) {
+    if (!take_description(kFirstPacket)) {
       close(file_);
       throw HidError(path + ": it hangs up; another program may use it");
     }
-    feature_.assign(first.begin(), first.begin() + size);
   }
   SocketTransport(const SocketTransport&) = delete;
   SocketTransport& operator=(const SocketTransport&) = delete;
-  ~SocketTransport() override { close(file_); }
+  ~SocketTransport() override { hang_up(); }
 
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
     if (report.size() < 2) return 0;
@@ -92,6 +91,22 @@ class SocketTransport final : public HidTransport {
   void ask(std::span<const std::uint8_t>) noexcept override {}
   const std::vector<std::uint8_t>& report_descriptor() const override { return no_descriptor_; }
 
+ protected:
+  explicit SocketTransport(int file) : file_(file) {}
+
+  bool take_description(int timeout_ms) {
+    std::array<std::uint8_t, kMaxReport> first{};
+    const int size = read(first, timeout_ms);
+    if (size < 0) return false;
+    feature_.assign(first.begin(), first.begin() + size);
+    return true;
+  }
+  const std::vector<std::uint8_t>& description() const { return feature_; }
+  void hang_up() {
+    if (file_ >= 0) close(file_);
+    file_ = -1;
+  }
+
  private:
   // Receives behind the id, which is 0, as nobody numbers packets.
   ssize_t receive(std::span<std::uint8_t> report) const noexcept {
@@ -101,6 +116,27 @@ class SocketTransport final : public HidTransport {
 
   int file_;
   std::vector<std::uint8_t> feature_, no_descriptor_;
+};
+
+// A socket whose other end is a program of ours.
+class ProgramTransport final : public SocketTransport {
+ public:
+  ProgramTransport(std::unique_ptr<Child> child, int file, char refusal)
+      : SocketTransport(file), child_(std::move(child)) {
+    const bool came = take_description(kFirstOfProgram);
+    const std::vector<std::uint8_t>& first = description();
+    if (came && first.size() > 2 && first[1] == static_cast<std::uint8_t>(refusal)) {
+      throw HidError(std::string(first.begin() + 2, first.end()));
+    }
+    if (!came || first.empty()) throw HidError("the program that drives it does not answer");
+  }
+  ~ProgramTransport() override {
+    hang_up();
+    child_->end_within(kLongestEnd);
+  }
+
+ private:
+  std::unique_ptr<Child> child_;
 };
 
 [[noreturn]] void refuse(const std::string& path) {
@@ -286,6 +322,10 @@ class HidapiTransport final : public HidTransport {
 
 std::unique_ptr<HidTransport> open_socket(const std::string& path) {
   return std::make_unique<SocketTransport>(path);
+}
+
+std::unique_ptr<HidTransport> open_socket_of(std::unique_ptr<Child> child, int file, char refusal) {
+  return std::make_unique<ProgramTransport>(std::move(child), file, refusal);
 }
 
 std::unique_ptr<HidTransport> open_hidraw(const std::string& path) {

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import signal
 import subprocess
 import tempfile
@@ -15,7 +16,8 @@ import time
 import unittest
 from pathlib import Path
 
-from vendor_link import (STAND_INS, VENDOR, Held, Link, Vendor, environment,
+from support import LIMPID
+from vendor_link import (STAND_INS, VENDOR, Held, Link, Vendor, environment, motors_in, zero_after,
                          zero_after_the_last_force)
 
 TOUCH = ("openhaptics", "Default Device")
@@ -324,6 +326,102 @@ class Serves(unittest.TestCase):
         vendor.process.terminate()
         said, _ = vendor.process.communicate(timeout=20)
         self.assertEqual(said, "")
+
+
+class InLimpid(unittest.TestCase):
+    """The whole way: listed, opened, armed and driven by Limpid."""
+
+    def setUp(self) -> None:
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
+        book = Path(self.folder, "config/limpid/devices.toml")
+        book.parent.mkdir(parents=True)
+        book.write_text("".join(f'[device."{":".join(device)}"]\nchecked = true\n' for device in BOTH))
+
+    def start(self, faults: str, *words: str | Path) -> subprocess.Popen:
+        Path(self.folder, "motors").unlink(missing_ok=True)
+        process = subprocess.Popen(
+            [LIMPID, *words], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            env={**environment(self.folder, faults), "XDG_CONFIG_HOME": f"{self.folder}/config",
+                 "XDG_RUNTIME_DIR": self.folder})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def done(self, process: subprocess.Popen, status: int = 0) -> tuple[str, str]:
+        out, said = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, status, said)
+        return out, said
+
+    def pushes(self, process: subprocess.Popen) -> None:
+        for _ in range(6000):
+            if (every := motors_in(self.folder)) and any(every[-1].force):
+                return
+            self.assertIsNone(process.poll(), process.returncode)
+            time.sleep(0.01)
+        self.fail("the motors never push")
+
+    def test_devices_are_listed(self) -> None:
+        Path(self.folder, ".3dsystems/config").mkdir(parents=True)
+        Path(self.folder, ".3dsystems/config/Default Device.config").touch()
+        listed = json.loads(self.done(self.start("", "devices", "--json"))[0])["devices"]
+        missing = {each["id"]: each["missing"] for each in listed}
+        for device in BOTH:
+            self.assertEqual(missing.get(":".join(device)), "", missing)
+
+    def test_the_doctor_knows_the_libraries(self) -> None:
+        out, _ = self.start("", "doctor", "--json").communicate(timeout=120)
+        found = [each for each in json.loads(out)["findings"] if each["what"].startswith("library for")]
+        self.assertEqual(len(found), 2)
+        for each in found:
+            self.assertEqual(each["state"], "ok")
+            self.assertIn("tests/vendor/lib", each["found"])
+
+    def on_time(self, faults: str, device: tuple, *words: str | Path) -> str:
+        """Leads a run; what it said. Again where this computer stood still, which takes the force away."""
+        for _ in range(8):
+            process = self.start(faults, "run", "--live", ":".join(device), "--yes", *words)
+            out, said = process.communicate(timeout=120)
+            if not re.search("no reading for 5 ms|loop stood still", out + said):
+                return out + said
+        self.skipTest(f"this computer stands still too often: {said}")
+
+    def test_a_run_drives_the_device_and_leaves_it_without_force(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]):
+                record = Path(self.folder, f"{device[0]}.h5")
+                self.on_time("sway:0.3", device, "--duration", "2", "--record", record, "--force")
+                every = motors_in(self.folder)
+                self.assertTrue([held for held in every if any(held.force)])
+                self.assertFalse(any(every[-1].force))
+                self.assertFalse(every[-1].on)
+                self.assertTrue(record.exists())
+
+    def test_a_device_that_is_not_there_is_said(self) -> None:
+        _, said = self.start("no_device", "run", "--live", ":".join(TOUCH), "--yes").communicate(timeout=60)
+        self.assertIn("cannot open it", said)
+
+    def test_no_force_once_limpid_is_killed(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]):
+                process = self.start("sway:0.3", "run", "--live", ":".join(device), "--yes",
+                                     "--duration", "60")
+                self.pushes(process)
+                at = time.monotonic()
+                process.kill()
+                zero = zero_after(self.folder, at)
+                self.assertFalse(motors_in(self.folder)[-1].on)
+                if zero is not None:
+                    print(f"{device[0]}: limpid killed {1e3 * zero:.1f} ms")
+                    self.assertLess(zero, AT_ONCE + 2 * BUSY)
+
+    def test_no_force_after_a_jump_that_the_device_cannot_make(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]):
+                said = self.on_time("sway:0.3,jump@2500", device, "--duration", "3")
+                self.assertIn("reports a fault", said)
+                self.assertFalse(any(motors_in(self.folder)[-1].force))
+                zero = zero_after_the_last_force(motors_in(self.folder))
+                print(f"{device[0]}: jump {1e3 * zero:.1f} ms after the last force")
 
 
 class Asks(unittest.TestCase):

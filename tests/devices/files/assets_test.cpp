@@ -185,6 +185,21 @@ TEST(SlidingDevices, HaveTheMassForceAndFrictionThatTheirFilesSay) {
   }
 }
 
+// Joints away from the person, who sits ahead of the origin, to the person's left, and up.
+TEST(DevicesOfMakers, HaveTheirTipForJointsAndStandWhereTheScenesAre) {
+  for (const char* file : {"openhaptics.urdf", "forcedimension.urdf"}) {
+    const ArmDescription description = read_urdf(test::assets() / "devices" / file);
+    ASSERT_EQ(description.dof(), 3) << file;
+    EXPECT_TRUE(description.warnings.empty()) << file;
+    const Arm<3> arm(description);
+    const Vec3 place = arm.tip_at(Vec3::Zero());
+    EXPECT_LT((place - rest_tip()).norm(), 0.002) << file;
+    const Vec3 moved(0.03, 0.05, -0.02);  // [m]
+    const Vec3 tip = arm.tip_at(moved / kSlideUnit);
+    EXPECT_LT((tip - place - Vec3(-moved.x(), -moved.y(), moved.z())).norm(), 1e-12) << file;
+  }
+}
+
 TEST(Scenes, AllReadWithTheOmni) {
   const ArmDescription arm = omni();
   int scenes = 0;
