@@ -65,7 +65,9 @@ VendorForce Servo::force_now(const VendorReading& reading, nanoseconds now) noex
   commands_.update();
   const Command& command = commands_.front();
   // Silence cuts, whether or not the command had a force: the computer has to hear of it.
-  if (now - command.moment > kForceLife || reading.fault || !reading.calibrated ||
+  // A pause of the library does so, too: the motors may have held an old force meanwhile.
+  const bool paused = now - last_frame() > kForceLife;
+  if (paused || now - command.moment > kForceLife || reading.fault || !reading.calibrated ||
       reading.no_force == NoForce::watchdog) {
     cut_ = true;
   }

@@ -185,7 +185,8 @@ class Serves(unittest.TestCase):
             link.close()
             return at
 
-        self.assertLess(min(self.zeros(device, vendor, "close", close)), AT_ONCE + BUSY)
+        # Sooner than by silence.
+        self.assertLess(min(self.zeros(device, vendor, "close", close)), 0.8 * SILENCE)
 
     def test_signals_end_it_without_force(self) -> None:
         for which in (signal.SIGTERM, signal.SIGINT):
@@ -281,6 +282,13 @@ class Serves(unittest.TestCase):
             before = len(vendor.motors())
             link.go_on(0.5, (1.0, 0.0, 0.0))
             self.assertFalse([held for held in vendor.motors()[before:] if held.on], "a person's button")
+
+    @on_both("stop:20@1000")
+    def test_after_a_pause_of_the_library_a_command_of_no_force_comes_first(self, device: tuple,
+                                                                           vendor: Vendor) -> None:
+        link = vendor.pushed()
+        link.go_on(2, (1.0, 0.0, 0.0), begin=False)
+        self.assertFalse(any(vendor.motors()[-1].force))
 
     @on_both("stop:20@400")
     def test_a_pause_of_the_library_leaves_no_force(self, device: tuple, vendor: Vendor) -> None:
