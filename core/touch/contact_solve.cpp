@@ -181,7 +181,6 @@ void ContactSolve<N>::hold_bodies() {
     if (row.world == nullptr) continue;
     row.W_body.setZero();
     row.body_free.setZero();
-    row.rubbed.setZero();
   }
 }
 

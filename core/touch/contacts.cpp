@@ -222,7 +222,6 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
     c.gradient.setZero();
     c.gradient[stop.joint] = stop.direction;
     c.material = material;
-    c.point = f.p[static_cast<std::size_t>(stop.joint)];
     c.normal.setZero();
     c.friction.setZero();
     c.id = id++;

@@ -252,20 +252,14 @@ Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, con
 // Hides solids whose nearest point, seen from the free place, something else holds that is nearer.
 // Two that hold the point both push if they face different ways: it is in a corner of them.
 void SolidTouch::hide_covered(std::span<const Solid> solids) {
-  bool inside = false;
   const Vec3 centre = count_ > 0 ? near_[0].point : free_;
   free_ = centre;
   for (const MeshTouch* mesh : meshes_) {
-    if (!mesh->holds(centre)) continue;
-    free_ = mesh->lifted(free_, kAbove);
-    inside = true;
+    if (mesh->holds(centre)) free_ = mesh->lifted(free_, kAbove);
   }
-  inside =
-      inside || std::ranges::any_of(near(), [](const Near& n) { return n.surface.distance < 0; });
-  if (ball_ && inside) lift_out(solids, false);
-  for (Near& n : nears()) {
-    n.seen = ball_ && inside ? distance_to(solids[n.solid], free_) : n.surface;
-  }
+  if (ball_) lift_out(solids, false);
+  const bool lifted = free_ != centre;
+  for (Near& n : nears()) n.seen = lifted ? distance_to(solids[n.solid], free_) : n.surface;
   const auto half_space = [&](const Near& n) {
     return std::holds_alternative<Plane>(solids[n.solid].shape);
   };

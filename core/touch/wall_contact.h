@@ -15,7 +15,7 @@ struct Contact {
   double depth = 0;                // [m], or [rad] in joint space; negative: apart
   Vec<N> gradient;                 // of the depth [m/rad] or [-]
   Material material;               // in joint space its stiffness is in [N m/rad]
-  Vec3 point = Vec3::Zero();       // on the arm [m]
+  Vec3 point = Vec3::Zero();       // on the arm [m]; unused in joint space
   Vec3 normal = Vec3::Zero();      // out of the material; zero in joint space
   int link = 0;                    // index of the touching link
   std::size_t id = 0;              // constant for a scene

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/touch/wall_force.h"
+#include "tests/support/body_worlds.h"
 #include "tests/support/meshes.h"
 #include "tests/support/tick.h"
 
@@ -414,6 +415,50 @@ TEST(ContactSolve, LeavesOutAWallThatNoJointCanServe) {
     bench.solve.collect(bench.contacts, bench.arm, bench.f, bench.motion.u, T);
     EXPECT_FALSE(bench.solve.any()) << pushed;
   }
+}
+
+// A body that is held neither moves nor gives way: its face pushes and rubs as a wall there would.
+TEST(ContactSolve, PushesOffABodyThatIsHeldAsOffAWall) {
+  Random random(99);
+  int pushed = 0, stuck = 0, slipped = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Vec3 normal = random.direction();
+    Material m = some_material(random, true);
+    m.damping = 0;
+    constexpr double kEdge = 0.04;
+    const Object face = Bench::plane(normal, random.between(0, 4e-4) - kEdge / 2, m);
+    Object box = test::body("box", Box{Vec3::Constant(kEdge)}, random.between(0.02, 0.2), {});
+    box.pose.linear() = frame_of(normal);
+    box.pose.translation() = face.pose.translation();
+    box.material = m;
+    Scene scene;
+    scene.add(box);
+    Bench bench(scene, 820 + static_cast<unsigned>(round));
+    bench.answer.contact.damping = 0;
+    bench.contacts.world()->set_speed(0, random.point(0.1), Vec3::Zero());
+    const Vec3 anchor = random.between(0, 2e-4) * normal.unitOrthogonal();
+    bench.contacts.memory(0).anchor = anchor;
+    bench.tick(2 * random.direction() - 2 * normal);
+    bench.solve.prepare(bench.answer.contact, T);
+    bench.solve.hold_bodies();
+    const Vec3 u = bench.motion.u + random.point(0.1);
+    const Vec3 f2 = bench.solve.push(u, T, nullptr);
+
+    const Contact<3>& c = std::as_const(bench.contacts).list()[0];
+    const double F = wall_force({m.stiffness, 0, T, c.depth, T * c.gradient.dot(u), 0});
+    const Mat3 across = Mat3::Identity() - normal * normal.transpose();
+    const Jacobian<3> J = bench.tip_jacobian();
+    Vec3 rub = -friction_stiffness(m) * (anchor + T * across * J * u);
+    const double most = m.friction_static * F;
+    (rub.norm() > most ? slipped : stuck) += F > 0 ? 1 : 0;
+    if (rub.norm() > most) rub *= most / rub.norm();
+    ASSERT_LT((f2 - J.transpose() * (F * normal + rub)).norm(), 1e-5 * J.norm() * std::max(1., F))
+        << round;
+    pushed += F > 0;
+  }
+  EXPECT_GT(pushed, 100);
+  EXPECT_GT(stuck, 20);
+  EXPECT_GT(slipped, 20);
 }
 
 // A wall may damp by 0.34 of m_n/T at most; 0.2 of it is its own. m_n is the tip's mass along the
