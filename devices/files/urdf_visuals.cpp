@@ -289,7 +289,7 @@ std::vector<Visual> read_collisions(const ArmDescription& arm, const std::filesy
   TiXmlDocument document;
   document.Parse(arm.urdf.c_str());  // parsed once already, when the arm was made of it
   const TiXmlElement* const robot = document.RootElement();
-  if (document.Error() || robot == nullptr) return {};
+  if (robot == nullptr) return {};
   MeshFinder meshes(std::filesystem::absolute(file).parent_path());
   const auto by_link = urdf_collisions(*robot, meshes);
   std::vector<Visual> all;

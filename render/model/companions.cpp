@@ -24,7 +24,7 @@ std::vector<unsigned char> read_bytes(const fs::path& path, std::size_t most) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) refuse(path.string(), "cannot be read");
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = file ? static_cast<std::streamoff>(file.tellg()) : std::streamoff{-1};
+  const std::streamoff size = file.tellg();
   if (size < 0) refuse(path.string(), "cannot be read");
   if (static_cast<std::size_t>(size) > most)
     refuse(path.string(), "makes the model larger than the " +

@@ -1,3 +1,5 @@
+#include "devices/files/urdf_visuals.h"
+
 #include <fmt/format.h>
 
 #include "tests/devices/files/test_files.h"
@@ -99,6 +101,30 @@ TEST(UrdfVisuals, ThatCannotBeShownAreAWarningAndAPlainShape) {
     EXPECT_EQ(arm.visuals[0].shape, Visual::Shape::stand_in);
     EXPECT_EQ(arm.visuals[0].link, 0);
   }
+}
+
+// A link that is fixed beside another moves with it, in its own place.
+TEST(UrdfVisuals, HaveShapesOfCollisionBesideThemInTheSamePlaces) {
+  const test::TempDir dir;
+  const std::string ball = "<geometry><sphere radius='2'/></geometry>";
+  const std::string text =
+      robot(link("a") + joint("a", "b") + link("b", kInertial) +
+            joint("b", "hand", "fixed", "<origin xyz='0 1 0'/>") +
+            link("hand", "<visual><origin xyz='0 0 3'/>" + ball + "</visual>" +
+                             "<collision><origin xyz='0 0 3'/>" + ball + "</collision>" +
+                             "<collision><geometry><blob/></geometry></collision>"));
+  test::write_file(dir / "x.urdf", text);
+  const ArmDescription arm = read_urdf(dir / "x.urdf");
+  ASSERT_EQ(arm.visuals.size(), 1u);
+  const std::vector<Visual> shapes = read_collisions(arm, dir / "x.urdf");
+  ASSERT_EQ(shapes.size(), 1u) << "one that cannot be read is left out";
+  EXPECT_EQ(shapes[0].link, 0);
+  EXPECT_EQ(shapes[0].size[0], 2);
+  EXPECT_EQ(shapes[0].origin.matrix(), arm.visuals[0].origin.matrix());
+  EXPECT_LT((shapes[0].origin.translation() - Vec3(0, 1, 3)).norm(), 1e-15);
+  ArmDescription untold = arm;
+  untold.urdf.clear();
+  EXPECT_TRUE(read_collisions(untold, dir / "x.urdf").empty()) << "an arm without a text";
 }
 
 }  // namespace

@@ -192,6 +192,21 @@ TEST(GltfCompressed, ReadsMeshoptWithABufferThatIsNotThere) {
     EXPECT_EQ(triangles(parse_gltf(meshopt_file(fallback), "part.glb")), soup());
 }
 
+// Adds elements of `stride` bytes as a compressor stores them; `filter`: what was done to them.
+int filtered_view(GltfBuilder& file, const Bytes& filtered, std::size_t stride,
+                  const std::string& filter) {
+  const std::size_t count = filtered.size() / stride;
+  Bytes data(meshopt_encodeVertexBufferBound(count, stride));
+  data.resize(meshopt_encodeVertexBuffer(data.data(), data.size(), filtered.data(), count, stride));
+  const std::string each = R"("byteStride":)" + std::to_string(stride);
+  file.more = R"(,"extensionsRequired":["EXT_meshopt_compression"])";
+  return file.view(data, R"(,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteOffset":)" +
+                             std::to_string((file.data.size() + 3) / 4 * 4) + R"(,"byteLength":)" +
+                             std::to_string(data.size()) + "," + each + R"(,"count":)" +
+                             std::to_string(count) + R"(,"mode":"ATTRIBUTES","filter":")" + filter +
+                             R"("}},)" + each);
+}
+
 // Unit vectors folded into a plane, in four bytes or eight.
 TEST(GltfCompressed, ReadsMeshoptNormalsOfEitherWidth) {
   const std::array<Eigen::Vector4f, 3> normals = {Eigen::Vector4f(0.6f, 0, 0.8f, 0),
@@ -200,25 +215,74 @@ TEST(GltfCompressed, ReadsMeshoptNormalsOfEitherWidth) {
   for (const std::size_t stride : {4u, 8u}) {
     Bytes filtered(3 * stride);
     meshopt_encodeFilterOct(filtered.data(), 3, stride, stride == 4 ? 8 : 12, normals[0].data());
-    Bytes data(meshopt_encodeVertexBufferBound(3, stride));
-    data.resize(meshopt_encodeVertexBuffer(data.data(), data.size(), filtered.data(), 3, stride));
     GltfBuilder file;
     file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
-    const int view = file.view(
-        data, R"(,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteOffset":36,)"
-              R"("byteLength":)" +
-                  std::to_string(data.size()) + R"(,"byteStride":)" + std::to_string(stride) +
-                  R"(,"count":3,"mode":"ATTRIBUTES","filter":"OCTAHEDRAL"}},"byteStride":)" +
-                  std::to_string(stride));
+    const int view = filtered_view(file, filtered, stride, "OCTAHEDRAL");
     file.attribute("NORMAL", file.accessor(view, stride == 4 ? 5120 : 5122, "VEC3", 3,
                                            R"(,"normalized":true)"));
-    file.more = R"(,"extensionsRequired":["EXT_meshopt_compression"])";
     const Model model = parse_gltf(file.binary(), "part.glb");
     ASSERT_EQ(model.vertices.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3f off = model.vertices[i].normal - normals[i].head<3>();
       EXPECT_LT(off.norm(), stride == 4 ? 0.02 : 0.002) << i << " of " << stride << " bytes";
     }
+  }
+}
+
+// Four numbers whose squares add up to one, of which three are stored; here as colours, as turns of
+// nodes are not stored in views.
+TEST(GltfCompressed, ReadsMeshoptQuaternions) {
+  const std::array<Eigen::Vector4f, 3> turns = {Eigen::Vector4f(0.5f, 0.5f, 0.5f, 0.5f),
+                                                Eigen::Vector4f(0, 0.6f, 0, 0.8f),
+                                                Eigen::Vector4f(0.9f, 0.1f, 0.3f, 0.3f)};
+  Bytes filtered(3 * 8);
+  meshopt_encodeFilterQuat(filtered.data(), 3, 8, 12, turns[0].data());
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int view = filtered_view(file, filtered, 8, "QUATERNION");
+  file.attribute("COLOR_0", file.accessor(view, 5122, "VEC4", 3, R"(,"normalized":true)"));
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  ASSERT_EQ(model.vertices.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((model.vertices[i].color - turns[i].head<3>()).norm(), 0.002) << i;
+  }
+}
+
+// Numbers of 24 bits below the 8 bits of their exponent: 3 * 2^-2, -5 and 1 * 2^4, then 1.
+TEST(GltfCompressed, ReadsMeshoptNumbersWithAnExponentOfTheirOwn) {
+  GltfBuilder file;
+  Bytes filtered;
+  append_values<std::uint32_t>(filtered,
+                               {0, 0, 0, 0xFE000003, 0x00FFFFFB, 0x04000001, 0, 0x00000001, 0});
+  const int view = filtered_view(file, filtered, sizeof(Vector3f), "EXPONENTIAL");
+  file.attribute("POSITION", file.accessor(view, 5126, "VEC3", 3));
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  ASSERT_EQ(model.vertices.size(), 3u);
+  EXPECT_EQ(model.vertices[0].position, Vector3f(0, 0, 0));
+  EXPECT_EQ(model.vertices[1].position, Vector3f(0.75f, -5, 16));
+  EXPECT_EQ(model.vertices[2].position, Vector3f(0, 1, 0));
+}
+
+// Each filter works on elements of its own size; all others are refused.
+TEST(GltfCompressed, RefusesAMeshoptFilterThatDoesNotFit) {
+  struct Case {
+    const char* filter;
+    std::size_t stride;
+  };
+  for (const auto& [filter, stride] :
+       {Case{"OCTAHEDRAL", 12}, Case{"OCTAHEDRAL", 16}, Case{"QUATERNION", 4},
+        Case{"QUATERNION", 16}, Case{"COLOR", 8}, Case{"exponential", 12}}) {
+    GltfBuilder file;
+    file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    const int view = filtered_view(file, Bytes(3 * stride), stride, filter);
+    file.attribute("NORMAL", file.accessor(view, 5120, "VEC3", 3, R"(,"normalized":true)"));
+    std::string said;
+    try {
+      parse_gltf(file.binary(), "part.glb");
+    } catch (const std::runtime_error& error) {
+      said = error.what();
+    }
+    EXPECT_EQ(said, "part.glb: buffer view 1 cannot be decompressed") << filter << stride;
   }
 }
 

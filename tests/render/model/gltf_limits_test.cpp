@@ -205,5 +205,16 @@ TEST(GltfLimits, ReportsProgressAndStopsWhenAsked) {
                LoadCancelled);
 }
 
+TEST(GltfLimits, ReadsNoMeshOfAFileThatIsNotWantedAnyMore) {
+  GltfBuilder file = triangle();
+  file.nodes = R"({"mesh":0},{"mesh":0},{"mesh":0},{"mesh":0})";
+  file.roots = "0,1,2,3";
+  std::atomic<double> part{0};
+  const std::atomic<bool> cancel{true};
+  EXPECT_THROW(parse_gltf(file.binary(), "part.glb", {}, {.part = &part, .cancel = &cancel}),
+               LoadCancelled);
+  EXPECT_LT(part.load(), 0.5);  // three of the four would be three quarters
+}
+
 }  // namespace
 }  // namespace limpid

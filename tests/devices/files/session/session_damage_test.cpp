@@ -77,6 +77,39 @@ TEST(DamagedSession, SaysWhichRowsAreScrambled) {
   EXPECT_LE(read_session(dir / "a.h5.part").size(), 4321u);
 }
 
+// Puts a list in place of another whose bytes are not those that HDF5 has its sum of.
+void put_unreadable(hid_t file, const char* path) {
+  const hid_t before = H5Dopen2(file, path, H5P_DEFAULT);
+  const hid_t type = H5Dget_type(before);
+  H5Dclose(before);
+  H5Ldelete(file, path, H5P_DEFAULT);
+  const hsize_t one = 1, first = 0;
+  const hid_t space = H5Screate_simple(1, &one, nullptr);
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(creation, 1, &one);
+  H5Pset_fletcher32(creation);
+  const hid_t data = H5Dcreate2(file, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  const std::string bytes(H5Tget_size(type) + 4, 'x');
+  EXPECT_GE(H5Dwrite_chunk(data, H5P_DEFAULT, 0, &first, bytes.size(), bytes.data()), 0);
+  H5Dclose(data);
+  H5Pclose(creation);
+  H5Sclose(space);
+  H5Tclose(type);
+}
+
+TEST(DamagedSession, SaysWhichListBesideTheRowsCannotBeRead) {
+  for (const char* path : {kEventRowPath, kEventSettingPath, kMarkTickPath, kMarkTextPath}) {
+    const test::TempDir dir;
+    test::write_sample(dir / "a.h5", 50);
+    write_marks(dir / "a.h5", std::vector<Mark>{{5, "here"}}, {});
+    const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    put_unreadable(file, path);
+    H5Fclose(file);
+    EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }),
+                AllOf(HasSubstr(path), HasSubstr("cannot be read")));
+  }
+}
+
 // Extends all columns by `rows` beyond the written ones.
 void extend(const fs::path& file, hsize_t rows) {
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);

@@ -236,6 +236,24 @@ TEST_F(StrangersSession, MayNotBeLargerThanTheMemory) {
               AllOf(HasSubstr("second"), HasSubstr("larger than this computer's memory")));
 }
 
+TEST_F(StrangersSession, HasModelsOfBytesThatAreWhatTheyWere) {
+  change([&](hid_t file) { put_model(file, 6, H5P_DEFAULT, H5T_STD_U16LE); });
+  EXPECT_THAT(said(), HasSubstr("/models/0: cannot be read as bytes"));
+  change([&](hid_t file) {
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    const hsize_t chunk = 6, first = 0;
+    H5Pset_chunk(creation, 1, &chunk);
+    H5Pset_fletcher32(creation);
+    put_model(file, chunk, creation);
+    const hid_t data = H5Dopen2(file, "/models/0", H5P_DEFAULT);
+    const std::string scrambled = "glTF and no sum";
+    EXPECT_GE(H5Dwrite_chunk(data, H5P_DEFAULT, 0, &first, 10, scrambled.data()), 0);
+    H5Dclose(data);
+    H5Pclose(creation);
+  });
+  EXPECT_THAT(said(), HasSubstr("/models/0: cannot be read as bytes"));
+}
+
 // Well packed data is read: gzip makes a thousand zeros one byte.
 TEST_F(StrangersSession, MayBePackedByGzip) {
   change([&](hid_t file) {
