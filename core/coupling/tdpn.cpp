@@ -53,8 +53,8 @@ class Tdpn final : public Law<N> {
   // Books the device's port for the tick just ended.
   void book(const LawSettings& p, const LawInput<N>& in, const Vec<N>& D) {
     const Vec<N> sure = (D.cwiseAbs().array() - in.encoder_step).max(0);
-    const double taken = in.b_d_sure.dot(sure.cwiseAbs2()) / elapsed_ -
-                         sent_[static_cast<std::size_t>(p.delay)].dot(D);
+    const double taken =
+        in.b_d.dot(sure.cwiseAbs2()) / elapsed_ - sent_[static_cast<std::size_t>(p.delay)].dot(D);
     (taken > 0 ? in1_ : out1_) += std::abs(taken);
   }
   // Moves the proxy by its spring; returns the spring's force [N m].

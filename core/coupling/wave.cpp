@@ -34,6 +34,7 @@ class Wave final : public Law<N> {
     const double b = p.line(), r = std::sqrt(2 * b);
     const double beside = p.wave_matched ? b : 0;
     send(p, in, beside, r);
+    authority_ = in.authority;
     if (std::exchange(fresh_, false)) x_d_ = proxy.x();
     const double due = number_ - (in.link != nullptr ? in.link->wave_delay() : 0);
 
@@ -66,9 +67,9 @@ class Wave final : public Law<N> {
     if (fresh_ || !(elapsed_ > 0)) return;
     const double T = elapsed_;
     const Vec<N>& acted = sent_[static_cast<std::size_t>(p.delay)];
-    double energy = T / 2 * w_.squaredNorm() - (acted + beside * v1_).dot(D) - debt_;
-    if (energy < 0) {  // the device's own damping pays
-      energy = std::min(0.0, energy + in.b_d_sure.dot(D.cwiseAbs2()) / T);
+    double energy = T / 2 * w_.squaredNorm() - (acted + authority_ * beside * v1_).dot(D) - debt_;
+    if (energy < 0) {  // the device's own damping pays, as far as it is known
+      energy = std::min(0.0, energy + in.b_d.dot(D.cwiseAbs2()) / T);
     }
     debt_ = std::max(0.0, -energy);
     Vec<N> u = r * D / T - w_;
@@ -92,6 +93,7 @@ class Wave final : public Law<N> {
   Vec<N> x1_, v1_;                           // last reading, velocity held [rad, rad/s]
   Vec<N> w_;                                 // wave at the device over the last tick [sqrt(W)]
   Vec<N> x_d_;                               // where the waves want the proxy [rad]
+  double authority_ = 1;                     // share of the last torque that reached the motors
   double debt_ = 0;                          // [J]
   double number_ = 0;                        // ticks since the start
   std::array<Vec<N>, kMostDelay + 1> sent_;  // torques that left, the last one first [N m]
