@@ -120,7 +120,8 @@ void comparison_list(Parameters& p) {
   ImGui::SetNextItemWidth(-1);
   if (now.for_comparison) push_chosen(law_ink(colours, static_cast<int>(p.kind)));
   const bool open =
-      ImGui::BeginCombo("##comparison", now.for_comparison ? now.label : "For comparison");
+      ImGui::BeginCombo("##comparison", now.for_comparison ? now.label : "For comparison",
+                        ImGuiComboFlags_HeightLarge);
   if (now.for_comparison) ImGui::PopStyleColor(4);
   if (!open) {
     tooltip("Laws that other programs and papers have, live on the same hand.");
