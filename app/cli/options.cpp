@@ -315,7 +315,7 @@ std::string parameter_help() {
     const std::string value = parameter_text(Parameters{}, info);
     const char* open =
         std::string_view(info.key).starts_with("device.") ? "the arm's" : "automatic";
-    text += fmt::format("  {:<22} default {:<11} {}\n", info.key, value.empty() ? open : value,
+    text += fmt::format("  {:<20} default {:<11} {}\n", info.key, value.empty() ? open : value,
                         allowed_values(info));
     text += in_lines(info.meaning, 6, kHelpWidth);
   }
