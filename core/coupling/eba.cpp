@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/coupling/device_port.h"
 #include "core/coupling/device_walls.h"
 #include "core/coupling/laws.h"
 
@@ -13,37 +14,35 @@ template <int N>
 class Eba final : public Law<N> {
  public:
   void start(const LawStart<N>& at) override {
-    x1_ = at.x1;
-    fresh_ = true;
     E_.fill(0);
-    sent_.fill(Vec<N>::Zero(at.x1.size()));
+    port_.start(at.x1);
     share_ = 1;
   }
   DeviceEstimate<N> locate(const LawSettings&, const LawReading<N>& in) override {
-    elapsed_ = in.elapsed;
+    port_.wait(in.elapsed);
     return {in.x1, in.v1};
   }
   Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override {
     const Vec<N> b = believed(p, in);
     const Vec<N> wanted = walls_.step(in, proxy).torque;
     const int most = std::max(p.delay, in.delay_most);
-    book(in, b);
-    const bool on_its_way = std::any_of(sent_.begin(), sent_.begin() + most + 1,
-                                        [](const Vec<N>& t) { return !t.isZero(0); });
+    if (port_.read(in)) {
+      const double damped = port_.damped(b);
+      for (int d = 0; d <= kMostDelay; ++d) E_[at(d)] += damped - port_.sent(d).dot(port_.D());
+    }
+    bool on_its_way = false;
+    for (int d = 0; d <= most; ++d) on_its_way = on_its_way || !port_.sent(d).isZero(0);
     if (wanted.isZero(0) && !on_its_way) E_.fill(0);
     const double cost = price(wanted, b, in.tick);
     share_ = 1;
     double reserved = 0;
     for (int d = 0; d <= most; ++d) {
       if (d >= p.delay) share_ = std::min(share_, affordable(E_[at(d)] - reserved, cost));
-      reserved += price(sent_[at(d)], b, in.tick);
+      reserved += price(port_.sent(d), b, in.tick);
     }
     return share_ * wanted;
   }
-  void applied(const Vec<N>& torque) override {
-    std::ranges::rotate(sent_, sent_.end() - 1);
-    sent_[0] = torque;
-  }
+  void applied(const Vec<N>& torque) override { port_.applied(torque); }
   LawReport report() const override {
     return {.torque_governor = share_, .unsettled = walls_.unsettled()};
   }
@@ -70,24 +69,10 @@ class Eba final : public Law<N> {
     if (cost <= energy || cost == 0) return 1;
     return energy > 0 ? std::sqrt(energy / cost) : 0;
   }
-  // Books the tick just ended, for every delay.
-  void book(const LawInput<N>& in, const Vec<N>& b) {
-    const Vec<N> D = in.x1 - x1_;
-    x1_ = in.x1;
-    if (std::exchange(fresh_, false) || !(elapsed_ > 0)) return;
-    // A reading that changes by a step may be no motion.
-    const Vec<N> sure = (D.cwiseAbs().array() - in.encoder_step).max(0);
-    const double damped = b.dot(sure.cwiseAbs2()) / elapsed_;
-    for (std::size_t d = 0; d < E_.size(); ++d) E_[d] += damped - sent_[d].dot(D);
-  }
-
   DeviceWalls<N> walls_;
-  Vec<N> x1_;
-  bool fresh_ = true;
-  double elapsed_ = 0;                       // since the previous reading [s]
-  std::array<double, kMostDelay + 1> E_{};   // by the torques' delay in ticks [J]
-  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques that left, the last one first [N m]
-  double share_ = 1;                         // s
+  std::array<double, kMostDelay + 1> E_{};  // by the torques' delay in ticks [J]
+  DevicePort<N> port_;
+  double share_ = 1;  // s
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/coupling/device_port.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 #include "core/coupling/spring_coupling.h"
@@ -15,24 +16,24 @@ class Tdpn final : public Law<N> {
  public:
   void start(const LawStart<N>& at) override {
     fresh_ = true;
-    x1_ = came_ = at.x1;
+    came_ = at.x1;
     in1_ = out1_ = in2_ = out2_ = 0;
     braked_ = 0;
-    sent_.fill(Vec<N>::Zero(at.x1.size()));
+    port_.start(at.x1);
   }
   double least_left() const override { return Ledger<N>::kForgiven; }
   DeviceEstimate<N> locate(const LawSettings&, const LawReading<N>& in) override {
-    elapsed_ = in.elapsed;
+    port_.wait(in.elapsed);
     return {in.x1, in.v1};
   }
   Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override {
-    const Vec<N> D = in.x1 - x1_;
-    x1_ = in.x1;
+    const bool ended = port_.read(in);
     if (std::exchange(fresh_, false)) {
       x_d_ = proxy.x();
       came_ = in.x1;
-    } else if (elapsed_ > 0) {
-      book(p, in, D);
+    } else if (ended) {
+      const double taken = port_.damped(in.b_d) - port_.sent(p.delay).dot(port_.D());
+      (taken > 0 ? in1_ : out1_) += std::abs(taken);
     }
     FromDevice<N> device = told(in);
     device.sent = in1_;
@@ -41,28 +42,18 @@ class Tdpn final : public Law<N> {
     here.f2 = move(p, far, in.T, proxy);
     here.sent = in2_;
     const FromProxy<N>& near = in.link != nullptr ? in.link->to_device(here) : here;
-    return pull(p, in, near, D);
+    return pull(p, in, near);
   }
-  void applied(const Vec<N>& torque) override {
-    std::ranges::rotate(sent_, sent_.end() - 1);
-    sent_[0] = torque;
-  }
+  void applied(const Vec<N>& torque) override { port_.applied(torque); }
   LawReport report() const override { return {.damping_governor = 1 - braked_}; }
 
  private:
-  // Books the device's port for the tick just ended.
-  void book(const LawSettings& p, const LawInput<N>& in, const Vec<N>& D) {
-    const Vec<N> sure = (D.cwiseAbs().array() - in.encoder_step).max(0);
-    const double taken =
-        in.b_d.dot(sure.cwiseAbs2()) / elapsed_ - sent_[static_cast<std::size_t>(p.delay)].dot(D);
-    (taken > 0 ? in1_ : out1_) += std::abs(taken);
-  }
   // Moves the proxy by its spring; returns the spring's force [N m].
   Vec<N> move(const LawSettings& p, const FromDevice<N>& far, double T, Proxy<N>& proxy) {
     const double damping = p.k_vc * T / 2 + p.b_vc;
     const Vec<N> x2 = proxy.x();
     const auto spring = [&](const Vec<N>& v) -> Vec<N> {
-      return p.k_vc * (x_d_ - x2) + (p.k_vc * T / 2 + p.b_vc) * v;
+      return p.k_vc * (x_d_ - x2) + damping * v;
     };
     const double left = std::max(0.0, far.sent - out2_);
     const Vec<N> v_d = (far.x1 - came_) / T;
@@ -86,31 +77,22 @@ class Tdpn final : public Law<N> {
     return F2;
   }
   // Torque on the device, with the damper for what came out too much.
-  Vec<N> pull(const LawSettings& p, const LawInput<N>& in, const FromProxy<N>& near,
-              const Vec<N>& D) {
+  Vec<N> pull(const LawSettings& p, const LawInput<N>& in, const FromProxy<N>& near) {
     const Vec<N> torque = -near.f2;
-    double S = near.sent - out1_ - std::max(0.0, torque.dot(D));
-    for (int j = 0; j < p.delay; ++j) S -= std::max(0.0, sent_[static_cast<std::size_t>(j)].dot(D));
-    const Vec<N> moved = (D.array().abs() > 1.5 * in.encoder_step).select(D, 0);
-    const Vec<N> momentum = in.device.M * moved;
-    const double action = momentum.dot(moved), T = in.tick;
-    braked_ = 0;
-    if (!(S < 0) || !(action > 0)) return torque;
-    const double most = p.tdpn_damping / (T * (1 + p.delay));
-    const double alpha = std::min(-S * T / action, most);
-    braked_ = alpha / most;
-    return torque - alpha / T * momentum;
+    double S = near.sent - out1_ - std::max(0.0, torque.dot(port_.D()));
+    for (int j = 0; j < p.delay; ++j) S -= std::max(0.0, port_.sent(j).dot(port_.D()));
+    const auto brake = port_.brake(S, p.tdpn_damping, p.delay, in);
+    braked_ = brake.part;
+    return torque - brake.torque;
   }
 
   bool fresh_ = true;
-  double elapsed_ = 0;                       // since the previous reading [s]
-  Vec<N> x1_;                                // last reading [rad]
-  Vec<N> came_;                              // the device as the proxy's side knew it last [rad]
-  Vec<N> x_d_;                               // where that side wants the proxy [rad]
-  double in1_ = 0, out1_ = 0;                // at the device, in all so far [J]
-  double in2_ = 0, out2_ = 0;                // at the proxy's spring
-  double braked_ = 0;                        // alpha over its most
-  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques that left, the last one first [N m]
+  Vec<N> came_;                // the device as the proxy's side knew it last [rad]
+  Vec<N> x_d_;                 // where that side wants the proxy [rad]
+  double in1_ = 0, out1_ = 0;  // at the device, in all so far [J]
+  double in2_ = 0, out2_ = 0;  // at the proxy's spring
+  double braked_ = 0;          // alpha over its most
+  DevicePort<N> port_;
 };
 
 }  // namespace

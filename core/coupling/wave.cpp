@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/coupling/device_port.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/played_waves.h"
 #include "core/coupling/spring_coupling.h"
@@ -17,17 +18,16 @@ class Wave final : public Law<N> {
     const Eigen::Index n = at.x1.size();
     const Vec<N> zero = Vec<N>::Zero(n);
     fresh_ = true;
-    x1_ = at.x1;
     v1_ = w_ = zero;
     debt_ = 0;
     number_ = 0;
-    sent_.fill(zero);
+    port_.start(at.x1);
     from_device_ = from_proxy_ = {-1, zero, 0};
     at_proxy_.start(n);
     at_device_.start(n);
   }
   DeviceEstimate<N> locate(const LawSettings&, const LawReading<N>& in) override {
-    elapsed_ = in.elapsed;
+    port_.wait(in.elapsed);
     return {in.x1, in.v1};
   }
   Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override {
@@ -54,19 +54,14 @@ class Wave final : public Law<N> {
     number_ += 1;
     return r * w_ - (b + beside) * v1_;
   }
-  void applied(const Vec<N>& torque) override {
-    std::ranges::rotate(sent_, sent_.end() - 1);
-    sent_[0] = torque;
-  }
+  void applied(const Vec<N>& torque) override { port_.applied(torque); }
 
  private:
   // The wave that leaves the device after the tick just ended.
   void send(const LawSettings& p, const LawInput<N>& in, double beside, double r) {
-    const Vec<N> D = in.x1 - x1_;
-    x1_ = in.x1;
-    if (fresh_ || !(elapsed_ > 0)) return;
-    const double T = elapsed_;
-    const Vec<N>& acted = sent_[static_cast<std::size_t>(p.delay)];
+    if (!port_.read(in)) return;
+    const double T = port_.elapsed();
+    const Vec<N>&D = port_.D(), &acted = port_.sent(p.delay);
     double energy = T / 2 * w_.squaredNorm() - (acted + authority_ * beside * v1_).dot(D) - debt_;
     if (energy < 0) {  // the device's own damping pays, as far as it is known
       energy = std::min(0.0, energy + in.b_d.dot(D.cwiseAbs2()) / T);
@@ -89,14 +84,13 @@ class Wave final : public Law<N> {
   }
 
   bool fresh_ = true;
-  double elapsed_ = 0;                       // since the previous reading [s]
-  Vec<N> x1_, v1_;                           // last reading, velocity held [rad, rad/s]
-  Vec<N> w_;                                 // wave at the device over the last tick [sqrt(W)]
-  Vec<N> x_d_;                               // where the waves want the proxy [rad]
-  double authority_ = 1;                     // share of the last torque that reached the motors
-  double debt_ = 0;                          // [J]
-  double number_ = 0;                        // ticks since the start
-  std::array<Vec<N>, kMostDelay + 1> sent_;  // torques that left, the last one first [N m]
+  Vec<N> v1_;             // velocity held [rad/s]
+  Vec<N> w_;              // wave at the device over the last tick [sqrt(W)]
+  Vec<N> x_d_;            // where the waves want the proxy [rad]
+  double authority_ = 1;  // share of the last torque that reached the motors
+  double debt_ = 0;       // [J]
+  double number_ = 0;     // ticks since the start
+  DevicePort<N> port_;
   WaveSums<N> from_device_, from_proxy_;
   PlayedWaves<N> at_proxy_, at_device_;
 };
