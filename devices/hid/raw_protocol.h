@@ -106,8 +106,8 @@ namespace limpid {
 // The computer asks a HID device for 64 bytes of the feature report first, and for 256 if these say
 // version 2, or nothing.
 //
-// What a device of version 2 declares is checked. A reading that is outside of a joint's range by
-// more than a tenth of it, or farther from the reading before than the joint's speed allows, is
+// Declarations of a device of version 2 are checked. A reading that is outside of a joint's range
+// by more than a tenth of it, or farther from the reading before than the joint's speed allows, is
 // taken for a fault, and the force is off until somebody arms it again.
 //
 // Since a hand is on the device, firmware must

@@ -1,7 +1,7 @@
 // limpid-vendor: reaches devices by their makers' libraries, for Limpid, which starts it.
 //
-//   limpid-vendor list [--simulator]                       a line of JSON for each library and
-//   device limpid-vendor BACKEND NAME --socket PATH [--simulator] serves the device on a socket
+//   limpid-vendor list [--simulator]                 says a line of JSON for each library, device
+//   limpid-vendor BACKEND NAME --socket PATH         serves the device on a socket
 //   limpid-vendor BACKEND NAME --connection NUMBER         serves it on a connection handed over
 //   limpid-vendor BACKEND NAME --calibrate                 lets the device find its zero, by itself
 //
