@@ -76,7 +76,7 @@ class Tab(SystemTest):
         self.assertEqual(self.offered("limpid info o"), {"one.h5"})
 
     def test_choices(self) -> None:
-        self.assertEqual(self.offered("limpid run --coupling p"), {"proposed", "predictive"})
+        self.assertEqual(self.offered("limpid run --coupling p"), {"proposed", "predictive", "popc"})
         self.assertEqual(self.offered("limpid experiment fr"), {"friction"})
 
     def test_keys_and_their_choices(self) -> None:

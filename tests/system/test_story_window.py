@@ -4,7 +4,6 @@ import unittest
 
 from window import WindowTest
 
-SHOW_ME = (645, 333)  # a first start's button over the picture
 IN_VIEW = (500, 200)
 NEAR_THE_END = (1030, 698)  # place on the time line
 
@@ -13,7 +12,7 @@ class Story(WindowTest):
     LAW = None  # a first start's law
 
     def play(self) -> dict:
-        self.click(*SHOW_ME)
+        self.click_on("story", "Show me (47 s)")
         self.wait("the story", lambda s: s["playing"] and s["told"], 120)
         return self.first_sentence()
 

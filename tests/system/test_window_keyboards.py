@@ -15,7 +15,6 @@ os.environ["LIMPID"] = str(LIMPID)
 
 import limpid  # noqa: E402
 
-ETA = (250, 128)  # place on its slider, right of its value
 # Key codes of the letters' places, from Q, A and Z on, as X has them for every keyboard.
 PLACES = {letter: str(code) for row, first in (("qwertyuiop", 24), ("asdfghjkl", 38), ("zxcvbnm", 52))
           for code, letter in enumerate(row, first)}
@@ -61,7 +60,7 @@ class Labels(OtherKeyboard):
 
     def check_all_is_selected(self) -> None:
         """Checks that Ctrl+A selects all in a text field and quits nothing."""
-        self.click(*ETA, times=2)
+        self.click_on("coupling", "coupling.eta", times=2)
         self.wait("typing", lambda s: s["typing"])
         self.type("9")
         self.press("ctrl+a")

@@ -13,8 +13,6 @@ from window import WindowTest
 LETTERS = "rcfpgxle1 2[]?d"
 # State that typing must leave alone.
 LASTING = ("force", "recording", "playing", "kind", "eta", "alpha", "objects", "selected", "dirty")
-ETA = (250, 128)  # place on its slider, right of its value
-NAME = (1100, 176)  # field of the selected object
 
 
 def lasting(state: dict) -> dict:
@@ -53,7 +51,7 @@ class Keys(WindowTest):
 
     def test_what_is_typed_over_a_slider_does_nothing_else(self) -> None:
         before = lasting(self.state())
-        self.click(*ETA, times=2)
+        self.click_on("coupling", "coupling.eta", times=2)
         self.wait("typing", lambda s: s["typing"])
         self.assertEqual(lasting(self.settled()), before, "a double click moves nothing")
         self.type("rcfpx")
@@ -68,7 +66,7 @@ class Keys(WindowTest):
         self.wait_for_notice("Nothing to undo")
 
         # Escape ends typing; pressed once more, it cuts the force.
-        self.click(*ETA, times=2)
+        self.click_on("coupling", "coupling.eta", times=2)
         self.wait("typing", lambda s: s["typing"])
         self.type("7")
         self.key("Escape")
@@ -83,7 +81,7 @@ class Keys(WindowTest):
         self.key("Tab")
         self.wait("an object", lambda s: s["selected"] == "table top")
         before = self.state()
-        self.click(*NAME)
+        self.click_on("side", "name")
         self.wait("typing", lambda s: s["typing"])
         # Ctrl is released in the frame of the A, as on a computer that draws slowly.
         self.xdotool("keydown", "ctrl")

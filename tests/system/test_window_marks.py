@@ -267,7 +267,7 @@ class YourTurn(WindowTest):
 class BrokenPassivity(WindowTest):
     def test_a_hand_is_put_where_energy_climbs_and_goes_with_it(self) -> None:
         before = self.state()
-        self.click(150, 266)  # Break passivity
+        self.click_on("coupling", "Break passivity")
         self.wait("a hand", lambda s: s["grip"] == 1 and s["banners"])
         self.wait("energy that grows",
                   lambda s: s["energy_total"] > before["energy_total"] + 0.02, 60)
@@ -278,17 +278,14 @@ class BrokenPassivity(WindowTest):
 
 
 class Places(WindowTest):
-    NEW_FOLDER = (418, 529)  # place in the dialog that saves a scene
-    HOME = (246, 251)  # first of the dialog's places
-
     def prepare(self) -> None:
         self.environment["HOME"] = str(self.home)
 
     def test_a_scene_is_saved_in_a_new_folder_of_a_place(self) -> None:
         self.key("ctrl+shift+s")
         self.wait("the dialog", lambda s: s["dialog"] == "save scene" and s["typing"])
-        self.click(*self.HOME)
-        self.click(*self.NEW_FOLDER)
+        self.click_on("Save scene as", "Home")
+        self.click_on("Save scene as", "New folder")
         self.wait("its name to be asked for", lambda s: s["typing"])
         self.type("mine")
         self.key("Return")
@@ -300,12 +297,10 @@ class Places(WindowTest):
 
 
 class Experiments(WindowTest):
-    RUN_ALL = (575, 600)  # button in the dialog; Stop has its place during runs
-
     def test_they_go_on_beside_the_window_which_says_so_and_are_stopped(self) -> None:
         self.key("F5")
         self.wait("the dialog", lambda s: s["dialog"] == "experiments")
-        self.click(*self.RUN_ALL)
+        self.click_on("Experiments", "Run all")
         self.wait("a result", lambda s: any("coordination: passed" in n for n in s["notices"]), 240)
         self.key("Escape")
         self.wait("a banner", lambda s: any("Experiments go on: " in b["text"]
@@ -317,7 +312,7 @@ class Experiments(WindowTest):
         self.click(*next(b["buttons"][show] for b in self.settled()["banners"]
                          if show in b["buttons"]))
         self.wait("the dialog", lambda s: s["dialog"] == "experiments")
-        self.click(*self.RUN_ALL)
+        self.click_on("Experiments", "Stop")
         self.wait_for_notice("Stopped")
         self.key("Escape")
         self.wait("nothing under way", lambda s: s["dialog"] == "" and not s["banners"])

@@ -5,7 +5,6 @@ import unittest
 
 from window import WindowTest
 
-BREAK = (150, 266)  # the button, which says Repair when pressed
 FAULT = 1e-3  # energy from which the panel reports it [J]
 
 
@@ -21,7 +20,7 @@ class Energy(WindowTest):
         before = self.state()
         for end in ("Repair", "undo", "C", "End it (C)"):
             with self.subTest(end):
-                self.click(*BREAK)
+                self.click_on("coupling", "Break passivity")
                 self.wait("a banner", lambda s: any("End it (C)" in b["buttons"]
                                                     for b in s["banners"]))
                 broken = self.wait("a small eta", lambda s: s["eta"] < 0.6 and s["kind"] == 1)
@@ -35,7 +34,7 @@ class Energy(WindowTest):
                 elif end == "C":
                     self.key("c")
                 elif end == "Repair":
-                    self.click(*BREAK)
+                    self.click_on("coupling", "Repair")
                 else:
                     self.click(*next(b["buttons"][end] for b in self.state()["banners"]
                                      if end in b["buttons"]))
@@ -47,7 +46,7 @@ class Energy(WindowTest):
 
     def test_what_is_left_broken_is_whole_at_the_next_start(self) -> None:
         before = self.state()
-        self.click(*BREAK)
+        self.click_on("coupling", "Break passivity")
         self.wait("a stiff grip", lambda s: s["hand_settings"] == {"stiffness": 3000, "damping": 0})
         self.key("ctrl+q", closes=True)
         self.assertEqual(self.app.wait(30), 0)

@@ -8,8 +8,6 @@ from window import HEIGHT, WIDTH, WindowTest
 FOUR = ["coordination error", "controller energy", "human and contact torque",
         "error against torque"]
 PLOTS = HEIGHT - 130  # a height within the plots
-RENAME = (492, 449)  # buttons of the dialog of layouts
-REMOVE = (567, 449)
 SAVE_CSV = (1060, 499)  # place in the menu of the last plot
 
 
@@ -110,12 +108,12 @@ class Plots(WindowTest):
         self.settled()  # a frame with the entry, which chooses it
         self.key("ctrl+a")
         self.type("yours")
-        self.click(*RENAME)
+        self.click_on("Layouts", "Rename")
         self.assertNotIn("mine", self.wait_for_layout("yours"))
-        self.click(*REMOVE)
+        self.click_on("Layouts", "Remove")
         self.settled()
         self.assertIn("yours", self.kept("layouts.toml"), "it asks once more")
-        self.click(*REMOVE)
+        self.click_on("Layouts", "Remove it")
         self.wait_until("the layout to go", lambda: "yours" not in self.kept("layouts.toml"))
         self.assertIn("with ledger", self.kept("layouts.toml"))
 

@@ -154,6 +154,16 @@ class WindowTest(unittest.TestCase):
         self.xdotool("click", "--repeat", str(times), "--delay", "20", str(button))
         self.taken()
 
+    def noted(self, window: str, label: str) -> tuple[float, float]:
+        """Place of a noted item, of a frame that shows it."""
+        return self.wait(f"{label} in {window}", lambda s: label in s["noted"].get(window, {})
+                         )["noted"][window][label]
+
+    def click_on(self, window: str, label: str, times: int = 1) -> None:
+        """Clicks a noted item where it is drawn."""
+        self.settled()
+        self.click(*self.noted(window, label), times=times)
+
     def move(self, x: float, y: float) -> None:
         self.xdotool("mousemove", "--window", self.window, str(int(x)), str(int(y)))
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
 #include "app/style/palette.h"
@@ -75,6 +76,7 @@ void slider(Parameters& p, const char* key, const std::string& broken = {}) {
                        broken.empty() ? nullptr : broken.c_str())) {
     set_parameter_number(p, info, parameter_number(shown, info));
   }
+  note_place(key);
 }
 
 void push_chosen(Rgb law) {
@@ -409,8 +411,10 @@ void draw_limited(const std::vector<int>& joints) {
 }
 
 void draw_break(bool broken, const Act& act) {
-  const ImVec2 size(ImGui::GetContentRegionAvail().x, 0);
-  if (ImGui::Button(broken ? "Repair" : "Break passivity", size)) {
+  const char* const label = broken ? "Repair" : "Break passivity";
+  const bool pressed = ImGui::Button(label, {ImGui::GetContentRegionAvail().x, 0});
+  note_place(label);
+  if (pressed) {
     act(broken ? "coupling.end_break" : "coupling.break_passivity");
   }
   tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "

@@ -216,6 +216,7 @@ void ObjectEditor::draw_name(Document& document, std::size_t place) {
   if (name_of_ != present) name_ = name_of_ = present;
   ImGui::SetNextItemWidth(-1);
   ImGui::InputText("##name", &name_);
+  note_place("name");
   if (ImGui::IsItemDeactivated()) {
     if (document.may_edit()) document.editor().rename(place, name_);
     name_of_.clear();

@@ -88,7 +88,7 @@ NamedDialog::Asked NamedDialog::draw_buttons(NamedTexts& texts) {
 }
 
 void NamedDialog::draw_changes(NamedTexts& texts) {
-  if (ImGui::Button("Rename")) {
+  if (noted_button("Rename")) {
     if (name_.empty() || name_ == chosen_) {
       complaint_ = "Write the new name below first.";
     } else if (texts.find(name_) != nullptr) {
@@ -99,7 +99,7 @@ void NamedDialog::draw_changes(NamedTexts& texts) {
     }
   }
   ImGui::SameLine();
-  if (!ImGui::Button(sure_ ? "Remove it" : "Remove")) return;
+  if (!noted_button(sure_ ? "Remove it" : "Remove")) return;
   if (!std::exchange(sure_, true)) return;
   const std::string wrong = texts.remove(chosen_);
   choose("");

@@ -86,6 +86,13 @@ json state_of(const SweepController& controller) {
 
 json place(const ImVec2& at) { return {at.x, at.y}; }
 
+// Returns the places of what may be clicked, by windows of ImGui and labels [px].
+json noted() {
+  json all = json::object();
+  for (const NotedPlace& note : noted_places()) all[note.window][note.label] = place(note.at);
+  return all;
+}
+
 // Returns the identification's state. `plugged`: the device is in the loop; `places`: the dialog's
 // buttons [px].
 json state_of(const IdentifyController& controller, bool plugged) {
@@ -268,6 +275,7 @@ json parts_of(Desktop& d) {
           {"closing", closing()},
           {"recorded", recorded(d)},
           {"places", places_of(d)},
+          {"noted", noted()},
           {"question", question_of(d)}};
 }
 

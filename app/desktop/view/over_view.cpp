@@ -221,7 +221,7 @@ bool story_asked_for(const Playback& playback, const Settings& settings, ScreenR
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                    ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoNav);
-  const bool asked = ImGui::Button("Show me (47 s)");
+  const bool asked = noted_button("Show me (47 s)");
   tooltip(
       "Plays a story: two couplings in one hand. Drag in the picture, or Backspace, to take "
       "over at any moment.");

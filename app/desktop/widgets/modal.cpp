@@ -6,6 +6,7 @@
 #include <imgui_internal.h>
 
 #include <string>
+#include <vector>
 
 #include "app/style/imgui_input.h"
 
@@ -23,20 +24,27 @@ namespace {
 constexpr const char* kClosing = "the closing button";  // label of the noted closing button
 
 // Returns the key of a note in the storage that ImGui keeps for each window.
-ImGuiID key(const char* label, const char* what) {
-  return ImHashStr((std::string("noted ") + what + " of " + label).c_str());
-}
+ImGuiID key(const char* label) { return ImHashStr((std::string("noted of ") + label).c_str()); }
 constexpr const char* kDialog = "is a dialog";
 
 void note_dialog() {
   ImGuiWindow* window = ImGui::GetCurrentWindow();
-  window->StateStorage.SetBool(key(kDialog, ""), true);
+  window->StateStorage.SetBool(key(kDialog), true);
 }
 
-std::optional<ImVec2> noted_in(const ImGuiWindow& window, const char* label) {
-  const ImGuiStorage& notes = window.StateStorage;
-  if (notes.GetInt(key(label, "frame"), -1) != ImGui::GetFrameCount()) return std::nullopt;
-  return ImVec2(notes.GetFloat(key(label, "x")), notes.GetFloat(key(label, "y")));
+// Notes of one frame.
+struct Notes {
+  int frame = -1;
+  std::vector<NotedPlace> all;
+};
+
+Notes& notes() {
+  static Notes kept;
+  if (const int frame = ImGui::GetFrameCount(); kept.frame != frame) {
+    kept.frame = frame;
+    kept.all.clear();
+  }
+  return kept;
 }
 
 }  // namespace
@@ -82,10 +90,7 @@ bool accepted() {
 }
 
 void note_at(const char* label, ImVec2 place) {
-  ImGuiStorage& notes = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
-  notes.SetFloat(key(label, "x"), place.x);
-  notes.SetFloat(key(label, "y"), place.y);
-  notes.SetInt(key(label, "frame"), ImGui::GetFrameCount());
+  notes().all.push_back({ImGui::GetCurrentWindow()->RootWindow->Name, label, place});
 }
 
 void note_place(const char* label) {
@@ -99,9 +104,13 @@ bool noted_button(const char* label) {
   return pressed;
 }
 
-std::optional<ImVec2> noted_place(const char* window, const char* label) {
-  const ImGuiWindow* found = ImGui::FindWindowByName(window);
-  return found != nullptr ? noted_in(*found, label) : std::nullopt;
+const std::vector<NotedPlace>& noted_places() { return notes().all; }
+
+std::optional<ImVec2> noted_place(std::string_view window, std::string_view label) {
+  for (const NotedPlace& note : notes().all) {
+    if (note.window == window && note.label == label) return note.at;
+  }
+  return std::nullopt;
 }
 
 std::optional<DialogPlaces> dialog_places() {
@@ -109,13 +118,13 @@ std::optional<DialogPlaces> dialog_places() {
   for (int i = windows.Size - 1; i >= 0; --i) {
     const ImGuiWindow& window = *windows[i];
     if (!window.Active || window.Hidden) continue;
-    if (!window.StateStorage.GetBool(key(kDialog, ""))) continue;
+    if (!window.StateStorage.GetBool(key(kDialog))) continue;
     const ImRect bar = window.TitleBarRect();
     const ImGuiStyle& style = ImGui::GetStyle();
     const float half = 0.5f * ImGui::GetFontSize();
     return DialogPlaces{
         .cross = {bar.Max.x - style.FramePadding.x - half, bar.Min.y + style.FramePadding.y + half},
-        .button = noted_in(window, kClosing)};
+        .button = noted_place(window.Name, kClosing)};
   }
   return std::nullopt;
 }

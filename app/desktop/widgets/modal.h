@@ -5,7 +5,10 @@
 
 #include <exception>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace limpid {
 
@@ -50,8 +53,15 @@ bool accepted();
 void note_place(const char* label);
 void note_at(const char* label, ImVec2 place);  // notes a place that is no item's
 bool noted_button(const char* label);           // draws a button and notes its place
-// Returns the middle of a noted item in a window of the last frame [px], or nothing.
-std::optional<ImVec2> noted_place(const char* window, const char* label);
+// Middle of a noted item [px], by the window of ImGui that it is in.
+struct NotedPlace {
+  std::string window;
+  std::string label;
+  ImVec2 at;
+};
+// Return what the present frame has noted so far; the first of one label, or nothing.
+const std::vector<NotedPlace>& noted_places();
+std::optional<ImVec2> noted_place(std::string_view window, std::string_view label);
 
 // Places that close the topmost dialog [px].
 struct DialogPlaces {
