@@ -4,13 +4,15 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "core/base/child.h"
+
 namespace limpid {
 
 namespace fs = std::filesystem;
 
 fs::path data_dir() {
   std::error_code none;
-  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const fs::path program = own_binary();
   for (fs::path folder = program; folder.has_relative_path();) {
     folder = folder.parent_path();
     const fs::path data = folder / "share/limpid";

@@ -7,7 +7,7 @@
 namespace limpid {
 
 // Returns the folder that holds assets/ and shaders/. It is share/limpid beside one of the folders
-// that this program is in: PREFIX/share/limpid if installed, a link to the source tree in a build
+// that this program, or Limpid's library, is in: PREFIX/share/limpid if installed, a link to the source tree in a build
 // folder. Throws std::runtime_error if it is not there.
 std::filesystem::path data_dir();
 

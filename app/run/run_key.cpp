@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "app/run/replay.h"
+#include "core/base/child.h"
 #include "devices/files/config_file.h"
 
 namespace limpid {
@@ -87,7 +88,7 @@ std::optional<std::uint64_t> file_digest(const std::filesystem::path& file) {
 }
 
 std::uint64_t program_digest() {
-  static const std::uint64_t digest = file_digest("/proc/self/exe").value_or(0);
+  static const std::uint64_t digest = file_digest(own_binary()).value_or(0);
   return digest;
 }
 

@@ -1,6 +1,8 @@
 #include "core/base/child.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
+#include <link.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,9 +20,31 @@ namespace limpid {
 
 namespace fs = std::filesystem;
 
-fs::path beside_this_program(const char* name) {
+fs::path own_binary() {
   std::error_code none;
-  return fs::read_symlink("/proc/self/exe", none).replace_filename(name);
+  Dl_info about{};
+  link_map* loaded = nullptr;
+  const auto* here = reinterpret_cast<const void*>(&own_binary);
+  const int found = dladdr1(here, &about, reinterpret_cast<void**>(&loaded), RTLD_DL_LINKMAP);
+  // The program itself has no name in this list.
+  if (found != 0 && loaded != nullptr && *loaded->l_name != '\0') {
+    return fs::canonical(loaded->l_name, none);
+  }
+  return fs::read_symlink("/proc/self/exe", none);
+}
+
+fs::path own_program(const char* name) {
+  std::error_code none;
+  const fs::path own = own_binary();
+  const fs::path beside = fs::path(own).replace_filename(name);
+  if (fs::exists(beside, none)) return beside;
+  for (fs::path folder = own; folder.has_relative_path();) {
+    folder = folder.parent_path();
+    if (fs::path program = folder / "libexec/limpid" / name; fs::exists(program, none)) {
+      return program;
+    }
+  }
+  return beside;
 }
 
 Child::Child(std::vector<std::string> words, std::span<const Given> given) {

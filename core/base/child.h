@@ -11,8 +11,10 @@
 
 namespace limpid {
 
-// Path of the program `name` in the folder of the running one.
-std::filesystem::path beside_this_program(const char* name);
+// Path of the file that this code is in: the running program, or a library that it has loaded.
+std::filesystem::path own_binary();
+// Path of Limpid's program `name`: beside that file, else in libexec/limpid above it.
+std::filesystem::path own_program(const char* name);
 
 // A descriptor of this process, and its number in the child.
 struct Given {

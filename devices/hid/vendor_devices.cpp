@@ -127,7 +127,7 @@ std::vector<VendorLine> ask_vendors() {
   Descriptor other_end(ends[1]);
   const std::array<Given, 3> given{Given{*nowhere, STDIN_FILENO}, Given{*other_end, STDOUT_FILENO},
                                    Given{*nowhere, STDERR_FILENO}};
-  const Child child({beside_this_program(kVendorProgram).string(), "list"}, given);
+  const Child child({own_program(kVendorProgram).string(), "list"}, given);
   other_end.close();
   if (!child.started()) return {};
   std::istringstream text(read_all(*answers, Clock::now() + kLongestList));
@@ -173,7 +173,7 @@ std::unique_ptr<HidTransport> open_vendor(const std::string& back_end, const std
   constexpr int kThere = 3;
   const Descriptor other_end(ends[1]);
   const std::array<Given, 1> given{Given{*other_end, kThere}};
-  const std::string program = beside_this_program(kVendorProgram).string();
+  const std::string program = own_program(kVendorProgram).string();
   auto child = std::make_unique<Child>(
       std::vector<std::string>{program, back_end, name, "--connection", std::to_string(kThere)},
       given);

@@ -107,7 +107,7 @@ ConvertedModel convert_model(std::span<const unsigned char> bytes, const ModelKi
   const Descriptor lines(ends[0]);
   Descriptor other_end(ends[1]);
   if (!write_all(*in, bytes)) refuse(name, "is too large for the memory");
-  const std::string at = beside_this_program(kProgram).string();
+  const std::string at = own_program(kProgram).string();
   const std::string place = kind.files == ModelFiles::one ? "" : folder.string();
   const std::array given{Given{*in, STDIN_FILENO}, Given{*out, STDOUT_FILENO},
                          Given{*other_end, kLines}};

@@ -155,7 +155,7 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
   const Descriptor answers(ends[0]);
   Descriptor other_end(ends[1]);
   ::fcntl(*answers, F_SETPIPE_SZ, kPipeBytes);
-  const std::string at = beside_this_program(kSessionProgram).string();
+  const std::string at = own_program(kSessionProgram).string();
   given.push_back({*other_end, STDOUT_FILENO});
   Child child({at, what, file.string()}, given);
   if (!child.started()) {
