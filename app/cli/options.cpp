@@ -39,10 +39,6 @@ std::optional<double> number_in(const std::string& text) {
   return x;
 }
 
-std::uint64_t ticks_in(double duration, double tick) {
-  return static_cast<std::uint64_t>(std::max(1LL, std::llround(duration / tick)));
-}
-
 CLI::Validator whole_number() {
   return {[](const std::string& text) -> std::string {
             constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();

@@ -14,6 +14,10 @@
 
 namespace limpid {
 
+std::uint64_t ticks_in(double duration, double T) {
+  return static_cast<std::uint64_t>(std::max(1LL, std::llround(duration / T)));
+}
+
 HandInput input_at(const HandPath& path, std::size_t k, double T) {
   return {path.sample(k, T),
           path.grip_sample(k, T),

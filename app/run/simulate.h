@@ -45,6 +45,9 @@ struct RunPlan : Lane {
   RowLayout layout() const { return row_layout(arm.dof(), document.scene); }  // of each lane's rows
 };
 
+// Returns the number of ticks of length T in that time [s], at least one.
+std::uint64_t ticks_in(double duration, double T);
+
 // Returns what a hand that follows the path does over its k-th tick of length T [s].
 HandInput input_at(const HandPath& path, std::size_t k, double T);
 

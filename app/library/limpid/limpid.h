@@ -1,0 +1,293 @@
+// Limpid's haptic loop as a library: one tick of a device loop of your own, or of a simulated arm
+// in a simulated hand.
+//
+//     limpid::LoopOptions options;
+//     options.arm = "my_arm.urdf";
+//     options.scene = "table.toml";
+//     options.settings = {"coupling.kind=predictive", "coupling.eta=0.5"};
+//     limpid::DeviceLoop loop(options, device.positions());
+//     loop.arm();  // as soon as a person holds the device
+//     while (running) {
+//       device.wait();
+//       limpid::DeviceLoop::Reading reading;
+//       reading.position = device.positions();
+//       device.push(loop.tick(reading));
+//     }
+//
+// Quantities have SI units. Joints that turn have rad, rad/s and N m, joints that slide m, m/s and
+// N. Points are in the frame of the arm's base: x forward, y left, z up.
+//
+// Threads: arm(), cut() and the free functions may be called from any thread. All else of a loop
+// belongs to the thread that ticks. tick() and step() neither allocate, lock nor throw, and touch
+// no file; constructors, set() with a text, record() and finish_recording() do.
+//
+// Errors: limpid::LoopError. Its text names the file and line, or the key, what was found, and what
+// is allowed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Version of this header by the rules of semantic versioning: what it says changes its meaning with
+// the first number, or before 1.0.0 with the second.
+#define LIMPID_VERSION_MAJOR 0
+#define LIMPID_VERSION_MINOR 2
+#define LIMPID_VERSION_PATCH 0
+
+#define LIMPID_API __attribute__((visibility("default")))
+
+namespace limpid {
+
+using Point3 = std::array<double, 3>;  // x, y, z [m]
+
+class LIMPID_API LoopError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  ~LoopError() override;
+};
+
+// Returns the version of the library that runs, as "0.2.0+41.g3f2a94d1".
+LIMPID_API std::string library_version();
+
+// Whose motors a DeviceLoop moves. With `real` a person's hand is on them: force is off until it is
+// armed, fades in within 0.5 s, and the limits below hold. With `simulated` force is on from the
+// first tick, and nothing but the arm's file limits it.
+enum class Motors : std::uint8_t { real, simulated };
+
+// Limits for real motors. They can be lowered only: the values here are the largest allowed.
+struct LoopLimits {
+  double joint_speed = 15;  // Fastest joint, 0.5 to 15 rad/s; force is gone at 1.5 of it.
+  double tip_speed = 2;     // Tip, 0.05 to 2 m/s; force is gone at 1.5 of it.
+  double tip_force = 10;    // Motors' force at the tip, 0.1 to 10 N.
+  double energy = 1.5;      // Energy that motors put out in a second, 0.02 to 1.5 J; more trips.
+  double range = 1;         // Part of each joint's range, about its middle, 0.1 to 1.
+};
+
+struct LoopOptions {
+  // URDF file of the arm, or the name of one that came along, as "omni.urdf". Empty: the built-in
+  // arm of three joints. Xacro is not expanded here.
+  std::string arm;
+  // URDF of the arm as text, in place of the file; urdf_text() below writes one.
+  std::string arm_text;
+  // Link of the arm that the hand holds. Empty: the one that the file names, or the end of the
+  // longest chain.
+  std::string tip;
+  // TOML file of the scene, or the name of one that came along, as "table.toml". Empty: a table
+  // where the arm reaches it, else nothing to touch.
+  std::string scene;
+  // The scene as text, in place of the file; SceneBuilder below writes one. Models that it names
+  // are looked for in the present folder.
+  std::string scene_text;
+  // TOML file of settings, as `limpid run --config` takes it. Empty: none.
+  std::string config;
+  // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
+  // setting_list() has all of them. Gains that no setting names are fitted to the arm.
+  std::vector<std::string> settings;
+  // Time from a tick to the next, 1e-5 to 0.1 s: what your loop keeps. Faster loops render stiffer
+  // walls. Walls of a simulated hand are tried at 0.001.
+  double period = 0.001;
+  // The two below are a DeviceLoop's.
+  Motors motors = Motors::real;
+  LoopLimits limits;
+};
+
+// A setting, as the sliders of the window and `limpid run --help` describe it.
+struct SettingInfo {
+  std::string key;                 // "coupling.eta"
+  std::string unit;                // "-" for none
+  double least = 0, most = 0;      // allowed; of a flag 0 and 1
+  std::vector<std::string> words;  // of a choice, else empty
+  bool live = true;                // may change while the loop runs
+  std::string meaning;             // a sentence for people
+};
+LIMPID_API std::vector<SettingInfo> setting_list();
+
+// A joint and the link that it moves. Its frame is that of its origin; the axis is in it.
+struct ArmJoint {
+  std::string name;                    // Unique in the arm.
+  bool slides = false;                 // Else it turns.
+  Point3 position{};                   // Origin in the frame of the joint before [m].
+  Point3 rpy{};                        // Roll, pitch and yaw of the origin [rad].
+  Point3 axis{0, 0, 1};                // Any length but 0.
+  double lower = -3.14, upper = 3.14;  // Range [rad or m]; a real device's has to be within it.
+  double effort = 0;                   // Motor's largest torque or force, at least 0 [N m or N].
+  double damping = 0;                  // b_d, viscous [N m s/rad or N s/m]: known, not guessed up.
+  double friction = 0;                 // Coulomb's [N m or N].
+  double mass = 0;                     // Link [kg]; some link of the arm has one.
+  Point3 center{};                     // Centre of the link's mass in its frame [m].
+  std::array<double, 6> inertia{};     // xx, xy, xz, yy, yz, zz about the centre [kg m^2].
+};
+
+struct ArmModel {
+  std::string name = "arm";
+  std::vector<ArmJoint> joints;  // 1 to 32, base first
+  Point3 tip{};                  // in the last joint's frame [m]
+};
+// Returns the arm as URDF, for LoopOptions::arm_text or a file.
+LIMPID_API std::string urdf_text(const ArmModel& arm);
+
+// Surface of an object. Stiffness up to 1e6, damping up to 1000, friction 0 to 1.
+struct SurfaceMaterial {
+  double stiffness = 600;  // [N/m]
+  double damping = 0;      // while it is pressed in or let out [N s/m]
+  double friction = 0;     // kinetic, tangential force over the normal one [-]
+  double sticking = 0;     // static; raised to the kinetic one if it is less [-]
+};
+
+// Writes a scene, an object a call. Names are for people, and for "/objects/..." of a row.
+class LIMPID_API SceneBuilder {
+ public:
+  // Objects that stay where they are. `normal` points out of the material.
+  SceneBuilder& plane(const std::string& name, Point3 point, Point3 normal, SurfaceMaterial = {});
+  SceneBuilder& sphere(const std::string& name, Point3 center, double radius, SurfaceMaterial = {});
+  SceneBuilder& box(const std::string& name, Point3 center, Point3 size, SurfaceMaterial = {});
+  // Objects that move, with their mass, 1e-6 to 100 kg, and even density.
+  SceneBuilder& ball(const std::string& name, Point3 center, double radius, double mass,
+                     SurfaceMaterial = {});
+  SceneBuilder& block(const std::string& name, Point3 center, Point3 size, double mass,
+                      SurfaceMaterial = {});
+  // Anything else that scene files have, as TOML: "[[spring]] ...", "gravity = [0, 0, 0]" comes
+  // before all objects.
+  SceneBuilder& toml(const std::string& text);
+
+  const std::string& text() const { return text_; }  // for LoopOptions::scene_text or a file
+
+ private:
+  std::string text_;
+};
+
+// A column of a row.
+struct RowColumn {
+  std::string path;        // as in recordings: "/device/position"
+  std::string unit;        // of joints that slide it is m for rad, and N for N m
+  std::string what;        // a sentence for people
+  std::size_t offset = 0;  // of its first number in the row
+  std::size_t width = 0;   // numbers: 1, 3, one a joint, ...
+};
+
+// Energies of the coupling since the loop began [J].
+struct LoopEnergy {
+  // E_c: given by the coupling, with the device's own damping. A passive one's is 0 at most.
+  double controller = 0;
+  double commanded = 0;  // Part of E_c by motors and proxy.
+  double port = 0;       // Given to the human by motors and own damping.
+  double reserve = 0;    // Left to give, by the law's account; 0 without an account.
+};
+
+// Settings, rows, energies and recording of either kind of loop.
+class LIMPID_API Loop {
+ public:
+  ~Loop();
+  Loop(Loop&&) noexcept;
+  Loop& operator=(Loop&&) noexcept;
+
+  std::size_t joints() const;
+  double period() const;  // T [s]
+  // Sentences on what was mended, guessed, fitted or left out of arm, scene and models.
+  const std::vector<std::string>& notes() const;
+
+  // Settings. Errors: no such key; a value that is not allowed; a key that is fixed once the loop
+  // is made (SettingInfo::live).
+  void set(const std::string& key_value);        // "coupling.kind=standard"
+  void set(std::string_view key, double value);  // of a number or a flag; does not allocate
+  double get(std::string_view key) const;        // of a choice the place of its word
+
+  // The row of the last tick, which recordings keep. NaN stands for what nobody knows.
+  const std::vector<RowColumn>& columns() const;
+  std::span<const double> row() const noexcept;
+  std::span<const double> row(std::string_view path) const;  // Errors: no such column.
+  double time() const noexcept;                              // t_k [s]
+  Point3 tip() const noexcept;                               // of the device
+  LoopEnergy energy() const noexcept;
+  // True once the loop was unstable: force is off, and stays off.
+  bool diverged() const noexcept;
+
+  // Records every row from the coming tick on that finds the force steady. A thread of its own
+  // writes. With simulated motors a tick waits where the disk is slower; with real ones rows that
+  // find no room are lost, and counted. Errors: the file exists and not `replace`; it cannot be
+  // written.
+  void record(const std::string& file, bool replace = false);
+  // Ends the recording and returns the number of lost rows. Without it FILE.part is left, which
+  // `limpid recover` mends. Errors: a write failed; nothing was being recorded.
+  std::uint64_t finish_recording();
+
+ protected:
+  struct State;
+  explicit Loop(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// A loop round a device of your own, or a simulation of one: it reads positions and returns
+// torques.
+class LIMPID_API DeviceLoop : public Loop {
+ public:
+  struct Reading {
+    std::span<const double> position;  // of each joint, now
+    // False: the same reading as at the last tick. Force ends where none is fresh for 5 ms.
+    bool fresh = true;
+    bool hand = true;    // False: the dead-man switch is open; force waits.
+    bool fault = false;  // True: the device is not well; force trips until it is armed again.
+    // Time since the last tick [s]. 0: measured by the library with real motors, one period with
+    // simulated ones. More than 5 ms is a stall, after which force fades in anew.
+    double elapsed = 0;
+  };
+
+  // `position`: of each joint now, where the proxy begins. Errors: LoopError.
+  DeviceLoop(const LoopOptions& options, std::span<const double> position);
+
+  // Runs the tick and returns each joint's torque or force, to be held until the next one. Readings
+  // that cannot be (not finite, far outside of the range, faster than 100 rad/s or 10 m/s, of
+  // another number of joints) trip the force. What leaves when your loop hangs is the device's
+  // matter: let its own watchdog end a torque that is not renewed within 5 to 20 ms.
+  std::span<const double> tick(const Reading& reading) noexcept;
+
+  // Ask for force, and end it; heard at the next tick. Whoever calls arm() answers for a person who
+  // holds the device.
+  void arm() noexcept;
+  void cut() noexcept;
+  bool armed() const noexcept;          // asked for, and not cut since
+  double force_share() const noexcept;  // part of the torque that leaves, 0 to 1
+  std::string force_text() const;       // why there is no force, or less; empty while it is on
+};
+
+// A loop of the library's simulated arm, which a simulated hand leads: what `limpid run` does.
+class LIMPID_API SimulatedLoop : public Loop {
+ public:
+  struct Hand {
+    Point3 target{};                   // where it wants the tip [m]
+    double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
+    bool magnet = false;               // picks up objects that may be picked up
+    std::span<const double> torque{};  // pushed on each joint besides; empty: none
+  };
+
+  // Begins at rest, in the middle of the joints' ranges. Errors: LoopError.
+  explicit SimulatedLoop(const LoopOptions& options);
+
+  // Begins anew, at rest, with the tip at `target`. Errors: out of reach; a recording is under way.
+  void start(Point3 target);
+  // Runs a tick of arm, hand and coupling; returns its row.
+  std::span<const double> step(const Hand& hand) noexcept;
+
+  // Takes each row of run(); returning false ends it.
+  using TakeRow = std::function<bool(std::span<const double> row)>;
+  struct RunEnd {
+    std::uint64_t rows = 0;
+    bool diverged = false;
+    std::string why;  // what was unstable, and when; else empty
+  };
+  // Leads a hand along a path as fast as it goes, with the present settings: the rows of `limpid
+  // run`, bit for bit. `path` has rows of time [s], x, y, z [m], at least two, of increasing time
+  // from 0; between them a monotone cubic leads. `duration` [s]; 0: the path's. The loop itself
+  // stays as it is, so that threads may run one loop at once. Errors: LoopError.
+  RunEnd run(std::span<const double> path, double duration, const TakeRow& take) const;
+};
+
+}  // namespace limpid

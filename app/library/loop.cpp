@@ -1,0 +1,330 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "app/base/version.h"
+#include "app/library/caller_device.h"
+#include "app/library/limpid/limpid.h"
+#include "app/library/plan.h"
+#include "app/run/reach_check.h"
+#include "app/run/recorder.h"
+#include "app/run/replay.h"
+#include "core/tick/as_taken.h"
+#include "devices/files/session/session_units.h"
+#include "devices/simulated/rig.h"
+
+namespace limpid {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+// Calls `work`; whatever it throws becomes the library's own error.
+template <class Work>
+auto as_library(const Work& work) {
+  try {
+    return work();
+  } catch (const LoopError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw LoopError(e.what());
+  }
+}
+
+RigStart start_at(const ArmDescription& arm, std::span<const double> position) {
+  if (position.size() != arm.joints.size()) {
+    throw LoopError(fmt::format("position: has {} numbers; needed: {}, one a joint",
+                                position.size(), arm.joints.size()));
+  }
+  Eigen::VectorXd x(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    if (!std::isfinite(position[joint])) {
+      throw LoopError(fmt::format("position: joint {} has {}; needed: a finite number", i + 1,
+                                  position[joint]));
+    }
+    x[i] = position[joint] / (arm.slides(joint) ? kSlideUnit : 1);
+  }
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
+  return {x, zero, x, zero, zero};
+}
+
+}  // namespace
+
+LoopError::~LoopError() = default;
+
+struct Loop::State {
+  State(LibraryPlan read, const LoopOptions& options);
+
+  void begin(const RigStart& start);
+  ForceRequest wish() noexcept;
+  void step(const RigInput& input) noexcept;
+  void follow_recorder(const Vec3& target) noexcept;
+  // Returns the settings as the loop takes them.
+  Parameters taken() const noexcept {
+    return real ? as_taken(plan.parameters, RealDevice::of(plan.arm, 0)) : plan.parameters;
+  }
+  void in_si(std::span<const double> of_rig, std::span<double> into) const noexcept;
+  void tell_recorder() const noexcept {
+    if (recording) recorder->changed(taken());
+  }
+
+  RunPlan plan;  // its parameters are the loop's present ones
+  std::vector<std::string> notes;
+  std::optional<CallerDevice> device;  // of a DeviceLoop
+  std::optional<Rig> rig;
+  bool real = false;  // motors of a device with a person's hand on it
+  RowLayout layout;
+  SessionUnits units;
+  std::vector<RowColumn> columns;
+  std::vector<double> row;     // as the rig has it
+  std::vector<double> row_si;  // as everybody has it
+  RigStart scratch;            // with room for all that the rig has
+  std::uint64_t ticks = 0;
+  Clock::time_point before{};
+  std::atomic<std::uint32_t> arms{0}, cuts{0};
+  std::uint32_t known_arms = 0, known_cuts = 0;
+  std::unique_ptr<Recorder> recorder;
+  bool recording = false;  // the recorder gets rows
+};
+
+Loop::State::State(LibraryPlan read, const LoopOptions& options)
+    : plan(std::move(read.plan)),
+      notes(std::move(read.notes)),
+      real(options.motors == Motors::real),
+      layout(plan.layout()),
+      units(layout, slides_of(plan.arm)),
+      row(static_cast<std::size_t>(layout.stride()), 0.0),
+      row_si(row) {
+  plan.hand.source = "library";
+  for (const ColumnInfo& each : kColumnInfo) {
+    if (!layout.has(each.column)) continue;
+    columns.push_back({each.path, each.unit, each.what,
+                       static_cast<std::size_t>(layout.offset(each.column)),
+                       static_cast<std::size_t>(layout.width(each.column))});
+  }
+}
+
+void Loop::State::begin(const RigStart& start) {
+  rig->start(plan.parameters, start);
+  rig->present(scratch);
+  ticks = 0;
+}
+
+ForceRequest Loop::State::wish() noexcept {
+  const std::uint32_t asked = arms.load(std::memory_order_relaxed);
+  const std::uint32_t ended = cuts.load(std::memory_order_relaxed);
+  const bool arm = std::exchange(known_arms, asked) != asked;
+  const bool cut = std::exchange(known_cuts, ended) != ended;
+  return cut ? ForceRequest::cut : arm ? ForceRequest::arm : ForceRequest::as_it_is;
+}
+
+// Takes up a recording. It restarts the rig where it stands, so that its first row determines all
+// later ones.
+void Loop::State::follow_recorder(const Vec3& target) noexcept {
+  if (!recorder || recording || !rig->steady()) return;
+  recording = true;
+  if (ticks == 0) return;
+  rig->restart_here(plan.parameters, scratch, target);
+  recorder->changed(taken());
+  recorder->begins(scratch.world);
+}
+
+void Loop::State::step(const RigInput& input) noexcept {
+  const auto began = Clock::now();
+  follow_recorder(input.hand.target);
+  rig->step(plan.parameters, input, row);
+  layout.in(std::span(row), Column::wake_latency)[0] = 0;
+  layout.in(std::span(row), Column::compute)[0] = seconds_between(began, Clock::now());
+  ++ticks;
+  if (recording && real) recorder->push(row);
+  if (recording && !real) recorder->push_waiting(row);
+  in_si(row, row_si);
+}
+
+void Loop::State::in_si(std::span<const double> of_rig, std::span<double> into) const noexcept {
+  std::ranges::copy(of_rig, into.begin());
+  for (const SessionUnits::Scaled& each : units.scaled()) {
+    double& x = into[static_cast<std::size_t>(layout.offset(each.column) + each.part)];
+    x = SessionUnits::filed(each, x).value;
+  }
+}
+
+Loop::Loop(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Loop::~Loop() = default;
+Loop::Loop(Loop&&) noexcept = default;
+Loop& Loop::operator=(Loop&&) noexcept = default;
+
+std::size_t Loop::joints() const { return state_->plan.arm.joints.size(); }
+double Loop::period() const { return state_->plan.parameters.tick; }
+const std::vector<std::string>& Loop::notes() const { return state_->notes; }
+
+void Loop::set(const std::string& key_value) {
+  as_library([&] { set_live(state_->plan.parameters, key_value); });
+  state_->tell_recorder();
+}
+
+void Loop::set(std::string_view key, double value) {
+  as_library([&] { set_live(state_->plan.parameters, key, value); });
+  state_->tell_recorder();
+}
+
+double Loop::get(std::string_view key) const {
+  const ParameterInfo* const info = find_parameter(key);
+  if (info == nullptr) throw LoopError(std::string(key) + ": no such key");
+  return parameter_number(state_->plan.parameters, *info);
+}
+
+const std::vector<RowColumn>& Loop::columns() const { return state_->columns; }
+std::span<const double> Loop::row() const noexcept { return state_->row_si; }
+
+std::span<const double> Loop::row(std::string_view path) const {
+  for (const RowColumn& each : state_->columns) {
+    if (each.path == path) return row().subspan(each.offset, each.width);
+  }
+  throw LoopError(std::string(path) + ": no such column; columns() has all of them");
+}
+
+double Loop::time() const noexcept {
+  return state_->layout.in(std::span<const double>(state_->row), Column::time)[0];
+}
+
+Point3 Loop::tip() const noexcept {
+  const Vec3 at = state_->rig->tip();
+  return {at.x(), at.y(), at.z()};
+}
+
+LoopEnergy Loop::energy() const noexcept {
+  const auto value = [&](Column c) {
+    return state_->layout.in(std::span<const double>(state_->row), c)[0];
+  };
+  return {value(Column::energy_total), value(Column::energy_commanded), value(Column::energy_port),
+          value(Column::energy_ledger)};
+}
+
+bool Loop::diverged() const noexcept { return state_->rig->diverged(); }
+
+void Loop::record(const std::string& file, bool replace) {
+  State& s = *state_;
+  if (s.recorder) throw LoopError(file + ": " + s.recorder->out().string() + " is being recorded");
+  as_library([&] {
+    RunPlan recorded = s.plan;
+    recorded.parameters = s.taken();
+    s.recorder =
+        std::make_unique<Recorder>(file, session_info(recorded), recorded.parameters, replace,
+                                   s.real ? Recorder::kLiveRoom : Recorder::kWaitingRoom);
+  });
+}
+
+std::uint64_t Loop::finish_recording() {
+  State& s = *state_;
+  if (!s.recorder) throw LoopError("finish_recording: nothing is being recorded");
+  const std::unique_ptr<Recorder> recorder = std::move(s.recorder);
+  s.recording = false;
+  as_library([&] { recorder->finish(); });
+  return recorder->dropped();
+}
+
+DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> position)
+    : Loop(as_library([&] {
+        auto state = std::make_unique<State>(read_plan(options), options);
+        state->device.emplace(state->plan.arm, state->real);
+        state->rig.emplace(state->plan.arm, state->plan.document.scene, &*state->device);
+        state->rig->limit(limits_of(options.limits));
+        state->begin(start_at(state->plan.arm, position));
+        return state;
+      })) {}
+
+std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
+  State& s = *state_;
+  const auto now = Clock::now();
+  double elapsed = reading.elapsed > 0 ? reading.elapsed : 0;
+  if (elapsed == 0 && s.real && s.ticks > 0) elapsed = seconds_between(s.before, now);
+  s.before = now;
+  const double T = s.plan.parameters.tick;
+  const double passed = elapsed > 0 ? elapsed : T;
+  s.device->take(reading.position, reading.fresh, reading.hand, reading.fault, passed);
+  RigInput input{{s.rig->tip(), 1}, s.wish()};
+  constexpr double kMostPeriods = 1e6;
+  input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));
+  input.dt = elapsed;
+  s.step(input);
+  return s.device->torque();
+}
+
+void DeviceLoop::arm() noexcept { state_->arms.fetch_add(1, std::memory_order_relaxed); }
+void DeviceLoop::cut() noexcept { state_->cuts.fetch_add(1, std::memory_order_relaxed); }
+bool DeviceLoop::armed() const noexcept { return state_->rig->force().armed(); }
+double DeviceLoop::force_share() const noexcept { return state_->rig->force().gain(); }
+std::string DeviceLoop::force_text() const {
+  return limpid::force_text(state_->rig->force_state());
+}
+
+SimulatedLoop::SimulatedLoop(const LoopOptions& options)
+    : Loop(as_library([&] {
+        auto state = std::make_unique<State>(read_plan(options), options);
+        state->real = false;
+        state->rig.emplace(state->plan.arm, state->plan.document.scene);
+        state->begin(rest_at(state->plan.arm, rest_tip(state->plan.arm)));
+        return state;
+      })) {}
+
+void SimulatedLoop::start(Point3 target) {
+  State& s = *state_;
+  if (s.recorder) throw LoopError("start: a recording is under way; finish it first");
+  as_library([&] { s.begin(rest_at(s.plan.arm, Vec3(target[0], target[1], target[2]))); });
+}
+
+std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
+  State& s = *state_;
+  HandInput input{Vec3(hand.target[0], hand.target[1], hand.target[2]), hand.grip};
+  input.magnet = hand.magnet;
+  if (hand.torque.size() == joints()) input.torque = hand.torque;
+  s.step({input});
+  return row();
+}
+
+SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double duration,
+                                         const TakeRow& take) const {
+  return as_library([&]() -> RunEnd {
+    RunPlan plan = state_->plan;
+    plan.hand = hand_of_rows(path);
+    if (const std::string why = out_of_reach(plan); !why.empty()) throw LoopError(why);
+    plan.rows = ticks_in(duration > 0 ? duration : plan.hand.duration(), plan.parameters.tick);
+    std::vector<double> si(state_->row_si.size());
+    const auto end = simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+      state_->in_si(row, si);
+      return take(si);
+    });
+    return {end.rows, end.diverged,
+            end.diverged
+                ? fmt::format("unstable from t = {:.3f} s on: {}", end.diverged_at, end.why)
+                : std::string()};
+  });
+}
+
+std::string library_version() { return program_version(); }
+
+std::vector<SettingInfo> setting_list() {
+  std::vector<SettingInfo> all;
+  for (const ParameterInfo& info : parameter_table()) {
+    all.push_back({info.key,
+                   info.unit,
+                   info.minimum,
+                   info.maximum,
+                   {info.words.begin(), info.words.end()},
+                   info.live,
+                   info.meaning});
+  }
+  return all;
+}
+
+}  // namespace limpid

@@ -1,0 +1,138 @@
+#include "app/library/plan.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "app/base/folders.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/own_world.h"
+#include "app/run/scene_meshes.h"
+#include "app/run/shipped_files.h"
+#include "devices/files/config_file.h"
+#include "devices/files/scene/scene_file.h"
+#include "devices/files/urdf_file.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns the file of that name, or the one of that name that came along.
+fs::path file_of(const std::string& name, const char* kind) {
+  if (fs::exists(name)) return name;
+  if (const auto own = shipped_file(name, {kind})) return *own;
+  throw FileError(name + ": no such file" + shipped_hint(name, {kind}));
+}
+
+void refuse_both(const std::string& file, const std::string& text, const char* what) {
+  if (file.empty() || text.empty()) return;
+  throw FileError(fmt::format("{} and {}_text: are both given; needed: one of them", what, what));
+}
+
+ArmDescription read_arm(const LoopOptions& options) {
+  refuse_both(options.arm, options.arm_text, "arm");
+  if (!options.arm_text.empty()) {
+    return parse_urdf(options.arm_text, "arm_text", fs::current_path(), options.tip);
+  }
+  const fs::path file = options.arm.empty() ? default_device() : file_of(options.arm, "devices");
+  return read_urdf(file, options.tip);
+}
+
+SceneDocument read_scene_of(const LoopOptions& options, const ArmDescription& arm) {
+  refuse_both(options.scene, options.scene_text, "scene");
+  if (!options.scene_text.empty()) {
+    return parse_scene(options.scene_text, "scene_text", fs::current_path(), arm);
+  }
+  return read_scene(options.scene.empty() ? default_scene(arm) : file_of(options.scene, "scenes"),
+                    arm);
+}
+
+Parameters chosen(const LoopOptions& options, Parameters base) {
+  if (!options.config.empty()) apply_config(base, options.config);
+  for (const std::string& setting : options.settings) apply_setting(base, setting);
+  set_parameter(base, "loop.tick", options.period);
+  return base;
+}
+
+void refuse_fixed(const ParameterInfo& info) {
+  if (info.live) return;
+  throw FieldError(std::string(info.key) + ": is fixed once the loop is made; make another loop");
+}
+
+}  // namespace
+
+LibraryPlan read_plan(const LoopOptions& options) {
+  LibraryPlan all;
+  RunPlan& plan = all.plan;
+  plan.arm = read_arm(options);
+  plan.document = read_scene_of(options, plan.arm);
+  plan.models = build_meshes(plan.document);
+  plan.parameters = chosen(options, fitted(plan.arm, chosen(options, {})));
+  all.notes = plan.arm.warnings;
+  for (std::string& warning : mesh_warnings(plan.document.scene, plan.models)) {
+    all.notes.push_back(std::move(warning));
+  }
+  if (const std::string fit = fit_text(fitted(plan.arm, chosen(options, {}))); !fit.empty()) {
+    all.notes.push_back("gains fitted to the arm, but for those that are set: " + fit);
+  }
+  if (const LawInfo& law = info(plan.parameters.kind);
+      plan.parameters.linked() && !law.knows_link()) {
+    all.notes.push_back(fmt::format("link.* does nothing here: {}", law.through_link));
+  }
+  return all;
+}
+
+HandPath hand_of_rows(std::span<const double> rows) {
+  constexpr std::size_t kNumbers = 4;
+  if (rows.size() % kNumbers != 0 || rows.size() < 2 * kNumbers) {
+    throw FileError(fmt::format(
+        "path: has {} numbers; needed: at least two rows of time [s], x, y, z [m]", rows.size()));
+  }
+  std::vector<double> time;
+  std::vector<Vec3> position;
+  for (std::size_t at = 0; at < rows.size(); at += kNumbers) {
+    const auto row = rows.subspan(at, kNumbers);
+    const double t = row[0] - rows[0];
+    const Vec3 point(row[1], row[2], row[3]);
+    if (!std::isfinite(t) || !point.allFinite()) {
+      throw FileError(fmt::format("path: row {}: is not finite", time.size() + 1));
+    }
+    if (!time.empty() && t <= time.back()) {
+      throw FileError(fmt::format("path: row {}: time {} after {}; needed: a later one",
+                                  time.size() + 1, row[0], rows[0] + time.back()));
+    }
+    time.push_back(t);
+    position.push_back(point);
+  }
+  return hand_through(std::move(time), std::move(position), "library");
+}
+
+SafetyLimits limits_of(const LoopLimits& wanted) {
+  SafetyLimits limits;
+  const std::array values{wanted.joint_speed, wanted.tip_speed, wanted.tip_force, wanted.energy,
+                          wanted.range};
+  static_assert(values.size() == kSafetyLimits.size());
+  for (std::size_t i = 0; i < values.size(); ++i) set_value(kSafetyLimits[i], limits, values[i]);
+  return limits;
+}
+
+void set_live(Parameters& p, const std::string& key_value) {
+  Parameters changed = p;
+  apply_setting(changed, key_value);
+  for (const ParameterInfo& info : parameter_table()) {
+    if (value_of(info, changed) != value_of(info, p)) refuse_fixed(info);
+  }
+  p = changed;
+}
+
+void set_live(Parameters& p, std::string_view key, double value) {
+  const ParameterInfo* const info = find_parameter(key);
+  if (info == nullptr) throw FieldError(std::string(key) + ": no such key");
+  refuse_fixed(*info);
+  if (info->kind == FieldInfo::Kind::flag) return set_value(*info, p, value != 0);
+  set_value(*info, p, value);
+}
+
+}  // namespace limpid

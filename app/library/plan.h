@@ -1,0 +1,32 @@
+// Plan of a library's loop: arm, scene and settings of its options, read and checked.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/library/limpid/limpid.h"
+#include "app/run/simulate.h"
+
+namespace limpid {
+
+// A plan without a hand. `notes`: for people, what was mended, guessed or fitted.
+struct LibraryPlan {
+  RunPlan plan;
+  std::vector<std::string> notes;
+};
+
+// Errors: FileError, FieldError.
+LibraryPlan read_plan(const LoopOptions& options);
+
+// Returns the path of rows of time [s], x, y, z [m]. Errors: FileError.
+HandPath hand_of_rows(std::span<const double> rows);
+
+// Returns limits of the loop's safety layer. Errors: FieldError for one that is not allowed.
+SafetyLimits limits_of(const LoopLimits& wanted);
+
+// Sets one setting of a loop that is made. Errors: FieldError.
+void set_live(Parameters& p, const std::string& key_value);
+void set_live(Parameters& p, std::string_view key, double value);
+
+}  // namespace limpid

@@ -1,0 +1,413 @@
+// The library's loops against the loop that the program has, and against closed forms.
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+
+#include "app/library/limpid/limpid.h"
+#include "app/run/fitted_gains.h"
+#include "devices/files/session/session.h"
+#include "devices/files/urdf_file.h"
+#include "devices/simulated/rig.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/test_session.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+
+// A device that gives readings as they are written down, and remembers its torque.
+class Written final : public Device {
+ public:
+  explicit Written(int dof) {
+    traits_.dof = dof;
+    traits_.guarded = false;
+  }
+  const DeviceTraits& traits() const override { return traits_; }
+  bool read(DeviceReading& newest) noexcept override {
+    ++next.count;
+    newest = next;
+    return true;
+  }
+  void write(std::span<const double> given) noexcept override {
+    torque.assign(given.begin(), given.end());
+  }
+  void stop() noexcept override {}
+
+  DeviceReading next;
+  std::vector<double> torque;
+
+ private:
+  DeviceTraits traits_;
+};
+
+LoopOptions table(const char* law, double eta) {
+  LoopOptions options;
+  options.scene = "table.toml";
+  options.settings = {std::string("coupling.kind=") + law, fmt::format("coupling.eta={}", eta)};
+  options.motors = Motors::simulated;
+  return options;
+}
+
+// A slow path of the arm's joints into the table and along it [rad].
+std::array<double, 3> joints_at(const Eigen::VectorXd& rest, double t) {
+  return {rest[0] + 0.05 * std::sin(3 * t), rest[1] + 0.2 * std::sin(2 * t),
+          rest[2] + 0.1 * std::sin(2.3 * t)};
+}
+
+bool same(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+// Compares rows but for what the clock says.
+void expect_same_rows(const RowLayout& layout, std::span<const double> a,
+                      std::span<const double> b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (const ColumnInfo& each : kColumnInfo) {
+    if (each.column == Column::compute || each.column == Column::wake_latency) continue;
+    const auto x = layout.in(a, each.column), y = layout.in(b, each.column);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      ASSERT_TRUE(same(x[i], y[i])) << each.path << " " << i << ": " << x[i] << " and " << y[i];
+    }
+  }
+}
+
+TEST(DeviceLoop, GivesTheRowsAndTorquesOfTheProgramsLoop) {
+  for (const char* law : {"standard", "proposed", "predictive", "direct", "eba"}) {
+    SCOPED_TRACE(law);
+    const ArmDescription arm = test::omni();
+    const Scene scene = test::omni_document("table.toml").scene;
+    const Eigen::VectorXd rest = rest_pose(arm), zero = Eigen::VectorXd::Zero(3);
+    Parameters p = fitted(arm);
+    set_parameter(p, "coupling.kind", std::string(law));
+    p.eta = 0.7;
+    Written device(3);
+    Rig rig(arm, scene, &device);
+    rig.start(p, {rest, zero, rest, zero, zero});
+    const auto at_first = joints_at(rest, 0);
+    DeviceLoop loop(table(law, 0.7), at_first);
+    std::vector<double> row(static_cast<std::size_t>(rig.layout().stride()));
+    double pressed = 0;
+    for (int k = 0; k < 3000; ++k) {
+      const auto x = joints_at(rest, 1e-3 * k);
+      std::ranges::copy(x, device.next.x.begin());
+      rig.step(p, {{rig.tip(), 1}}, row);
+      DeviceLoop::Reading reading;
+      reading.position = x;
+      const auto torque = loop.tick(reading);
+      ASSERT_THAT(std::vector(torque.begin(), torque.end()),
+                  testing::ElementsAreArray(device.torque));
+      expect_same_rows(rig.layout(), row, loop.row());
+      pressed = std::max(pressed, std::abs(rig.layout().in(std::span<const double>(row),
+                                                           Column::contact_torque)[1]));
+    }
+    EXPECT_GT(pressed, 0.01) << "the wall is felt";
+  }
+}
+
+TEST(SimulatedLoop, StepsAndRunsGiveTheRowsOfTheProgramsRun) {
+  RunPlan plan = test::plan("pucks.toml", "touch.csv", 2);
+  plan.parameters = fitted(plan.arm);
+  plan.parameters.kind = CouplingKind::predictive;
+  const Rows rows = test::rows_of(plan);
+  LoopOptions options = table("predictive", plan.parameters.eta);
+  options.scene = "pucks.toml";
+  SimulatedLoop loop(options);
+  const Vec3 first = plan.hand.sample(0, 1e-3);
+  loop.start({first.x(), first.y(), first.z()});
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Vec3 at = plan.hand.sample(k, 1e-3);
+    SimulatedLoop::Hand hand;
+    hand.target = {at.x(), at.y(), at.z()};
+    loop.step(hand);
+    ASSERT_NO_FATAL_FAILURE(expect_same_rows(plan.layout(), rows.row(k), loop.row())) << k;
+  }
+
+  std::vector<double> path;
+  for (std::size_t i = 0; i < plan.hand.time.size(); ++i) {
+    const Vec3& at = plan.hand.position[i];
+    path.insert(path.end(), {plan.hand.time[i], at.x(), at.y(), at.z()});
+  }
+  std::size_t k = 0;
+  const auto end = loop.run(path, 2, [&](std::span<const double> row) {
+    expect_same_rows(plan.layout(), rows.row(k++), row);
+    return !testing::Test::HasFatalFailure();
+  });
+  EXPECT_EQ(end.rows, rows.size());
+  EXPECT_FALSE(end.diverged);
+}
+
+// A slide along x of 0.1 kg, with a wall from x = 0 on.
+LoopOptions slide() {
+  ArmModel arm;
+  ArmJoint joint;
+  joint.name = "slide";
+  joint.slides = true;
+  joint.axis = {1, 0, 0};
+  joint.lower = -0.2;
+  joint.upper = 0.2;
+  joint.effort = 8;
+  joint.damping = 0.5;
+  joint.mass = 0.1;
+  arm.joints = {joint};
+  LoopOptions options;
+  options.arm_text = urdf_text(arm);
+  SceneBuilder scene;
+  SurfaceMaterial wall;
+  wall.stiffness = 500;
+  options.scene_text = scene.plane("wall", {0, 0, 0}, {-1, 0, 0}, wall).text();
+  options.settings = {"coupling.kind=direct"};
+  options.motors = Motors::simulated;
+  return options;
+}
+
+TEST(DeviceLoop, TakesMetresAndGivesNewtonsOfASlide) {
+  std::array<double, 1> x{-0.01};
+  DeviceLoop loop(slide(), x);
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  EXPECT_NEAR(loop.tick(reading)[0], 0, 1e-12) << "the wall is 1 cm away";
+  double force = 0;
+  for (int k = 0; k < 4000; ++k) {
+    x[0] = std::min(0.004, x[0] + 1e-5);
+    force = loop.tick(reading)[0];
+  }
+  EXPECT_NEAR(force, -500 * 0.004, 1e-6) << "a spring 4 mm deep";
+  EXPECT_DOUBLE_EQ(loop.row("/device/position")[0], 0.004);
+  EXPECT_NEAR(loop.row("/device/commanded_torque")[0], -2, 1e-6);
+  EXPECT_NEAR(loop.tip()[0], 0.004, 1e-15);
+}
+
+// Ticks a loop at rest for so many seconds; returns the last torque of its first joint.
+double rest(DeviceLoop& loop, std::span<const double> x, double seconds) {
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  reading.elapsed = 1e-3;
+  double torque = 0;
+  for (int k = 0; k < std::lround(1e3 * seconds); ++k) {
+    // Somebody's hand is never quite still.
+    std::vector<double> trembling(x.begin(), x.end());
+    trembling[0] += k % 2 * 1e-6;
+    reading.position = trembling;
+    torque = loop.tick(reading)[0];
+  }
+  return torque;
+}
+
+TEST(DeviceLoop, MovesRealMotorsOnlyWhenArmedAndFadesIn) {
+  LoopOptions options = slide();
+  options.motors = Motors::real;
+  options.limits.tip_force = 3;
+  const std::array<double, 1> x{0.004};
+  DeviceLoop loop(options, x);
+  EXPECT_EQ(rest(loop, x, 1), 0) << "nobody armed it";
+  EXPECT_THAT(loop.force_text(), HasSubstr("not armed"));
+  loop.arm();
+  rest(loop, x, 0.1);
+  EXPECT_TRUE(loop.armed());
+  EXPECT_GT(loop.force_share(), 0.1);
+  EXPECT_LT(loop.force_share(), 0.4) << "it takes half a second";
+  EXPECT_NEAR(rest(loop, x, 1), -2, 0.01);
+  EXPECT_EQ(loop.force_text(), "");
+  loop.cut();
+  EXPECT_EQ(rest(loop, x, 0.001), 0) << "at once";
+  EXPECT_FALSE(loop.armed());
+}
+
+TEST(DeviceLoop, KeepsToTheLimitAtTheTip) {
+  LoopOptions options = slide();
+  options.motors = Motors::real;
+  options.limits.tip_force = 1;
+  const std::array<double, 1> x{0.004};
+  DeviceLoop loop(options, x);
+  loop.arm();
+  EXPECT_NEAR(rest(loop, x, 2), -1, 1e-9) << "the wall would give 2 N";
+}
+
+// Arms a loop at a wall, until its force is on.
+DeviceLoop armed() {
+  LoopOptions options = slide();
+  options.motors = Motors::real;
+  const std::array<double, 1> x{0.004};
+  DeviceLoop loop(options, x);
+  loop.arm();
+  EXPECT_LT(rest(loop, x, 1), -1);
+  return loop;
+}
+
+TEST(DeviceLoop, TripsOnReadingsThatCannotBe) {
+  const std::array<double, 1> x{0.004};
+  for (const double wrong : {1e6, std::nan(""), 0.15}) {  // 15 cm within a tick, within the range
+    SCOPED_TRACE(wrong);
+    DeviceLoop loop = armed();
+    const std::array<double, 1> there{wrong};
+    DeviceLoop::Reading reading;
+    reading.position = there;
+    reading.elapsed = 1e-3;
+    EXPECT_EQ(loop.tick(reading)[0], 0);
+    EXPECT_EQ(rest(loop, x, 1), 0) << "it does not come back by itself";
+    EXPECT_NE(loop.force_text(), "");
+    loop.arm();
+    EXPECT_LT(rest(loop, x, 1), -1);
+  }
+}
+
+TEST(DeviceLoop, EndsForceWithoutFreshReadingsHandOrHealth) {
+  const std::array<double, 1> x{0.004};
+  const auto after = [&](auto change) {
+    DeviceLoop loop = armed();
+    DeviceLoop::Reading reading;
+    reading.position = x;
+    reading.elapsed = 1e-3;
+    change(reading);
+    double torque = 0;
+    for (int k = 0; k < 7; ++k) torque = loop.tick(reading)[0];
+    return std::pair(torque, loop.force_text());
+  };
+  EXPECT_EQ(after([](auto& r) { r.fresh = false; }).first, 0) << "7 ms old";
+  EXPECT_EQ(after([](auto& r) { r.hand = false; }).first, 0);
+  EXPECT_EQ(after([](auto& r) { r.fault = true; }).first, 0);
+  const auto [torque, why] = after([](auto& r) { r.position = {}; });
+  EXPECT_EQ(torque, 0);
+  EXPECT_NE(why, "");
+  EXPECT_EQ(after([](auto& r) { r.elapsed = 0.006; }).first, 0) << "a stall: force fades in anew";
+}
+
+TEST(DeviceLoop, RecordsWhatItsRowsWere) {
+  const test::TempDir dir;
+  const auto file = (dir.path() / "own.h5").string();
+  std::array<double, 1> x{-0.01};
+  DeviceLoop loop(slide(), x);
+  loop.record(file);
+  std::vector<double> forces;
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  for (int k = 0; k < 2000; ++k) {
+    if (k == 700) loop.set("coupling.eta", 0.5);
+    x[0] += 1e-5;
+    forces.push_back(loop.tick(reading)[0]);
+  }
+  EXPECT_EQ(loop.finish_recording(), 0u);
+  const Session session = read_session(file);
+  ASSERT_EQ(session.size(), forces.size());
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    ASSERT_NEAR(session.at(k, Column::commanded_torque)[0], forces[k] * kSlideUnit, 1e-12);
+  }
+  ASSERT_EQ(session.changes.size(), 1u);
+  EXPECT_EQ(session.changes[0].row, 700u);
+  EXPECT_EQ(session.changes[0].setting, "coupling.eta = 0.5");
+  EXPECT_THROW(loop.record(file), LoopError) << "it is there";
+  EXPECT_THROW(loop.finish_recording(), LoopError);
+}
+
+std::string refusal(const std::function<void()>& of) {
+  try {
+    of();
+  } catch (const LoopError& e) {
+    return e.what();
+  }
+  return "nothing";
+}
+
+TEST(Loops, SayWhatIsNotAllowed) {
+  const auto making = [](auto change) {
+    LoopOptions options = slide();
+    change(options);
+    return refusal([&] { DeviceLoop(options, std::array{0.0}); });
+  };
+  EXPECT_THAT(making([](auto& o) { o.settings = {"coupling.etta=1"}; }),
+              HasSubstr("coupling.etta"));
+  EXPECT_THAT(making([](auto& o) { o.settings = {"coupling.eta=-1"}; }), HasSubstr("allowed"));
+  EXPECT_THAT(making([](auto& o) { o.limits.tip_force = 11; }),
+              AllOf(HasSubstr("tip_force: 11"), HasSubstr("0.1 to 10 N")));
+  EXPECT_THAT(making([](auto& o) { o.period = 1; }), HasSubstr("loop.tick: 1"));
+  EXPECT_THAT(making([](auto& o) { o.scene_text += "[[ball]]\n"; }), HasSubstr("scene_text:"));
+  EXPECT_THAT(making([](auto& o) { o.scene = "table.toml"; }), HasSubstr("both given"));
+  EXPECT_THAT(making([](auto& o) {
+                o.scene_text = "";
+                o.scene = "tabel.toml";
+              }),
+              HasSubstr("did you mean table.toml"));
+  EXPECT_THAT(making([](auto& o) { o.arm_text = "<robot/>"; }), HasSubstr("arm_text"));
+  EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{0.0, 0.0}); }), HasSubstr("needed: 1"));
+  EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{std::nan("")}); }), HasSubstr("finite"));
+
+  DeviceLoop loop(slide(), std::array{0.0});
+  EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("fixed"));
+  EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("fixed"));
+  EXPECT_THAT(refusal([&] { loop.set("coupling.eta", 1e9); }), HasSubstr("allowed"));
+  EXPECT_THAT(refusal([&] { (void)loop.row("/device/place"); }), HasSubstr("no such column"));
+  loop.set("coupling.kind=standard");
+  EXPECT_EQ(loop.get("coupling.kind"), 0);
+}
+
+TEST(SimulatedLoop, MovesABallThatWasBuilt) {
+  SceneBuilder scene;
+  scene.ball("ball", {0.19, 0, 0.2}, 0.01, 0.02);
+  LoopOptions options;
+  options.scene_text = scene.text();
+  SimulatedLoop loop(options);
+  const Point3 tip = loop.tip();
+  SimulatedLoop::Hand hand;
+  hand.target = tip;
+  for (int k = 0; k < 100; ++k) loop.step(hand);
+  // The row has the state at its beginning, after 99 ticks of 1 ms.
+  const double t = 0.099;
+  EXPECT_NEAR(loop.row("/objects/pose")[2], 0.2 - 0.5 * 9.81 * t * t, 9.81 * t * 1e-3);
+}
+
+TEST(Loops, KnowTheirColumnsAndSettings) {
+  const DeviceLoop loop(slide(), std::array{0.0});
+  std::size_t numbers = 0;
+  for (const RowColumn& each : loop.columns()) {
+    EXPECT_EQ(each.offset, numbers) << each.path;
+    numbers += each.width;
+    EXPECT_FALSE(each.what.empty());
+  }
+  EXPECT_EQ(numbers, loop.row().size());
+  const auto all = setting_list();
+  const auto kind = std::ranges::find(all, "coupling.kind", &SettingInfo::key);
+  ASSERT_NE(kind, all.end());
+  EXPECT_THAT(kind->words, testing::Contains("predictive"));
+  EXPECT_NE(library_version(), "");
+}
+
+TEST(ArmModel, IsTheArmThatItsTextSays) {
+  ArmModel model;
+  for (int i = 0; i < 3; ++i) {
+    ArmJoint joint;
+    joint.name = fmt::format("joint {}", i);
+    joint.position = {0.01 * i, 0.02, 0.13};
+    joint.rpy = {0.3, -0.2 * i, 0.1};
+    joint.axis = i == 1 ? Point3{0, 2, 0} : Point3{0, 0, 1};
+    joint.effort = 1 + i;
+    joint.damping = 0.003;
+    joint.friction = 0.001 * i;
+    joint.mass = 0.1 + 0.01 * i;
+    joint.center = {0.001, 0.002, 0.03};
+    joint.inertia = {1e-4, 1e-5, 2e-5, 2e-4, 3e-5, 3e-4};
+    model.joints.push_back(joint);
+  }
+  model.tip = {0, 0, 0.1};
+  const ArmDescription arm = parse_urdf(urdf_text(model), "text", {});
+  ASSERT_EQ(arm.dof(), 3);
+  EXPECT_EQ(arm.joints[2].effort, 3);
+  EXPECT_EQ(arm.joints[2].friction, 0.002);
+  EXPECT_EQ(arm.links[1].mass, 0.11);
+  EXPECT_LT((arm.joints[1].axis - Vec3::UnitY()).norm(), 1e-15);
+  EXPECT_LT((arm.joints[1].origin.translation() - Vec3(0.01, 0.02, 0.13)).norm(), 1e-15);
+  // Roll, pitch and yaw about fixed axes, written out.
+  const Mat3 turned =
+      (Eigen::AngleAxisd(0.1, Vec3::UnitZ()) * Eigen::AngleAxisd(-0.2, Vec3::UnitY()) *
+       Eigen::AngleAxisd(0.3, Vec3::UnitX()))
+          .toRotationMatrix();
+  EXPECT_LT((arm.joints[1].origin.linear() - turned).norm(), 1e-9);
+  EXPECT_EQ(arm.links[0].inertia(0, 1), 1e-5);
+  EXPECT_EQ(arm.links[0].inertia(1, 2), 3e-5);
+  EXPECT_LT((arm.tip.translation() - Vec3(0, 0, 0.1)).norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace limpid
