@@ -9,16 +9,21 @@
     session = limpid.run(hand=[(0, 0.19, 0, 0), (1, 0.19, 0, -0.05)], coupling="standard")
     print(session.channel("proxy/tip"), session.unit("proxy/tip"))
 
+    loop = limpid.Loop(coupling="predictive", eta=0.5)   # in this process
+    row = loop.step((0.19, 0, -0.05))
+
 All quantities are SI units and radians. The standard library alone is needed to lead a program;
 sessions are read with h5py and numpy. Documentation: README.md beside this file.
 """
 
 from limpid.client import Answer, Client, Rows, connect, serve
 from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError, RunWarning
+from limpid.loop import Channels, DeviceLoop, Energy, Loop, Run, Setting, settings
 from limpid.runs import run, sweep
 from limpid.session import Contact, Session, session
 
 __all__ = [
-    "Answer", "ArgumentError", "Client", "Contact", "LimpidError", "ProgramError", "RecordingError",
-    "RequestError", "Rows", "RunWarning", "Session", "connect", "run", "serve", "session", "sweep",
+    "Answer", "ArgumentError", "Channels", "Client", "Contact", "DeviceLoop", "Energy", "LimpidError",
+    "Loop", "ProgramError", "RecordingError", "RequestError", "Rows", "Run", "RunWarning", "Session",
+    "Setting", "connect", "run", "serve", "session", "settings", "sweep",
 ]  # fmt: skip

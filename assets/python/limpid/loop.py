@@ -1,0 +1,320 @@
+"""Loops in this process: a simulated arm in a simulated hand, or a device of your own.
+
+Needs numpy and the module limpid._loop, which is built and installed with the program.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import importlib.util
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from limpid.errors import ArgumentError, LimpidError, ProgramError
+from limpid.program import find_program
+from limpid.values import PathLike, Value, hand_rows, is_path, number, path_of, settings_of, text_of
+
+if TYPE_CHECKING:
+    import numpy
+
+# Numbers of one contact and of one object in a row.
+SHAPES = {"contact/point": (-1, 3), "contact/force": (-1, 3), "objects/pose": (-1, 7), "objects/velocity": (-1, 6)}
+
+
+class Energy(NamedTuple):
+    """Energies of the coupling since the loop began [J]."""
+
+    controller: float  # E_c, what the coupling gave with the device's own damping; passive: <= 0
+    commanded: float  # E_c of motors and proxy alone
+    port: float  # what motors and own damping gave the human
+    reserve: float  # what the law's account may still give the human; 0 without an account
+
+
+class Setting(NamedTuple):
+    """A setting, by its key, and what may be set."""
+
+    key: str
+    unit: str  # "-" for none
+    least: float
+    most: float
+    words: List[str]  # of a choice, else empty
+    live: bool  # may change while the loop runs
+    meaning: str
+
+
+class Channels(Mapping[str, Any]):
+    """Numbers of a row, or of the rows of a run, by the names that recordings have for them:
+    row["device/position"]."""
+
+    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Tuple[int, int]]) -> None:
+        self.values_of_all = values  # as one array: of a row all its numbers, of a run rows of them
+        self._places = places
+
+    def __getitem__(self, name: str) -> Any:
+        known = name.lstrip("/") if isinstance(name, str) else name
+        if known not in self._places:
+            raise ArgumentError(f"{name} is no channel; there are {', '.join(self._places)}")
+        offset, width = self._places[known]
+        if width == 1 and known not in SHAPES:
+            found = self.values_of_all[..., offset]
+            return float(found) if found.ndim == 0 else found
+        part = self.values_of_all[..., offset : offset + width]
+        return part.reshape(part.shape[:-1] + SHAPES[known]) if known in SHAPES else part
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+
+class Run(Channels):
+    """The rows of a run, channel by channel: run["time"], run["device/position"]."""
+
+    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Tuple[int, int]], why: str) -> None:
+        super().__init__(values, places)
+        self.why = why  # what was unstable, and when; else empty
+
+    @property
+    def diverged(self) -> bool:
+        return bool(self.why)
+
+    @property
+    def rows(self) -> int:
+        return len(self.values_of_all)
+
+
+class _AnyLoop:
+    """What both kinds of loop have in common."""
+
+    _loop: Any
+
+    def _learn(self) -> None:
+        columns = self._loop.columns()
+        self._places = {path.lstrip("/"): (offset, width) for path, _, _, offset, width in columns}
+        self.units: Dict[str, str] = {path.lstrip("/"): unit for path, unit, _, _, _ in columns}
+        self.about: Dict[str, str] = {path.lstrip("/"): what for path, _, what, _, _ in columns}
+
+    @property
+    def joints(self) -> int:
+        return int(self._loop.joints)
+
+    @property
+    def period(self) -> float:
+        return float(self._loop.period)
+
+    @property
+    def notes(self) -> List[str]:
+        """Sentences on what was mended, guessed, fitted or left out of arm, scene and models."""
+        return list(self._loop.notes)
+
+    @property
+    def diverged(self) -> bool:
+        """Whether the loop was unstable: its force is off, and stays off."""
+        return bool(self._loop.diverged)
+
+    @property
+    def tip(self) -> Tuple[float, float, float]:
+        """The device's tip [m]."""
+        return tuple(self._loop.tip)  # type: ignore[return-value]
+
+    @property
+    def row(self) -> Channels:
+        """The row of the last tick."""
+        return Channels(self._loop.row(), self._places)
+
+    @property
+    def energy(self) -> Energy:
+        return Energy(*self._loop.energy())
+
+    def set(self, settings: Optional[Mapping[str, Any]] = None, **more: Any) -> None:
+        """Changes settings from the next tick on: loop.set(eta=0.5), loop.set({"coupling.k_vc": 8})."""
+        for key, value in settings_of(settings, more).items():
+            self._loop.set(f"{key}={text_of(value)}")
+
+    def get(self, key: str) -> Value:
+        """A setting's present value; of a choice its word."""
+        whole = next(iter(settings_of({}, {key.replace(".", "__"): 0})))
+        words = next((each.words for each in settings() if each.key == whole), [])
+        found = self._loop.get(whole)
+        return words[int(found)] if words else float(found)
+
+    def record(self, file: PathLike, force: bool = False) -> None:
+        """Records every row from the next tick on into a session, in place of one that is there with
+        `force`."""
+        self._loop.record(path_of("record", file), force)
+
+    def finish_recording(self) -> int:
+        """Ends the recording; returns the number of rows that found no room."""
+        return int(self._loop.finish_recording())
+
+
+class Loop(_AnyLoop):
+    """A simulated arm in a simulated hand, tick by tick or along a path.
+
+        loop = limpid.Loop(scene="table.toml", coupling="predictive", eta=0.5)
+        row = loop.step((0.19, 0, -0.05))
+        run = loop.run([(0, 0.19, 0, 0), (1, 0.19, 0, -0.05)])
+
+    `arm`: a URDF file, or the name of one that came along; `scene`: a TOML file likewise. `arm_text`
+    and `scene_text` are the same as text. Settings are as limpid.run() takes them: short words, keys,
+    or keywords with two underscores for the dot. `period` [s] is the time of a tick. Raises
+    LimpidError."""
+
+    def __init__(self, arm: Optional[PathLike] = None, scene: Optional[PathLike] = None,
+                 arm_text: str = "", scene_text: str = "", tip: str = "", period: float = 0.001,
+                 config: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
+                 **more: Any) -> None:  # fmt: skip
+        options = _options(arm, scene, arm_text, scene_text, tip, period, config, settings, more)
+        self._loop = _module().SimulatedLoop(options)
+        self._learn()
+
+    def start(self, target: Sequence[float]) -> None:
+        """Begins anew, at rest, with the tip at `target`: x, y, z [m]."""
+        self._loop.start(_point("target", target))
+
+    def step(self, hand: Sequence[float], grip: float = 1, magnet: bool = False,
+             torque: Sequence[float] = ()) -> Channels:  # fmt: skip
+        """Runs a tick with the hand wanting the tip at `hand`: x, y, z [m]. `grip`: 1 holds, 0 has
+        let go. `magnet` picks up objects that may be. `torque`: pushed on each joint besides [N m].
+        Returns the row."""
+        if len(torque) not in (0, self.joints):
+            raise ArgumentError(f"torque: has {len(torque)} numbers; needed: {self.joints}, one a joint")
+        row = self._loop.step(_point("hand", hand), number("grip", grip), bool(magnet), torque)
+        return Channels(row, self._places)
+
+    def run(self, hand: Any, duration: Optional[float] = None) -> Run:
+        """Leads a hand along a path as fast as it goes, from rest, with the present settings: the rows
+        of limpid.run(), bit for bit. `hand`: rows of time [s], x, y, z [m]. The loop itself stays as
+        it is, and other threads go on meanwhile: loops run in as many threads as there are
+        processors."""
+        if is_path(hand):
+            raise ArgumentError("hand: is a file; needed: rows of time [s], x, y, z [m] (limpid.run reads files)")
+        seconds = 0.0 if duration is None else number("duration", duration)
+        values, _, why = self._loop.run(hand_rows(hand), seconds)
+        return Run(values, self._places, why)
+
+
+class DeviceLoop(_AnyLoop):
+    """A loop round a device of your own: positions in, torques out.
+
+        loop = limpid.DeviceLoop(device.positions(), arm="my_arm.urdf", coupling="predictive")
+        loop.arm()  # as soon as a person holds the device
+        while True:
+            device.push(loop.tick(device.positions()))
+
+    Joints that turn have rad and N m, joints that slide m and N. `motors`: "real", then force is
+    armed, fades in, and `limits` hold; or "simulated". `limits`: joint_speed, tip_speed, tip_force,
+    energy, range, which can be lowered only. Python keeps 1 kHz on a quiet computer, and no promise
+    of it: what leaves while it is late is the device's own watchdog's matter. Raises LimpidError."""
+
+    def __init__(self, position: Sequence[float], arm: Optional[PathLike] = None,
+                 scene: Optional[PathLike] = None, motors: str = "real",
+                 limits: Optional[Mapping[str, float]] = None, arm_text: str = "",
+                 scene_text: str = "", tip: str = "", period: float = 0.001,
+                 config: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
+                 **more: Any) -> None:  # fmt: skip
+        options = _options(arm, scene, arm_text, scene_text, tip, period, config, settings, more)
+        if motors not in ("real", "simulated"):
+            raise ArgumentError(f'motors: {motors!r} is not allowed; allowed: "real", "simulated"')
+        options.motors = getattr(_module().Motors, motors)
+        allowed = options.limits
+        for name, value in (limits or {}).items():
+            if not hasattr(allowed, name):
+                raise ArgumentError(f"limits: {name} is none; there are joint_speed, tip_speed, tip_force, "
+                                    "energy, range")  # fmt: skip
+            setattr(allowed, name, number(f"limits: {name}", value))
+        self._loop = _module().DeviceLoop(options, position)
+        self._learn()
+
+    def tick(self, position: Sequence[float], fresh: bool = True, hand: bool = True,
+             fault: bool = False, elapsed: float = 0) -> "numpy.ndarray":  # fmt: skip
+        """Runs the tick on a reading of each joint; returns the torques to be held until the next
+        one. `fresh`: not the same reading as at the last tick. `hand`: the dead-man switch is closed.
+        `fault`: the device is not well. `elapsed`: time since the last tick [s]; 0: measured here."""
+        return self._loop.tick(position, fresh, hand, fault, elapsed)
+
+    def arm(self) -> None:
+        """Asks for force; whoever does so answers for a person who holds the device."""
+        self._loop.arm()
+
+    def cut(self) -> None:
+        """Ends all force with the next tick."""
+        self._loop.cut()
+
+    @property
+    def armed(self) -> bool:
+        return bool(self._loop.armed)
+
+    @property
+    def force_share(self) -> float:
+        """Part of the torque that leaves, 0 to 1."""
+        return float(self._loop.force_share)
+
+    @property
+    def force_text(self) -> str:
+        """Why there is no force, or less; empty while it is on."""
+        return str(self._loop.force_text)
+
+
+def settings() -> List[Setting]:
+    """All settings that loops, runs and sweeps have."""
+    return [Setting(*each) for each in _module().settings()]
+
+
+def _options(arm: Optional[PathLike], scene: Optional[PathLike], arm_text: str, scene_text: str, tip: str,
+             period: float, config: Optional[PathLike], given: Optional[Mapping[str, Any]],
+             more: Mapping[str, Any]) -> Any:  # fmt: skip
+    options = _module().LoopOptions()
+    for name, file in (("arm", arm), ("scene", scene), ("config", config)):
+        if file is not None:
+            setattr(options, name, path_of(name, file))
+    options.arm_text, options.scene_text, options.tip = arm_text, scene_text, tip
+    options.period = number("period", period)
+    options.settings = [f"{key}={text_of(value)}" for key, value in settings_of(given, more).items()]
+    return options
+
+
+def _point(name: str, given: Iterable[float]) -> Tuple[float, float, float]:
+    point = [number(name, each) for each in given]
+    if len(point) != 3:
+        raise ArgumentError(f"{name}: has {len(point)} numbers; needed: x, y, z [m]")
+    return point[0], point[1], point[2]
+
+
+def _module() -> Any:
+    """The module limpid._loop: of this package, else the one that was built beside the program."""
+    if "limpid._loop" in sys.modules:
+        return sys.modules["limpid._loop"]
+    try:
+        import numpy  # noqa: F401
+    except ImportError as error:
+        raise LimpidError("loops in this process need numpy (Debian: python3-numpy)") from error
+    spec = importlib.util.find_spec("limpid._loop")
+    if spec is None:
+        spec = _built()
+    if spec is None or spec.loader is None:
+        raise LimpidError("limpid._loop, which loops in this process need, is neither in this package nor beside "
+                          "the program; build Limpid with pybind11-dev, for this Python "
+                          f"{sys.version_info[0]}.{sys.version_info[1]}")  # fmt: skip
+    try:
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    except ImportError as error:
+        raise LimpidError(f"{spec.origin}: cannot be loaded: {error}") from error
+    sys.modules["limpid._loop"] = module
+    return module
+
+
+def _built() -> Any:
+    try:
+        folder = Path(os.path.realpath(find_program())).parent
+    except ProgramError:
+        return None
+    for suffix in importlib.machinery.EXTENSION_SUFFIXES:
+        file = folder / f"_loop{suffix}"
+        if file.exists():
+            return importlib.util.spec_from_file_location("limpid._loop", file)
+    return None
