@@ -29,6 +29,10 @@ print(next((os.path.relpath(each, prefix) for each in folders if each.startswith
 endif()
 file(INSTALL ${SOURCE}/assets/python/limpid DESTINATION ${CMAKE_INSTALL_PREFIX}/${modules}
   PATTERN "__pycache__" EXCLUDE)
+include(${BUILD}/python_module.cmake)
+if(python_module)
+  file(INSTALL ${python_module} DESTINATION ${CMAKE_INSTALL_PREFIX}/${modules}/limpid)
+endif()
 
 # Without the time or the name of the file, so that the same text gives the same bytes.
 function(pack file folder name)

@@ -44,11 +44,11 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "adduser, fonts-inter, libegl1, libgl1")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, libgl1-mesa-dri, rtkit")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_DEPENDS "adduser, fonts-inter, libegl1, libgl1")
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, libgl1-mesa-dri, rtkit")
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS
   "python3, python3-h5py, python3-numpy, python3-scipy, xdg-desktop-portal")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "touch a virtual world through a haptic device
+set(CPACK_DEBIAN_UNSPECIFIED_DESCRIPTION "touch a virtual world through a haptic device
 A haptic device, a small robot arm in the hand, is tied to its avatar in a
 simulated world by a virtual coupling. Limpid runs the usual spring and
 damper, a coupling with a human force observer, and a predictive one, live at
@@ -59,6 +59,23 @@ the SpaceMouse, and home-made devices. Sessions are recorded, played, run
 again under other settings and made videos; experiments and sweeps run
 without a window.")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_CONTROL_EXTRA
   ${package}/postinst ${package}/postrm ${package}/conffiles)
+# Three packages: the program, the library, and what other programs are built with it by.
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL Unspecified library dev)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME limpid)
+set(limpid_library_package liblimpid${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${limpid_library_package})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${package}/triggers)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "haptic loop with virtual couplings, as a library
+The tick of Limpid's loop for programs that have a device or a simulation of
+their own: an arm, a scene and a coupling law in, torques out, with the limits
+and the arming of the application.")
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME liblimpid-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "header and examples of Limpid's haptic loop
+What is needed to build programs with liblimpid: one header, packages for
+CMake and pkg-config, and examples to start from.")
 include(CPack)

@@ -54,12 +54,12 @@ class Package(Run):
                               cwd=BUILD, capture_output=True, text=True, timeout=250)  # fmt: skip
         if done.returncode != 0:
             raise AssertionError(done.stdout + done.stderr)
-        (deb,) = out.glob("*.deb")
+        (deb,) = out.glob("limpid_*.deb")
         return deb
 
     def test_python_finds_its_package_and_the_program(self) -> None:
         modules = self.root / "usr/lib/python3/dist-packages"
-        self.assertEqual({path.name for path in modules.rglob("*") if path.suffix != ".py"},
+        self.assertEqual({path.name for path in modules.rglob("*") if path.suffix not in (".py", ".so")},
                          {"limpid", "study", "studies", "py.typed", "README.md"})
         environment = {key: value for key, value in os.environ.items() if key != "LIMPID"}
         said = self.must("python3", "-c", "import limpid; print(limpid.program.find_program())",

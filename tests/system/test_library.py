@@ -1,0 +1,154 @@
+"""liblimpid and limpid.Loop from an installed tree, as other programs use them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import unittest
+from pathlib import Path
+
+from support import LIMPID, SystemTest
+
+PYTHON = "/usr/bin/python3"
+BUILD = LIMPID.parents[1]
+
+
+def must(*words: str | Path, **how) -> str:
+    done = subprocess.run(list(map(str, words)), capture_output=True, text=True, timeout=280, **how)
+    if done.returncode != 0:
+        raise AssertionError(f"{words}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Installed(SystemTest):
+    prefix: Path
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        super().setUpClass()
+        if "LIMPID_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text():
+            raise unittest.SkipTest("other programs have no sanitized library")
+        cls.prefix = cls.directory / "prefix"
+        must("cmake", "--install", BUILD, "--prefix", cls.prefix)
+
+    def modules(self) -> Path:
+        return next(self.prefix.rglob("limpid/__init__.py")).parent.parent
+
+    def python(self, text: str) -> str:
+        environment = {name: value for name, value in os.environ.items() if name != "LIMPID"}
+        return must(PYTHON, "-c", text, env={**environment, "PYTHONPATH": str(self.modules()),
+                                             "PYTHONDONTWRITEBYTECODE": "1"})
+
+    def test_examples_are_built_by_cmake_and_run(self) -> None:
+        examples = self.prefix / "share/doc/liblimpid-dev/examples"
+        for file in examples.glob("*.cpp"):
+            self.assertLess(len(file.read_text().splitlines()), 80, file.name)
+        out = self.directory / "examples"
+        must("cmake", "-S", examples, "-B", out, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+             "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
+        must("cmake", "--build", out)
+        names = sorted(file.stem for file in examples.glob("*.cpp"))
+        self.assertGreaterEqual(len(names), 4)
+        for name in names:
+            with self.subTest(name):
+                self.assertNotEqual(must(out / name), "")
+
+    def test_a_program_is_built_by_pkg_config(self) -> None:
+        (config,) = self.prefix.rglob("limpid.pc")
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(config.parent)}
+        flags = must("pkg-config", "--cflags", "--libs", "limpid", env=environment).split()
+        source = self.directory / "version.cpp"
+        source.write_text("#include <limpid/limpid.h>\n#include <cstdio>\n"
+                          "int main() { std::puts(limpid::library_version().c_str()); }\n")
+        must("g++", "-std=c++20", source, "-o", self.directory / "version", *flags,
+             f"-Wl,-rpath,{config.parent.parent}")
+        self.assertEqual(f"limpid {must(self.directory / 'version').strip()}", must(LIMPID, "--version").strip())
+
+    def test_nothing_but_the_header_is_seen_of_the_library(self) -> None:
+        (library,) = [each for each in self.prefix.rglob("liblimpid.so.*.*.*")]
+        names = must("nm", "-DC", "--defined-only", library).splitlines()
+        strange = [name for name in names if "limpid::" not in name]
+        self.assertEqual(strange, [])
+        inner = [name for name in names if "limpid::Rig" in name or "limpid::Tick" in name]
+        self.assertEqual(inner, [])
+        needed = must("objdump", "-p", library)
+        for window in ("libGL", "libEGL", "libglfw", "libimgui", "libX11", "libdbus", "libav"):
+            self.assertNotIn(f"NEEDED               {window}", needed)
+
+    def test_python_runs_the_rows_of_the_program(self) -> None:
+        self.assertEqual(self.python("""
+import limpid, numpy
+hand = [(0, 0.19, 0, 0), (0.5, 0.19, 0.01, -0.05), (1, 0.2, 0, -0.05)]
+for law in ("standard", "predictive", "proposed"):
+    session = limpid.run(hand=hand, coupling=law, eta=0.7, scene="table.toml")
+    run = limpid.Loop(scene="table.toml", coupling=law, eta=0.7).run(hand)
+    assert run.rows == len(session.time), (run.rows, len(session.time))
+    for name in run:
+        if name.startswith("timing/"): continue
+        theirs = session.channel(name)
+        ours = run[name].reshape(theirs.shape)
+        assert numpy.array_equal(ours, theirs, equal_nan=True), (law, name)
+    assert run["contact/force"].shape[1:] == (4, 3)
+print("the same")
+"""), "the same\n")
+
+    def test_python_steps_a_loop_and_one_of_a_device(self) -> None:
+        self.assertEqual(self.python("""
+import limpid
+loop = limpid.Loop(coupling="standard")
+x, y, z = loop.tip
+for k in range(300):
+    row = loop.step((x, y, z - 1e-4 * k))
+assert row["device/position"].shape == (3,) and loop.joints == 3
+assert abs(row["time"] - 0.299) < 1e-12
+loop.set(eta=0.5)
+assert loop.get("coupling.eta") == 0.5 and loop.get("coupling.kind") == "standard"
+assert loop.energy.controller < 0
+
+device = limpid.DeviceLoop([0, 0.6, -1.1], coupling="predictive", limits={"tip_force": 2})
+assert not device.armed and device.force_share == 0 and "not armed" in device.force_text
+assert list(device.tick([0, 0.6, -1.1])) == [0, 0, 0]
+for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
+              lambda: limpid.Loop(etta=1), lambda: loop.step((0, 0)), lambda: row["place"],
+              lambda: limpid.DeviceLoop([0, 0]), lambda: loop.run([(0, 1, 2, 3)]),
+              lambda: loop.run([(0, 9, 9, 9), (1, 9, 9, 9)]), lambda: loop.set({"loop.tick": 0.002}),
+              lambda: limpid.DeviceLoop([0, 0.6, -1.1], limits={"tip_force": 99}),
+              lambda: limpid.DeviceLoop([0, 0.6, -1.1], limits={"force": 1})):
+    try:
+        wrong()
+    except limpid.LimpidError as error:
+        assert str(error)
+    else:
+        raise AssertionError("refused nothing")
+print("as said")
+"""), "as said\n")
+
+    def test_python_loops_run_beside_each_other(self) -> None:
+        self.assertEqual(self.python("""
+import limpid, numpy
+from concurrent.futures import ThreadPoolExecutor
+loop = limpid.Loop(coupling="predictive")
+hand = [(0, 0.19, 0, 0), (1, 0.19, 0, -0.05)]
+alone = loop.run(hand)["device/position"]
+with ThreadPoolExecutor(4) as threads:
+    for found in threads.map(lambda _: loop.run(hand)["device/position"], range(12)):
+        assert numpy.array_equal(alone, found)
+print("alike")
+"""), "alike\n")
+
+    def test_python_without_the_module_says_so(self) -> None:
+        bare = self.directory / "bare"
+        shutil.copytree(self.modules() / "limpid", bare / "limpid", ignore=shutil.ignore_patterns("*.so"))
+        said = must(PYTHON, "-c", """
+import limpid
+try:
+    limpid.Loop()
+except limpid.LimpidError as error:
+    print(error)
+""", env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(bare), "PYTHONDONTWRITEBYTECODE": "1"})
+        self.assertIn("limpid._loop", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
