@@ -19,12 +19,14 @@ install(TARGETS liblimpid EXPORT limpid
 install(FILES library/limpid/limpid.h DESTINATION include/limpid COMPONENT dev)
 install(EXPORT limpid NAMESPACE limpid:: FILE limpidTargets.cmake
   DESTINATION ${limpid_package_folder} COMPONENT dev)
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/limpidConfig.cmake CONTENT
-  "include(\${CMAKE_CURRENT_LIST_DIR}/limpidTargets.cmake)\n")
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/limpidConfig.cmake @ONLY CONTENT [[
+include(${CMAKE_CURRENT_LIST_DIR}/limpidTargets.cmake)
+]])
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/limpidConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
+file(RELATIVE_PATH limpid_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/limpid.pc @ONLY CONTENT [[
-prefix=${pcfiledir}/../../..
+prefix=${pcfiledir}/@limpid_prefix@
 Name: limpid
 Description: haptic loop with virtual couplings
 Version: @PROJECT_VERSION@
@@ -47,7 +49,7 @@ find_program(Python_EXECUTABLE NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_package(Python COMPONENTS Interpreter Development.Module QUIET)
 find_package(pybind11 CONFIG QUIET)
 if(pybind11_FOUND AND Python_FOUND)
-  pybind11_add_module(limpid_loop MODULE library/python/loop_module.cpp
+  pybind11_add_module(limpid_loop MODULE NO_EXTRAS library/python/loop_module.cpp
     $<TARGET_OBJECTS:limpid_app_library>)
   set_target_properties(limpid_loop PROPERTIES OUTPUT_NAME _loop)
   target_include_directories(limpid_loop PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/library

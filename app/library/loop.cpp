@@ -156,6 +156,7 @@ void Loop::State::in_si(std::span<const double> of_rig, std::span<double> into) 
     double& x = into[static_cast<std::size_t>(layout.offset(each.column) + each.part)];
     x = SessionUnits::filed(each, x).value;
   }
+  file_points(layout.in(into, Column::contact_point), layout.in(of_rig, Column::contact_force));
 }
 
 Loop::Loop(std::unique_ptr<State> state) : state_(std::move(state)) {}

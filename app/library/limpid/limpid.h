@@ -220,7 +220,7 @@ class LIMPID_API Loop {
   std::uint64_t finish_recording();
 
  protected:
-  struct State;
+  struct __attribute__((visibility("hidden"))) State;
   explicit Loop(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

@@ -18,7 +18,7 @@ std::span<const double> values(const Array& array) {
 }
 
 Array copied(std::span<const double> values) {
-  return {static_cast<py::ssize_t>(values.size()), values.data()};
+  return Array(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
 // Takes the rows of a run as one array of rows x columns, without another copy.
@@ -26,7 +26,7 @@ Array as_rows(std::vector<double>&& all, std::size_t stride) {
   auto* kept = new std::vector<double>(std::move(all));
   const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<double>*>(p); });
   const auto rows = static_cast<py::ssize_t>(kept->size() / stride);
-  return {{rows, static_cast<py::ssize_t>(stride)}, kept->data(), owner};
+  return Array({rows, static_cast<py::ssize_t>(stride)}, kept->data(), owner);
 }
 
 py::tuple run(const SimulatedLoop& loop, const Array& path, double duration) {

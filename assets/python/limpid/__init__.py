@@ -21,9 +21,10 @@ from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingErr
 from limpid.loop import Channels, DeviceLoop, Energy, Loop, Run, Setting, settings
 from limpid.runs import run, sweep
 from limpid.session import Contact, Session, session
+from limpid.worlds import Arm, Scene
 
 __all__ = [
-    "Answer", "ArgumentError", "Channels", "Client", "Contact", "DeviceLoop", "Energy", "LimpidError",
-    "Loop", "ProgramError", "RecordingError", "RequestError", "Rows", "Run", "RunWarning", "Session",
+    "Answer", "Arm", "ArgumentError", "Channels", "Client", "Contact", "DeviceLoop", "Energy", "LimpidError",
+    "Loop", "ProgramError", "RecordingError", "RequestError", "Rows", "Run", "RunWarning", "Scene", "Session",
     "Setting", "connect", "run", "serve", "session", "settings", "sweep",
 ]  # fmt: skip

@@ -1,10 +1,14 @@
-"""python3 -m limpid demo: leads a loop for five seconds and says what happens."""
+"""python3 -m limpid demo: leads a loop for five seconds. python3 -m limpid stream: sends its rows."""
 
 from __future__ import annotations
 
+import argparse
+import json
+import socket
 import sys
 import tempfile
 from pathlib import Path
+from typing import List
 
 import limpid
 
@@ -36,12 +40,45 @@ def demo(window: bool) -> None:
                 print(error)
 
 
+def stream(name: str, target: str, channels: List[str], rate: float) -> None:
+    """Sends rows of a running program as JSON over UDP, one object a datagram, as PlotJuggler's UDP
+    server reads them: {"time": 1.25, "hand/torque": [...]}. Ends with Ctrl-C, or with the program."""
+    host, _, port = target.rpartition(":")
+    if not port.isdigit() or not 0 < int(port) < 65536:
+        raise limpid.ArgumentError(f"{target} is no place to send to; needed: HOST:PORT, as localhost:9870")
+    address = (host or "localhost", int(port))
+    with limpid.connect(name) as loop, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+        names = channels or CHANNELS
+        tick = float(loop.get("loop.tick")["loop.tick"])
+        loop.follow(names, rate=rate)
+        dropped = 0
+        while True:
+            rows = loop.rows(seconds=0.1)
+            for at, values in zip(rows.ticks, rows.values):
+                out.sendto(json.dumps({"time": at * tick, **dict(zip(names, values))}).encode(), address)
+            if rows.dropped > dropped:
+                print(f"limpid: {rows.dropped} rows found no room", file=sys.stderr)
+                dropped = rows.dropped
+
+
 def main() -> int:
-    if sys.argv[1:] not in (["demo"], ["demo", "--window"]):
-        print("usage: python3 -m limpid demo [--window]", file=sys.stderr)
-        return 2
+    parser = argparse.ArgumentParser(prog="python3 -m limpid", description="Limpid from Python.")
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    shown = verbs.add_parser("demo", help="lead a loop for five seconds and say what happens")
+    shown.add_argument("--window", action="store_true", help="in a window")
+    sent = verbs.add_parser("stream", help="send rows of a running program over UDP, for PlotJuggler")
+    sent.add_argument("target", metavar="HOST:PORT", help="PlotJuggler's UDP server has port 9870")
+    sent.add_argument("channels", nargs="*", metavar="CHANNEL", help=f"default: {', '.join(CHANNELS)}")
+    sent.add_argument("--name", default="control", help="of the program, as limpid --listen NAME; default: control")
+    sent.add_argument("--rate", type=float, default=100, help="rows a second; default: 100")
+    given = parser.parse_args()
     try:
-        demo(window="--window" in sys.argv)
+        if given.verb == "demo":
+            demo(window=given.window)
+        else:
+            stream(given.name, given.target, given.channels, given.rate)
+    except KeyboardInterrupt:
+        return 0
     except limpid.LimpidError as error:
         print(f"limpid: {error}", file=sys.stderr)
         return 1

@@ -10,11 +10,12 @@ import importlib.util
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from limpid.errors import ArgumentError, LimpidError, ProgramError
 from limpid.program import find_program
 from limpid.values import PathLike, Value, hand_rows, is_path, number, path_of, settings_of, text_of
+from limpid.worlds import Arm, Scene
 
 if TYPE_CHECKING:
     import numpy
@@ -158,12 +159,12 @@ class Loop(_AnyLoop):
         row = loop.step((0.19, 0, -0.05))
         run = loop.run([(0, 0.19, 0, 0), (1, 0.19, 0, -0.05)])
 
-    `arm`: a URDF file, or the name of one that came along; `scene`: a TOML file likewise. `arm_text`
+    `arm`: an Arm, a URDF file, or the name of one that came along; `scene`: a Scene or a TOML file likewise. `arm_text`
     and `scene_text` are the same as text. Settings are as limpid.run() takes them: short words, keys,
     or keywords with two underscores for the dot. `period` [s] is the time of a tick. Raises
     LimpidError."""
 
-    def __init__(self, arm: Optional[PathLike] = None, scene: Optional[PathLike] = None,
+    def __init__(self, arm: Union[None, PathLike, Arm] = None, scene: Union[None, PathLike, Scene] = None,
                  arm_text: str = "", scene_text: str = "", tip: str = "", period: float = 0.001,
                  config: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
                  **more: Any) -> None:  # fmt: skip
@@ -210,8 +211,8 @@ class DeviceLoop(_AnyLoop):
     energy, range, which can be lowered only. Python keeps 1 kHz on a quiet computer, and no promise
     of it: what leaves while it is late is the device's own watchdog's matter. Raises LimpidError."""
 
-    def __init__(self, position: Sequence[float], arm: Optional[PathLike] = None,
-                 scene: Optional[PathLike] = None, motors: str = "real",
+    def __init__(self, position: Sequence[float], arm: Union[None, PathLike, Arm] = None,
+                 scene: Union[None, PathLike, Scene] = None, motors: str = "real",
                  limits: Optional[Mapping[str, float]] = None, arm_text: str = "",
                  scene_text: str = "", tip: str = "", period: float = 0.001,
                  config: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
@@ -264,9 +265,13 @@ def settings() -> List[Setting]:
     return [Setting(*each) for each in _module().settings()]
 
 
-def _options(arm: Optional[PathLike], scene: Optional[PathLike], arm_text: str, scene_text: str, tip: str,
+def _options(arm: Union[None, PathLike, Arm], scene: Union[None, PathLike, Scene], arm_text: str, scene_text: str, tip: str,
              period: float, config: Optional[PathLike], given: Optional[Mapping[str, Any]],
              more: Mapping[str, Any]) -> Any:  # fmt: skip
+    if isinstance(arm, Arm):
+        arm, arm_text = None, arm.text()
+    if isinstance(scene, Scene):
+        scene, scene_text = None, scene.text()
     options = _module().LoopOptions()
     for name, file in (("arm", arm), ("scene", scene), ("config", config)):
         if file is not None:

@@ -34,6 +34,18 @@ def find_program() -> str:
     return installed
 
 
+def assets(name: str, kind: str) -> str:
+    """The file of that name, or the one of that name that came along with the program."""
+    if os.path.exists(name) or os.path.dirname(name):
+        return name
+    program = os.path.realpath(find_program())
+    for folder in Path(program).parents:
+        own = folder / "share/limpid/assets" / kind / name
+        if own.is_file():
+            return str(own)
+    return name
+
+
 def carry_out(words: Sequence[PathLike]) -> str:
     """Runs `limpid WORDS` to its end and returns what it printed.
 

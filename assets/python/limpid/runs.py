@@ -15,6 +15,7 @@ from limpid.errors import ArgumentError, ProgramError, RunWarning
 from limpid.program import carry_out, setting_words
 from limpid.session import Session
 from limpid.values import Hand, PathLike, hand_rows, is_path, number, path_of, settings_of, text_of, whole
+from limpid.worlds import Arm, Scene
 
 
 def write_hand(hand: Iterable[Sequence[float]], file: PathLike) -> str:
@@ -41,9 +42,18 @@ def hand_file(hand: Optional[Hand]) -> Iterator[Optional[str]]:
             yield write_hand(hand, Path(folder, "hand.csv"))
 
 
-def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
+def _file(folder: str, name: str, given: Union[PathLike, Arm, Scene]) -> str:
+    """The file of an arm or a scene; of one that is a value, in the folder."""
+    if not isinstance(given, (Arm, Scene)):
+        return path_of(name, given)
+    file = os.path.join(folder, "arm.urdf" if isinstance(given, Arm) else "scene.toml")
+    given.write(file)
+    return file
+
+
+def run(scene: Union[None, PathLike, Scene] = None, hand: Optional[Hand] = None,
         coupling: Optional[str] = None, eta: Optional[float] = None, alpha: Optional[float] = None,
-        arm: Optional[PathLike] = None, duration: Optional[float] = None,
+        arm: Union[None, PathLike, Arm] = None, duration: Optional[float] = None,
         seed: Optional[int] = None, twin: Union[None, bool, Mapping[str, Any]] = None,
         lane3: Union[None, bool, Mapping[str, Any]] = None,
         record: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
@@ -70,7 +80,7 @@ def run(scene: Optional[PathLike] = None, hand: Optional[Hand] = None,
         for name, option, file in (("scene", "--scene", scene), ("hand", "--hand", path),
                                    ("arm", "--device", arm)):  # fmt: skip
             if file is not None:
-                words += [option, path_of(name, file)]
+                words += [option, _file(folder, name, file)]
         if duration is not None:
             words += ["--duration", text_of(number("duration", duration))]
         for name, option, count in (("seed", "--seed", seed), ("variation", "--variation", variation)):

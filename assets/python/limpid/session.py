@@ -14,6 +14,8 @@ from limpid.values import PathLike, names_of, path_of
 
 if TYPE_CHECKING:
     import numpy
+    import pandas
+    import xarray
 
 # As /coupling/kind has them.
 LAWS = ("standard", "proposed", "predictive", "tank", "direct", "eba", "popc", "wave", "tdpn")
@@ -285,6 +287,40 @@ class Session:
             found.append(Contact(float(self.time[first]), float(self.time[end - 1]) + self.tick,
                                  float(size[hardest]), (x, y, z)))  # fmt: skip
         return found
+
+    def frame(self, channels: Optional[Sequence[str]] = None) -> "pandas.DataFrame":
+        """The channels as a table of pandas, a row for each tick and the time as its index; those of
+        several numbers have columns "device/position[0]", .... Needs pandas (Debian: python3-pandas)."""
+        try:
+            import pandas
+        except ImportError as error:
+            raise LimpidError(f"{self.file}: tables need pandas, which is missing") from error
+
+        columns = {}
+        for name in self._chosen(channels):
+            values = self.channel(name).reshape(len(self), -1)
+            several = self.channel(name).ndim > 1
+            columns.update({f"{name}[{i}]" if several else name: values[:, i] for i in range(values.shape[1])})
+        return pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
+
+    def dataset(self, channels: Optional[Sequence[str]] = None) -> "xarray.Dataset":
+        """The channels as a dataset of xarray, over the time, with their units and words as attributes.
+        Needs xarray (Debian: python3-xarray)."""
+        try:
+            import xarray
+        except ImportError as error:
+            raise LimpidError(f"{self.file}: datasets need xarray, which is missing") from error
+
+        found = {}
+        for name in self._chosen(channels):
+            values = self.channel(name)
+            axes = ["time", *(f"{name} {i + 1}" for i in range(values.ndim - 1))]
+            found[name] = (axes, values, {"units": self.unit(name), "long_name": self.about(name)})
+        return xarray.Dataset(found, coords={"time": self.time}, attrs={"law": self.law, "file": self.file})
+
+    def _chosen(self, channels: Optional[Sequence[str]]) -> List[str]:
+        names = self.channels if channels is None else names_of("channels", channels)
+        return [name.lstrip("/") for name in names if name.lstrip("/") != "time"]
 
     @property
     def changes(self) -> List[Tuple[float, str]]:
