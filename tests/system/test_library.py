@@ -90,6 +90,9 @@ for law in ("standard", "predictive", "proposed"):
         ours = run[name].reshape(theirs.shape)
         assert numpy.array_equal(ours, theirs, equal_nan=True), (law, name)
     assert run["contact/force"].shape[1:] == (4, 3)
+    few = limpid.Loop(scene="table.toml", coupling=law, eta=0.7).run(hand, channels=["/proxy/position", "hand/grip"])
+    assert list(few) == ["time", "proxy/position", "hand/grip"]
+    assert numpy.array_equal(few["proxy/position"], run["proxy/position"])
 print("the same")
 """), "the same\n")
 

@@ -5,6 +5,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "app/library/limpid/limpid.h"
 
 namespace limpid {
@@ -29,18 +31,22 @@ Array as_rows(std::vector<double>&& all, std::size_t stride) {
   return Array({rows, static_cast<py::ssize_t>(stride)}, kept->data(), owner);
 }
 
-py::tuple run(const SimulatedLoop& loop, const Array& path, double duration) {
+// Keeps these numbers of each row, by their offsets.
+py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
+              const std::vector<std::size_t>& kept) {
   const std::vector<double> rows(path.data(), path.data() + path.size());
   std::vector<double> all;
+  const double seconds = duration > 0 || rows.size() < 4 ? duration : rows[rows.size() - 4];
+  all.reserve(kept.size() * static_cast<std::size_t>(std::max(0.0, seconds / loop.period()) + 2));
   SimulatedLoop::RunEnd end;
   {
     const py::gil_scoped_release others_go_on;
     end = loop.run(rows, duration, [&](std::span<const double> row) {
-      all.insert(all.end(), row.begin(), row.end());
+      for (const std::size_t each : kept) all.push_back(row[each]);
       return true;
     });
   }
-  return py::make_tuple(as_rows(std::move(all), loop.row().size()), end.diverged, end.why);
+  return py::make_tuple(as_rows(std::move(all), kept.size()), end.diverged, end.why);
 }
 
 Array step(SimulatedLoop& loop, const Array& target, double grip, bool magnet,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, 
 
 from limpid.errors import ArgumentError, LimpidError, ProgramError
 from limpid.program import find_program
-from limpid.values import PathLike, Value, hand_rows, is_path, number, path_of, settings_of, text_of
+from limpid.values import PathLike, Value, hand_rows, is_path, names_of, number, path_of, settings_of, text_of
 from limpid.worlds import Arm, Scene
 
 if TYPE_CHECKING:
@@ -95,6 +95,7 @@ class _AnyLoop:
     def _learn(self) -> None:
         columns = self._loop.columns()
         self._places = {path.lstrip("/"): (offset, width) for path, _, _, offset, width in columns}
+        self._width = sum(width for _, _, _, _, width in columns)
         self.units: Dict[str, str] = {path.lstrip("/"): unit for path, unit, _, _, _ in columns}
         self.about: Dict[str, str] = {path.lstrip("/"): what for path, _, what, _, _ in columns}
 
@@ -186,16 +187,27 @@ class Loop(_AnyLoop):
         row = self._loop.step(_point("hand", hand), number("grip", grip), bool(magnet), torque)
         return Channels(row, self._places)
 
-    def run(self, hand: Any, duration: Optional[float] = None) -> Run:
+    def run(self, hand: Any, duration: Optional[float] = None,
+            channels: Optional[Sequence[str]] = None) -> Run:  # fmt: skip
         """Leads a hand along a path as fast as it goes, from rest, with the present settings: the rows
-        of limpid.run(), bit for bit. `hand`: rows of time [s], x, y, z [m]. The loop itself stays as
+        of limpid.run(), bit for bit. `hand`: rows of time [s], x, y, z [m]. `channels`: only these are
+        kept, and the time, which takes less memory and less time. The loop itself stays as
         it is, and other threads go on meanwhile: loops run in as many threads as there are
         processors."""
         if is_path(hand):
             raise ArgumentError("hand: is a file; needed: rows of time [s], x, y, z [m] (limpid.run reads files)")
         seconds = 0.0 if duration is None else number("duration", duration)
-        values, _, why = self._loop.run(hand_rows(hand), seconds)
-        return Run(values, self._places, why)
+        places, kept = self._places, list(range(self._width))
+        if channels is not None:
+            places, kept = {}, []
+            for name in dict.fromkeys(["time", *(each.lstrip("/") for each in names_of("channels", channels))]):
+                if name not in self._places:
+                    raise ArgumentError(f"{name} is no channel; there are {', '.join(self._places)}")
+                offset, width = self._places[name]
+                places[name] = (len(kept), width)
+                kept += range(offset, offset + width)
+        values, _, why = self._loop.run(hand_rows(hand), seconds, kept)
+        return Run(values, places, why)
 
 
 class DeviceLoop(_AnyLoop):
