@@ -19,7 +19,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
   DESTINATION share/fish/vendor_completions.d)
 install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md DESTINATION share/doc/limpid)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
-  ${PROJECT_SOURCE_DIR}/assets/python/read_session.py DESTINATION share/doc/limpid/examples)
+  ${PROJECT_SOURCE_DIR}/assets/python/read_session.py ${PROJECT_SOURCE_DIR}/assets/python/ros2_node.py
+  ${PROJECT_SOURCE_DIR}/assets/python/touch_env.py DESTINATION share/doc/limpid/examples)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/assets/python/lessons
   DESTINATION share/doc/limpid/examples PATTERN "__pycache__" EXCLUDE)
 install(CODE "set(SOURCE \"${PROJECT_SOURCE_DIR}\")\nset(BUILD \"${PROJECT_BINARY_DIR}\")")

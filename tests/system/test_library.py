@@ -140,6 +140,72 @@ with ThreadPoolExecutor(4) as threads:
 print("alike")
 """), "alike\n")
 
+    def test_a_learner_presses_as_hard_as_it_is_asked_to(self) -> None:
+        environment = {name: value for name, value in os.environ.items() if name != "LIMPID"}
+        said = must(PYTHON, self.prefix / "share/doc/limpid/examples/touch_env.py",
+                    env={**environment, "PYTHONPATH": str(self.modules())})
+        self.assertIn("at last 0.50 N", said)
+
+    def test_scenes_and_arms_are_values(self) -> None:
+        self.assertEqual(self.python("""
+import limpid, math
+scene = limpid.Scene(title="A \\"wall\\"", gravity=(0, 0, 0))
+scene.add("plane", "wall", point=(0, 0, 0), normal=(-1, 0, 0), stiffness=400)
+scene.add("body", "ball", sphere=0.01, mass=0.02, position=(0.2, 0, 0.1))
+scene["wall"]["stiffness"] = 500
+arm = limpid.Arm("slide", [dict(name="slide", slides=True, axis=(1, 0, 0), lower=-0.2, upper=0.2,
+                                effort=8, damping=0.5, mass=0.1)])
+assert arm.get("slide") == {"lower": -0.2, "upper": 0.2, "effort": 8, "damping": 0.5, "friction": 0}
+loop = limpid.DeviceLoop([-0.01], arm=arm, scene=scene, motors="simulated", coupling="direct")
+for k in range(2000):
+    force = loop.tick([min(0.004, -0.01 + 1e-5 * k)])[0]
+assert math.isclose(force, -500 * 0.004, abs_tol=1e-6), force
+
+ideal = limpid.Arm.read("touch.urdf")
+for name in ideal.joints:
+    ideal.set(name, friction=0)
+assert ideal.get("elbow")["friction"] == 0
+cup = limpid.Scene.read("cup.toml")
+count = len(cup)
+del cup[next(each["name"] for each in cup if each["kind"] == "body")]
+assert len(cup) == count - 1
+hand = [(0, 0.19, 0, 0.02), (0.2, 0.19, 0, 0.01)]
+here = limpid.Loop(arm=ideal, scene=cup).run(hand)
+there = limpid.run(arm=ideal, scene=cup, hand=hand)
+assert (here["device/position"] == there["device/position"]).all()
+for wrong in (lambda: scene["floor"], lambda: scene.add("wal"), lambda: arm.set("elbow", damping=1),
+              lambda: arm.set("slide", mass=1), lambda: limpid.Arm(joints=[dict(nam="a")]),
+              lambda: limpid.Loop(scene=limpid.Scene(gravty=1)), lambda: limpid.Scene.read("no.toml")):
+    try:
+        wrong()
+    except limpid.LimpidError as error:
+        assert str(error)
+    else:
+        raise AssertionError("refused nothing")
+print("as said")
+"""), "as said\n")
+
+    def test_sessions_are_tables_where_there_is_a_library_for_them(self) -> None:
+        said = self.python("""
+import limpid
+session = limpid.run(hand=[(0, 0.19, 0, 0), (0.1, 0.19, 0, -0.01)])
+try:
+    frame = session.frame(["device/position", "hand/grip"])
+    assert list(frame) == ["device/position[0]", "device/position[1]", "device/position[2]", "hand/grip"]
+    assert (frame["device/position[1]"].to_numpy() == session["device/position"][:, 1]).all()
+    assert frame.index.name == "time" and len(frame) == len(session)
+    data = session.dataset(["device/position", "contact/force"])
+    assert data["device/position"].attrs["units"] == session.unit("device/position")
+    assert data["contact/force"].shape == session["contact/force"].shape
+    assert (data["device/position"].sel(time=0.05, method="nearest").values == session["device/position"][50]).all()
+    print("tables")
+except limpid.LimpidError as error:
+    print(error)
+""")
+        if "is missing" in said:
+            self.skipTest(said)
+        self.assertEqual(said, "tables\n")
+
     def test_python_without_the_module_says_so(self) -> None:
         bare = self.directory / "bare"
         shutil.copytree(self.modules() / "limpid", bare / "limpid", ignore=shutil.ignore_patterns("*.so"))
