@@ -5,7 +5,7 @@ set(CPACK_DEBIAN_PACKAGE_VERSION ${limpid_version})
 set(whole_version ${limpid_version}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "limpid (= ${whole_version})")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-  "${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} (= ${whole_version}), libc6-dev")
+  "${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} (= ${whole_version}), limpid (= ${whole_version})")
 if("$ENV{SOURCE_DATE_EPOCH}" STREQUAL "")
   set(ENV{SOURCE_DATE_EPOCH} ${limpid_epoch})
 endif()

@@ -31,7 +31,13 @@ file(INSTALL ${SOURCE}/assets/python/limpid DESTINATION ${CMAKE_INSTALL_PREFIX}/
   PATTERN "__pycache__" EXCLUDE)
 include(${BUILD}/python_module.cmake)
 if(python_module)
+  cmake_path(GET python_module FILENAME name)
+  set(installed $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${modules}/limpid/${name})
   file(INSTALL ${python_module} DESTINATION ${CMAKE_INSTALL_PREFIX}/${modules}/limpid)
+  file(RPATH_REMOVE FILE ${installed})  # of the build
+  if(CMAKE_INSTALL_DO_STRIP)
+    execute_process(COMMAND strip --strip-unneeded ${installed} COMMAND_ERROR_IS_FATAL ANY)
+  endif()
 endif()
 
 # Without the time or the name of the file, so that the same text gives the same bytes.

@@ -37,12 +37,13 @@ install(FILES ${PROJECT_BINARY_DIR}/limpidConfig.cmake ${PROJECT_BINARY_DIR}/lim
   DESTINATION ${limpid_package_folder} COMPONENT dev)
 install(FILES ${PROJECT_BINARY_DIR}/limpid.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT dev)
-install(DIRECTORY library/examples DESTINATION share/doc/liblimpid-dev COMPONENT dev)
-install(FILES ${PROJECT_SOURCE_DIR}/assets/package/copyright DESTINATION share/doc/liblimpid-dev
+install(DIRECTORY library/examples/ DESTINATION share/doc/limpid/examples/library COMPONENT dev)
+# Packages of the library have the program's licence and changes.
+file(CREATE_LINK limpid ${PROJECT_BINARY_DIR}/doc_of_limpid SYMBOLIC)
+install(FILES ${PROJECT_BINARY_DIR}/doc_of_limpid DESTINATION share/doc RENAME liblimpid-dev
   COMPONENT dev)
-install(FILES ${PROJECT_SOURCE_DIR}/assets/package/copyright
-  DESTINATION share/doc/liblimpid${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-  COMPONENT library)
+install(FILES ${PROJECT_BINARY_DIR}/doc_of_limpid DESTINATION share/doc
+  RENAME liblimpid${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} COMPONENT library)
 
 # Python's module stands by itself, so that it goes wherever the package goes.
 find_program(Python_EXECUTABLE NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)

@@ -41,7 +41,7 @@ class Installed(SystemTest):
                                              "PYTHONDONTWRITEBYTECODE": "1"})
 
     def test_examples_are_built_by_cmake_and_run(self) -> None:
-        examples = self.prefix / "share/doc/liblimpid-dev/examples"
+        examples = self.prefix / "share/doc/limpid/examples/library"
         for file in examples.glob("*.cpp"):
             self.assertLess(len(file.read_text().splitlines()), 80, file.name)
         out = self.directory / "examples"

@@ -72,6 +72,19 @@ class Package(Run):
         known = "W: limpid: appstream-metadata-validation-failed "
         self.assertEqual([line for line in said.splitlines() if not line.startswith(known)], [])
 
+    def test_the_library_has_packages_of_its_own(self) -> None:
+        library, dev = (next(self.deb.parent.glob(f"{name}_*.deb")) for name in ("liblimpid0.*", "liblimpid-dev"))
+        version = self.must("dpkg-deb", "-f", self.deb, "Version").strip()
+        self.assertIn(f"limpid (= {version})", self.must("dpkg-deb", "-f", library, "Depends"))
+        self.assertIn(f"(= {version})", self.must("dpkg-deb", "-f", dev, "Depends"))
+        self.assertRegex(self.must("dpkg-deb", "-c", library), r"/usr/lib/\S*liblimpid\.so\.\d+\.\d+\.\d+\n")
+        listed = self.must("dpkg-deb", "-c", dev)
+        for name in ("include/limpid/limpid.h", "cmake/limpid/limpidConfig.cmake", "pkgconfig/limpid.pc",
+                     "examples/library/own_loop.cpp", "liblimpid.so "):
+            self.assertIn(name, listed)
+        said = self.must(tool("lintian"), "--allow-root", "--fail-on", "none", "--no-cfg", library, dev)
+        self.assertEqual([line for line in said.splitlines() if line.startswith("E:")], [])
+
     def test_its_version_is_the_programs(self) -> None:
         version = self.must("dpkg-deb", "-f", self.deb, "Version").strip()
         self.assertEqual(f"limpid {version}".split("-")[0], limpid("--version").out.strip())
