@@ -206,7 +206,7 @@ def fetch_kernel(tree: Path) -> None:
     with tempfile.TemporaryDirectory(dir=tree.parent) as folder:
         checked("apt-get", "download", package[1], cwd=Path(folder))
         unpacked = Path(folder) / "kernel"
-        checked("dpkg-deb", "-x", next(Path(folder).glob("limpid_*.deb")), unpacked)
+        checked("dpkg-deb", "-x", next(Path(folder).glob("*.deb")), unpacked)
         checked("depmod", "-b", unpacked, next(unpacked.glob("lib/modules/*")).name)
         try:
             unpacked.rename(tree)
