@@ -117,8 +117,11 @@ void write_verdict(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& file) {
   nlohmann::ordered_json checks = nlohmann::ordered_json::array();
   for (const Check& c : outcome.checks) {
-    nlohmann::ordered_json check{
-        {"what", c.what}, {"value", c.value}, {"bound", c.bound}, {"passed", c.passed}};
+    nlohmann::ordered_json check{{"what", c.what},
+                                 {"value", c.value},
+                                 {"relation", c.least ? "at least" : "at most"},
+                                 {"bound", c.bound},
+                                 {"passed", c.passed}};
     if (!c.unjudged.empty()) {
       check["passed"] = nullptr;
       check["unjudged"] = c.unjudged;
@@ -187,7 +190,9 @@ std::string table(const json& checks) {
     } else if (compares) {
       text += cell("") + cell("");
     }
-    text += cell(number(check.at("value"))) + cell(number(check.at("bound")));
+    text += cell(number(check.at("value"))) +
+            cell((check.value("relation", "") == "at least" ? "&ge; " : "&le; ") +
+                 number(check.at("bound")));
     text += fmt::format("<td class=\"verdict\">{}</td></tr>\n", verdict(check));
   }
   return text + "</tbody></table>";

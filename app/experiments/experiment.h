@@ -62,7 +62,7 @@ struct Comparison {
   std::string conditions;  // a sentence
 };
 
-// A promise: `value` stands to `bound` in the relation that `what` names.
+// A promise: `value` is at most `bound`, or at least.
 struct Check {
   std::string what;
   double value = 0;
@@ -70,6 +70,7 @@ struct Check {
   bool passed = false;
   std::optional<Comparison> against = {};
   std::string unjudged = {};  // sentence on why the value is only measured; empty: it is judged
+  bool least = false;         // the value is to be at least the bound, else at most
 
   bool failed() const { return !passed && unjudged.empty(); }
 };
@@ -78,7 +79,11 @@ inline Check at_most(std::string what, double value, double bound) {
   return {std::move(what), value, bound, value <= bound};
 }
 inline Check at_least(std::string what, double value, double bound) {
-  return {std::move(what), value, bound, value >= bound};
+  return {.what = std::move(what),
+          .value = value,
+          .bound = bound,
+          .passed = value >= bound,
+          .least = true};
 }
 
 // The larger of two, for the worst of many. NaN if either is NaN, so that what could not be

@@ -547,11 +547,15 @@ void Plot::handle_drag(const PlotFrame& frame, const History& history, PlotGroup
                                                : Drag::none;
     if (drag_ == Drag::pan && over_time() && group.playback()) {
       events.playback = note_near(frame, history, io.MousePos);
+      if (events.playback) drag_ = Drag::none;
     }
   }
   if (!ImGui::IsItemActive()) {
-    events.unselect =
-        drag_ == Drag::range && !ImGui::IsMouseDragPastThreshold(ImGuiMouseButton_Left, 2);
+    const bool clicked = !ImGui::IsMouseDragPastThreshold(ImGuiMouseButton_Left, 2);
+    events.unselect = drag_ == Drag::range && clicked;
+    if (drag_ == Drag::pan && clicked && over_time() && group.playback()) {
+      events.playback = frame.x_at(io.MousePos.x);
+    }
     drag_ = Drag::none;
     return;
   }

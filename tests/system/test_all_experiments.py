@@ -44,7 +44,8 @@ class AllExperiments(SystemTest):
             with self.subTest(name):
                 checks = self.verdict(name)["checks"]
                 self.assertEqual([c["what"] for c in checks], [what for what, *_ in promised])
-                for check, (what, _, bound) in zip(checks, promised):
+                for check, (what, relation, bound) in zip(checks, promised):
+                    self.assertEqual(check["relation"], relation, what)
                     self.assertAlmostEqual(check["bound"], bound, delta=1e-12, msg=what)
 
     def test_every_caption_says_the_motors_limit_and_all_other_conditions(self) -> None:

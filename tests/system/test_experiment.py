@@ -48,7 +48,7 @@ class Inertia(SystemTest):
         self.assertIs(verdict["passed"], True)
         self.assertTrue(verdict["checks"])
         for check in verdict["checks"]:
-            self.assertLessEqual({"what", "value", "bound", "passed"}, set(check))
+            self.assertLessEqual({"what", "value", "relation", "bound", "passed"}, set(check))
 
     def test_figure_verdict_and_page_say_where_they_are_from(self) -> None:
         line = json.loads((self.out_dir / "inertia.json").read_text())["provenance"]

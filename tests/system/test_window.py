@@ -86,5 +86,46 @@ class FirstStart(WindowTest):
         self.assertEqual(self.state()["kind"], 2)
 
 
+class Playback(WindowTest):
+    SIZE = (1600, 880)  # all of the panel fits
+
+    def test_a_recording_has_the_keys_of_a_player_and_is_run_again_as_it_was(self) -> None:
+        self.key("bracketleft")
+        eta = self.wait("a smaller eta", lambda s: s["eta"] < 1)["eta"]
+        self.key("r")
+        self.wait("recording", lambda s: s["recording"])
+        self.go_on(2)
+        self.key("r")
+        self.wait("the end of the recording", lambda s: not s["recording"])
+        self.key("bracketright")
+        self.wait("a larger eta", lambda s: s["eta"] > eta)
+        self.key("p")
+        state = self.wait("playback", lambda s: s["playing"])
+        self.assertEqual(state["edited"]["eta"], eta, "the re-run begins as the recording did")
+        self.key("c")
+        self.wait("another law for the re-run", lambda s: s["edited"]["kind"] != state["edited"]["kind"])
+        self.click_on("coupling", "As recorded")
+        self.wait("the recording's", lambda s: s["edited"] == state["edited"])
+        self.click_on("coupling", "Take mine")
+        self.wait("the loop's", lambda s: s["edited"]["eta"] > eta)
+
+        self.key("space")  # pauses
+        at = self.settled()["recorded"]["at"]
+        self.assertEqual(self.settled()["recorded"]["at"], at)
+        left, top, right, bottom = self.state()["plots"][0]["area"]
+        start, stop = self.state()["shown"]
+        self.click(left + 0.25 * (right - left), 0.5 * (top + bottom))
+        found = self.settled()["recorded"]["at"]
+        self.assertAlmostEqual(found, start + 0.25 * (stop - start), delta=0.02 * (stop - start))
+        self.key("space")
+        self.wait("it to go on", lambda s: s["recorded"]["at"] > found + 0.1)
+        self.assertTrue(self.state()["force"], "the virtual arm's force is as it was")
+        self.key("Escape")
+        self.wait("the loop", lambda s: not s["playing"])
+        self.assertTrue(self.settled()["force"])
+        self.key("space")
+        self.wait("force off", lambda s: not s["force"])
+
+
 if __name__ == "__main__":
     unittest.main()

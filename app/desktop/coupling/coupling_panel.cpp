@@ -310,6 +310,38 @@ void draw_tanks(const CouplingReading& now) {
         "100 % while the device's tank can pay for the tick that comes");
 }
 
+// Draws what a re-run will change, and buttons that take all settings of the recording or the loop.
+void draw_differences(Parameters& p, const Parameters& recorded, const Parameters& live) {
+  bool any = false;
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string before = parameter_text(recorded, info), after = parameter_text(p, info);
+    if (before == after) continue;
+    const auto shown = [](std::string text) {
+      std::erase(text, '"');
+      return text.empty() ? "the arm's" : text;
+    };
+    read_out(info.caption, fmt::format("{} \xE2\x86\x92 {}", shown(before), shown(after)), {},
+             "In the recording, and in the re-run");
+    any = true;
+  }
+  if (!any) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
+    ImGui::TextWrapped("As recorded: change a setting, then E shows what it changes.");
+    ImGui::PopStyleColor();
+  }
+  const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  ImGui::BeginDisabled(!any);
+  if (ImGui::Button("As recorded", {half, 0})) p = recorded;
+  note_place("As recorded");
+  ImGui::EndDisabled();
+  tooltip("Takes back all changes for the re-run.");
+  ImGui::SameLine();
+  if (ImGui::Button("Take mine", {half, 0})) p = live;
+  note_place("Take mine");
+  tooltip("Takes all settings of the live loop for the re-run.");
+  ImGui::Spacing();
+}
+
 // Draws the bounds on the human's energy, for a law that keeps account of it.
 void draw_ledger(const CouplingReading& now) {
   heading("Energy ledger");
@@ -448,7 +480,9 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
   draw_reading(reading, p, now.analysis);
 }
 
-void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now) {
+void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,
+                            const CouplingSituation& now) {
+  draw_differences(p, recorded, live);
   law_choice(p);
   ImGui::Spacing();
   draw_sliders(p, now.analysis, now.arm);

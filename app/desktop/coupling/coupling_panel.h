@@ -37,8 +37,10 @@ struct CouplingSituation {
 // Draws the running loop's coupling into the open ImGui window, as the two below do.
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
                    const Act& act);
-// Draws the parameters for the next re-run of a recording.
-void draw_coupling_of_rerun(Parameters& p, const CouplingSituation& now);
+// Draws the parameters for the next re-run of a recording that began with `recorded`; `live`: the
+// loop's own.
+void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,
+                            const CouplingSituation& now);
 // Draws energy and motors at a recording's row.
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis);
 

@@ -143,12 +143,14 @@ void Tuning::analyze_anew() {
 void Tuning::update() {
   follow_lanes();
   const LaneParameters& now = settings_.lanes.parameters;
-  if (now == analysed_ && analysed_lane_ == edited_lane()) return;
+  const bool same_rerun = !playback_.on() || of_rerun_ == analysed_of_rerun_;
+  if (now == analysed_ && analysed_lane_ == edited_lane() && same_rerun) return;
   for (std::size_t i = 0; i < settings_.lanes.count && !playback_.on(); ++i) {
     mark_changes(now[i], analysed_[i], i == kMainLane ? "" : lane_mark(i));
   }
   analysed_ = now;
   analysed_lane_ = edited_lane();
+  analysed_of_rerun_ = of_rerun_;
   const Stage& shown = playback_.on() ? playback_.shown()->stage() : live_.stage();
   const Parameters p = playback_.on() ? edited() : live_.loop().taken(edited());
   analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), p, std::nullopt);
@@ -182,6 +184,7 @@ void Tuning::follow_recorded(bool another) {
   PlayedSession* session = playback_.shown();
   if (session == nullptr || another) recorded_analysed_.reset();
   if (session == nullptr) return;
+  if (another) of_rerun_ = session->began_with();
   const Parameters& now = session->settings();
   if (recorded_analysed_ && *recorded_analysed_ == now) return;
   recorded_analysed_ = now;

@@ -30,8 +30,11 @@ class Tuning {
   Tuning(Settings& settings, Notices& notices, LiveStage& live, DeviceController& devices,
          Playback& playback);
 
-  // Returns the settings that sliders and keys act on: those of one of the lanes.
-  Parameters& edited() { return settings_.lanes.parameters[edited_lane()]; }
+  // Returns the settings that sliders and keys act on: those of one of the lanes; in playback those
+  // of the next re-run, which begin as the recording's.
+  Parameters& edited() {
+    return playback_.on() ? of_rerun_ : settings_.lanes.parameters[edited_lane()];
+  }
   std::size_t edited_lane() const { return playback_.on() ? kMainLane : settings_.lanes.edited; }
   const Analysis& analysis() const { return analysis_; }  // of edited(), at the arm's rest pose
   // Returns the analysis of a played recording's settings.
@@ -98,6 +101,7 @@ class Tuning {
   std::optional<OfVirtualArm> of_virtual_;    // while a device is in the arm's place
   std::string device_;                        // id of that device
   double encoder_of_device_ = 0;              // of that device [rad]
+  Parameters of_rerun_, analysed_of_rerun_;
   Analysis analysis_;
   LaneParameters analysed_;  // as marks and analysis know them
   std::size_t analysed_lane_ = kMainLane;

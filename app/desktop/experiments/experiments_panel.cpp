@@ -237,7 +237,7 @@ fs::path ExperimentsPanel::draw_verdict(Verdict& verdict) {
       ImGui::TableNextColumn();
       ImGui::Text("%.4g", check.value);
       ImGui::TableNextColumn();
-      ImGui::Text("%.4g", check.bound);
+      ImGui::Text("%s %.4g", check.least ? "\xE2\x89\xA5" : "\xE2\x89\xA4", check.bound);
       ImGui::TableNextColumn();
       ImGui::TextColored(colour_vector(check.failed() ? colours.broken : colours.muted), "%s",
                          !check.unjudged.empty() ? "measured"

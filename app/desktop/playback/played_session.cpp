@@ -124,12 +124,13 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                                 return true;
                               });
   if (end.stopped || rows.empty())
-    return {{}, end, history_of(session, where, plan.arm, {}, {}), {}};
+    return {{}, end, history_of(session, where, plan.arm, {}, {}), {}, {}};
   const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
   while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
   const std::span<const double> again(rows);
   History history = history_of(session, where, plan.arm, LaneRows(&again, 1), {});
-  return {std::move(rows), end, std::move(history), plan.note};
+  const std::array both{session_parameters(session, where), chosen};
+  return {std::move(rows), end, std::move(history), "re-run: " + lane_names(both)[1], plan.note};
 }
 
 RecordedSettings::RecordedSettings(const Session& session, const std::string& where)
@@ -173,7 +174,7 @@ std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
 
 void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
-  stage_->name_runs({{"", "re-run"}, false});
+  stage_->name_runs({{"", again.name}, false});
   rerun_ = std::move(again.rows);
   show(std::move(marks_));
 }

@@ -42,6 +42,7 @@ class RecordedSettings {
   RecordedSettings(const Session& session, const std::string& where);
 
   const Parameters& at(std::size_t row);
+  const Parameters& began() const { return began_; }  // at the first row
 
  private:
   const Session* session_;
@@ -54,6 +55,7 @@ struct Rerun {
   LargeVector<double> rows;  // as many as the session's
   RunEnd end;                // after a divergence the last row is repeated
   History history;           // of both runs
+  std::string name;          // "re-run: predictive", by what was changed
   std::string note;          // why it may differ from the recording; for people
 };
 
@@ -101,6 +103,7 @@ class PlayedSession {
   const std::vector<Fact>& verdict() const { return verdict_; }
   // Returns the settings at the player's time of the first lane, and of all lanes.
   const Parameters& settings() { return lanes_[kMainLane].at(player_.index()); }
+  const Parameters& began_with() const { return lanes_[kMainLane].began(); }  // first lane
   std::vector<Parameters> lane_settings();
 
   // Returns the users' marks in the order of their ticks; show() replaces them without writing

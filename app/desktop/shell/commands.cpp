@@ -233,11 +233,12 @@ constexpr Command row(const char* id, const char* text, const char* menu, const 
 // Columns: id, text, menu, keys, help. Commands that may be needed at once come first; a menu has
 // its commands in this order.
 constexpr std::array kCommands{
-    row("force.cut", "Force off at once", nullptr, "Space", "force off at once",
-        [](Desktop& d) { d.cut_force(); },
-        {.reach = Reach::all_but_text, .repeats = true, .blind = true}),
+    row("force.cut", "Force off at once", nullptr, "Space",
+        "force off at once; in playback without a real device: play, pause",
+        [](Desktop& d) { d.cut_or_play(); }, {.reach = Reach::all_but_text, .blind = true}),
     row("window.escape", "Close what is open, or force off", nullptr, "Esc",
-        "closes what is open; with nothing open, and always on a real device, force off",
+        "closes what is open, then the playback; with nothing open, and always on a real device, "
+        "force off",
         [](Desktop& d) { d.escape(); }, {.reach = Reach::all, .blind = true}),
     row("arm.open", "Open arm (URDF)...", "Device", nullptr, nullptr,
         [](Desktop& d) { d.dialog.open("open arm"); }, {.why_not = no_virtual_arm}),

@@ -359,10 +359,27 @@ void Desktop::cut_force() {
   if (identify.moving()) identify.stop();  // only a motion stops: results stay
 }
 
+// Returns whether keys may be a player's: a recording is shown, and no real device may move.
+bool Desktop::only_plays() const {
+  const Focus now = focus();
+  const bool nothing_before = !now.popup && !now.question && !now.modal;
+  return playback.on() && nothing_before && !may_move();
+}
+
+bool Desktop::may_move() const {
+  return live.loop().device_in_place() || devices.check() != nullptr || identify.moving();
+}
+
+void Desktop::cut_or_play() {
+  if (only_plays()) return playback.toggle_playing();
+  cut_force();
+}
+
 void Desktop::escape() {
+  const bool plays = only_plays();
   const bool closed = close_one();
-  const bool real = live.loop().device_in_place() || devices.check() != nullptr;
-  if (!closed || real) cut_force();
+  if (!closed && plays) return playback.close();
+  if (!closed || may_move()) cut_force();
 }
 
 // Closes one thing. A moving device stops, and its dialog says so. Then come a menu, typing outside

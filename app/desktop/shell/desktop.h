@@ -154,8 +154,10 @@ class Desktop {
   void toggle_force();
   // Cuts the force of the arm, of a check of its axes, and of a device that is moved by itself.
   void cut_force();
-  // Closes one open thing. Cuts the force, too, if nothing was open or a real device is in the
-  // loop.
+  // Plays or pauses a recording where no real device may move, else cuts the force.
+  void cut_or_play();
+  // Closes one open thing, or with none a recording where no real device may move. Cuts the force,
+  // too, if nothing was open or a real device may move.
   void escape();
   // Returns the banners over the picture.
   std::vector<Banner> banners() const;
@@ -164,6 +166,8 @@ class Desktop {
   static const KeyLabels kUsKeyboard;
 
   bool close_one();
+  bool only_plays() const;
+  bool may_move() const;
   void follow_playback(double dt);
   void follow_break();
   void follow_first_steps();

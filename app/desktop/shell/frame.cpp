@@ -246,7 +246,10 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
     draw_recorded(session);
     draw_reading(reading, session.settings(), desktop_.tuning.recorded_analysis());
   }
-  if (section("For the re-run (E)", true)) draw_coupling_of_rerun(desktop_.tuning.edited(), now);
+  if (section("For the re-run (E)", true)) {
+    draw_coupling_of_rerun(desktop_.tuning.edited(), session.began_with(),
+                           desktop_.settings.parameters(), now);
+  }
 }
 
 // Saves a plot as the export dialog's defaults do: the picture of the SVG, dense enough for print.

@@ -224,12 +224,15 @@ json row_of(const Desktop& d) {
 }
 
 // Returns what the user has set.
-json settings_of(const Settings& settings) {
+json settings_of(Desktop& d) {
+  const Settings& settings = d.settings;
+  const Parameters& edited = d.tuning.edited();
   const Parameters& p = settings.parameters();
   return {{"eta", p.eta},
           {"alpha", p.alpha},
           {"k_vc", p.k_vc},
           {"hand_settings", {{"stiffness", p.hand_stiffness}, {"damping", p.hand_damping}}},
+          {"edited", {{"kind", name(edited.kind)}, {"eta", edited.eta}}},
           {"overlaid", settings.overlaid},
           {"your_turn", settings.your_turn},
           {"tried", settings.tried}};
@@ -301,7 +304,7 @@ json state_of(const Desktop& d) {
 void print_state(Desktop& d, const WindowState& window) {
   json state = state_of(d);
   state.update(row_of(d));
-  state.update(settings_of(d.settings));
+  state.update(settings_of(d));
   state.update(busy_with(d));
   state.update(parts_of(d));
   state.update({{"size", {window.width, window.height}},

@@ -57,8 +57,10 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   }
   parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", status.rate),
                    stopped ? colours.broken : colours.muted, status.failure});
-  parts.push_back({fmt::format("{} missed", status.missed),
-                   status.missed > status.ticks / 100 ? colours.broken : colours.muted,
+  const double missed = static_cast<double>(status.missed) /
+                        static_cast<double>(std::max<std::int64_t>(status.ticks, 1));
+  parts.push_back({missed < 1e-3 ? "on time" : fmt::format("{:.1f} % of ticks late", 100 * missed),
+                   missed > 0.01 ? colours.broken : colours.muted,
                    fmt::format("{} ticks missed: they began after the next one was due.\n{} began "
                                "more than 0.2 ms late, {} slipped: given up {}.",
                                status.missed, status.late, status.slipped,
@@ -83,7 +85,13 @@ float least_status_width(const LiveLoop& loop) { return status_width(force_part(
 
 void draw_status(const LiveLoop& loop, const StatusLaw& law, const StatusGoing& going) {
   std::vector<StatusPart> parts = status_parts(loop, law, going);
-  parts.push_back(force_part(loop.snapshot()));
+  if (going.played.empty() || loop.device_in_place()) {
+    parts.push_back(force_part(loop.snapshot()));
+  } else {
+    parts.push_back(
+        {"space plays [Esc: live]", current_palette().muted,
+         "Space plays and pauses, a click in a plot goes there, Esc goes back to live"});
+  }
   const float room = ImGui::GetWindowWidth() - ImGui::GetCursorPosX();
   float width = 0;
   auto first = parts.end();
