@@ -13,6 +13,9 @@
 namespace limpid {
 
 struct ProposedLaw {
+  static constexpr std::array kSliders{"coupling.eta",  "observer.alpha", "coupling.k_vc",
+                                       "coupling.b_vc", "coupling.b_v",   "link.delay",
+                                       "link.jitter",   "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "proposed",
       .label = "Proposed",
@@ -22,7 +25,7 @@ struct ProposedLaw {
       .takes_eta = true,
       .observes = true,
       .through_link = "of what is fed forward no bound is known",
-      .sliders = kPaperSliders,
+      .sliders = kSliders,
   };
 
   struct Settings {

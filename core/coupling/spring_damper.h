@@ -89,8 +89,4 @@ struct Condition3 {
 Condition3 condition3(const SpringDamper& p, double T, std::span<const double> b_d,
                       double delay = 0, const LinkSettings& link = {});
 
-// Sliders of the paper's laws, the same for all; some have no effect in one law.
-inline constexpr std::array kPaperSliders{"coupling.eta",  "observer.alpha", "coupling.k_vc",
-                                          "coupling.b_vc", "coupling.b_v",   "link.delay",
-                                          "link.jitter",   "link.loss"};
 }  // namespace limpid

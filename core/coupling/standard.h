@@ -1,6 +1,7 @@
 // The standard coupling: spring and damper alone, (1)-(2).
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/coupling/law_info.h"
@@ -9,6 +10,8 @@
 namespace limpid {
 
 struct StandardLaw {
+  static constexpr std::array kSliders{"coupling.k_vc", "coupling.b_vc", "coupling.b_v",
+                                       "link.delay",    "link.jitter",   "link.loss"};
   static constexpr LawInfo kInfo{
       .key = "standard",
       .label = "Standard",
@@ -16,7 +19,7 @@ struct StandardLaw {
       .verdict = "The usual one: hand and world drift apart.",
       .promise = Promise::condition3,
       .through_link = "passive where (3) holds",
-      .sliders = kPaperSliders,
+      .sliders = kSliders,
   };
 
   using Settings = SpringDamper;

@@ -27,6 +27,8 @@ def make_a_change(test: WindowTest) -> None:
 
 
 class Keys(WindowTest):
+    LAW = "proposed"  # which uses eta
+
     def escape_from(self, dialog: str) -> None:
         """On the virtual arm Escape closes the dialog, and no more."""
         self.key("Escape")

@@ -237,8 +237,26 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
   draw_link(p);
 }
 
+// Draws the observer's bandwidth and the least inertia that is passive and stable with it.
+void draw_observer(const Parameters& p, const Analysis& a) {
+  const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
+  read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
+           "alpha / m over the modes of the inertia at the rest pose, (18)");
+  read_out("Least passive inertia \xCE\xB7_min",
+           fmt::format("{:.3f}  {}", a.eta_min, a.above_eta_min ? "ok" : "broken"),
+           eta_broken(p, a), "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
+  const std::string unstable =
+      p.eta < a.eta_min_grip
+          ? fmt::format(
+                "eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
+                "unstable while the hand holds. Raise eta or soften the grip.",
+                p.eta, a.eta_min_grip)
+          : std::string();
+  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
+           "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
+}
+
 void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
-  const std::string eta = eta_broken(p, a);
   const std::string device = device_broken(p, a);
   const std::string proxy = proxy_broken(p, a);
   heading("Passivity");
@@ -249,25 +267,7 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
                         : "They follow from what the arm's file says of inertia and damping; the "
                           "delay is taken to be what is set. limpid identify measures them.");
   }
-  const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
-  read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
-           "alpha / m over the modes of the inertia at the rest pose, (18)");
-  const bool standard = !info(p.kind).observes;
-  read_out("Least passive inertia \xCE\xB7_min",
-           fmt::format("{:.3f}{}", a.eta_min,
-                       standard          ? ""
-                       : a.above_eta_min ? "  ok"
-                                         : "  broken"),
-           eta, "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
-  const std::string unstable =
-      !standard && p.eta < a.eta_min_grip
-          ? fmt::format(
-                "eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
-                "unstable while the hand holds. Raise eta or soften the grip.",
-                p.eta, a.eta_min_grip)
-          : std::string();
-  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
-           "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
+  if (info(p.kind).observes) draw_observer(p, a);
   const auto verdict = [](const std::string& broken, double margin) {
     return broken.empty() ? fmt::format("ok  {:+.2g}", std::abs(margin) < 1e-12 ? 0.0 : margin)
                           : fmt::format("broken  {:+.2g}", margin);

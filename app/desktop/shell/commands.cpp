@@ -36,6 +36,14 @@ void step_setting(Desktop& d, const char* key, int direction) {
   const ParameterInfo& info = *find_parameter(key);
   const double usual = parameter_number(Parameters{}, info);
   set_parameter_number(p, info, slider_step(info, parameter_number(p, info), usual, direction));
+  const LawInfo& law = limpid::info(p.kind);
+  const bool of_law = std::string_view(key).starts_with("coupling.") ||
+                      std::string_view(key).starts_with("observer.");
+  if (of_law && std::ranges::find(law.sliders, std::string_view(key)) == law.sliders.end()) {
+    d.notices.say_once(fmt::format("{} is {:.3g} now. {} does not use it.", info.caption,
+                                   parameter_number(p, info), law.label),
+                       false);
+  }
 }
 
 void show_or_close(Desktop& d, const char* dialog) {

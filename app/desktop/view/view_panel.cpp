@@ -97,9 +97,19 @@ PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
   return legend;
 }
 
-// Draws hints of a first start, each until its step was done once.
-void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect,
-               ImDrawList& list) {
+// Returns what to do in the scene, with the key that picks things up.
+std::string task_of(const SceneDocument& document) {
+  std::string task = document.about;
+  const auto magnetic = [](const Object& object) { return object.body && object.body->magnet; };
+  if (std::ranges::any_of(document.scene.objects, magnetic)) {
+    task += task.empty() ? "H switches the magnet at the tip." : " (H: the magnet)";
+  }
+  return task;
+}
+
+// Draws hints of a first start, each until its step was done once, and the scene's task before.
+void draw_hint(const std::string& task, const std::string& pad, const Settings& settings,
+               ScreenRect rect, ImDrawList& list) {
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
   const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
@@ -115,6 +125,8 @@ void draw_hint(const std::string& pad, const Settings& settings, ScreenRect rect
   for (const auto& [step, line] : all) {
     if (!done(settings, step)) lines.push_back(line);
   }
+  // Who has not found the arm yet has enough to read.
+  if (!task.empty() && done(settings, FirstStep::pull)) lines.insert(lines.begin(), task.c_str());
   float size = face->FontSize * 1.15f;
   for (const char* line : lines) {  // as large as the widest line allows
     const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
@@ -211,6 +223,7 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   } else {
     magnifier_.hide();
   }
+  follow_task(scene, view);
   if (!scene.blind) draw_signs(scene, view, camera, settings, *drawn_);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   float below_names = 0;
@@ -236,6 +249,15 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   draw_told(scene.told, rect, list);
 }
 
+// Notes when the scene's task was begun: then it is not told any more.
+void ViewPanel::follow_task(const ViewScene& scene, const ViewState& view) {
+  if (std::string task = task_of(scene.stage.document()); task != task_) {
+    task_ = std::move(task);
+    task_done_ = false;
+  }
+  task_done_ = task_done_ || !view.contacts.empty() || pulling_;
+}
+
 // Draws over the picture: the selected object's outline, words and numbers.
 void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
                            const Settings& settings, ScreenRect rect) const {
@@ -252,7 +274,7 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   if (pulls_) draw_grasp(view, camera, rect, list);
   magnifier_.draw_frame(view, camera, list);
   if (!scene.recorded && scene.beside.empty() && !settings.your_turn && !scene.asked) {
-    draw_hint(scene.pad, settings, rect, list);
+    draw_hint(task_done_ ? std::string() : task_, scene.pad, settings, rect, list);
   }
   list.PopClipRect();
 }
