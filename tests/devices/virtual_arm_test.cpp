@@ -297,7 +297,7 @@ TEST(VirtualArm, IsOnlyEverSlowedByFriction) {
   }
 }
 
-// Its weight at the first joint is five sixths of the friction there.
+// The friction of each joint is a fifth more than what its weight asks for.
 TEST(VirtualArm, HangsStillWhereFrictionBearsItsWeight) {
   ArmDescription description = random_arm(3, 139);
   description.gravity = {0, 0, -9.81};

@@ -64,7 +64,7 @@ TEST(BodiesOnModels, BallsRollAsOnAPlane) {
   }
 }
 
-// Its way leads along a row of edges, over every corner there.
+// The way leads along a row of edges, over every corner there.
 TEST(BodiesOnModels, BallsRollOverCornersAsOnAPlane) {
   for (const int parts : {6, 60}) {
     SCOPED_TRACE(parts);
