@@ -18,10 +18,7 @@ namespace {
 
 constexpr double kInEachOther = 0.0005;  // less than this deep is touching [m]
 constexpr double kHurts = 0.2;           // [J]
-// Thickness below which a body is thin [m]: as deep as 50 g that fall 10 cm press a point in.
-// Deeper than half of the thickness the other side is nearer.
-constexpr double kThinBody = 0.004;
-constexpr double kFarFetched = 100;  // times the inertia of a solid
+constexpr double kFarFetched = 100;      // times the inertia of a solid
 
 // Returns the box around a mesh, in its object's frame: a box at a pose.
 std::pair<Box, Pose> box_around(const Mesh& mesh) {
@@ -131,12 +128,6 @@ void warn(const Object& object, const Scene& scene, const ArmDescription& arm, B
   if (away > 0) {
     report.warnings.push_back(
         fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
-  }
-  double thick = 0;  // of its thickest part: thin parts only mark it
-  for (const Placed& piece : pieces(object)) thick = std::max(thick, 2 * half_width(piece.shape));
-  if (thick < kThinBody) {
-    report.warnings.push_back(fmt::format("'{}' is {:.3g} mm thin: what falls on it may go through",
-                                          object.name, 1e3 * thick));
   }
   if (object.body->inertia) warn_of_inertia(object, *object.body->inertia, report);
 }

@@ -1,116 +1,32 @@
 #include "core/touch/body_geometry.h"
 
-#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <btBulletCollisionCommon.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
-#include "core/touch/mesh_edges.h"
-#include "core/touch/triangle_mesh.h"
+#include "core/touch/body_motion.h"
+#include "core/touch/contact_points.h"
 
 namespace limpid {
 namespace {
 
 constexpr double kNear = 1e-3;    // points further apart than this are ignored [m]
-constexpr double kMargin = 1e-4;  // radius by which Bullet rounds some edges [m]
 constexpr double kBeside = 1e-6;  // a corner this far from a face's normal is beside the face [m]
 constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
 constexpr int kPointsOfPair = 4;  // points of a pair that Bullet keeps
 constexpr double kStands = 0.7;   // rise of a cylinder's axis from which on it stands on an end [-]
 
-btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-
-btTransform to_bullet(const Pose& pose) {
-  const Mat3& R = pose.linear();
-  return btTransform(
-      btMatrix3x3(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
-      to_bullet(Vec3(pose.translation())));
-}
+// A body may pass what it goes by this part of both extents. It meets again what it is in where it
+// gets deeper by this part of them [-]. Error of the way to where it meets something, and distance
+// of points that meet at once [m].
+constexpr double kPasses = 0.25, kDeeper = 0.02, kMeets = 1e-6, kAtOnce = 1e-5;
 
 Vec3 middle(const btManifoldPoint& point) {
   return 0.5 *
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
 }
-
-// A model among the solids: a collision object's user pointer.
-struct Model {
-  std::shared_ptr<const TriangleMesh> mesh;
-  MeshEdges edges;
-  double size;
-};
-
-// Result of a pair without the friction and other values that Bullet's own class computes for each
-// point.
-class Points : public btManifoldResult {
- public:
-  using btManifoldResult::btManifoldResult;
-
-  bool only_edges = false;  // takes no points on faces of models
-
-  void addContactPoint(const btVector3& normal, const btVector3& on_b, btScalar distance) override {
-    const btVector3 on_a = on_b + normal * distance;
-    if (touchable(*m_body1Wrap, m_index1, on_b, normal) &&
-        touchable(*m_body0Wrap, m_index0, on_a, -normal)) {
-      add(normal, on_b, distance);
-    }
-  }
-  void add(const btVector3& normal, const btVector3& on_b, btScalar distance) {
-    btPersistentManifold& all = *getPersistentManifold();
-    if (distance > all.getContactBreakingThreshold()) return;
-    const btVector3 on_a = on_b + normal * distance;
-    const bool turned = all.getBody0() != m_body0Wrap->getCollisionObject();
-    const auto* first = turned ? m_body1Wrap : m_body0Wrap;
-    const auto* second = turned ? m_body0Wrap : m_body1Wrap;
-    const btVector3 own = first->getCollisionObject()->getWorldTransform().invXform(on_a);
-    const btVector3 other = second->getCollisionObject()->getWorldTransform().invXform(on_b);
-    if (btManifoldPoint* known = near(all, own)) {
-      known->m_localPointA = own;
-      known->m_localPointB = other;
-      known->m_normalWorldOnB = normal;
-      known->m_distance1 = distance;
-      known->m_positionWorldOnA = on_a;
-      known->m_positionWorldOnB = on_b;
-      return;
-    }
-    btManifoldPoint point(own, other, normal, distance);
-    point.m_positionWorldOnA = on_a;
-    point.m_positionWorldOnB = on_b;
-    all.addManifoldPoint(point);
-  }
-
- private:
-  // False if one of the two is a triangle of a model that cannot be touched there in this
-  // direction.
-  bool touchable(const btCollisionObjectWrapper& wrap, int triangle, const btVector3& place,
-                 const btVector3& direction) const {
-    const auto* model = static_cast<const Model*>(wrap.getCollisionObject()->getUserPointer());
-    if (model == nullptr) return true;
-    const btTransform& at = wrap.getCollisionObject()->getWorldTransform();
-    const Vec3 there = from_bullet(at.invXform(place));
-    const auto t = static_cast<std::uint32_t>(triangle);
-    return model->edges.touchable(t, model->size, there, from_bullet(direction * at.getBasis()),
-                                  2 * kMargin) &&
-           (!only_edges || model->edges.sharp(t, model->size, there, 2 * kMargin));
-  }
-  // Returns the existing point that a point there replaces, or null.
-  static btManifoldPoint* near(btPersistentManifold& all, const btVector3& own) {
-    btScalar least = all.getContactBreakingThreshold() * all.getContactBreakingThreshold();
-    btManifoldPoint* nearest = nullptr;
-    for (int i = 0; i < all.getNumContacts(); ++i) {
-      const btVector3 way = all.getContactPoint(i).m_localPointA - own;
-      if (const btScalar distance = way.dot(way); distance < least) {
-        least = distance;
-        nearest = &all.getContactPoint(i);
-      }
-    }
-    return nearest;
-  }
-};
 
 // Pose of the large box below a plane: for faces and edges Bullet finds all its points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
@@ -140,7 +56,7 @@ struct BodyGeometry::Inside {
     Pose in_object = Pose::Identity();
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btTriangleMesh> triangles;
-    std::unique_ptr<Model> model;
+    std::unique_ptr<TouchedModel> model;
     btCollisionObject at;
     std::optional<btVector3> level;  // normal of a plane
     btScalar height = 0;             // the plane's coordinate along it [m]
@@ -150,6 +66,8 @@ struct BodyGeometry::Inside {
     double radius = 0, half = 0;  // of a cylinder or a capsule; half of its length [m]
     bool rolls() const { return round && !round->axis.isZero(0); }
     bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
+    double thick() const { return model ? 0 : least; }  // a model is a skin [m]
+    double reach = 0;  // of what turns with it, from its object's place [m]
   };
   struct Pair {
     Solid *a, *b;
@@ -168,15 +86,25 @@ struct BodyGeometry::Inside {
   void add_part(const Shape& shape, const Pose& in_object, int object, int body);
   void pair(Solid& a, Solid& b);
   static void bound(Solid& solid);
-  static bool overlap(const Solid& a, const Solid& b);
+  static bool overlap(const btVector3& low, const btVector3& high, const Solid& b);
+  static bool overlap(const Solid& a, const Solid& b) { return overlap(a.low, a.high, b); }
   static void slide_along(const Pair& pair);
   static void keep_deepest(const Pair& pair);
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
-  static void find_corners(const Pair& pair, Points& result);
-  static bool find_ends(const Pair& pair, Points& result);
+  static void find_corners(const Pair& pair, PairPoints& result);
+  static bool find_ends(const Pair& pair, PairPoints& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
+  void find(const Pair& pair, PairPoints& result);
   void meet(Pair& pair);
+  const btManifoldPoint* deepest(const Pair& pair);
+  // A body's way, as first_meeting() has it.
+  struct Way {
+    const Pose &from, &to;
+    const Vec3& center;
+    double times;
+  };
+  void meet_on(const Way& way, Pair& pair, Solid& moving, Meeting& first);
   void take(Pair& pair);
   BodyContact* fresh(const Pair& pair);
   bool allowed(const Pair& pair) const;
@@ -186,7 +114,8 @@ struct BodyGeometry::Inside {
   btDispatcherInfo info;
   std::vector<std::unique_ptr<Solid>> solids;
   std::vector<std::vector<Solid*>> of_body;
-  std::vector<std::array<int, 2>> apart;  // jointed bodies, which do not touch
+  std::vector<double> least_of_body, reach_of_body;  // of its solids [m]
+  std::vector<std::array<int, 2>> apart;             // jointed bodies, which do not touch
   std::vector<Pair> pairs;
   std::vector<BodyContact> pool;
   std::vector<BodyContact*> free_ones, points, last;  // last: the points of the search before
@@ -210,6 +139,15 @@ BodyGeometry::Inside::Inside(const Scene& scene)
   of_body.resize(static_cast<std::size_t>(body));
   for (const auto& solid : solids) {
     of_body[static_cast<std::size_t>(solid->body)].push_back(solid.get());
+  }
+  for (const auto& parts : of_body) {
+    double least = kWide, reach = 0;
+    for (const Solid* solid : parts) {
+      least = std::min(least, solid->least);
+      reach = std::max(reach, solid->reach);
+    }
+    least_of_body.push_back(least);
+    reach_of_body.push_back(reach);
   }
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].body) add(scene, i, BodyContact::kStill);
@@ -317,7 +255,8 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
         solid->triangles->addTriangle(at[0], at[1], at[2]);
       }
       solid->shape = std::make_unique<btBvhTriangleMeshShape>(solid->triangles.get(), true);
-      solid->model.reset(new Model{mesh->triangles, MeshEdges(mesh->triangles), mesh->size()});
+      solid->model.reset(
+          new TouchedModel{mesh->triangles, MeshEdges(mesh->triangles), mesh->size()});
       solid->at.setUserPointer(solid->model.get());
     } else {
       auto hull = std::make_unique<btConvexHullShape>();
@@ -337,6 +276,10 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
     return;  // a joint's stop has no place in space
   }
   solid->at.setCollisionShape(solid->shape.get());
+  btVector3 around;
+  btScalar radius = 0;
+  solid->shape->getBoundingSphere(around, radius);
+  solid->reach = in_object.translation().norm() + (solid->ball() ? 0 : radius);
   solids.push_back(std::move(solid));
 }
 
@@ -388,9 +331,9 @@ void BodyGeometry::Inside::bound(Solid& solid) {
   solid.high += more;
 }
 
-bool BodyGeometry::Inside::overlap(const Solid& a, const Solid& b) {
-  return a.low.x() <= b.high.x() && b.low.x() <= a.high.x() && a.low.y() <= b.high.y() &&
-         b.low.y() <= a.high.y() && a.low.z() <= b.high.z() && b.low.z() <= a.high.z();
+bool BodyGeometry::Inside::overlap(const btVector3& low, const btVector3& high, const Solid& b) {
+  return low.x() <= b.high.x() && b.low.x() <= high.x() && low.y() <= b.high.y() &&
+         b.low.y() <= high.y() && low.z() <= b.high.z() && b.low.z() <= high.z();
 }
 
 // Moves a point's end on a plane along below the body's: a plane is the same everywhere, so a body
@@ -467,7 +410,7 @@ bool BodyGeometry::Inside::face_below(const Solid& model, const btVector3& corne
 
 // Finds the corners of a box that are near to the plane or to faces of the model, at most the four
 // lowest.
-void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
+void BodyGeometry::Inside::find_corners(const Pair& p, PairPoints& result) {
   const auto& box = static_cast<const btBoxShape&>(*p.a->shape);
   const btTransform& at = p.a->at.getWorldTransform();
   btVector3 normal = p.b->level.value_or(btVector3(0, 0, 0));
@@ -506,7 +449,7 @@ void BodyGeometry::Inside::find_corners(const Pair& p, Points& result) {
 }
 
 // Finds the lowest points of both ends of a cylinder or a capsule that lies on a plane.
-bool BodyGeometry::Inside::find_ends(const Pair& p, Points& result) {
+bool BodyGeometry::Inside::find_ends(const Pair& p, PairPoints& result) {
   if (!p.a->rolls() || !p.b->level) return false;
   const btTransform& at = p.a->at.getWorldTransform();
   const btVector3& normal = *p.b->level;
@@ -524,6 +467,16 @@ bool BodyGeometry::Inside::find_ends(const Pair& p, Points& result) {
   return true;
 }
 
+void BodyGeometry::Inside::find(const Pair& p, PairPoints& result) {
+  result.setPersistentManifold(p.manifold);
+  const bool ends = find_ends(p, result);
+  if (p.corners) find_corners(p, result);
+  if (!ends && (!p.corners || !p.b->level)) {
+    result.only_edges = p.corners;
+    p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
+  }
+}
+
 void BodyGeometry::Inside::meet(Pair& p) {
   if (!p.corners && !p.rolls) slide_along(p);
   std::array<BodyContact*, kPointsOfPair> before{};
@@ -537,18 +490,70 @@ void BodyGeometry::Inside::meet(Pair& p) {
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
                                       p.b->at.getWorldTransform(), -1, -1);
   if (p.rolls) p.manifold->clearManifold();
-  Points result(&on_a, &on_b);
-  result.setPersistentManifold(p.manifold);
-  const bool ends = find_ends(p, result);
-  if (p.corners) find_corners(p, result);
-  if (!ends && (!p.corners || !p.b->level)) {
-    result.only_edges = p.corners;
-    p.algorithm->processCollision(&on_a, &on_b, info, &result);
-  }
+  PairPoints result(&on_a, &on_b);
+  find(p, result);
   if (p.refresh) result.refreshContactPoints();
   if (p.single) keep_deepest(p);
   p.points = p.manifold->getNumContacts();
   go_on(p, {before.data(), count});
+}
+
+// The deepest point of a pair as it stands, in place of its points; null: the two do not touch.
+const btManifoldPoint* BodyGeometry::Inside::deepest(const Pair& p) {
+  p.manifold->clearManifold();
+  if (!overlap(*p.a, *p.b)) return nullptr;
+  const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
+                                      p.a->at.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
+                                      p.b->at.getWorldTransform(), -1, -1);
+  PairPoints result(&on_a, &on_b);
+  find(p, result);
+  const btManifoldPoint* most = nullptr;
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+    const btManifoldPoint& point = p.manifold->getContactPoint(i);
+    if (point.getDistance() < (most != nullptr ? most->getDistance() : 0)) most = &point;
+  }
+  return most;
+}
+
+// Looks along the way in steps that pass nothing, and then for the place of the meeting.
+void BodyGeometry::Inside::meet_on(const Way& way, Pair& p, Solid& moving, Meeting& first) {
+  const double thick = p.a->thick() + p.b->thick();
+  const double turned = (way.to.linear() - way.from.linear()).norm();  // at least the angle
+  const double length =
+      (way.to * way.center - way.from * way.center).norm() + turned * moving.reach;
+  if (way.times * first.part * length <= kPasses * thick) return;
+  const double steps = std::ceil(first.part * length / (kPasses * thick));
+  const auto deepest_at = [&](double part) {
+    const Pose there = pose_between(way.from, way.to, way.center, part);
+    moving.at.setWorldTransform(to_bullet(there * moving.in_object));
+    bound(moving);
+    return deepest(p);
+  };
+  const auto depth = [](const btManifoldPoint* point) {
+    return point != nullptr ? -point->getDistance() : 0;
+  };
+  double most = depth(deepest_at(0));
+  if (most > 0) most += kDeeper * thick;
+  const double last_part = first.part;
+  for (double step = 1; step <= steps; ++step) {
+    double free = (step - 1) / steps * last_part, meets = step / steps * last_part;
+    if (!(depth(deepest_at(meets)) > most)) continue;
+    while ((meets - free) * length > kMeets) {
+      const double half = 0.5 * (free + meets);
+      (depth(deepest_at(half)) > most ? meets : free) = half;
+    }
+    const btScalar met = -depth(deepest_at(meets));
+    first = {meets, p.a->body, p.b->body, p.a->object, p.b->object};
+    const bool swapped = p.manifold->getBody0() != &p.a->at;  // Bullet may have swapped the pair
+    for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
+      const btManifoldPoint& point = p.manifold->getContactPoint(i);
+      if (point.getDistance() > met + kAtOnce) continue;
+      first.points[first.count++] = {middle(point),
+                                     (swapped ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB)};
+    }
+    return;
+  }
 }
 
 BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
@@ -619,6 +624,41 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake) {
     if (c->seen) continue;
     in.free_ones.push_back(c);
   }
+}
+
+bool BodyGeometry::may_pass(int body, double way, double turned) const {
+  const auto at = static_cast<std::size_t>(body);
+  return way + turned * in_->reach_of_body[at] > kPasses * in_->least_of_body[at];
+}
+
+Meeting BodyGeometry::first_meeting(int body, const Pose& from, const Pose& to, const Vec3& center,
+                                    double times) {
+  Meeting first;
+  for (Inside::Solid* solid : in_->of_body[static_cast<std::size_t>(body)]) {
+    solid->at.setWorldTransform(to_bullet(from * solid->in_object));
+    Inside::bound(*solid);
+    btVector3 low = solid->low, high = solid->high;  // of the box around all of its way
+    solid->at.setWorldTransform(to_bullet(to * solid->in_object));
+    Inside::bound(*solid);
+    low.setMin(solid->low);
+    high.setMax(solid->high);
+    for (Inside::Pair& p : in_->pairs) {
+      if ((p.a != solid && p.b != solid) || p.b->level) continue;
+      if (!Inside::overlap(low, high, p.a == solid ? *p.b : *p.a)) continue;
+      // Puts its points aside.
+      std::array<btManifoldPoint, kPointsOfPair> points;
+      const int count = p.manifold->getNumContacts();
+      for (int i = 0; i < count; ++i) {
+        points[static_cast<std::size_t>(i)] = p.manifold->getContactPoint(i);
+      }
+      in_->meet_on({from, to, center, times}, p, *solid, first);
+      p.manifold->clearManifold();
+      for (int i = 0; i < count; ++i) {
+        p.manifold->addManifoldPoint(points[static_cast<std::size_t>(i)]);
+      }
+    }
+  }
+  return first;
 }
 
 std::span<BodyContact* const> BodyGeometry::points() const { return in_->points; }

@@ -1,6 +1,7 @@
 // Collision detection: points where bodies touch each other and fixed objects.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -44,6 +45,19 @@ struct BodyContact {
   bool seen = false;
 };
 
+// A meeting of a body on its way with another one or a fixed object.
+struct Meeting {
+  struct Point {
+    Vec3 at = Vec3::Zero();       // [m]
+    Vec3 normal = Vec3::UnitZ();  // out of b, unit
+  };
+  double part = 1;                 // of the way; 1: nowhere
+  int a = 0, b = 0;                // bodies
+  int object_a = 0, object_b = 0;  // objects of the scene
+  std::array<Point, 4> points{};
+  std::size_t count = 0;  // of points
+};
+
 // Finds these points with Bullet's collision library in double precision. Takes all memory when it
 // is made. The same poses in the same order give the same points, bit for bit.
 class BodyGeometry {
@@ -61,6 +75,14 @@ class BodyGeometry {
   // Updates the points of all pairs with an awake body, in the order of the pairs.
   void search(std::span<const std::uint8_t> awake);
   std::span<BodyContact* const> points() const;
+  // True if a body that goes so far, and turns by so much, may pass something between two searches
+  // [m, rad].
+  bool may_pass(int body, double way, double turned) const;
+  // The place where a body first meets something, or goes deeper into what it is in, on its way to
+  // a pose. Looks only at what it may pass by so many times its way; never at planes, which nothing
+  // passes.
+  Meeting first_meeting(int body, const Pose& from, const Pose& to, const Vec3& center,
+                        double times);
   int left_out() const;  // of the last search()
   // True if the boxes around two bodies, slightly enlarged, overlap.
   bool near(int a, int b) const;

@@ -32,6 +32,18 @@ Mat3 rotation_again(const Mat3& R) { return 1.5 * R - 0.5 * R * (R.transpose() *
 
 }  // namespace
 
+Pose pose_between(const Pose& from, const Pose& to, const Vec3& center, double part) {
+  const Eigen::Quaterniond start(from.linear()), end(to.linear());
+  const double sign = start.dot(end) < 0 ? -1 : 1;
+  Eigen::Quaterniond turned;
+  turned.coeffs() = (1 - part) * start.coeffs() + part * sign * end.coeffs();
+  Pose between = Pose::Identity();
+  between.linear() = turned.normalized().matrix();
+  between.translation() =
+      (1 - part) * (from * center) + part * (to * center) - between.linear() * center;
+  return between;
+}
+
 BodyMotion::BodyMotion(const Object& object, const Vec3& gravity)
     : gravity_(gravity), start_(object.pose) {
   const MassProperties own = mass_properties(object);
@@ -190,6 +202,20 @@ void BodyMotion::strike(const Vec3& point, const Vec3& impulse) {
     if (kind_ == Kind::free) v_ += impulse / m_;
     w_ += inverse_ * (pose_.linear().transpose() * (point - p_).cross(impulse));
   }
+}
+
+void BodyMotion::go_back(const Pose& start, double part, double left) {
+  pose_ = pose_between(start, pose_, c_, part);
+  p_ = pose_ * c_;
+  v_ -= left * gravity_;
+}
+
+// Without a torque, the spin in the body's frame is held, and its energy with it.
+void BodyMotion::fly(double time) {
+  p_ += time * (v_ + 0.5 * time * gravity_);
+  v_ += time * gravity_;
+  pose_.linear() = rotation_again(pose_.linear() * cayley(time * w_));
+  pose_.translation() = p_ - pose_.linear() * c_;
 }
 
 void BodyMotion::set_speed(const Vec3& speed, const Vec3& spin) {

@@ -9,6 +9,10 @@
 
 namespace limpid {
 
+// Pose of an object a part of the way from one pose to another; its centre of mass, in its frame,
+// goes straight.
+Pose pose_between(const Pose& from, const Pose& to, const Vec3& center, double part);
+
 // [v]x, the matrix of the cross product with v.
 inline Mat3 skew(const Vec3& v) {
   Mat3 S;
@@ -77,6 +81,10 @@ class BodyMotion {
   Vec3 speed_at(const Vec3& point) const { return speed() + spin().cross(point - center()); }
   double yields(const Vec3& point, const Vec3& n) const;
   void strike(const Vec3& point, const Vec3& impulse);
+  // For a body without a joint: takes it back to a part of its way from a pose, before the weight
+  // of the time that is left [s]; lets it fly on for some time [s]. What else pushed it, it keeps.
+  void go_back(const Pose& start, double part, double left);
+  void fly(double time);
   // Sets the speed of the centre [m/s] and the spin [rad/s], as far as its joint lets it.
   void set_speed(const Vec3& speed, const Vec3& spin);
   void slow_down(double by) {  // multiplies all velocities

@@ -24,6 +24,8 @@ constexpr double kGone = 20;     // distance at which a body is given up [m]
 // [J/kg].
 constexpr double kMade = 1e-10;
 constexpr double kFew = 1e4;  // times this energy is taken from the motion, and needs no standstill
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr int kMostMeetings = 8;     // of a quick body in a tick
 constexpr int kMostPartings = 100;   // sweeps over contacts that part
 constexpr double kSameSpeed = 1e-9;  // change of speed at which they end [m/s]
 constexpr int kMostRounds = 4;       // rounds of sweeps for forces that make energy
@@ -48,6 +50,10 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
   }
   const std::size_t n = names_.size();
   touched_.assign(n, 0);
+  tied_.assign(n, 0);
+  for (int i = 0; i < count(); ++i) tied_[at(i)] = bodies_.about[at(i)].joint ? 1 : 0;
+  passing_.reserve(n);
+  started_.resize(n);
   quiet_island_.assign(n, 0);
   quiet_.assign(n, 0);
   quiet_at_.assign(n, Pose::Identity());
@@ -64,6 +70,11 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
     right_ = std::min(right_, kMade * motion.mass());
   }
   add_links(scene);
+  for_each_of(constraints_.lasting(), [&](const auto& c) {
+    for (const int body : {int{c.a}, int{c.b}}) {
+      if (body != BodyContact::kStill) tied_[at(body)] = 1;
+    }
+  });
   constraints_.pairs.reserve(BodyGeometry::kMost);
   constraints_.pulls.reserve(1);
   std::size_t most = BodyGeometry::kMost + 1;
@@ -396,6 +407,7 @@ void BodyWorld::hold_what_is_made_up() {
 }
 
 void BodyWorld::finish() {
+  passing_.clear();
   given_ = given_now_;
   all_given_ += given_now_;
   given_now_ = 0;
@@ -405,14 +417,103 @@ void BodyWorld::finish() {
   for (int i = 0; i < count(); ++i) {
     if (!moves(i)) continue;
     BodyMotion& body = bodies_[i];
+    if (is_quick(i)) {
+      started_[at(i)] = body.pose();
+      passing_.push_back(i);
+    }
     body.finish(bodies_.T);
     if (!body.finite()) body.reset();
     if (const double by = slower_[at(root(i))]; by != 1) body.slow_down(by);
     geometry_.place(i, pose(i));
   }
+  for (const int i : passing_) bounce(i);
   part();
   fall_asleep();
   std::ranges::fill(touched_, 0);
+}
+
+// Ticks in which a contact stops a body that meets it: its spring alone needs a quarter of a swing.
+double BodyWorld::times_to_stop(int body) const {
+  const double K = bodies_.about[at(body)].contact_stiffness;
+  return std::max(1.0, std::sqrt(bodies_[body].mass() / K) / bodies_.T);
+}
+
+// A body by itself that is quick enough to pass something before a contact stops it.
+bool BodyWorld::is_quick(int body) const {
+  if (tied_[at(body)] != 0 || magnet_.body == body) return false;
+  const double time = times_to_stop(body) * bodies_.T;
+  const BodyMotion& motion = bodies_[body];
+  return geometry_.may_pass(body, time * motion.velocity(Vec3::Zero()).norm(),
+                            time * motion.turning().norm());
+}
+
+// Lets a quick body meet what is in its way within the tick: it bounces there, and flies on. After
+// a number of meetings it stays for the rest of the tick.
+void BodyWorld::bounce(int body) {
+  BodyMotion& motion = bodies_[body];
+  Pose start = started_[at(body)];
+  double left = bodies_.T;
+  for (int i = 0; i < kMostMeetings; ++i) {
+    const Vec3 center = motion.pose().inverse() * motion.center();
+    const Meeting meeting =
+        geometry_.first_meeting(body, start, motion.pose(), center, times_to_stop(body));
+    if (meeting.part == 1) break;
+    left *= 1 - meeting.part;
+    motion.go_back(start, meeting.part, left);
+    strike(meeting);
+    start = motion.pose();
+    if (i + 1 < kMostMeetings) motion.fly(left);
+  }
+  geometry_.place(body, pose(body));
+}
+
+// Gives two that meet impulses after Moreau: none of their points approaches with more than the
+// restitution leaves, or pulls. Then friction, at most as much as stops a point across. Neither
+// gives energy.
+void BodyWorld::strike(const Meeting& meeting) {
+  for (const int body : {meeting.a, meeting.b}) {
+    if (body != BodyContact::kStill) wake(body);
+  }
+  const auto points = std::span(meeting.points).first(meeting.count);
+  const auto speed = [&](const Meeting::Point& point) -> Vec3 {
+    return bodies_.speed_at(meeting.a, point.at) - bodies_.speed_at(meeting.b, point.at);
+  };
+  const auto give = [&](const Vec3& at, const Vec3& n, double change, double least, double most) {
+    const double yields = bodies_.yields(meeting.a, at, n) + bodies_.yields(meeting.b, at, n);
+    const double impulse = yields > 0 ? std::clamp(change / yields, least, most) : 0;
+    bodies_.strike(meeting.a, at, impulse * n);
+    bodies_.strike(meeting.b, at, -impulse * n);
+    return impulse;
+  };
+  std::array<double, 4> before{}, pressed{};
+  double approach = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    before[i] = points[i].normal.dot(speed(points[i]));
+    approach = std::max(approach, -before[i]);
+  }
+  const auto restitution = [&](int body) {
+    return body == BodyContact::kStill ? 0.0 : bodies_.about[at(body)].restitution;
+  };
+  const double e =
+      approach > Impact::kSlowest ? std::max(restitution(meeting.a), restitution(meeting.b)) : 0;
+  double change = 1;
+  for (int round = 0; round < kMostPartings && change > kSameSpeed; ++round) {
+    change = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double more = -e * before[i] - points[i].normal.dot(speed(points[i]));
+      const double given = give(points[i].at, points[i].normal, more, -pressed[i], kUnbounded);
+      pressed[i] += given;
+      if (given != 0) change = std::max(change, std::abs(more));
+    }
+  }
+  const double friction = std::max(bodies_.objects[at(meeting.object_a)].friction_kinetic,
+                                   bodies_.objects[at(meeting.object_b)].friction_kinetic);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 slides = speed(points[i]);
+    const Vec3 across = slides - points[i].normal.dot(slides) * points[i].normal;
+    if (across.norm() < kStill) continue;
+    give(points[i].at, -across.normalized(), across.norm(), 0, friction * pressed[i]);
+  }
 }
 
 // Ends impacts: gives contacts that now part their speed, all of them together.

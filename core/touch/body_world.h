@@ -130,6 +130,10 @@ class BodyWorld {
   void fall_asleep();
   void take_stock();
   void part();
+  double times_to_stop(int body) const;
+  bool is_quick(int body) const;
+  void bounce(int body);
+  void strike(const Meeting& meeting);
   // Energy that the forces of each island make from nothing over the tick, at its root [J].
   void add_up_made();
   void settle_what_makes_energy();
@@ -140,6 +144,7 @@ class BodyWorld {
   double right_ = 0;        // energy that forces which count as right may make in a tick [J]
   std::vector<std::string> names_;
   std::vector<std::uint8_t> touched_;
+  std::vector<std::uint8_t> tied_;          // a joint or a spring holds it
   std::vector<std::uint8_t> quiet_island_;  // by the island's root
   std::vector<int> quiet_;                  // ticks
   std::vector<Pose> quiet_at_;              // poses since then: centre of mass [m], turning
@@ -147,6 +152,8 @@ class BodyWorld {
   std::vector<double> slower_;              // factors of velocities, by the island's root [-]
   std::vector<int> parent_;                 // union of islands
   std::vector<int> quick_;                  // bodies that wake others
+  std::vector<int> passing_;                // bodies that may pass something in a tick
+  std::vector<Pose> started_;               // their poses at its start
   std::vector<int> body_of_;                // by object
   BodyGeometry geometry_;
   BodyConstraints constraints_;

@@ -11,6 +11,9 @@ namespace {
 constexpr double kOwn = 1e-6, kLeans = 1e-4;
 // Sine of the angle from which on an edge sticks out.
 constexpr double kSharp = 1e-3;
+// A place this far beside a corner is on it [m]. Most triangles at a corner that are looked at.
+constexpr double kCorner = 1e-6;
+constexpr int kMostAround = 64;
 
 Vec3 normal_of(const std::array<Vec3, 3>& corners) {
   return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
@@ -84,11 +87,45 @@ MeshEdges::Edge MeshEdges::edge_at(std::uint32_t triangle, const Vec3& normal, c
   return found;
 }
 
+bool MeshEdges::leans(std::uint32_t triangle, std::size_t corner, const Vec3& direction) const {
+  const Vec3 at = mesh_->corners(triangle)[corner];
+  // Goes from triangle to triangle about the corner: one way, and where that ends at a border the
+  // other way.
+  for (const bool forwards : {true, false}) {
+    std::uint32_t t = triangle, from = kNone;
+    for (int i = 0; i < kMostAround; ++i) {
+      const auto corners = mesh_->corners(t);
+      const auto k =
+          static_cast<std::size_t>(std::find(corners.begin(), corners.end(), at) - corners.begin());
+      if (k == 3) break;
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+        const Vec3 edge = corners[other] - at;
+        if (direction.dot(edge) > kLeans * edge.norm()) return true;
+      }
+      const std::uint32_t one = beyond_[t][k], two = beyond_[t][(k + 2) % 3];
+      const std::uint32_t next = from == kNone ? (forwards ? one : two) : one == from ? two : one;
+      if (next == triangle) return false;
+      if (next == kNone) break;
+      from = std::exchange(t, next);
+    }
+  }
+  return false;
+}
+
 bool MeshEdges::touchable(std::uint32_t triangle, double size, const Vec3& place,
                           const Vec3& direction, double near) const {
-  const Vec3 normal = normal_of(mesh_->corners(triangle));
+  const auto corners = mesh_->corners(triangle);
+  const Vec3 normal = normal_of(corners);
   if (direction.cross(normal).squaredNorm() < kOwn * kOwn) return true;
-  const Edge edge = edge_at(triangle, normal, place / size - mesh_->middle(), near / size);
+  const Vec3 there = place / size - mesh_->middle();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 way = there - corners[k];
+    if (way.squaredNorm() < near * near / (size * size) &&
+        (way - direction.dot(way) * direction).norm() < kCorner / size) {
+      return !leans(triangle, k, direction);
+    }
+  }
+  const Edge edge = edge_at(triangle, normal, there, near / size);
   return direction.dot(edge.beyond) <= kLeans * edge.beyond.norm();
 }
 

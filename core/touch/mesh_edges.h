@@ -11,8 +11,9 @@
 namespace limpid {
 
 // An edge is touched only from the directions that neither of its two triangles is nearer to, its
-// Voronoi region: of an edge between triangles in one plane, or of a groove, from none. Collision
-// detection that looks at each triangle alone finds contacts there; they are none.
+// Voronoi region: of an edge between triangles in one plane, or of a groove, from none. So is a
+// corner, from the directions that none of its edges leans to. Collision detection that looks at
+// each triangle alone finds contacts there; they are none.
 class MeshEdges {
  public:
   explicit MeshEdges(std::shared_ptr<const TriangleMesh> mesh);
@@ -33,6 +34,8 @@ class MeshEdges {
     Vec3 along = Vec3::Zero(), beyond = Vec3::Zero();
   };
   Edge edge_at(std::uint32_t triangle, const Vec3& normal, const Vec3& place, double near) const;
+  // True if one of the edges that meet at a corner of a triangle leans to a direction.
+  bool leans(std::uint32_t triangle, std::size_t corner, const Vec3& direction) const;
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 

@@ -5,6 +5,7 @@
 
 #include "core/math/subnormals.h"
 #include "core/math/triangular.h"
+#include "devices/simulated/joint_friction.h"
 
 namespace limpid {
 
@@ -97,10 +98,9 @@ template <int M>
   }
 }
 
-constexpr int kShare = 5;                // substeps that share a linearization
-constexpr double kFar = 0.05;            // linearizations farther apart are not extrapolated [rad]
-constexpr double kStictionSpeed = 1e-3;  // below it friction acts as a damper [rad/s]
-constexpr double kStopDepth = 0.01;      // a stop yields by this at the motor's limit [rad]
+constexpr int kShare = 5;            // substeps that share a linearization
+constexpr double kFar = 0.05;        // linearizations farther apart are not extrapolated [rad]
+constexpr double kStopDepth = 0.01;  // a stop yields by this at the motor's limit [rad]
 
 template <int N>
 SubstepState<N, Pair> side_by_side(const std::array<SubstepState<N, double>, 2>& states) {
@@ -233,19 +233,18 @@ void VirtualArm<N>::resisted_substep(const Drive<N>& d, const Under& model, doub
     const double middle = model.x()[i] + at.u[i] + h / 2 * at.v[i];
     const double beyond = std::max(middle - upper_[i], 0.0) + std::min(middle - lower_[i], 0.0);
     double damping = 0, stiffness = 0;
-    if (d.friction[i] > 0) damping = d.friction[i] / std::max(std::abs(at.v[i]), kStictionSpeed);
     if (d.springy) {
       b[i] -= spring_[i] * middle + offset_[i];
       A(i, i) += h / 4 * spring_[i];
     }
     if (beyond != 0) {
       stiffness = effort_[i] / kStopDepth;
-      damping += std::sqrt(stiffness * model.M(i));
+      damping = std::sqrt(stiffness * model.M(i));
     }
     b[i] -= stiffness * beyond + damping * at.v[i];
     A(i, i) += damping / 2 + h / 4 * stiffness;
   }
-  at.take(h, solve_symmetric<N>(A, b));
+  at.take(h, d.rubs ? JointFriction<N>(A, b, at.v, d.friction).change() : solve_symmetric<N>(A, b));
 }
 
 // Returns the state after so many substeps from time t, one by one if something resists. `within`:

@@ -209,20 +209,6 @@ TEST(BodyReport, WarnsOfMomentsInOtherUnits) {
   EXPECT_EQ(warned(6700), 1);
 }
 
-TEST(BodyReport, WarnsOfWhatIsSoThinThatThingsFallThrough) {
-  const auto warned = [](const Shape& shape) {
-    Object object = body("plate", shape, Vec3(0, 0, 0.1));
-    const BodyReport report = report_on_bodies(on_a_floor({object}), arm());
-    return std::ranges::count_if(report.warnings, [](const std::string& warning) {
-      return warning.find("may go through") != std::string::npos;
-    });
-  };
-  EXPECT_EQ(warned(Box{{0.1, 0.06, 0.001}}), 1);
-  EXPECT_EQ(warned(Cylinder{0.05, 0.002}), 1);
-  EXPECT_EQ(warned(Box{{0.1, 0.06, 0.005}}), 0);
-  EXPECT_EQ(warned(Sphere{0.01}), 0);
-}
-
 TEST(BodyReport, WarnsOfAllThat) {
   const Vec3 root = arm().joints[0].origin.translation();
   Object heavy = body("heavy", Sphere{0.02}, root, 1);

@@ -64,6 +64,23 @@ TEST(BodiesOnModels, BallsRollAsOnAPlane) {
   }
 }
 
+// The way leads along a row of edges, over every corner there.
+TEST(BodiesOnModels, BallsRollOverCornersAsOnAPlane) {
+  for (const int parts : {6, 60}) {
+    SCOPED_TRACE(parts);
+    Scene scene;
+    scene.gravity = Vec3(1.0, 0, -9.76);
+    Object floor = test::obstacle(test::sheet(parts, 0.6), 1000);
+    floor.material = {1000, 0, 0.6, 0.6};
+    scene.add(floor);
+    scene.add(test::body("ball", Sphere{0.01}, 0.05, Vec3(-0.09, 0, 0.01), 0.6));
+    const Slope s = run_down(scene, 600);
+    EXPECT_NEAR(s.acceleration.x(), 5.0 / 7, 0.01 * 5 / 7);
+    EXPECT_NEAR(s.moved.y(), 0, 1e-4 * s.moved.x());
+    EXPECT_NEAR(s.end.z(), 0.01, 3e-5);
+  }
+}
+
 TEST(BodiesOnModels, CubesSlideAsOnAPlane) {
   Random random(72);
   for (const int parts : {4, 20, 60}) {
