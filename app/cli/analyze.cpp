@@ -46,7 +46,7 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
              known.by);
   fmt::print("eta_min, all frequencies   {:.4f}   (25), of the proposed law alone\n", a.eta_min);
   if (a.eta_min_band) fmt::print("eta_min, the band alone    {:.4f}\n", *a.eta_min_band);
-  fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the proposed law is unstable)\n",
+  fmt::print("eta_min, in this grip      {:.4f}   (below it the proposed law is unstable)\n",
              a.eta_min_grip);
   if (a.condition3.known) {
     fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",

@@ -22,6 +22,7 @@
 #include "app/run/lane_settings.h"
 #include "app/run/provenance.h"
 #include "app/run/recorder.h"
+#include "app/run/run_notes.h"
 #include "app/run/replay.h"
 #include "app/run/run_watch.h"
 #include "app/run/simulate.h"
@@ -263,9 +264,8 @@ void say_about(const RunPlan& plan) {
   for (const std::string& warning : plan.arm.warnings) {
     fmt::print(stderr, "limpid: warning: {}\n", warning);
   }
-  if (const LawInfo& law = info(plan.parameters.kind);
-      plan.parameters.linked() && !law.knows_link()) {
-    fmt::print(stderr, "limpid: note: link.* does nothing here: {}\n", law.through_link);
+  for (const std::string& note : notes_on(plan.parameters)) {
+    fmt::print(stderr, "limpid: note: {}\n", note);
   }
   const bool again = plan.hand.tick > 0;  // a recording has its own settings
   const std::string fit = again ? "" : fit_text(fitted(plan.arm, plan.parameters));

@@ -8,6 +8,7 @@
 #include "app/base/folders.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/own_world.h"
+#include "app/run/run_notes.h"
 #include "app/run/scene_meshes.h"
 #include "app/run/shipped_files.h"
 #include "devices/files/config_file.h"
@@ -77,10 +78,7 @@ LibraryPlan read_plan(const LoopOptions& options) {
   if (const std::string fit = fit_text(fitted(plan.arm, chosen(options, {}))); !fit.empty()) {
     all.notes.push_back("gains fitted to the arm, but for those that are set: " + fit);
   }
-  if (const LawInfo& law = info(plan.parameters.kind);
-      plan.parameters.linked() && !law.knows_link()) {
-    all.notes.push_back(fmt::format("link.* does nothing here: {}", law.through_link));
-  }
+  for (std::string& note : notes_on(plan.parameters)) all.notes.push_back(std::move(note));
   return all;
 }
 

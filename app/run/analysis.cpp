@@ -15,14 +15,15 @@ namespace {
 
 // Tells whether the grip is stable at eta, by
 // x1' = v1;  x2' = (k_vc (x1 - x2) + b_vc v1) / (b_v + b_vc);  f_hat' = alpha M^-1 (f - f_hat);
-// M v1' = f - b_d v1 - k_vc (x1 - x2) - b_vc (v1 - x2') + (1 - eta)/eta f_hat;  f = -K_h x1.
+// M v1' = f - b_d v1 - k_vc (x1 - x2) - b_vc (v1 - x2') + (1 - eta)/eta f_hat;
+// f = -K_h x1 - B_h v1.
 bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parameters& p,
-            const Eigen::MatrixXd& K_h, double eta) {
+            const Eigen::MatrixXd& K_h, const Eigen::MatrixXd& B_h, double eta) {
   const Eigen::Index n = M_L.rows();
   const Eigen::MatrixXd W = M_L.inverse(), I = Eigen::MatrixXd::Identity(n, n);
   const double spring = p.k_vc / (p.b_v + p.b_vc), drag = p.b_vc / (p.b_v + p.b_vc);
   const double k = p.k_vc - p.b_vc * spring, b = p.b_vc - p.b_vc * drag;
-  const Eigen::MatrixXd D = Eigen::MatrixXd(b_d.asDiagonal()) + b * I;
+  const Eigen::MatrixXd D = Eigen::MatrixXd(b_d.asDiagonal()) + B_h + b * I;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(4 * n, 4 * n);  // x1, v1, f_hat, x2
   A.block(0, n, n, n) = I;
   A.block(n, 0, n, n) = -W * (K_h + k * I);
@@ -30,6 +31,7 @@ bool stable(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d, const Parame
   A.block(n, 2 * n, n, n) = (1 - eta) / eta * W;
   A.block(n, 3 * n, n, n) = k * W;
   A.block(2 * n, 0, n, n) = -p.alpha * W * K_h;
+  A.block(2 * n, n, n, n) = -p.alpha * W * B_h;
   A.block(2 * n, 2 * n, n, n) = -p.alpha * W;
   A.block(3 * n, 0, n, n) = spring * I;
   A.block(3 * n, n, n, n) = drag * I;
@@ -73,8 +75,6 @@ Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const 
   return {(1 + p.inertia_ratio) * arm.M, b, p.hand_stiffness * JJ, p.hand_damping * JJ};
 }
 
-constexpr double kTriedTick = 1.001e-3;  // [s]
-
 // Judges spring and damper alone.
 Passivity by_condition3(const Condition3& c) {
   if (!c.known) return {std::nullopt, "no bound is known, as packets are lost (link.loss)"};
@@ -84,7 +84,8 @@ Passivity by_condition3(const Condition3& c) {
 Passivity of_feedforward(const Analysis& a, const Parameters& p) {
   if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
   if (p.eta < a.eta_min_grip) {
-    return {false, fmt::format("eta is below Routh's limit {:.4f} of this grip", a.eta_min_grip)};
+    return {false,
+            fmt::format("eta is below {:.4f}, where this grip makes it unstable", a.eta_min_grip)};
   }
   const Passivity spring = by_condition3(a.condition3);
   if (spring.passive == false) return spring;
@@ -108,11 +109,13 @@ Eigen::VectorXd of_joints(const ArmDescription& arm, double Joint::*own, double 
 }  // namespace
 
 double eta_min_compliant(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d,
-                         const Parameters& p, const Eigen::MatrixXd& K_h) {
-  double low = 1e-6, high = 1;
+                         const Parameters& p, const Eigen::MatrixXd& K_h,
+                         const Eigen::MatrixXd& B_h, double least) {
+  double low = std::max(least, 1e-6), high = 1;
+  if (stable(M_L, b_d, p, K_h, B_h, low)) return least;
   while (high - low > 1e-6) {
     const double middle = (low + high) / 2;
-    (stable(M_L, b_d, p, K_h, middle) ? high : low) = middle;
+    (stable(M_L, b_d, p, K_h, B_h, middle) ? high : low) = middle;
   }
   return high;
 }
@@ -166,7 +169,9 @@ Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Para
                  std::optional<double> w_b) {
   const Held held = held_at(arm, x, p);
   Analysis a = of_modes(locked_modes(held.M_L, held.b, p.alpha), arm, p, w_b);
-  a.eta_min_grip = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
+  const double rigid = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
+  a.eta_min_grip =
+      eta_min_compliant(held.M_L, device_damping(arm, p), p, held.K_h, held.B_h, rigid);
   return a;
 }
 

@@ -17,11 +17,15 @@ namespace limpid {
 // Smallest stable eta in a grip where the coupling's spring holds the proxy, not rigidly. Otherwise
 // like eta_min_grip of core/coupling/eta_min.h, with the shape system of (22): the proxy's damper
 // b_v is felt through k_vc and b_vc of `p`, so above k_vc / b_v [rad/s] no more. The proxy weighs
-// nothing. M_L inertia [kg m^2], b_d the device's damping of each joint [N m s/rad], K_h the grip's
-// stiffness in joint space [N m/rad]; alpha of `p` [N m s/rad]. Found by bisection to 1e-6; 1 if
-// none below is stable.
+// nothing. M_L inertia [kg m^2], b_d the device's damping of each joint [N m s/rad], K_h and B_h
+// the grip's stiffness and damping in joint space [N m/rad, N m s/rad]; alpha of `p` [N m s/rad].
+// Found by bisection to 1e-6, from `least` on; 1 if none below is stable.
 double eta_min_compliant(const Eigen::MatrixXd& M_L, const Eigen::VectorXd& b_d,
-                         const Parameters& p, const Eigen::MatrixXd& K_h);
+                         const Parameters& p, const Eigen::MatrixXd& K_h,
+                         const Eigen::MatrixXd& B_h, double least = 0);
+
+// Longest tick that the ledger's promise was tried at, with room for rounding [s].
+inline constexpr double kTriedTick = 1.001e-3;
 
 // Figures of one setting, by (3) and (22)-(25).
 struct Analysis {
@@ -30,7 +34,7 @@ struct Analysis {
   double b = 0;                        // b_d + b_v at the least damped joint [N m s/rad]
   double eta_min = 0;                  // (25), the worst mode
   std::optional<double> eta_min_band;  // eta_min if only frequencies up to w_b count
-  double eta_min_grip = 0;             // Routh, for hand.stiffness and hand.damping
+  double eta_min_grip = 0;             // stable in a grip of hand.stiffness and hand.damping
   double delay = 0;                    // of the motors, in (3) [s]
   double link = 0;                     // of the link each way, in (3) [s]
   bool measured = false;  // inertia, damping and delay are measured on the device itself

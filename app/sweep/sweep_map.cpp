@@ -279,10 +279,12 @@ double eta_limit(const std::string& line, const RunPlan& run) {
   const Parameters& p = run.parameters;
   const Eigen::VectorXd x = rest_at(run.arm, run.hand.position.front()).x1;
   if (line == "pr") return analyze(run.arm, x, p, std::nullopt).eta_min;
-  if (line == "routh") return analyze(run.arm, x, p, std::nullopt).eta_min_grip;
   const ArmAt arm = arm_at(run.arm, x);
-  return eta_min_compliant((1 + p.inertia_ratio) * arm.M, device_damping(run.arm, p), p,
-                           p.hand_stiffness * arm.J.transpose() * arm.J);
+  const Eigen::MatrixXd M_L = (1 + p.inertia_ratio) * arm.M, JJ = arm.J.transpose() * arm.J;
+  const Eigen::VectorXd b_d = device_damping(run.arm, p);
+  const Eigen::MatrixXd K_h = p.hand_stiffness * JJ, B_h = p.hand_damping * JJ;
+  if (line == "routh") return eta_min_grip(M_L, b_d.array() + p.b_v, p.alpha, K_h, B_h);
+  return eta_min_compliant(M_L, b_d, p, K_h, B_h);
 }
 
 Series theory_line(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,

@@ -248,12 +248,14 @@ void draw_observer(const Parameters& p, const Analysis& a) {
   const std::string unstable =
       p.eta < a.eta_min_grip
           ? fmt::format(
-                "eta {:.3g} is below Routh's limit {:.3f} for this grip: the loop is "
+                "eta {:.3g} is below {:.3f}, the limit of this grip: the loop is "
                 "unstable while the hand holds. Raise eta or soften the grip.",
                 p.eta, a.eta_min_grip)
           : std::string();
   read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
-           "Below it the loop is unstable in a hand of this stiffness and damping (Routh)");
+           "Below it the loop is unstable in a hand of this stiffness and damping: Routh's limit, "
+           "with the proxy "
+           "behind the coupling's spring");
 }
 
 void draw_passivity(const Parameters& p, const Analysis& a, bool real) {

@@ -148,7 +148,7 @@ TEST_F(CouplingWords, SayWhichPromiseIsBrokenAndByHowMuch) {
   EXPECT_TRUE(find("Advanced: condition (3) broken"));
   EXPECT_TRUE(broken("Least stable in this grip")) << "0.35 is below 0.4";
   EXPECT_THAT(hint("Least stable in this grip"),
-              HasSubstr("eta 0.35 is below Routh's limit 0.400"));
+              HasSubstr("eta 0.35 is below 0.400, the limit of this grip"));
 }
 
 // Condition (3) asks, by core/coupling/laws.h: of the device (2 + j/2) b_vc + k_vc (T +
