@@ -17,7 +17,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/_limpid
   DESTINATION share/zsh/vendor-completions)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/completions/limpid.fish
   DESTINATION share/fish/vendor_completions.d)
-install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md DESTINATION share/doc/limpid)
+install(FILES ${package}/copyright ${PROJECT_SOURCE_DIR}/README.md
+  ${PROJECT_BINARY_DIR}/made/manual.html DESTINATION share/doc/limpid)
 install(FILES ${PROJECT_SOURCE_DIR}/assets/python/limpid_device.py
   ${PROJECT_SOURCE_DIR}/assets/python/read_session.py ${PROJECT_SOURCE_DIR}/assets/python/ros2_node.py
   ${PROJECT_SOURCE_DIR}/assets/python/touch_env.py DESTINATION share/doc/limpid/examples)

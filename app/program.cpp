@@ -16,6 +16,8 @@
 #include "app/cli/commands.h"
 #include "app/cli/complete.h"
 #include "app/cli/options.h"
+#include "app/desktop/shell/commands.h"
+#include "app/desktop/shell/key_labels.h"
 #include "app/open_window.h"
 #include "devices/files/toml_reader.h"
 
@@ -78,6 +80,15 @@ UsageError unexpected(const CLI::App& app) {
                                 meant ? fmt::format("did you mean {}? ", *meant) : "", command));
 }
 
+// Returns the keys of the window, as on a US keyboard.
+std::vector<ManualKey> keys_of_window() {
+  std::vector<ManualKey> keys;
+  for (const Shortcut& each : shortcuts(KeyLabels())) {
+    keys.push_back({std::string(each.group), each.keys, each.what});
+  }
+  return keys;
+}
+
 // Declares the commands that open no window, by name.
 std::map<std::string, Command> declare_commands(CLI::App& app, char** argv,
                                                 const VideoMakers& videos) {
@@ -93,7 +104,8 @@ std::map<std::string, Command> declare_commands(CLI::App& app, char** argv,
   commands["devices"] = declare_devices(app);
   commands["identify"] = declare_identify(app);
   commands["doctor"] = declare_doctor(app);
-  commands["share"] = declare_share(app);
+  commands["manual"] = declare_manual(app);
+  commands["share"] = declare_share(app, keys_of_window());
   commands["story"] =
       declare_story(app, [=](const std::string& script, const VideoOptions& options, double) {
         return videos.of_story(script, options, argv);

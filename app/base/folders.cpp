@@ -23,6 +23,16 @@ fs::path data_dir() {
                            "; install it again, or build it again where its sources are now");
 }
 
+// An installed manual is beside the documents, a built one beside all that is to be installed.
+fs::path manual_file() {
+  std::error_code none;
+  for (const fs::path& file : {data_dir().parent_path() / "doc/limpid/manual.html",
+                               own_binary().parent_path() / "../made/manual.html"}) {
+    if (fs::exists(file, none)) return fs::canonical(file, none);
+  }
+  return {};
+}
+
 fs::path beside_or_own(const fs::path& folder, const std::string& kind, const std::string& name) {
   fs::path beside = folder / name;
   if (fs::exists(beside)) return beside;

@@ -15,6 +15,9 @@ inline std::filesystem::path default_device() { return data_dir() / "assets/devi
 inline std::filesystem::path default_scene() { return data_dir() / "assets/scenes/table.toml"; }
 inline std::filesystem::path default_hand() { return data_dir() / "assets/hands/touch.csv"; }
 
+// Returns the manual, a page for browsers; empty if it is not there.
+std::filesystem::path manual_file();
+
 // Returns `name` beside a script in `folder`, else among the program's own in assets/`kind`.
 std::filesystem::path beside_or_own(const std::filesystem::path& folder, const std::string& kind,
                                     const std::string& name);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
+#include "app/cli/manual_page.h"
 #include "app/cli/video_options.h"
 
 namespace CLI {
@@ -25,8 +27,9 @@ Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
 Command declare_identify(CLI::App& app);
 Command declare_doctor(CLI::App& app);
-// Hidden: writes what is installed beside the program, from the other commands.
-Command declare_share(CLI::App& app);
+// Hidden: writes what is installed beside the program, from the other commands and these keys.
+Command declare_share(CLI::App& app, std::vector<ManualKey> keys);
+Command declare_manual(CLI::App& app);
 Command declare_story(CLI::App& app, MakeVideo make_video);
 
 }  // namespace limpid

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "app/base/folders.h"
+#include "app/base/open_elsewhere.h"
 #include "app/base/version.h"
 #include "app/cli/commands.h"
 #include "app/cli/complete.h"
@@ -182,14 +184,30 @@ void write_icons(const fs::path& folder) {
 
 }  // namespace
 
-Command declare_share(CLI::App& app) {
-  auto* command = app.add_subcommand("share", "writes manual pages and icons, to be installed");
+Command declare_share(CLI::App& app, std::vector<ManualKey> keys) {
+  auto* command = app.add_subcommand("share", "writes the manual and icons, to be installed");
   command->group("");
   auto into = std::make_shared<std::string>();
   command->add_option("DIR", *into, "the folder for them")->required();
-  return [into, &app] {
+  return [into, &app, keys = std::move(keys)] {
     write_pages(app, fs::path(*into) / "man/man1");
     write_icons(fs::path(*into) / "icons/hicolor");
+    write(fs::path(*into) / "manual.html", manual_html(data_dir(), keys));
+    return 0;
+  };
+}
+
+Command declare_manual(CLI::App& app) {
+  auto* command = app.add_subcommand("manual", "opens the manual in the browser");
+  auto path = std::make_shared<bool>(false);
+  command->add_flag("--path", *path, "only say where it is");
+  return [path] {
+    const fs::path file = manual_file();
+    if (file.empty()) {
+      fmt::print(stderr, "limpid: the manual is not there; install Limpid again\n");
+      return 1;
+    }
+    if (*path || !open_elsewhere(file)) fmt::print("{}\n", file.string());
     return 0;
   };
 }

@@ -227,6 +227,20 @@ class Exports(Recorded):
         self.wait_until("the folder", lambda: str(self.sessions()) in self.opened.read_text().split("\n"))
 
 
+    def test_the_plot_under_the_mouse_is_offered_as_it_was_seen(self) -> None:
+        self.go_on(2)
+        left, top, right, bottom = self.state()["plots"][1]["area"]
+        self.move(0.5 * (left + right), 0.5 * (top + bottom))
+        self.settled()
+        self.key("ctrl+e")
+        self.wait("the dialog", lambda s: s["dialog"] == "export")
+        shown = self.settled()["shown"]
+        self.go_on(0.5)
+        self.assertEqual(self.state()["shown"], shown, "the plots stand still")
+        self.key("Return")
+        self.wait("it to be said", lambda s: any("controller-energy-001.png" in b["text"] for b in s["banners"]))
+        self.wait("the plots to go on", lambda s: s["shown"][1] > shown[1] + 0.5)
+
     def test_the_menu_of_a_plot_saves_the_same_picture(self) -> None:
         self.go_on(2)
         left, _, right, _ = self.state()["plots"][0]["area"]

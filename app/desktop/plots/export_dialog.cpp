@@ -70,6 +70,15 @@ void ExportDialog::draw_what(const Stage& stage, bool recorded) {
   ImGui::EndCombo();
 }
 
+void ExportDialog::draw_stretch(const Stage& stage) {
+  const auto range = stage.group.range();
+  if (!range || (order_.what != What::plot && order_.what != What::table)) return;
+  const std::string label =
+      fmt::format("only the selected stretch, {:.3f} to {:.3f} s", range->start, range->stop);
+  ImGui::Checkbox(label.c_str(), &order_.stretch);
+  note_place("stretch");
+}
+
 void ExportDialog::draw_size() {
   const auto choice = [](const char* label, auto& value, auto one) {
     if (ImGui::RadioButton(label, value == one)) value = one;
@@ -139,6 +148,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
   was_open_ = true;
   ImGui::PushItemWidth(-6 * em);
   draw_what(stage, recorded);
+  draw_stretch(stage);
   if (order_.what == What::plot) draw_size();
   // The name follows the choices until the user types another one.
   if (file_ == offered_) file_ = offered_ = offer(order_, stage, folder).string();

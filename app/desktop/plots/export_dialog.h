@@ -16,6 +16,7 @@ struct ExportOrder {
 
   What what = What::plot;
   std::size_t plot = 0;
+  bool stretch = true;  // only the selected stretch of time, if there is one
   Format format = Format::png;
   double width = 160, height = 80;  // when printed [mm]
   int dpi = 300;                    // of the pixels
@@ -35,6 +36,7 @@ class ExportDialog {
 
  private:
   void draw_what(const Stage& stage, bool recorded);
+  void draw_stretch(const Stage& stage);
   void draw_size();
   std::string why_not() const;
 

@@ -10,6 +10,7 @@
 #include <ctime>
 
 #include "app/base/folders.h"
+#include "app/base/open_elsewhere.h"
 #include "app/desktop/base/passivity_break.h"
 #include "app/desktop/shell/desktop.h"
 #include "app/style/sliders.h"
@@ -119,6 +120,23 @@ void play_or_pause(Desktop& d) {
 void end_recording_and_quit(Desktop& d) {
   d.live.stop_recording();
   d.recording_may_end = d.asked.close = true;
+}
+
+void open_manual(Desktop& d) {
+  const std::filesystem::path file = manual_file();
+  if (file.empty()) return d.notices.say("The manual is not there. Install Limpid again.", true);
+  if (open_elsewhere(file)) return d.notices.say("Opening the manual in the browser");
+  d.notices.say(fmt::format("Nothing here opens pages; the manual is {}", file.string()), true);
+}
+
+// Exports the plot under the mouse, or the one exported last.
+void begin_export(Desktop& d) {
+  const std::vector<Plot>& plots = d.shown.stage().plots;
+  const ImVec2 mouse = ImGui::GetMousePos();
+  const auto under =
+      std::ranges::find_if(plots, [&](const Plot& plot) { return plot.area().contains(mouse); });
+  d.exporter.begin(under != plots.end() ? static_cast<std::size_t>(under - plots.begin())
+                                        : d.exporter.plot());
 }
 
 std::string no_live_recording(const Desktop& d) {
@@ -310,8 +328,7 @@ constexpr std::array kCommands{
     row("scene.save_as", "Save scene as...", "File", "Ctrl+Shift+S", "",
         [](Desktop& d) { d.dialog.open("save scene"); }),
     row("export.begin", "Export...", "File", "Ctrl+E",
-        "export a plot, a table, a picture or a video",
-        [](Desktop& d) { d.exporter.begin(d.exporter.plot()); }, {.apart = true}),
+        "export a plot, a table, a picture or a video", begin_export, {.apart = true}),
     row("export.open", "Open what was exported", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.open_written(); }, {.why_not = nothing_written}),
     row("export.show", "Show what was exported in its folder", nullptr, nullptr, nullptr,
@@ -500,6 +517,7 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.kept.leave(); }, {.why_not = nothing_kept}),
     row("scene.discard_kept", "Discard the scene that was kept", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.kept.discard(); }, {.why_not = nothing_kept}),
+    row("help.manual", "Manual", "Help", nullptr, nullptr, open_manual),
     row("help.story", "Play the story", "Help", nullptr, nullptr, play_story),
     row("help.your_turn", "Your turn: what to try", "Help", nullptr, nullptr, toggle_your_turn,
         {.checked = is_shown<&Settings::your_turn>}),

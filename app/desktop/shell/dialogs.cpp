@@ -206,8 +206,16 @@ DrawDialog video(Desktop& d) {
 }
 
 DrawDialog export_as(Desktop& d) {
-  return [&d, dialog = std::make_shared<ExportDialog>()](bool& open, ScreenRect) {
-    const Stage& stage = d.shown.stage();
+  // The plots stand still while it is open: what is exported is what was seen.
+  return [&d, dialog = std::make_shared<ExportDialog>(), held = false](bool& open,
+                                                                       ScreenRect) mutable {
+    Stage& stage = d.shown.stage();
+    if (open && stage.group.following()) {
+      stage.group.set_following(false);
+      held = true;
+    } else if (!open && std::exchange(held, false)) {
+      stage.group.set_following(true);
+    }
     const auto order =
         dialog->draw(open, stage, d.exporter.plot(), sessions_dir(), d.playback.on());
     if (!order) return;

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "app/desktop/base/open_elsewhere.h"
+#include "app/base/open_elsewhere.h"
 #include "app/plot/canvas_tape.h"
 #include "app/plot/plot_export.h"
 #include "app/run/provenance.h"
@@ -50,6 +50,10 @@ fs::path Exporter::carry_out(const ExportOrder& order, const Stage& stage) {
   if (order.plot >= stage.plots.size()) return {};
   const Plot& plot = stage.plots[order.plot];
   PlotPicture picture = plot.picture(stage.group);
+  if (const auto range = stage.group.range(); range && order.stretch) {
+    picture.start = range->start;
+    picture.stop = range->stop;
+  }
   if (order.what == ExportOrder::What::table) {
     const auto table = std::make_shared<const PlotTable>(
         plot_table(plot.spec(), stage.history, picture.start, picture.stop));

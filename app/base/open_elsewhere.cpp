@@ -1,4 +1,4 @@
-#include "app/desktop/base/open_elsewhere.h"
+#include "app/base/open_elsewhere.h"
 
 #include <dbus/dbus.h>
 #include <spawn.h>

@@ -1,0 +1,19 @@
+// The manual: one page for a browser, made of what stands elsewhere already.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace limpid {
+
+// Keys of the window under a heading, each with what it does.
+struct ManualKey {
+  std::string group, keys, what;
+};
+
+// Returns the page as HTML, of the READMEs of a source tree, all settings, and these keys. Links
+// among the READMEs lead within the page; pictures are left out. Errors: FileError.
+std::string manual_html(const std::filesystem::path& tree, const std::vector<ManualKey>& keys);
+
+}  // namespace limpid
