@@ -67,7 +67,7 @@ std::string anchor_in(const fs::path& file, std::string_view fragment) {
   return fragment.empty() ? of_file : fmt::format("{}--{}", of_file, fragment);
 }
 
-// Where a link of a chapter leads within the page; empty: out of it.
+// Returns the target within the page of a chapter's link; empty: it leads out of it.
 std::string within_page(const Chapter& from, const std::string& link) {
   const std::size_t hash = std::min(link.find('#'), link.size());
   const std::string fragment = hash < link.size() ? link.substr(hash + 1) : "";

@@ -125,7 +125,7 @@ void draw_hint(const std::string& task, const std::string& pad, const Settings& 
   for (const auto& [step, line] : all) {
     if (!done(settings, step)) lines.push_back(line);
   }
-  // Who has not found the arm yet has enough to read.
+  // The hint of how to pull the arm comes first.
   if (!task.empty() && done(settings, FirstStep::pull)) lines.insert(lines.begin(), task.c_str());
   float size = face->FontSize * 1.15f;
   for (const char* line : lines) {  // as large as the widest line allows
