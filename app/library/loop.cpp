@@ -236,6 +236,10 @@ std::uint64_t Loop::finish_recording() {
 
 DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> position)
     : Loop(as_library([&] {
+        // A device is no arm that happens to be the default.
+        if (options.motors == Motors::real && options.arm.empty() && options.arm_text.empty()) {
+          throw LoopError("arm: is not given; a device with real motors needs its own");
+        }
         auto state = std::make_unique<State>(read_plan(options), options);
         state->device.emplace(state->plan.arm, state->real);
         state->rig.emplace(state->plan.arm, state->plan.document.scene, &*state->device);

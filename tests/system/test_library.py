@@ -109,15 +109,15 @@ loop.set(eta=0.5)
 assert loop.get("coupling.eta") == 0.5 and loop.get("coupling.kind") == "standard"
 assert loop.energy.controller < 0
 
-device = limpid.DeviceLoop([0, 0.6, -1.1], coupling="predictive", limits={"tip_force": 2})
+device = limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", coupling="predictive", limits={"tip_force": 2})
 assert not device.armed and device.force_share == 0 and "not armed" in device.force_text
 assert list(device.tick([0, 0.6, -1.1])) == [0, 0, 0]
 for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
               lambda: limpid.Loop(etta=1), lambda: loop.step((0, 0)), lambda: row["place"],
-              lambda: limpid.DeviceLoop([0, 0]), lambda: loop.run([(0, 1, 2, 3)]),
+              lambda: limpid.DeviceLoop([0, 0], arm="omni.urdf"), lambda: limpid.DeviceLoop([0, 0.6, -1.1]), lambda: loop.run([(0, 1, 2, 3)]),
               lambda: loop.run([(0, 9, 9, 9), (1, 9, 9, 9)]), lambda: loop.set({"loop.tick": 0.002}),
-              lambda: limpid.DeviceLoop([0, 0.6, -1.1], limits={"tip_force": 99}),
-              lambda: limpid.DeviceLoop([0, 0.6, -1.1], limits={"force": 1})):
+              lambda: limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", limits={"tip_force": 99}),
+              lambda: limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", limits={"force": 1})):
     try:
         wrong()
     except limpid.LimpidError as error:

@@ -51,7 +51,8 @@ int main() {
     for (const double each : torque) most = std::max(most, std::abs(each));
   };
 
-  limpid::LoopOptions options;  // the built-in arm at its table, real motors
+  limpid::LoopOptions options;
+  options.arm = "omni.urdf";  // put your device's own here
   options.settings = {"coupling.kind=predictive"};
   options.limits.tip_force = 3;
   limpid::DeviceLoop loop(options, start);

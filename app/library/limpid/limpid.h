@@ -73,7 +73,7 @@ struct LoopLimits {
 
 struct LoopOptions {
   // URDF file of the arm, or the name of one that came along, as "omni.urdf". Empty: the built-in
-  // arm of three joints. Xacro is not expanded here.
+  // arm of three joints, but not for real motors. Xacro is not expanded here.
   std::string arm;
   // URDF of the arm as text, in place of the file; urdf_text() below writes one.
   std::string arm_text;
@@ -89,7 +89,8 @@ struct LoopOptions {
   // TOML file of settings, as `limpid run --config` takes it. Empty: none.
   std::string config;
   // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
-  // setting_list() has all of them. Gains that no setting names are fitted to the arm.
+  // setting_list() has all of them. Gains that no setting names are fitted to the arm. Of a device
+  // say the step of its encoders, device.encoder_step, and its delay in ticks, model.delay.
   std::vector<std::string> settings;
   // Time from a tick to the next, 1e-5 to 0.1 s: what your loop keeps. Faster loops render stiffer
   // walls. Walls of a simulated hand are tried at 0.001.
@@ -265,7 +266,7 @@ class LIMPID_API SimulatedLoop : public Loop {
     Point3 target{};                   // where it wants the tip [m]
     double grip = 1;                   // 1 holds, 0 has let go; scales stiffness and damping
     bool magnet = false;               // picks up objects that may be picked up
-    std::span<const double> torque{};  // pushed on each joint besides; empty: none
+    std::span<const double> torque{};  // one a joint, pushed besides; of another size: none
   };
 
   // Begins at rest, in the middle of the joints' ranges. Errors: LoopError.

@@ -341,6 +341,12 @@ TEST(Loops, SayWhatIsNotAllowed) {
   EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{0.0, 0.0}); }), HasSubstr("needed: 1"));
   EXPECT_THAT(refusal([] { DeviceLoop(slide(), std::array{std::nan("")}); }), HasSubstr("finite"));
 
+  EXPECT_THAT(refusal([] {
+                DeviceLoop(LoopOptions{}, std::array{0.0, 0.6, -1.1});
+              }),
+              HasSubstr("arm: is not given"))
+      << "real motors are nobody's default arm";
+
   DeviceLoop loop(slide(), std::array{0.0});
   EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("fixed"));
   EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("fixed"));
