@@ -51,8 +51,10 @@ class Installed(SystemTest):
         names = sorted(file.stem for file in examples.glob("*.cpp"))
         self.assertGreaterEqual(len(names), 4)
         for name in names:
+            if name == "beside_mujoco" and not (out / name).exists():
+                continue  # no libmujoco-dev
             with self.subTest(name):
-                self.assertNotEqual(must(out / name), "")
+                self.assertNotEqual(must(out / name, cwd=out), "")
 
     def test_a_program_is_built_by_pkg_config(self) -> None:
         (config,) = self.prefix.rglob("limpid.pc")
