@@ -176,7 +176,8 @@ std::function<std::string(std::string)> or_shipped(Kinds kinds) {
 void InputOptions::add_world(CLI::App& command) {
   command
       .add_option("--device", device,
-                  "the arm; default: the built-in Omni-like one. inverse3[:ID][@HOST[:PORT]]: the "
+                  "the arm; default: the built-in one, like an Omni but ideal. "
+                  "inverse3[:ID][@HOST[:PORT]]: the "
                   "Inverse3 of a Haply Inverse Service in the window, elsewhere an arm like it")
       ->transform(or_shipped({"devices"}), "", "")
       ->type_name("FILE.urdf");

@@ -122,6 +122,21 @@ void end_recording_and_quit(Desktop& d) {
   d.recording_may_end = d.asked.close = true;
 }
 
+// Step of a Touch's encoders, which its file cannot say [rad].
+constexpr double kStepOfTouch = 4.19e-4;
+
+void open_ideal(Desktop& d) {
+  double& step = d.settings.parameters().encoder_step;
+  if (step == kStepOfTouch) step = 0;
+  d.world.open_arm(default_device());
+}
+
+void open_touch(Desktop& d) {
+  d.settings.parameters().encoder_step = kStepOfTouch;
+  d.world.open_arm(data_dir() / "assets/devices/touch.urdf");
+  d.notices.say("A Touch has 52 g at the tip, friction of 0.26 N and encoder steps of 0.42 mrad.");
+}
+
 void open_manual(Desktop& d) {
   const std::filesystem::path file = manual_file();
   if (file.empty()) return d.notices.say("The manual is not there. Install Limpid again.", true);
@@ -268,9 +283,10 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.escape(); }, {.reach = Reach::all, .blind = true}),
     row("arm.open", "Open arm (URDF)...", "Device", nullptr, nullptr,
         [](Desktop& d) { d.dialog.open("open arm"); }, {.why_not = no_virtual_arm}),
-    row("arm.built_in", "Built-in arm", "Device", nullptr, nullptr,
-        [](Desktop& d) { d.world.open_arm(default_device()); },
+    row("arm.built_in", "Built-in arm, ideal", "Device", nullptr, nullptr, open_ideal,
         {.checked = [](const Desktop& d) { return d.world.built_in_arm(); }}),
+    row("arm.touch", "As real as a Touch", "Device", nullptr, nullptr, open_touch,
+        {.why_not = no_virtual_arm}),
     row("device.identify", "Identify...", "Device", "F7",
         "identify the device: it moves and shows its inertia, friction and delay",
         [](Desktop& d) { show_or_close(d, "identify"); }),

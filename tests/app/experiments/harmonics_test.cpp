@@ -8,15 +8,13 @@
 namespace limpid {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(Harmonics, FindAmplitudeAndPhaseOfEveryLineAmongTheOthers) {
   const double T = 0.001;
   std::vector<double> samples;
   for (int k = 0; k < 2000; ++k) {
     const double t = k * T;
-    samples.push_back(7 + 0.3 * std::cos(2 * kPi * 5 * t + 0.4) +
-                      2e-4 * std::cos(2 * kPi * 123.5 * t - 1.2));
+    samples.push_back(7 + 0.3 * std::cos(2 * std::numbers::pi * 5 * t + 0.4) +
+                      2e-4 * std::cos(2 * std::numbers::pi * 123.5 * t - 1.2));
   }
   const auto low = amplitude_at(samples, T, 5);
   EXPECT_NEAR(std::abs(low), 0.3, 1e-12);
@@ -61,8 +59,10 @@ TEST(Multisine, HasItsLinesAtWholeMultiplesAndNothingBetween) {
   for (const Multisine::Line& line : signal.lines) {
     const double f = signal.frequency(line);
     const auto seen = amplitude_at(samples, T, f);
-    EXPECT_NEAR(2 * kPi * f * std::abs(seen), 0.01, 1e-9);
-    EXPECT_NEAR(std::remainder(std::arg(seen) + kPi / 2 - line.phase, 2 * kPi), 0, 1e-6);
+    EXPECT_NEAR(2 * std::numbers::pi * f * std::abs(seen), 0.01, 1e-9);
+    EXPECT_NEAR(
+        std::remainder(std::arg(seen) + std::numbers::pi / 2 - line.phase, 2 * std::numbers::pi), 0,
+        1e-6);
   }
 }
 

@@ -31,7 +31,7 @@ TEST(WellRendered, AsksForEachOfItsPromises) {
   EXPECT_FALSE(well_rendered(t, false));
 }
 
-TrialRunner::Options in(const std::filesystem::path& dir) {
+TrialRunner::Options walls_in(const std::filesystem::path& dir) {
   TrialRunner::Options options;
   options.dir = dir;
   return options;
@@ -49,7 +49,7 @@ class Walls : public testing::Test {
   }
 
   test::TempDir temp_;
-  TrialRunner lab_{"walls", in(temp_ / ".")};
+  TrialRunner lab_{"walls", walls_in(temp_ / ".")};
 };
 
 TEST_F(Walls, OfThePapersLawEndWhereTheLagTakesMoreThanAllDampingGives) {
