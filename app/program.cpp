@@ -16,9 +16,8 @@
 #include "app/cli/commands.h"
 #include "app/cli/complete.h"
 #include "app/cli/options.h"
-#include "app/desktop/shell/commands.h"
-#include "app/desktop/shell/key_labels.h"
 #include "app/open_window.h"
+#include "app/window_keys.h"
 #include "devices/files/toml_reader.h"
 
 namespace limpid {
@@ -78,15 +77,6 @@ UsageError unexpected(const CLI::App& app) {
   return UsageError(fmt::format("\"{}\": not expected; {}`{} --help` lists what is",
                                 fmt::join(words, " "),
                                 meant ? fmt::format("did you mean {}? ", *meant) : "", command));
-}
-
-// Returns the keys of the window, as on a US keyboard.
-std::vector<ManualKey> keys_of_window() {
-  std::vector<ManualKey> keys;
-  for (const Shortcut& each : shortcuts(KeyLabels())) {
-    keys.push_back({std::string(each.group), each.keys, each.what});
-  }
-  return keys;
 }
 
 // Declares the commands that open no window, by name.
