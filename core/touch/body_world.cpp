@@ -51,7 +51,11 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
   const std::size_t n = names_.size();
   touched_.assign(n, 0);
   tied_.assign(n, 0);
-  for (int i = 0; i < count(); ++i) tied_[at(i)] = bodies_.about[at(i)].joint ? 1 : 0;
+  for (int i = 0; i < count(); ++i) {
+    const Body& body = bodies_.about[at(i)];
+    tied_[at(i)] = body.joint ? 1 : 0;
+    stops_in_.push_back(std::sqrt(bodies_[i].mass() / body.contact_stiffness));
+  }
   passing_.reserve(n);
   started_.resize(n);
   quiet_island_.assign(n, 0);
@@ -432,16 +436,10 @@ void BodyWorld::finish() {
   std::ranges::fill(touched_, 0);
 }
 
-// Ticks in which a contact stops a body that meets it: its spring alone needs a quarter of a swing.
-double BodyWorld::times_to_stop(int body) const {
-  const double K = bodies_.about[at(body)].contact_stiffness;
-  return std::max(1.0, std::sqrt(bodies_[body].mass() / K) / bodies_.T);
-}
-
 // A body by itself that is quick enough to pass something before a contact stops it.
 bool BodyWorld::is_quick(int body) const {
   if (tied_[at(body)] != 0 || magnet_.body == body) return false;
-  const double time = times_to_stop(body) * bodies_.T;
+  const double time = std::max(bodies_.T, stops_in_[at(body)]);
   const BodyMotion& motion = bodies_[body];
   return geometry_.may_pass(body, time * motion.velocity(Vec3::Zero()).norm(),
                             time * motion.turning().norm());
@@ -451,12 +449,12 @@ bool BodyWorld::is_quick(int body) const {
 // a number of meetings it stays for the rest of the tick.
 void BodyWorld::bounce(int body) {
   BodyMotion& motion = bodies_[body];
+  const double times = std::max(1.0, stops_in_[at(body)] / bodies_.T);
   Pose start = started_[at(body)];
   double left = bodies_.T;
   for (int i = 0; i < kMostMeetings; ++i) {
     const Vec3 center = motion.pose().inverse() * motion.center();
-    const Meeting meeting =
-        geometry_.first_meeting(body, start, motion.pose(), center, times_to_stop(body));
+    const Meeting meeting = geometry_.first_meeting(body, start, motion.pose(), center, times);
     if (meeting.part == 1) break;
     left *= 1 - meeting.part;
     motion.go_back(start, meeting.part, left);

@@ -130,7 +130,6 @@ class BodyWorld {
   void fall_asleep();
   void take_stock();
   void part();
-  double times_to_stop(int body) const;
   bool is_quick(int body) const;
   void bounce(int body);
   void strike(const Meeting& meeting);
@@ -144,6 +143,7 @@ class BodyWorld {
   double right_ = 0;        // energy that forces which count as right may make in a tick [J]
   std::vector<std::string> names_;
   std::vector<std::uint8_t> touched_;
+  std::vector<double> stops_in_;            // time in which a contact's spring stops a body [s]
   std::vector<std::uint8_t> tied_;          // a joint or a spring holds it
   std::vector<std::uint8_t> quiet_island_;  // by the island's root
   std::vector<int> quiet_;                  // ticks

@@ -114,12 +114,13 @@ TEST(BodyRolling, CylindersAndCapsulesOfPartsRollAsTheirInertiaSays) {
 Scene mechanism(Random& random) {
   Scene scene;
   const auto count = static_cast<int>(random.between(2, 6.99));
+  const double heaviest = random.log_between(0.3, 1);
   Vec3 end = Vec3::Zero();
   for (int i = 0; i < count; ++i) {
     const Vec3 way = random.direction();
     Object object =
         body("body " + std::to_string(i), Box{Vec3::Constant(0.03) + random.point(0.02)},
-             random.log_between(1e-3, 0.3), end + 0.03 * way);
+             heaviest * random.log_between(1.0 / 300, 1), end + 0.03 * way);
     object.pose.linear() = random.rotation();
     BodyJoint& joint = object.body->joint.emplace();
     joint.kind = random.one_of({Kind::hinge, Kind::hinge, Kind::slider, Kind::ball});
@@ -135,6 +136,10 @@ Scene mechanism(Random& random) {
     if (joint.kind != Kind::ball) {
       joint.force.spring = random.one_of({0.0, slides ? random.between(1, 200) : 0.05});
     }
+    if (joint.kind != Kind::ball && random.between(0, 1) < 0.3) {
+      joint.force.detent_force = slides ? random.between(0.05, 0.5) : random.between(1e-4, 2e-3);
+      joint.force.detent_period = slides ? 0.008 : 0.5;
+    }
     joint.damping = random.one_of({0.0, slides ? 0.3 : 5e-4});
     joint.friction = random.one_of({0.0, slides ? 0.1 : 5e-4});
     scene.add(object);
@@ -143,9 +148,10 @@ Scene mechanism(Random& random) {
   return scene;
 }
 
-double apart(const Scene& scene, const BodyWorld& world) {
+// How far the first bodies' joints have come apart [m].
+double apart(const Scene& scene, int links, const BodyWorld& world) {
   double most = 0;
-  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(links); ++i) {
     const BodyJoint& joint = *scene.objects[i].body->joint;
     if (joint.kind == Kind::slider) continue;
     const Vec3 there = scene.objects[i].pose * joint.point;
@@ -157,23 +163,56 @@ double apart(const Scene& scene, const BodyWorld& world) {
   return most;
 }
 
+// Runs a mechanism for a second: bodies that were set going, pushed now and then at some point,
+// with a ball flung at one of them. Returns whether it stood still in any tick, its forces not
+// found.
+bool stood_still_while_right(unsigned seed) {
+  SCOPED_TRACE(seed);
+  Random random(seed);
+  Scene scene = mechanism(random);
+  const auto links = static_cast<int>(scene.objects.size());
+  const Vec3 far = 0.2 * random.direction();
+  const Vec3 target = scene.objects[static_cast<std::size_t>(links / 2)].pose.translation();
+  scene.add(body("ball", Sphere{0.01}, random.log_between(1e-3, 0.1), target + far));
+  BodyWorld world(scene);
+  for (int i = 0; i < links; ++i) {
+    if (random.between(0, 1) < 0.5) world.set_speed(i, random.point(1), random.point(10));
+  }
+  EXPECT_LT(run(world, 300), 1e-6);  // lets go what joints forbid
+  const Vec3 before = world.speed(links), after = -random.between(5, 20) * far;
+  world.set_speed(links, after, Vec3::Zero());
+  const double mass = scene.objects.back().body->mass;
+  const double flung = 0.5 * mass * (after.squaredNorm() - before.squaredNorm());
+  for (int k = 0; k < 700; ++k) {
+    const int pushed = static_cast<int>(random.between(0, links - 0.01));
+    world.touch(pushed);
+    world.begin(kTick);
+    const auto end = world.end_at(pushed, world.center(pushed) + random.point(0.01));
+    const Vec3 force = k % 100 < 5 ? random.point(1) : Vec3(Vec3::Zero());
+    world.push(end, force);
+    world.settle();
+    world.book(end, force);
+    world.finish();
+    EXPECT_LT(world.gain() - flung, 1e-6) << k;
+    if (apart(scene, links, world) > 1e-4) {
+      ADD_FAILURE() << "apart at " << k;
+      break;
+    }
+  }
+  return world.stood_still() > 0;
+}
+
 TEST(BodyMechanisms, GainNothingAndHoldTogether) {
   int stood = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
-    Random random(7000 + seed);
-    const Scene scene = mechanism(random);
-    BodyWorld world(scene);
-    for (int i = 0; i < world.count(); ++i) {
-      if (random.between(0, 1) < 0.5) world.set_speed(i, random.point(1), random.point(10));
-    }
-    EXPECT_LT(run(world, 300), 1e-6) << seed;  // lets go what joints forbid
-    for (int k = 0; k < 700; ++k) {
-      EXPECT_LT(run(world, 1), 1e-6) << seed;
-      ASSERT_LT(apart(scene, world), 1e-4) << seed;
-    }
-    stood += world.stood_still() > 0 ? 1 : 0;
-  }
+  for (unsigned seed = 0; seed < 40; ++seed) stood += stood_still_while_right(7000 + seed) ? 1 : 0;
   EXPECT_LE(stood, 2);
+}
+
+// A run takes minutes: core_tests --gtest_also_run_disabled_tests --gtest_filter='*AThousand*'.
+TEST(BodyMechanisms, DISABLED_AThousandGainNothingAndHoldTogether) {
+  int stood = 0;
+  for (unsigned seed = 0; seed < 1000; ++seed) stood += stood_still_while_right(seed) ? 1 : 0;
+  EXPECT_LE(stood, 20);
 }
 
 TEST(BodyMechanisms, ATopOnABallJointPrecesses) {

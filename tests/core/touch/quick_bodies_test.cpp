@@ -45,7 +45,7 @@ TEST(QuickBodies, PassNoPlate) {
   Random random(81);
   for (const double thick : {0.5e-3, 1e-3, 4e-3, 8e-3}) {
     for (const Object& plate : plates(thick)) {
-      for (const double restitution : {0.0, 0.5}) {
+      for (const double restitution : {0.0, 0.5, 1.0}) {
         const Vec3 at(random.between(-0.05, 0.05), random.between(-0.05, 0.05),
                       random.between(0.03, 0.05));
         for (Object& bullet : bullets(random, at)) {
