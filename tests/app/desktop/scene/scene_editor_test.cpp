@@ -387,6 +387,7 @@ TEST(SceneEditor, PutsWhatMovesBehindWhatStandsStill) {
   pot.body.reset();
   editor.set(4, pot, "moves");
   EXPECT_THAT(names(editor), ElementsAre("top", "ball", "block", "pot", "stop", "lid", "gear"));
+  EXPECT_EQ(editor.selected_object()->name, "pot");
   EXPECT_EQ(editor.scene().objects[5].body->joint->to, "") << "of lid";
   EXPECT_TRUE(editor.scene().springs.empty());
   editor.restore(before);
