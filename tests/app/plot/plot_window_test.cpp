@@ -1,5 +1,6 @@
 // Plots of the window, drawn frame by frame.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "app/plot/plot.h"
@@ -199,8 +200,14 @@ class AReadOut : public APlot {
                     {.label = "hidden", .visible = false}};
   }
   PlotFrame in(Limits x) {
-    return {*ImGui::GetForegroundDrawList(), current_palette(),   1,   {{0, 0}, {500, 420}},
-            {{60, 0}, {460, 400}},           {1.0 / 400, 0, 400}, {x}, {{0, 6}}};
+    return {*ImGui::GetForegroundDrawList(),
+            current_palette(),
+            1,
+            {{0, 0}, {500, 420}},
+            {{60, 0}, {460, 400}},
+            {x.span() / 400, std::llround(400 * x.low / x.span()), 400},
+            {x},
+            {{0, 6}}};
   }
   template <class Draw>
   void show(const Draw& draw) {
@@ -253,6 +260,61 @@ TEST_F(AReadOut, SaysWhereThereIsNoData) {
   ASSERT_TRUE(find("0.4"));
   EXPECT_TRUE(find("0.4")->text.ends_with("no data"));
   EXPECT_FALSE(find("rises"));
+}
+
+// A sample counts up to one and a half ticks around it, or as far as its pixel goes.
+TEST_F(AReadOut, TakesTheSampleThatIsNear) {
+  History history({.channels = 2});
+  for (int k = 0; k < 20; ++k) history.append(1e-3 * k, std::array{3.0, 1.25});
+  for (int k = 24; k < 40; ++k) history.append(1e-3 * k, std::array{4.0, 1.25});
+  const auto has_data = [&](Limits x, double time) {
+    show([&] { draw_read_out(in(x), spec_, history, time, {200, 200}); });
+    return find("rises") != nullptr;
+  };
+  EXPECT_TRUE(has_data({0, 0.04}, 0.0104));
+  EXPECT_TRUE(has_data({0, 0.04}, 0.0204));
+  EXPECT_FALSE(has_data({0, 0.04}, 0.0209));
+  EXPECT_FALSE(has_data({0, 0.04}, 0.0216));
+  EXPECT_TRUE(has_data({0, 0.04}, 0.0226));
+  EXPECT_TRUE(has_data({0, 1}, 0.0212)) << "within a pixel of 2.5 ms";
+  EXPECT_FALSE(has_data({0, 1}, 0.05));
+}
+
+// The time is the run's own after it has started over, and has minutes from the first one on.
+TEST_F(AReadOut, SaysTheTimeOfTheRun) {
+  History history({.channels = 2, .seconds = 200, .tick = 0.5});
+  for (int k = 0; k < 20; ++k) history.append(0.5 * k, std::array{3.0, 1.25});
+  for (int k = 0; k <= 240; ++k) history.append(0.5 * k, std::array{4.0, 1.25});
+  const auto said = [&](double time) {
+    const double at = time + history.offset();
+    show([&] { draw_read_out(in({at - 100, at + 100}), spec_, history, at, {200, 200}); });
+    EXPECT_FALSE(texts_.empty());
+    return texts_.empty() ? "" : texts_.front().text;
+  };
+  EXPECT_EQ(said(12), "12.0 s");
+  EXPECT_EQ(said(59.5), "59.5 s");
+  EXPECT_EQ(said(60), "1:00.0");
+  EXPECT_EQ(said(90.5), "1:30.5");
+}
+
+// Over another channel the box is beside the point of the moment.
+TEST_F(AReadOut, OfPairsOfValuesIsBesideTheirPoint) {
+  spec_.kind = PlotKind::cross;
+  spec_.x = {.unit = "N"};
+  spec_.curves.resize(1);
+  spec_.curves[0].across = 1;
+  History history({.channels = 2});
+  for (int k = 0; k <= 100; ++k) history.append(1e-3 * k, std::array{3.0, 0.01 * k});
+  show([&] {
+    PlotFrame frame = in({0, 1});
+    frame.window = {1e-3, 0, 400};
+    draw_read_out(frame, spec_, history, 0.05, {200, 200});
+  });
+  ASSERT_TRUE(find("rises"));
+  EXPECT_TRUE(find("rises")->min.x > 60 + 0.5f * 400) << "0.5 across";
+  EXPECT_LT(find("rises")->min.x, 60 + 0.5f * 400 + 40);
+  ASSERT_TRUE(find("3.0"));
+  EXPECT_NE(find("3.0")->text.find("0.500 N"), std::string::npos) << find("3.0")->text;
 }
 
 // The highest amplitude counts among the frequencies of one pixel.
