@@ -162,7 +162,7 @@ Model make_sector(double inner, double outer, double angle, double thickness, co
     const double s = end == std::min(0.0, angle) ? -1 : 1;
     add_quad(
         m,
-        {point(inner, end, s), point(inner, end, -s), point(outer, end, -s), point(outer, end, s)},
+        {point(inner, end, -s), point(inner, end, s), point(outer, end, s), point(outer, end, -s)},
         s * Vec3(-std::sin(end), std::cos(end), 0), paint);
   }
   return finished(std::move(m));

@@ -2,17 +2,12 @@
 // stiffness, and the energy given to the hand, under each coupling.
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <numbers>
 
-#include "app/base/folders.h"
+#include "app/experiments/link_theory.h"
 #include "app/experiments/tap_bench.h"
-#include "app/run/analysis.h"
 #include "core/dynamics/random.h"
-#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {
@@ -75,65 +70,6 @@ std::vector<LinkCurve> linked_laws() {
           {"tank", kTankInk, {.kind = tank}},
           {"predictive, late motors instead", kPredictiveInk, {.kind = predictive}}};
 }
-
-// Walls by theory at the table, in the grip of the taps.
-class LinkTheory {
- public:
-  double standard(int delay) const {
-    if (!stable(kSoftest, delay)) return kSoftest;
-    if (stable(kStiffest, delay)) return kStiffest;
-    double low = kSoftest, high = kStiffest;
-    for (int i = 0; i < 8; ++i) {
-      const double middle = std::sqrt(low * high);
-      (stable(middle, delay) ? low : high) = middle;
-    }
-    return low;
-  }
-  // The proposed law's wall: its spring is the standard coupling's, its contact late by the whole
-  // trip.
-  double proposed(int delay) const {
-    if (!stable(kSoftest, delay)) return kSoftest;
-    const double wall = proposed_wall(tip_at_table(), {.T = p_.tick,
-                                                       .k_vc = p_.k_vc,
-                                                       .b_v = p_.b_v,
-                                                       .hand_damping = TapBench::kGripDamping,
-                                                       .delay = 2 * delay * p_.tick});
-    return std::clamp(wall, kSoftest, kStiffest);
-  }
-
- private:
-  using Complex = Eigen::Matrix3cd;
-
-  // Stability of the standard coupling in that grip, with a massless proxy: s times the impedance
-  // at the joints of arm, grip, spring and wall. Stable if the angle of its determinant grows along
-  // the imaginary axis by two right angles a joint, as for a mass on a spring and a damper.
-  bool stable(double wall, int delay) const {
-    constexpr double kStep = 0.5, kTo = 4000;  // [rad/s]
-    const Eigen::Matrix3d M = at_.M, JJ = at_.J.transpose() * at_.J,
-                          normal = at_.J.row(2).transpose() * at_.J.row(2);
-    const double K_h = LinkStudy::kGrip[0], trip = 2 * delay * p_.tick;
-    double turned = 0;
-    std::complex<double> before = 0;
-    for (double w = kStep; w <= kTo; w += kStep) {
-      const std::complex<double> s(0, w), spring = p_.k_vc + s * p_.b_vc;
-      const Complex I = Complex::Identity();
-      const Complex proxy = s * (p_.b_v + p_.k_vc * p_.tick / 2) * I + wall * normal;
-      const Complex apart = (spring * I + proxy).inverse();
-      const Complex all = s * s * M + s * Eigen::Matrix3d(b_d_.asDiagonal()) +
-                          (K_h + s * TapBench::kGripDamping) * JJ + spring * I -
-                          spring * spring * std::exp(-s * (trip + p_.tick)) * apart;
-      const std::complex<double> now = all.determinant();
-      turned += before == 0.0 ? std::arg(now) : std::arg(now / before);
-      before = now;
-    }
-    return std::abs(turned - 3 * std::numbers::pi) < 1;
-  }
-
-  Parameters p_{};
-  ArmDescription arm_ = read_urdf(default_device());
-  ArmAt at_ = arm_at(arm_, rest_at(arm_, Vec3(0.2, 0, TapBench::kSurface)).x1);
-  Eigen::Vector3d b_d_ = device_damping(arm_, p_);
-};
 
 void find_walls(TrialRunner& lab, std::vector<LinkCurve>& laws) {
   std::vector<TapSetting> settings;
@@ -329,7 +265,7 @@ Outcome link(TrialRunner& lab) {
   std::vector<LinkCurve> laws = linked_laws();
   find_walls(lab, laws);
   measure_laws(lab, laws);
-  const LinkTheory theory;
+  const LinkTheory theory(LinkStudy::kGrip[0]);
   Outcome outcome;
   outcome.figure.title = "Walls through a delay between device and proxy";
   outcome.figure.caption = fmt::format(

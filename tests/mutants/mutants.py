@@ -7,8 +7,9 @@
 
 All errors are compiled into the test programs at once, and a variable of the environment chooses one. Each test is
 first run by itself, which shows which errors it reaches; an error is then only shown to the tests that reach it, those
-of its own folder first. A failure, a crash and a hang are all noticed. The sources are put back in any case; the tree
-has to be clean, so that `git checkout .` helps if even that is killed.
+of its own folder first. A failure, a crash and a hang are all noticed. System tests can be asked about the rest; what
+they notice is counted by itself. The sources are put back in any case; the tree has to be clean, so that
+`git checkout .` helps if even that is killed.
 
 What this cannot plant: errors in initialisers of members, in constants, in statements that contain a lambda (but it
 does in the lambda's own), and in what only the preprocessor sees.
@@ -16,6 +17,7 @@ does in the lambda's own), and in what only the preprocessor sees.
 
 import argparse
 import concurrent.futures
+import contextlib
 import json
 import os
 import random
@@ -48,6 +50,7 @@ class Mutant:
     last_line: int = 0
     result: str = ""  # noticed, unnoticed, unreached, or "no mutant": it does not compile
     by: str = ""
+    system: str = ""  # which system test noticed what the test programs did not
     left_out: int = 0  # tests that reach it and were not run for want of time
     shown: list = field(default_factory=list)  # the statement before and after
 
@@ -56,7 +59,7 @@ class Mutant:
         return self.file.split("/")[0]
 
     def report(self):
-        keep = ("number", "file", "line", "what", "result", "by", "left_out", "shown")
+        keep = ("number", "file", "line", "what", "result", "by", "system", "left_out", "shown")
         return {key: getattr(self, key) for key in keep}
 
 
@@ -227,6 +230,19 @@ class Test:
     reached: frozenset = frozenset()
     passed: bool = True
 
+    @property
+    def command(self):
+        return [str(self.program), f"--gtest_filter={self.name}"]
+
+
+class SystemTest(Test):
+    """A module of tests/system, whose programs note together what they reach."""
+
+    @property
+    def command(self):
+        limpid = f"LIMPID={self.program} PYTHONDONTWRITEBYTECODE=1"
+        return ["sh", "-c", f"cd tests/system && {limpid} exec /usr/bin/python3 -m unittest {self.name}"]
+
 
 def names_of_tests(listing):
     """Of what --gtest_list_tests prints."""
@@ -254,9 +270,9 @@ def in_time(command, environment, seconds):
         except subprocess.TimeoutExpired:
             status = None
         finally:
-            if child.poll() is None:
+            with contextlib.suppress(ProcessLookupError):  # what it has started may outlive it
                 os.killpg(child.pid, signal.SIGKILL)
-                child.wait()
+            child.wait()
         out.seek(0)
         return status, out.read().decode(errors="replace")
 
@@ -266,8 +282,7 @@ def look(test, seconds):
     with tempfile.NamedTemporaryFile() as file:
         file.truncate(source.MOST + 1)
         began = time.monotonic()
-        command = [str(test.program), f"--gtest_filter={test.name}"]
-        status, _ = in_time(command, {"LIMPID_MUTANT": "0", "LIMPID_MUTANT_REACHED": file.name}, seconds)
+        status, _ = in_time(test.command, {"LIMPID_MUTANT": "0", "LIMPID_MUTANT_REACHED": file.name}, seconds)
         test.seconds = time.monotonic() - began
         test.passed = status == 0
         test.reached = frozenset(i for i, byte in enumerate(Path(file.name).read_bytes()) if byte)
@@ -310,6 +325,20 @@ def try_out(mutant, tests, budget):
     return mutant
 
 
+def ask_system_tests(mutants, tests):
+    """Shows what no test program notices to the system tests that reach it, one at a time: windows need the processor."""
+    for test in tests:
+        look(test, 1800)
+        if not test.passed:
+            say(f"{test.name} fails without an error, and is not asked")
+    for mutant in (m for m in mutants if m.result in ("unnoticed", "unreached")):
+        for test in (t for t in tests if t.passed and mutant.number in t.reached):
+            if in_time(test.command, {"LIMPID_MUTANT": str(mutant.number)}, 60 + 5 * test.seconds)[0] != 0:
+                mutant.system = test.name
+                say(f"{mutant.number}: {mutant.file}:{mutant.line}: {mutant.what}: noticed by {test.name}")
+                break
+
+
 # What came of it.
 
 
@@ -324,12 +353,16 @@ def summary(mutants):
             f"{room}: {count['noticed']} of {tried} noticed ({share}); unnoticed {count['unnoticed']}, reached by no "
             f"test {count['unreached']}; {count['no mutant']} do not compile, {count['']} were not tried"
         )
+        if system := sum(bool(m.system) for m in own):
+            both = count["noticed"] + system
+            lines.append(f"{room}, with system tests: {both} of {tried} noticed ({100 * both / tried:.0f} %)")
     return "\n".join(lines)
 
 
 def as_diff(mutant):
     before, after = mutant.shown
-    return f"{mutant.file}:{mutant.line}: {mutant.what} ({mutant.result})\n- {before}\n+ {after}\n"
+    result = mutant.result + (f", but by {mutant.system}" if mutant.system else "")
+    return f"{mutant.file}:{mutant.line}: {mutant.what} ({result})\n- {before}\n+ {after}\n"
 
 
 def arguments():
@@ -342,8 +375,7 @@ def arguments():
     parser.add_argument("--programs", default="", help="only these test programs: core_tests,app_tests")
     parser.add_argument("--budget", type=float, default=60, help="of tests for one error [s]")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--also", default="", help="a command for what the test programs do not notice, in the tree")
-    parser.add_argument("--targets", default="", help="what --also needs to have built: limpid,limpid-model")
+    parser.add_argument("--system", default="", help="system tests asked about the rest: test_cli,test_link")
     parser.add_argument("--report", type=Path, default=None, help="JSON; default mutants.json in the build folder")
     parser.add_argument("--resume", action="store_true", help="what the report knows already is not tried again")
     parser.add_argument("--list", action="store_true", help="only says which errors it would plant")
@@ -377,6 +409,7 @@ def take_results(mutants, report):
         before = known.get((mutant.file, mutant.line, mutant.what, mutant.text))
         if before:
             mutant.result, mutant.by, mutant.left_out = before["result"], before["by"], before["left_out"]
+            mutant.system = before["system"]
 
 
 def carry_out(options, mutants, report):
@@ -393,7 +426,8 @@ def carry_out(options, mutants, report):
         programs = [p for p in build.test_programs() if headers or of_mutants & build.inputs(p)]
         if options.programs:
             programs = [p for p in programs if Path(p).name in options.programs.split(",")]
-        while open_ and (log := build.make(*programs, *filter(None, options.targets.split(",")))):
+        system = [SystemTest(options.build.absolute() / "app/limpid", name) for name in filter(None, options.system.split(","))]
+        while open_ and (log := build.make(*programs, *(["limpid"] if system else []))):
             blamed = not_compiling(log, open_)
             if not blamed:
                 sys.exit("The test programs do not build:\n" + log[-4000:])
@@ -414,12 +448,10 @@ def carry_out(options, mutants, report):
                     say(f"{test.program.name}: {test.name} fails without an error, and is not asked")
             say(f"{len(tests)} tests, {sum(t.seconds for t in tests):.0f} s")
             for mutant in pool.map(lambda m: try_out(m, tests, options.budget), open_):
-                if mutant.result != "noticed" and options.also:
-                    status, _ = in_time(["sh", "-c", options.also], {"LIMPID_MUTANT": str(mutant.number)}, 900)
-                    if status != 0:
-                        mutant.result, mutant.by = "noticed", options.also
                 say(f"{mutant.number}: {mutant.file}:{mutant.line}: {mutant.what}: {mutant.result} {mutant.by}")
                 write()
+        ask_system_tests(open_, system)
+        write()
 
 
 def main():

@@ -197,6 +197,26 @@ class Results(unittest.TestCase):
         self.assertIn("core: 2 of 4 noticed (50 %)", mutants.summary(tried))
         self.assertIn("1 do not compile, 1 were not tried", mutants.summary(tried))
 
+    def test_of_system_tests_are_counted_by_themselves(self) -> None:
+        tried = [mutants.Mutant("app/a.cpp", 1, "", "", result=result) for result in ("noticed", "unnoticed", "unreached")]
+        self.assertNotIn("system", mutants.summary(tried))
+        tried[2].system = "test_cli"
+        self.assertIn("app: 1 of 3 noticed (33 %)", mutants.summary(tried))
+        self.assertIn("app, with system tests: 2 of 3 noticed (67 %)", mutants.summary(tried))
+
+    def test_of_system_tests_come_from_those_that_reach_the_line_and_pass_without_an_error(self) -> None:
+        class Asked(mutants.SystemTest):
+            @property
+            def command(self):
+                return ["sh", "-c", SYSTEM_TESTS[self.name]]
+
+        tried = [mutants.Mutant("app/a.cpp", 1, "", "", number=n, result=result)
+                 for n, result in ((1, "noticed"), (2, "unnoticed"), (3, "unreached"), (4, "unreached"))]  # fmt: skip
+        before, mutants.say = mutants.say, lambda text: None
+        self.addCleanup(setattr, mutants, "say", before)
+        mutants.ask_system_tests(tried, [Asked(Path("limpid"), name) for name in SYSTEM_TESTS])
+        self.assertEqual([m.system for m in tried], ["", "", "second", ""])
+
     def test_of_a_command_that_hangs_come_in_time(self) -> None:
         status, out = mutants.in_time(["sh", "-c", "echo begun; sleep 60"], {}, 0.3)
         self.assertIsNone(status)
@@ -207,6 +227,13 @@ class Results(unittest.TestCase):
         self.assertEqual((status, out), (3, "7\n"))
 
 
+# Each notes the lines that it reaches, and fails with some errors.
+REACHES = "printf {} | dd of=$LIMPID_MUTANT_REACHED bs=1 seek={} conv=notrunc 2>/dev/null; "
+SYSTEM_TESTS = {
+    "first": REACHES.format("11", 2) + "true",
+    "broken": REACHES.format("111", 2) + "false",
+    "second": REACHES.format("1", 3) + "test $LIMPID_MUTANT -ne 3 -a $LIMPID_MUTANT -ne 4",
+}
 PROGRAM = """#include "core/sum.h"
 #include <cstdio>
 #include <cstring>
@@ -269,7 +296,7 @@ class AWholeCall(unittest.TestCase):
         mutants.TREE, mutants.say = self.tree, lambda text: None
         self.addCleanup(lambda: (setattr(mutants, "TREE", before[0]), setattr(mutants, "say", before[1])))
         self.options = argparse.Namespace(
-            build=self.build, jobs=2, programs="", targets="", also="", budget=10, seed=1, count=0, change=None,
+            build=self.build, jobs=2, programs="", system="", budget=10, seed=1, count=0, change=None,
             paths=["core"], report=None, resume=False,
         )  # fmt: skip
 

@@ -63,5 +63,34 @@ TEST(Finish, SmoothsTheStepsOfAnEdge) {
   EXPECT_GT(between, kSize - 16) << "a pixel a column, about";
 }
 
+// A part of the next frame is cleared and drawn; the rest is the last frame's.
+TEST(Finish, KeepsThePictureOutsideOfWhatChanges) {
+  const OffscreenContext context(kSize, kSize);
+  GLint framebuffer = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
+  FrameTarget target(LIMPID_SOURCE_DIR "/shaders");
+  const FrameTarget::Area all{0, 0, kSize, kSize}, part{16, 24, 20, 12};
+  const auto frame = [&](const FrameTarget::Area& changed, float grey) {
+    const bool is_new = target.begin(kSize, kSize, 1);
+    target.clear(changed);
+    glClearColor(grey, grey, grey, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    target.finish(static_cast<GLuint>(framebuffer), all, changed);
+    return is_new;
+  };
+  EXPECT_TRUE(frame(all, 0.2f));
+  EXPECT_FALSE(frame(part, 0.9f));
+  const auto picture = read_rgba(kSize, kSize);
+  for (int x = 2; x < kSize; x += 4) {
+    for (int y = 2; y < kSize; y += 4) {
+      const int right = part.x + part.width, top = part.y + part.height;
+      const bool inside = x > part.x + 1 && x < right - 1 && y > part.y + 1 && y < top - 1;
+      const bool outside = x < part.x - 2 || x > right + 2 || y < part.y - 2 || y > top + 2;
+      if (inside) EXPECT_NEAR(green(picture, x, y), 0.9 * 255, 3) << x << ", " << y;
+      if (outside) EXPECT_NEAR(green(picture, x, y), 0.2 * 255, 3) << x << ", " << y;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limpid

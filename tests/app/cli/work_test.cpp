@@ -288,6 +288,35 @@ TEST_F(Work, OfIdentifyingNeedsADeviceAndAFolder) {
   EXPECT_EQ(run({"identify", "--out", "o", "--torque", "1.01"}).status, 2);
 }
 
+// The device is unlike its file: told what it is, a coupling is nearer to what it promises.
+TEST_F(Work, OfIdentifyingFindsOutASimulatedDevice) {
+  const std::string said = done({"identify", "simulated", "--out", "o", "--load", "0.05"});
+  EXPECT_THAT(said, StartsWith("joint"));
+  EXPECT_THAT(said, ContainsRegex("\ndelay +[0-9.]+ \\+- [0-9.]+ ms"));
+  double gives = 0, off = 0, drawn = 0;
+  const std::size_t motors = said.find("\nmotors ");
+  ASSERT_NE(motors, std::string::npos);
+  ASSERT_EQ(std::sscanf(said.c_str() + motors,
+                        "\nmotors give %lf +- %lf times what they are told\n%lf was drawn", &gives,
+                        &off, &drawn),
+            3)
+      << said;
+  EXPECT_NEAR(gives, drawn, std::max(4 * off, 0.01));
+  EXPECT_THAT(said, EndsWith("\narm: o/identified.urdf\nreport: o/report.html\n"));
+  const json found = json::parse(text_of("o/identified.json"));
+  for (const char* law : {"proposed", "predictive"}) {
+    const json& when = found.at("rehearsal").at(law);
+    EXPECT_LT(when.at("identified").at("off"), when.at("file").at("off")) << law;
+  }
+  EXPECT_GT(lines_of(text_of("o/motion.csv")).size(), 1000u);
+  EXPECT_TRUE(fs::exists("o/motion-with-load.csv"));
+  EXPECT_THAT(run({"check", "o/identified.urdf"}).out, HasSubstr("delay of"));
+}
+
+TEST_F(Work, OfIdentifyingForgetsOnlyWhatIsChosen) {
+  EXPECT_THAT(done({"identify", "--forget"}), HasSubstr("forgotten"));
+}
+
 TEST_F(Work, OfServingEndsWithItsInput) {
   const int before = dup(STDIN_FILENO), nothing = open("/dev/null", O_RDONLY);
   dup2(nothing, STDIN_FILENO);

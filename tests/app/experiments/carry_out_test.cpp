@@ -161,6 +161,57 @@ TEST_F(CarryOut, ReportsOnEveryVerdictThereIs) {
   EXPECT_THAT(html, Not(HasSubstr("coordination.svg")));
 }
 
+// Returns the words of each cell of the last table, by rows; tags inside a cell are left out.
+std::vector<std::vector<std::string>> table_of(std::string html) {
+  const std::size_t begin = html.rfind("<table>");
+  html = html.substr(begin, html.rfind("</table>") - begin);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t at = 0; at < html.size();) {
+    const std::size_t end = html.find('>', at);
+    const std::string tag = html.substr(at + 1, end - at - 1);
+    if (tag == "tr") rows.emplace_back();
+    if (tag.starts_with("td") || tag.starts_with("th ") || tag == "th") rows.back().emplace_back();
+    at = html.find('<', end);
+    if (at == std::string::npos) break;
+    if (!rows.empty() && !rows.back().empty() && html[end + 1] != '\n')
+      rows.back().back() += html.substr(end + 1, at - end - 1);
+  }
+  return rows;
+}
+
+TEST_F(CarryOut, ReportsComparisonsInColumnsOfTheirOwn) {
+  const auto mixed = [](TrialRunner& lab) {
+    Outcome outcome = spoiled(lab);
+    outcome.checks.push_back(at_most("three at most four", 3, 4));
+    Check open = at_most("no theory", 1, 2);
+    open.against = Comparison{std::nullopt, 7, "mm", "A third ball."};
+    outcome.checks.push_back(open);
+    return outcome;
+  };
+  carry_out({"inertia", "about", mixed}, in(dir_));
+  write_report(dir_);
+  const auto rows = table_of(read(dir_ / "report.html"));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"Check", "Expected", "Measured", "Value", "Bound",
+                                               "Verdict"}));
+  for (const auto& row : rows) EXPECT_EQ(row.size(), 6u);
+  EXPECT_EQ(rows[1][1], "4 m/s²");
+  EXPECT_EQ(rows[1][2], "4.02 m/s²");
+  EXPECT_EQ(rows[3],
+            (std::vector<std::string>{"three at most four", "", "", "3", "4", "✓ passed"}));
+  EXPECT_EQ(rows[4][1], "");
+  EXPECT_EQ(rows[4][2], "7 mm");
+}
+
+TEST_F(CarryOut, ReportsNoComparisonsWhereThereAreNone) {
+  carry_out({"inertia", "about", sound}, in(dir_));
+  write_report(dir_);
+  const auto rows = table_of(read(dir_ / "report.html"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"Check", "Value", "Bound", "Verdict"}));
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"three at most four", "3", "4", "✓ passed"}));
+}
+
 TEST_F(CarryOut, ReportsPastAVerdictThatIsDamaged) {
   carry_out({"inertia", "about", sound}, in(dir_));
   std::ofstream(dir_ / "passivity.json") << "{\"checks\": [";

@@ -3,65 +3,19 @@
 
 #include <dbus/dbus.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <future>
 #include <optional>
+#include <string>
 
-#include "tests/support/temp_dir.h"
+#include "tests/support/private_bus.h"
 
 namespace limpid {
 namespace {
 
 constexpr const char* kName = "org.freedesktop.RealtimeKit1";
-
-// A bus that the process takes for the system's.
-class Bus {
- public:
-  Bus() {
-    const std::string address = "--address=unix:path=" + (dir_ / "bus").string();
-    const std::array arguments{"dbus-daemon",   "--session",
-                               "--nofork",      "--print-address=1",
-                               address.c_str(), static_cast<const char*>(nullptr)};
-    std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) return;
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    if (posix_spawnp(&pid_, arguments[0], &actions, nullptr,
-                     const_cast<char* const*>(arguments.data()), environ) != 0) {
-      pid_ = -1;
-    }
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    std::array<char, 512> line{};  // the bus listens once it has printed its address
-    const ssize_t length = read(ends[0], line.data(), line.size());
-    close(ends[0]);
-    const std::string said(line.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
-    runs_ = said.find('\n') != std::string::npos;
-    if (runs_) setenv("DBUS_SYSTEM_BUS_ADDRESS", said.substr(0, said.find('\n')).c_str(), 1);
-  }
-  ~Bus() {
-    if (pid_ < 0) return;
-    kill(pid_, SIGTERM);
-    waitpid(pid_, nullptr, 0);
-  }
-  Bus(const Bus&) = delete;
-  Bus& operator=(const Bus&) = delete;
-  bool runs() const { return runs_; }
-
- private:
-  test::TempDir dir_;
-  pid_t pid_ = -1;
-  bool runs_ = false;
-};
 
 struct Asked {
   std::string method;
@@ -112,7 +66,7 @@ class Rtkit : public testing::Test {
   }
 
  private:
-  static inline std::optional<Bus> bus_;
+  static inline std::optional<test::PrivateBus> bus_;
 };
 
 TEST_F(Rtkit, IsAskedForTheThreadOfThisProcess) {

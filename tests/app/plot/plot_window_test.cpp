@@ -1,9 +1,12 @@
 // Plots of the window, drawn frame by frame.
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "app/plot/plot.h"
 #include "app/plot/plot_legend.h"
 #include "tests/app/plot/imgui_frames.h"
+#include "tests/support/drawn_text.h"
 
 namespace limpid {
 namespace {
@@ -185,6 +188,148 @@ TEST_F(APlot, WritesNoMoreValuesAtTheEndsThanThereIsRoomFor) {
       EXPECT_LE(list.VtxBuffer[i].pos.y, area.max.y + 1);
     }
   });
+}
+
+// A box beside the moment that is pointed at, drawn for a plot from 60 to 460 px.
+class AReadOut : public APlot {
+ protected:
+  AReadOut() {
+    spec_.y = {.unit = "J"};
+    spec_.curves = {{.label = "rises"},
+                    {.channel = 1, .label = "stays"},
+                    {.label = "hidden", .visible = false}};
+  }
+  PlotFrame in(Limits x) {
+    return {*ImGui::GetForegroundDrawList(),
+            current_palette(),
+            1,
+            {{0, 0}, {500, 420}},
+            {{60, 0}, {460, 400}},
+            {x.span() / 400, std::llround(400 * x.low / x.span()), 400},
+            {x},
+            {{0, 6}}};
+  }
+  template <class Draw>
+  void show(const Draw& draw) {
+    frame(draw);
+    texts_ = test::drawn_texts();
+  }
+  // Finds a text that begins so.
+  const test::DrawnText* find(const std::string& text) const {
+    const auto found = std::ranges::find_if(
+        texts_, [&](const test::DrawnText& each) { return each.text.starts_with(text); });
+    return found == texts_.end() ? nullptr : &*found;
+  }
+  // Expects a curve's name with its value behind it, in one line.
+  void expect_line(const std::string& name, const std::string& value) {
+    const test::DrawnText *left = find(name), *right = find(value);
+    ASSERT_TRUE(left) << name;
+    ASSERT_TRUE(right) << value;
+    EXPECT_TRUE(right->text.ends_with(" J")) << right->text;
+    EXPECT_NEAR(left->middle().y, right->middle().y, 3);
+    EXPECT_GT(right->min.x, left->max.x);
+  }
+
+  PlotSpec spec_;
+  std::vector<test::DrawnText> texts_;
+};
+
+TEST_F(AReadOut, SaysTimeAndValuesBesideTheMoment) {
+  History history({.channels = 2});
+  for (int k = 0; k <= 1000; ++k) history.append(1e-3 * k, std::array{6e-3 * k, 1.25});
+  const auto point_at = [&](double time) {
+    show([&] { draw_read_out(in({0, 1}), spec_, history, time, {200, 200}); });
+  };
+  point_at(0.5);
+  ASSERT_TRUE(find("0.500 s"));
+  EXPECT_GT(find("0.500 s")->min.x, 60 + 0.5f * 400) << "at the right of the moment";
+  expect_line("rises", "3.0");
+  expect_line("stays", "1.25");
+  EXPECT_FALSE(find("hidden"));
+  point_at(0.98);
+  expect_line("rises", "5.88");
+  EXPECT_LT(find("5.88")->max.x, 60 + 0.98f * 400) << "at the left, where there is room";
+  point_at(1.5);
+  EXPECT_TRUE(texts_.empty()) << "outside of what is shown";
+}
+
+TEST_F(AReadOut, SaysWhereThereIsNoData) {
+  History history({.channels = 2});
+  for (const int k : {0, 1, 2, 800, 801}) history.append(1e-3 * k, std::array{3.0, 1.25});
+  show([&] { draw_read_out(in({0, 1}), spec_, history, 0.4, {200, 200}); });
+  ASSERT_TRUE(find("0.4"));
+  EXPECT_TRUE(find("0.4")->text.ends_with("no data"));
+  EXPECT_FALSE(find("rises"));
+}
+
+// A sample counts up to one and a half ticks around it, or as far as its pixel goes.
+TEST_F(AReadOut, TakesTheSampleThatIsNear) {
+  History history({.channels = 2});
+  for (int k = 0; k < 20; ++k) history.append(1e-3 * k, std::array{3.0, 1.25});
+  for (int k = 24; k < 40; ++k) history.append(1e-3 * k, std::array{4.0, 1.25});
+  const auto has_data = [&](Limits x, double time) {
+    show([&] { draw_read_out(in(x), spec_, history, time, {200, 200}); });
+    return find("rises") != nullptr;
+  };
+  EXPECT_TRUE(has_data({0, 0.04}, 0.0104));
+  EXPECT_TRUE(has_data({0, 0.04}, 0.0204));
+  EXPECT_FALSE(has_data({0, 0.04}, 0.0209));
+  EXPECT_FALSE(has_data({0, 0.04}, 0.0216));
+  EXPECT_TRUE(has_data({0, 0.04}, 0.0226));
+  EXPECT_TRUE(has_data({0, 1}, 0.0212)) << "within a pixel of 2.5 ms";
+  EXPECT_FALSE(has_data({0, 1}, 0.05));
+}
+
+// The time is the run's own after it has started over, and has minutes from the first one on.
+TEST_F(AReadOut, SaysTheTimeOfTheRun) {
+  History history({.channels = 2, .seconds = 200, .tick = 0.5});
+  for (int k = 0; k < 20; ++k) history.append(0.5 * k, std::array{3.0, 1.25});
+  for (int k = 0; k <= 240; ++k) history.append(0.5 * k, std::array{4.0, 1.25});
+  const auto said = [&](double time) {
+    const double at = time + history.offset();
+    show([&] { draw_read_out(in({at - 100, at + 100}), spec_, history, at, {200, 200}); });
+    EXPECT_FALSE(texts_.empty());
+    return texts_.empty() ? "" : texts_.front().text;
+  };
+  EXPECT_EQ(said(12), "12.0 s");
+  EXPECT_EQ(said(59.5), "59.5 s");
+  EXPECT_EQ(said(60), "1:00.0");
+  EXPECT_EQ(said(90.5), "1:30.5");
+}
+
+// Over another channel the box is beside the point of the moment.
+TEST_F(AReadOut, OfPairsOfValuesIsBesideTheirPoint) {
+  spec_.kind = PlotKind::cross;
+  spec_.x = {.unit = "N"};
+  spec_.curves.resize(1);
+  spec_.curves[0].across = 1;
+  History history({.channels = 2});
+  for (int k = 0; k <= 100; ++k) history.append(1e-3 * k, std::array{3.0, 0.01 * k});
+  show([&] {
+    PlotFrame frame = in({0, 1});
+    frame.window = {1e-3, 0, 400};
+    draw_read_out(frame, spec_, history, 0.05, {200, 200});
+  });
+  ASSERT_TRUE(find("rises"));
+  EXPECT_TRUE(find("rises")->min.x > 60 + 0.5f * 400) << "0.5 across";
+  EXPECT_LT(find("rises")->min.x, 60 + 0.5f * 400 + 40);
+  ASSERT_TRUE(find("3.0"));
+  EXPECT_NE(find("3.0")->text.find("0.500 N"), std::string::npos) << find("3.0")->text;
+}
+
+// The highest amplitude counts among the frequencies of one pixel.
+TEST_F(AReadOut, SaysTheAmplitudesOfAFrequency) {
+  AmplitudeSpectrum peaked{0.1, {}}, even{0.1, {}};
+  peaked.amplitude.assign(5001, 1);
+  even.amplitude.assign(5001, 2.5);
+  peaked.amplitude[2003] = 4;
+  show([&] { draw_spectrum_read_out(in({0, 400}), spec_, {peaked, even}, 200, {200, 200}); });
+  EXPECT_TRUE(find("200 Hz"));
+  expect_line("rises", "4.0");
+  expect_line("stays", "2.5");
+  show([&] { draw_spectrum_read_out(in({0, 400}), spec_, {peaked, even}, 300, {200, 200}); });
+  EXPECT_TRUE(find("300 Hz"));
+  expect_line("rises", "1.0");
 }
 
 }  // namespace

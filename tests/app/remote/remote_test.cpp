@@ -3,15 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "app/remote/remote_settings.h"
 #include "tests/support/built_in.h"
+#include "tests/support/line_client.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -47,35 +46,19 @@ class RemoteTest : public testing::Test {
 
   void start() {
     remote = std::make_unique<Remote>(path, host, [this] { ++cuts; });
-    file = socket(AF_UNIX, SOCK_STREAM, 0);
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path.string().copy(address.sun_path, sizeof(address.sun_path) - 1);
-    ASSERT_EQ(connect(file, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-  }
-  ~RemoteTest() override {
-    if (file >= 0) close(file);
+    client.emplace(path);
   }
 
-  void say(const std::string& line) const {
-    const std::string text = line + "\n";
-    ASSERT_EQ(send(file, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
-  }
+  void say(const std::string& line) const { client->say(line); }
   // Next line, after turns of the owner.
   json hear() {
     const auto end = std::chrono::steady_clock::now() + 5s;
-    while (received.find('\n') == std::string::npos && std::chrono::steady_clock::now() < end) {
+    while (std::chrono::steady_clock::now() < end) {
       remote->turn();
-      std::array<char, 4096> bytes{};
-      const ssize_t size = recv(file, bytes.data(), bytes.size(), MSG_DONTWAIT);
-      if (size > 0) received.append(bytes.data(), static_cast<std::size_t>(size));
-      if (size < 0) remote->wait_until(std::chrono::steady_clock::now() + 1ms);
+      if (auto line = client->take()) return *line;
+      remote->wait_until(std::chrono::steady_clock::now() + 1ms);
     }
-    const std::size_t at = received.find('\n');
-    if (at == std::string::npos) return json();
-    json line = json::parse(received.substr(0, at));
-    received.erase(0, at + 1);
-    return line;
+    return json();
   }
   void pass(std::uint64_t tick) {
     const std::span<const double> first(row);
@@ -95,8 +78,8 @@ class RemoteTest : public testing::Test {
   Parameters highest;
   RemoteHost host;
   std::unique_ptr<Remote> remote;
-  int file = -1, cuts = 0, gone = 0, turns_left = 3;
-  std::string received;
+  std::optional<test::LineClient> client;
+  int cuts = 0, gone = 0, turns_left = 3;
 };
 
 TEST_F(RemoteTest, SaysWhatItIsAndWhatCanBeAsked) {
@@ -294,7 +277,7 @@ TEST_F(RemoteTest, ForgetsAClientThatIsGone) {
   start();
   ask(R"({"do":"follow","channels":["coupling/eta"]})");
   say(R"({"do":"record"})");
-  close(std::exchange(file, -1));
+  client->leave();
   const auto end = std::chrono::steady_clock::now() + 5s;
   while (gone == 0 && std::chrono::steady_clock::now() < end) {
     remote->turn();

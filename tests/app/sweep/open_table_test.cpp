@@ -36,20 +36,7 @@ class Tables : public testing::Test {
  protected:
   // The sweep's file with its first `blocks` blocks.
   fs::path written(const SweepPlan& plan, std::uint64_t blocks = 1000) {
-    const SweepFolder folder(plan, dir_ / "out");
-    SweepBook book(plan, folder, false);
-    const std::atomic<bool> stop{false};
-    for (std::uint64_t b = 0; b < std::min(blocks, blocks_of(plan)); ++b) {
-      const SweepBlock block = block_of(plan, b);
-      std::vector<double> values;
-      for (std::uint64_t i = 0; i < block.size; ++i) {
-        const auto one = measure_point(plan, block.first + i, stop);
-        values.insert(values.end(), one->begin(), one->end());
-      }
-      book.take(b, values);
-    }
-    book.write();
-    return folder.table();
+    return test::swept(plan, dir_ / "out", blocks);
   }
   static std::string refusal(const fs::path& file) {
     try {

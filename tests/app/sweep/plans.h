@@ -1,10 +1,14 @@
 // Plans for tests, and the files they make.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
+#include "app/sweep/measure_point.h"
 #include "app/sweep/sweep_plan.h"
 #include "app/sweep/sweep_work.h"
 #include "tests/support/temp_dir.h"
@@ -20,6 +24,25 @@ inline SweepPlan sweep_plan(const TempDir& dir, const std::string& text) {
 inline std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Runs the first `blocks` blocks of a sweep; returns the file of its table.
+inline std::filesystem::path swept(const SweepPlan& plan, const std::filesystem::path& out,
+                                   std::uint64_t blocks = 1000) {
+  const SweepFolder folder(plan, out);
+  SweepBook book(plan, folder, false);
+  const std::atomic<bool> stop{false};
+  for (std::uint64_t b = 0; b < std::min(blocks, blocks_of(plan)); ++b) {
+    const SweepBlock block = block_of(plan, b);
+    std::vector<double> values;
+    for (std::uint64_t i = 0; i < block.size; ++i) {
+      const auto one = measure_point(plan, block.first + i, stop);
+      values.insert(values.end(), one->begin(), one->end());
+    }
+    book.take(b, values);
+  }
+  book.write();
+  return folder.table();
 }
 
 // Bytes of the table from all existing blocks; `complete` tells whether these are all.

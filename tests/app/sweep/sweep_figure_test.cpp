@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "app/sweep/slurm.h"
 #include "tests/app/sweep/plans.h"
 
 namespace limpid {
@@ -89,12 +88,6 @@ axis = [ { key = "coupling.kind", values = ["standard", "predictive"] } ]
 TEST_F(SweepFigures, AreNothingWithoutAxesAndPartOfWhatIsDone) {
   const SweepPlan plan = test::sweep_plan(dir_, kTwoByThree);
   EXPECT_EQ(sweep_figure(plan, filled(plan, 2)).panels[0].series[0].cells.size(), 2u);
-}
-
-TEST(SlurmArrays, AreNamedAsSbatchHasThem) {
-  EXPECT_EQ(array_text({1, 2, 3, 7, 9, 10}), "1-3,7,9-10");
-  EXPECT_EQ(array_text({4}), "4");
-  EXPECT_EQ(shell_quoted("a'b c"), "'a'\\''b c'");
 }
 
 }  // namespace

@@ -328,6 +328,37 @@ TEST(GltfCompressed, PacksMeshoptWithFilesBesideIt) {
   EXPECT_EQ(triangles(parse_gltf(packed, "part.glb")), soup());
 }
 
+// Readers know a picture within a file by the kind that it says.
+TEST(GltfPack, SaysTheKindOfThePicturesThatItBringsIn) {
+  const test::TempDir dir;
+  const auto write = [&](const char* name, const Bytes& bytes) {
+    std::ofstream(dir / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  };
+  write("red.png", kRedPng);
+  write("photo", {0xFF, 0xD8, 0xFF, 0xD9});
+  write("web", {'R', 'I', 'F', 'F', 4, 0, 0, 0, 'W', 'E', 'B', 'P'});
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  write("data.bin", file.data);
+  file.uri = "data.bin";
+  file.more = R"(,"images":[{"uri":"red.png"},{"uri":"photo"},{"uri":"web"},)"
+              R"({"uri":"red.png","mimeType":"image/own"}])";
+  const Bytes packed = pack_gltf(file.text(), "part.gltf", dir / "");
+  const std::string all(packed.begin(), packed.end());
+  const auto at = [&](const char* kind) { return all.find("\"mimeType\":\"" + std::string(kind)); };
+  ASSERT_NE(at("image/png"), std::string::npos);
+  ASSERT_NE(at("image/jpeg"), std::string::npos);
+  ASSERT_NE(at("image/webp"), std::string::npos);
+  ASSERT_NE(at("image/own"), std::string::npos) << "as the file says";
+  EXPECT_LT(at("image/png"), at("image/jpeg"));
+  EXPECT_LT(at("image/jpeg"), at("image/webp"));
+  EXPECT_EQ(all.find("\"uri\""), std::string::npos) << "nothing lies outside any more";
+  EXPECT_NE(std::search(packed.begin(), packed.end(), kRedPng.begin(), kRedPng.end()),
+            packed.end());
+}
+
 TEST(GltfCompressed, RefusesMeshoptThatIsBroken) {
   Bytes bytes = meshopt_file("");
   for (std::size_t i = bytes.size() - 60; i < bytes.size(); i += 7) {

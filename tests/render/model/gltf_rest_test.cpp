@@ -45,6 +45,29 @@ TEST(GltfRest, LeavesMorphTargetsOutWithoutWeights) {
   EXPECT_TRUE(places(morphed(R"({"mesh":0})"))[1].isApprox(Vector3f(1, 0, 0)));
 }
 
+TEST(GltfRest, RefusesAMorphTargetThatDoesNotMatchItsMesh) {
+  const auto refusal = [](std::size_t count, const char* type, std::size_t numbers) -> std::string {
+    GltfBuilder file = corner();
+    const int target =
+        file.accessor(file.view(std::vector<float>(numbers, 1.0f)), 5126, type, count);
+    file.primitive = R"(,"targets":[{"POSITION":)" + std::to_string(target) + "}]";
+    file.nodes = R"({"mesh":0,"weights":[0.5]})";
+    try {
+      places(file);
+    } catch (const std::runtime_error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(3, "VEC3", 9), "");
+  for (const std::string& said :
+       {refusal(2, "VEC3", 6), refusal(4, "VEC3", 12), refusal(3, "VEC2", 6)}) {
+    EXPECT_NE(said.find("part.glb"), std::string::npos) << said;
+    EXPECT_NE(said.find("a morph target's POSITION does not match its mesh"), std::string::npos)
+        << said;
+  }
+}
+
 // A skin with the first vertex on joint 1, the second on joint 2, the third between the two.
 GltfBuilder skinned(const std::string& more_of_skin) {
   GltfBuilder file = corner();

@@ -4,6 +4,7 @@
 #include "app/desktop/scene/parts_editor.h"
 #include "app/desktop/widgets/modal.h"
 #include "tests/app/plot/imgui_frames.h"
+#include "tests/support/drawn_text.h"
 
 namespace limpid {
 namespace {
@@ -55,6 +56,14 @@ class BodyFields : public ImGuiFrames {
       show_key(GLFW_KEY_ENTER, down);
       frames();
     }
+  }
+
+  // Counts the fields for the red of a colour.
+  int red_fields() {
+    frames();
+    int count = 0;
+    for (const test::DrawnText& each : test::drawn_texts()) count += each.text.starts_with("R:");
+    return count;
   }
 
   Object object_;
@@ -109,11 +118,15 @@ TEST_F(BodyFields, BeginWithTheMomentsOfASolidAndTakeOthers) {
 
 TEST_F(BodyFields, GiveAColourAndTakeItAway) {
   ImGui::GetIO().DisplaySize = {800, 1200};
+  EXPECT_EQ(red_fields(), 0);
   click("a colour of its own");
   ASSERT_TRUE(object_.color);
   EXPECT_EQ(changed_.back(), "color");
+  EXPECT_EQ(red_fields(), 1);
   click("a colour of its own");
   EXPECT_FALSE(object_.color);
+  EXPECT_EQ(red_fields(), 0);
+  EXPECT_EQ(changed_.size(), 2u) << "drawing changes nothing";
 }
 
 }  // namespace

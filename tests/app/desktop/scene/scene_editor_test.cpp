@@ -387,10 +387,27 @@ TEST(SceneEditor, PutsWhatMovesBehindWhatStandsStill) {
   pot.body.reset();
   editor.set(4, pot, "moves");
   EXPECT_THAT(names(editor), ElementsAre("top", "ball", "block", "pot", "stop", "lid", "gear"));
+  EXPECT_EQ(editor.selected_object()->name, "pot");
   EXPECT_EQ(editor.scene().objects[5].body->joint->to, "") << "of lid";
   EXPECT_TRUE(editor.scene().springs.empty());
   editor.restore(before);
   EXPECT_THAT(names(editor), ElementsAre("top", "ball", "block", "gear", "stop", "pot", "lid"));
+}
+
+// Only what moves is made of parts.
+TEST(SceneEditor, LeavesThePartsOfABodyThatStandsStill) {
+  SceneEditor editor = kitchen();
+  Object gear = editor.scene().objects[kGear];
+  gear.body = Body{};
+  gear.parts.push_back({Pose::Identity(), Sphere{0.01}, {}});
+  editor.set(kGear, gear, "moves");
+  ASSERT_EQ(editor.selected_object()->name, "gear");
+  EXPECT_EQ(editor.selected_object()->parts.size(), 1u);
+  gear = *editor.selected_object();
+  gear.body.reset();
+  editor.set(*editor.selected(), gear, "moves");
+  EXPECT_EQ(editor.selected_object()->name, "gear");
+  EXPECT_TRUE(editor.selected_object()->parts.empty());
 }
 
 TEST(SceneEditor, WhatMovesComesBackFromItsText) {

@@ -24,6 +24,7 @@
 #include "tests/support/device_traits.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_session.h"
+#include "tests/support/wired_device.h"
 
 namespace limpid {
 namespace {
@@ -31,45 +32,8 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-// State of a fake device, shared with the test.
-struct Wire {
-  std::atomic<double> angle{0};  // from the arm's rest [rad]
-  std::atomic<bool> here{true};
-  std::atomic<std::uint32_t> buttons{0};
-  std::atomic<double> torque{0};  // largest of the newest command [N m]
-  std::atomic<int> closed{0};
-};
-
-class WiredDevice final : public Device {
- public:
-  WiredDevice(int dof, std::shared_ptr<Wire> wire, double effort = 0.5)
-      : traits_(test::pushing(dof, 3, effort)),
-        rest_(static_cast<std::size_t>(dof)),
-        wire_(std::move(wire)) {
-    if (dof == 3) Eigen::Map<Eigen::Vector3d>(rest_.data()) = rest_pose(test::omni());
-  }
-  ~WiredDevice() override { ++wire_->closed; }
-  const DeviceTraits& traits() const override { return traits_; }
-  bool read(DeviceReading& newest) noexcept override {
-    for (std::size_t i = 0; i < rest_.size(); ++i) newest.x[i] = rest_[i] + wire_->angle;
-    newest.count = ++count_;
-    if (newest.count % 2 == 0) newest.x[0] += 1e-12;  // a hand is never quite still
-    newest.buttons = wire_->buttons;
-    return wire_->here;
-  }
-  void write(std::span<const double> torque) noexcept override {
-    double largest = 0;
-    for (const double tau : torque) largest = std::max(largest, std::abs(tau));
-    wire_->torque = largest;
-  }
-  void stop() noexcept override { wire_->torque = 0; }
-
- private:
-  DeviceTraits traits_;
-  std::vector<double> rest_;  // [rad]
-  std::shared_ptr<Wire> wire_;
-  std::uint64_t count_ = 0;
-};
+using test::Wire;
+using test::WiredDevice;
 
 struct ADesktop : testing::Test {
   void SetUp() override {

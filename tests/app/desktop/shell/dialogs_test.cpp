@@ -419,6 +419,35 @@ TEST_F(Dialog, OfExperimentsListsThemAndRunsOne) {
   }
 }
 
+TEST_F(Dialog, OfExperimentsLetsThemWaitForEachOtherAndStopsThem) {
+  run("experiments.show");
+  frames(4);
+  const auto button_of = [&](const char* name) -> test::DrawnText {
+    const auto row = find(name);
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      const bool is_one = each.text == "Run" || each.text == "runs" || each.text == "waits";
+      if (row && is_one && std::abs(each.middle().y - row->middle().y) < 4) return each;
+    }
+    ADD_FAILURE() << name << " has no button";
+    return {};
+  };
+  click(button_of("passivity").middle());
+  ASSERT_TRUE(until([&] { return !desktop->experiments_under_way.empty(); }));
+  click(button_of("inertia").middle());
+  EXPECT_EQ(button_of("passivity").text, "runs");
+  EXPECT_EQ(button_of("inertia").text, "waits");
+  EXPECT_EQ(button_of("coordination").text, "Run");
+  EXPECT_THAT(desktop->experiments_under_way, testing::StartsWith("1 of 2: passivity"));
+  EXPECT_FALSE(find("Run all"));
+  click("Stop");
+  ASSERT_TRUE(until([&] { return said("Stopped; finished trials are kept"); }));
+  frames(5);
+  EXPECT_EQ(button_of("passivity").text, "Run");
+  EXPECT_EQ(button_of("inertia").text, "Run") << "it has not begun";
+  EXPECT_TRUE(find("Run all"));
+  EXPECT_EQ(desktop->experiments_under_way, "");
+}
+
 TEST_F(Dialog, OfAPlotChoosesItsChannels) {
   run("plots.add");
   frames(4);

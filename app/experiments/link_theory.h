@@ -1,0 +1,32 @@
+// Theory of walls through a delay between device and proxy, at the table of the taps.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "app/run/analysis.h"
+#include "core/tick/parameters.h"
+
+namespace limpid {
+
+class LinkTheory {
+ public:
+  // `grip`: stiffness of the hand [N/m]; its damping is that of the taps.
+  explicit LinkTheory(double grip);
+
+  // Return the stiffest wall on which a tap comes to rest, from kSoftest to kStiffest [N/m].
+  // `delay`: each way [ticks].
+  double standard(int delay) const;
+  // The proposed law's spring is the standard coupling's, its contact late by the whole trip.
+  double proposed(int delay) const;
+
+ private:
+  bool stable(double wall, int delay) const;
+
+  double grip_;
+  Parameters p_{};
+  ArmDescription arm_;
+  ArmAt at_;
+  Eigen::Vector3d b_d_;
+};
+
+}  // namespace limpid

@@ -1,0 +1,134 @@
+// The panel of the analysis: its figures are those of theory, and what is broken is marked.
+#include "app/desktop/coupling/analysis_panel.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/dynamics/arm.h"
+#include "tests/app/desktop/widgets/read_panel.h"
+#include "tests/support/built_in.h"
+
+namespace limpid {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class AnalysisWords : public ReadPanel {
+ protected:
+  // Draws until the analysis is that of the present settings.
+  void draw() {
+    show([this] { panel_.draw(p_, arm_, scene_, pose_span(), band_); });
+    frames(20);
+  }
+  std::span<const double> pose_span() const {
+    return {pose_.data(), static_cast<std::size_t>(pose_.size())};
+  }
+  TipLimits limits() const { return tip_limits(arm_, pose_, p_, scene_); }
+  const TipLimits::Wall& wall(const TipLimits& l) const {
+    return l.walls[static_cast<std::size_t>(p_.kind)];
+  }
+  void set_wall(double stiffness) {
+    scene_ = {};
+    scene_.add({.shape = Plane{}, .material = {stiffness}});
+  }
+
+  AnalysisPanel panel_;
+  ArmDescription arm_ = test::omni();
+  Eigen::VectorXd pose_ = rest_pose(arm_);
+  Parameters p_;
+  Scene scene_;
+  double band_ = 7;
+};
+
+TEST_F(AnalysisWords, SayWhatIsFeltAtTheBand) {
+  for (const CouplingKind kind : {CouplingKind::proposed, CouplingKind::predictive}) {
+    p_.kind = kind;
+    p_.eta = 0.6;
+    draw();
+    const FeltAtTip felt = felt_at_tip(limits(), p_, kind, 7);
+    EXPECT_EQ(value("felt at 7 Hz"),
+              fmt::format("{:.3g} g, {:.2g} N s/m", 1e3 * felt.mass, felt.damping));
+  }
+}
+
+TEST_F(AnalysisWords, SayHowStiffAWallEachLawRenders) {
+  p_.kind = CouplingKind::proposed;
+  draw();
+  const TipLimits l = limits();
+  for (std::size_t i = 0; i < kLaws; ++i) {
+    const LawInfo& law = info(static_cast<CouplingKind>(i));
+    const double stiffness = l.walls[i].stiffness;
+    const std::string number = stiffness >= 1e4 ? fmt::format("{:.0f}k", stiffness / 1000)
+                                                : fmt::format("{:.0f}", stiffness);
+    EXPECT_EQ(find(std::string(law.key) + " " + number).has_value(), !law.for_comparison)
+        << law.key << " in\n"
+        << words();
+  }
+  EXPECT_THAT(words(), HasSubstr("stiffest wall [N/m]"));
+  EXPECT_FALSE(find("stiffest in this scene")) << "there is nothing to touch";
+}
+
+TEST_F(AnalysisWords, MarkASceneThatIsTooStiffForTheLaw) {
+  p_.kind = CouplingKind::proposed;
+  const double most = wall(limits()).stiffness;
+  set_wall(std::floor(0.9 * most));
+  draw();
+  EXPECT_EQ(value("stiffest in this scene"), fmt::format("{:.0f} N/m", std::floor(0.9 * most)));
+  EXPECT_FALSE(broken("stiffest in this scene"));
+  set_wall(std::ceil(1.1 * most));
+  draw();
+  EXPECT_TRUE(broken("stiffest in this scene"));
+  EXPECT_THAT(hint("stiffest in this scene"), HasSubstr("Stiffer than what proposed renders"));
+  p_.kind = CouplingKind::tank;
+  draw();
+  EXPECT_FALSE(broken("stiffest in this scene")) << "felt through a spring, whatever it is";
+}
+
+TEST_F(AnalysisWords, SayTheLimitsOfEta) {
+  p_.kind = CouplingKind::proposed;
+  draw();
+  const Analysis a = analyze(arm_, pose_, p_, 2 * std::numbers::pi * 7);
+  EXPECT_EQ(value("?_min, all frequencies"), fmt::format("{:.3f}", a.eta_min));
+  EXPECT_EQ(value("?_min, this band"), fmt::format("{:.3f}", a.eta_min_band.value()));
+  EXPECT_EQ(value("?_min in this grip"), fmt::format("{:.3f}", a.eta_min_grip));
+  p_.eta = 1.01 * a.eta_min;
+  draw();
+  EXPECT_THAT(words(), HasSubstr(": passive"));
+  p_.eta = 0.99 * a.eta_min;
+  draw();
+  EXPECT_THAT(words(), HasSubstr(": not passive"));
+  p_.kind = CouplingKind::standard;
+  draw();
+  EXPECT_FALSE(find("?_min in this grip")) << "of laws that scale inertia alone";
+}
+
+TEST_F(AnalysisWords, MarkAPoleThatIsUnstable) {
+  p_.kind = CouplingKind::proposed;
+  draw();
+  EXPECT_FALSE(broken("slowest pole in the hand"));
+  p_.eta = 0.05;
+  p_.hand_stiffness = 3000;
+  p_.hand_damping = 0;
+  draw();
+  double worst = -HUGE_VAL;
+  for (const auto& pole : handle_poles(arm_, pose_, p_)) worst = std::max(worst, pole.real());
+  ASSERT_GT(worst, 0);
+  EXPECT_TRUE(broken("slowest pole in the hand"));
+  EXPECT_THAT(value("slowest pole in the hand"),
+              testing::StartsWith(fmt::format("{:.1f} ", worst)));
+}
+
+TEST_F(AnalysisWords, AreOfTheBandThatIsChosen) {
+  p_.kind = CouplingKind::proposed;
+  draw();
+  const auto slider = find("human below 7.0 Hz");
+  ASSERT_TRUE(slider) << words();
+  click(ImVec2{slider->max.x + 100, slider->middle().y});
+  EXPECT_GT(band_, 7.5);
+  frames(3);
+  EXPECT_TRUE(find(fmt::format("felt at {:.3g} Hz", band_)));
+}
+
+}  // namespace
+}  // namespace limpid

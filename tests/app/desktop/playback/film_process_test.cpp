@@ -1,0 +1,126 @@
+// A video's process beside a window, played by this program: it is what is started again.
+#include "app/desktop/playback/film_process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+
+#include "tests/support/temp_dir.h"
+
+namespace limpid {
+namespace {
+
+using namespace std::chrono_literals;
+
+volatile std::sig_atomic_t interrupts = 0;
+
+void say(const char* line) {
+  std::printf("%s\n", line);
+  std::fflush(stdout);
+}
+
+// Plays `limpid play SESSION --video OUT`; the session's name says how it goes.
+int play(const std::vector<std::string>& words) {
+  const std::string& how = words.at(2);
+  std::ofstream out(words.at(4));
+  if (how == "words") {
+    for (const std::string& word : words) out << word << '\n';
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (getpriority(PRIO_PROCESS, 0) < 10 && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(1ms);
+    }
+    out << (getpriority(PRIO_PROCESS, 0) < 10 ? "urgent\n" : "at its ease\n");
+    return 0;
+  }
+  if (how == "fails") {
+    say("0.5");
+    say("a warning");
+    say("there is no such session");
+    return 1;
+  }
+  if (how == "dies") raise(SIGKILL);
+  if (how == "waits") {
+    std::signal(SIGINT, [](int) { interrupts = interrupts + 1; });
+    say("0.25");
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (interrupts == 0 && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(5ms);
+    }
+    std::this_thread::sleep_for(400ms);  // it clears up
+    out << interrupts;
+    return 1;
+  }
+  for (const char* part : {"0.125", "0.75"}) say(part);
+  return 0;
+}
+
+class AFilm : public testing::Test {
+ protected:
+  bool make(const char* how) { return film_beside(how, out_, {"--speed", "2"}, stop_, part_); }
+  std::string written() const {
+    std::ifstream in(out_);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  const test::TempDir dir_;
+  const std::filesystem::path out_ = dir_ / "video.mp4";
+  std::atomic<bool> stop_ = false;
+  std::atomic<double> part_ = 0;
+};
+
+TEST_F(AFilm, IsMadeByThisProgramAtLowPriority) {
+  EXPECT_TRUE(make("words"));
+  EXPECT_EQ(written(), "limpid\nplay\nwords\n--video\n" + out_.string() +
+                           "\n--print-progress\n--speed\n2\nat its ease\n");
+}
+
+TEST_F(AFilm, TellsHowFarItIs) {
+  EXPECT_TRUE(make("goes well"));
+  EXPECT_EQ(part_, 0.75);
+}
+
+TEST_F(AFilm, IsStoppedOnceAndClearsUp) {
+  bool made = true;
+  std::thread film([&] { made = make("waits"); });
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (part_ != 0.25 && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(part_, 0.25) << "it is told while it goes on";
+  stop_ = true;
+  film.join();
+  EXPECT_FALSE(made);
+  EXPECT_EQ(written(), "1") << "interrupts, when it has cleared up";
+}
+
+TEST_F(AFilm, SaysWhyItFailed) {
+  const auto why = [&](const char* how) -> std::string {
+    try {
+      make(how);
+    } catch (const std::runtime_error& e) {
+      return e.what();
+    }
+    return "nothing";
+  };
+  EXPECT_EQ(why("fails"), "there is no such session");
+  EXPECT_EQ(part_, 0.5);
+  EXPECT_THAT(why("dies"), testing::HasSubstr("before its time"));
+}
+
+}  // namespace
+}  // namespace limpid
+
+int main(int count, char** words) {
+  if (count > 4 && std::string(words[1]) == "play") {
+    return limpid::play({words, words + count});
+  }
+  testing::InitGoogleMock(&count, words);
+  return RUN_ALL_TESTS();
+}

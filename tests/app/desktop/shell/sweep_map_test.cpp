@@ -1,0 +1,216 @@
+// The map of a sweep in the window: its words, its choices, its points.
+#include "app/sweep/sweep_map.h"
+
+#include <fmt/format.h>
+
+#include "tests/app/desktop/shell/whole_window.h"
+#include "tests/app/sweep/plans.h"
+
+namespace limpid {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+// Blocks of one point: three laws, two grips, three etas.
+const std::string kMapPlan = R"(title = "Grips"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
+seconds = 0.02
+measure = ["human_rms", "stable"]
+block = 1
+axis = [
+  { key = "coupling.kind", values = ["standard", "proposed", "predictive"] },
+  { key = "hand.stiffness", values = [1000, 100], scale = "log" },
+  { key = "coupling.eta", from = 0.4, to = 1, count = 3 },
+]
+[figure]
+x = "stiffness"
+theory = ["pr"]
+)";
+
+class MapOfASweep : public WholeWindow {
+ protected:
+  fs::path folder() const { return dir / "swept"; }
+  void open(const SweepPlan& plan, std::uint64_t blocks = 1000) {
+    desktop->world.open_files({test::swept(plan, folder(), blocks)});
+    ASSERT_TRUE(until([&] { return drawn(); }));
+    frames(3);
+  }
+  bool drawn() const {
+    const SweepController& sweep = desktop->sweep;
+    return sweep.map() != nullptr && sweep.map()->choice == sweep.choice() && sweep.on_screen;
+  }
+  // Middle of a cell of a map whose cells have one size, counted from the left and from below.
+  ImVec2 cell(int x, int columns, int y, int rows) const {
+    const ScreenRect& map = desktop->sweep.on_screen->rect;
+    return {map.min.x + map.width() * (static_cast<float>(x) + 0.5f) / static_cast<float>(columns),
+            map.max.y - map.height() * (static_cast<float>(y) + 0.5f) / static_cast<float>(rows)};
+  }
+  // Reads the tooltip: each name with its value, a text a line.
+  static std::string pointed() {
+    std::vector<test::DrawnText> all = test::drawn_texts();
+    std::erase_if(all, [](const auto& each) { return !each.window.starts_with("##Tooltip"); });
+    const auto in_line = [](const auto& a, const auto& b) {
+      return std::abs(a.middle().y - b.middle().y) < 6;
+    };
+    std::ranges::sort(all, [&](const auto& a, const auto& b) {
+      return in_line(a, b) ? a.min.x < b.min.x : a.min.y < b.min.y;
+    });
+    std::string said;
+    for (const test::DrawnText& each : all) said += each.text + '\n';
+    return said;
+  }
+  std::string in_table(std::uint64_t point, std::size_t column) const {
+    return fmt::format("{:.6g}", desktop->sweep.sweep()->table.at(point, column));
+  }
+  bool said(const std::string& what) const {
+    return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
+      return notice.text.find(what) != std::string::npos;
+    });
+  }
+};
+
+TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
+  open(test::sweep_plan(dir, kMapPlan));
+  EXPECT_EQ(desktop->dialog.name(), "sweep");
+  const std::string shown = words();
+  for (const char* text : {"Sweep: Grips", "human_rms", "over", "and", "kind", "standard",
+                           "eta [-] over stiffness [N/m]", "18 of 18 points", "human_rms [N m]"}) {
+    EXPECT_THAT(shown, HasSubstr(text));
+  }
+  EXPECT_THAT(shown, HasSubstr(theory_label("pr")));
+  EXPECT_THAT(shown, HasSubstr("A click runs that point again and plays it"));
+}
+
+// Points are numbered with the last axis fastest: kind, stiffness (1000 first), eta.
+TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
+  open(test::sweep_plan(dir, kMapPlan));
+  const auto point_of_cell = [](int x, int y) {
+    return static_cast<std::uint64_t>((1 - x) * 3 + y);
+  };
+  for (const auto& [x, y] : {std::pair(0, 0), std::pair(0, 2), std::pair(1, 1)}) {
+    point_at(cell(x, 2, y, 3));
+    const std::uint64_t number = point_of_cell(x, y);
+    EXPECT_EQ(desktop->sweep.on_screen->pointed_at, number);
+    EXPECT_EQ(pointed(),
+              fmt::format("point\n{}\nkind\nstandard\nstiffness\n{} N/m\neta\n{:.4g}\n"
+                          "human_rms\n{} N m\nstable\n{}\n",
+                          number, x == 0 ? "100" : "1000", 0.4 + 0.3 * y, in_table(number, 0),
+                          in_table(number, 1) == "1" ? "yes" : "no"));
+  }
+  away();
+  EXPECT_FALSE(desktop->sweep.on_screen->pointed_at);
+  EXPECT_EQ(pointed(), "");
+}
+
+TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
+  open(test::sweep_plan(dir, kMapPlan));
+  click(cell(1, 2, 1, 3));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  EXPECT_TRUE(
+      said("Point 1: kind standard, stiffness 1000 N/m, eta 0.7. As in the table, to the "
+           "last bit."));
+  EXPECT_EQ(desktop->dialog.name(), "");
+  EXPECT_TRUE(fs::exists(folder() / "points/1.h5"));
+  frames(4);
+  EXPECT_THAT(sentences(), HasSubstr("kind standard, stiffness 1000 N/m, eta 0.7: human_rms "));
+  click("Back to map (F6)");
+  EXPECT_EQ(desktop->dialog.name(), "sweep");
+}
+
+TEST_F(MapOfASweep, ShowsWhatIsChosen) {
+  open(test::sweep_plan(dir, kMapPlan));
+  const auto choose = [&](const char* shown, const char* wanted) {
+    click(shown, "Sweep");
+    click(wanted, "##Combo");
+    ASSERT_TRUE(until([&] { return drawn(); }));
+    frames(3);
+  };
+  choose("standard", "predictive");
+  point_at(cell(0, 2, 0, 3));
+  EXPECT_THAT(pointed(), HasSubstr("point\n15\nkind\npredictive\nstiffness\n100 N/m\neta\n0.4\n"));
+  choose("stiffness", "eta");
+  EXPECT_THAT(words(), HasSubstr("stiffness [N/m] over eta [-]"));
+  point_at(cell(2, 3, 1, 2));
+  EXPECT_THAT(pointed(), HasSubstr("point\n14\nkind\npredictive\nstiffness\n1000 N/m\neta\n1\n"));
+  choose("human_rms", "stable");
+  EXPECT_THAT(words(), HasSubstr("not stable"));
+  EXPECT_THAT(words(), Not(HasSubstr("human_rms [N m]"))) << "a yes or no has no scale";
+  choose("stiffness", "kind");
+  EXPECT_THAT(words(), HasSubstr("kind over eta [-]"));
+  EXPECT_EQ(desktop->sweep.choice().y, 0u);
+}
+
+TEST_F(MapOfASweep, FollowsATableThatFills) {
+  const SweepPlan plan = test::sweep_plan(dir, kMapPlan);
+  open(plan, 4);
+  EXPECT_THAT(words(), HasSubstr("4 of 18 points, filling"));
+  point_at(cell(0, 2, 2, 3));
+  EXPECT_THAT(pointed(), HasSubstr("point\n5\n"));
+  EXPECT_THAT(pointed(), HasSubstr("not there yet"));
+  EXPECT_THAT(pointed(), Not(HasSubstr("human_rms")));
+  test::swept(plan, folder());
+  EXPECT_TRUE(until([&] { return find("18 of 18 points").has_value(); }));
+  const std::string measured = "human_rms\n" + in_table(5, 0);
+  EXPECT_TRUE(until([&] { return pointed().find(measured) != std::string::npos; })) << pointed();
+}
+
+// Points of a curve are found at any height.
+TEST_F(MapOfASweep, IsACurveOverOneAxis) {
+  open(test::sweep_plan(dir, R"(title = "Etas"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
+seconds = 0.02
+measure = ["human_rms"]
+axis = [{ key = "coupling.eta", from = 0.4, to = 1, count = 3 }]
+)"));
+  EXPECT_EQ(desktop->sweep.map()->kind, SweepMap::Kind::curve);
+  EXPECT_THAT(words(), testing::ContainsRegex("human_rms .N m.[^\n]* over eta .-.\n"));
+  const ScreenRect map = desktop->sweep.on_screen->rect;
+  point_at({map.max.x - 5, map.min.y + 5});
+  EXPECT_EQ(pointed(), "point\n2\neta\n1\nhuman_rms\n" + in_table(2, 0) + " N m\n");
+  point_at({map.min.x + 5, map.max.y - 5});
+  EXPECT_THAT(pointed(), HasSubstr("point\n0\neta\n0.4\n"));
+}
+
+// A boundary's point is played where the mouse is on its axis.
+TEST_F(MapOfASweep, PlaysABoundaryWhereItIsClicked) {
+  open(test::sweep_plan(dir, R"(title = "Limit"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [2e-5, 2e-5, 2e-5] }
+seconds = 0.3
+set = ["hand.damping = 0"]
+axis = [{ key = "hand.stiffness", values = [300, 3000] }]
+[boundary]
+measure = "stable"
+tolerance = 0.1
+axis = { key = "coupling.eta", from = 0.2, to = 1, count = 3 }
+)"));
+  const ScreenRect map = desktop->sweep.on_screen->rect;
+  const auto [low, high] = desktop->sweep.map()->y_range;
+  const double at = 0.25 * low + 0.75 * high;
+  click(ImVec2{map.min.x + 5, std::round(map.max.y - 0.75f * map.height())});
+  EXPECT_THAT(pointed(), HasSubstr("point\n0\nstiffness\n300 N/m\n"));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  ASSERT_TRUE(said("Point 0: stiffness 300 N/m, eta "));
+  const auto facts = desktop->playback.shown()->facts();
+  EXPECT_EQ(facts.back().name, "eta");
+  EXPECT_NEAR(std::stod(facts.back().value), at, 0.02 * (high - low));
+}
+
+TEST_F(MapOfASweep, OfAPlanWithoutAxesIsRefused) {
+  const SweepPlan plan = test::sweep_plan(dir, R"(title = "One"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }
+seconds = 0.02
+measure = ["human_rms"]
+)");
+  desktop->world.open_files({test::swept(plan, folder())});
+  EXPECT_TRUE(until([&] { return said("its plan has no axis"); }));
+  EXPECT_EQ(desktop->sweep.sweep(), nullptr);
+}
+
+}  // namespace
+}  // namespace limpid
