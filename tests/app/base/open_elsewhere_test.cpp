@@ -1,5 +1,5 @@
 // Files handed to the desktop's programs, with stand-ins for xdg-open and for the file manager.
-#include "app/desktop/base/open_elsewhere.h"
+#include "app/base/open_elsewhere.h"
 
 #include <dbus/dbus.h>
 #include <gtest/gtest.h>
