@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
+import socket
 import subprocess
+import time
 import unittest
 from pathlib import Path
 
@@ -207,6 +210,34 @@ except limpid.LimpidError as error:
         if "is missing" in said:
             self.skipTest(said)
         self.assertEqual(said, "tables\n")
+
+    def test_rows_of_a_running_loop_are_sent_over_udp(self) -> None:
+        folder = self.directory / "run"
+        folder.mkdir(mode=0o700, exist_ok=True)
+        environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "PYTHONPATH": str(self.modules())}
+        environment.pop("LIMPID", None)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as into:
+            into.bind(("127.0.0.1", 0))
+            into.settimeout(30)
+            started = []
+            try:
+                started.append(subprocess.Popen([self.prefix / "bin/limpid", "serve", "lab"], env=environment,
+                                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+                for _ in range(300):
+                    if (folder / "limpid/lab.control").exists():
+                        break
+                    time.sleep(0.1)
+                started.append(subprocess.Popen(
+                    [PYTHON, "-m", "limpid", "stream", f"127.0.0.1:{into.getsockname()[1]}", "hand/grip",
+                     "device/position", "--name", "lab", "--rate", "50"], env=environment))  # fmt: skip
+                rows = [json.loads(into.recv(65536)) for _ in range(10)]
+            finally:
+                for program in reversed(started):
+                    program.terminate()
+                    program.wait(30)
+        times = [row["time"] for row in rows]
+        self.assertEqual(times, sorted(set(times)))
+        self.assertEqual(len(rows[0]["device/position"]), 3)
 
     def test_python_without_the_module_says_so(self) -> None:
         bare = self.directory / "bare"
