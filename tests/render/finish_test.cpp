@@ -86,8 +86,12 @@ TEST(Finish, KeepsThePictureOutsideOfWhatChanges) {
       const int right = part.x + part.width, top = part.y + part.height;
       const bool inside = x > part.x + 1 && x < right - 1 && y > part.y + 1 && y < top - 1;
       const bool outside = x < part.x - 2 || x > right + 2 || y < part.y - 2 || y > top + 2;
-      if (inside) EXPECT_NEAR(green(picture, x, y), 0.9 * 255, 3) << x << ", " << y;
-      if (outside) EXPECT_NEAR(green(picture, x, y), 0.2 * 255, 3) << x << ", " << y;
+      if (inside) {
+        EXPECT_NEAR(green(picture, x, y), 0.9 * 255, 3) << x << ", " << y;
+      }
+      if (outside) {
+        EXPECT_NEAR(green(picture, x, y), 0.2 * 255, 3) << x << ", " << y;
+      }
     }
   }
 }

@@ -268,5 +268,31 @@ TEST(Trails, FadeTowardsWhereTheTipWas) {
   }
 }
 
+// The proxy's dot and trail are lighter on a dark ground, so that they are seen there.
+TEST(LinesOfAPicture, SuitTheGround) {
+  const OffscreenContext context(16, 16);
+  ViewState state;
+  state.show_error = true;
+  state.device.links = state.proxy.links = {Pose::Identity()};
+  state.device.tip = Vec3(0.1, 0, 0);
+  state.proxy.tip = Vec3(0.2, 0, 0);
+  const auto light_of = [](const glm::vec4& c) { return c.r + c.g + c.b; };
+  const auto lines_in = [&](Theme theme) {
+    LineBatch lines;
+    state.theme = theme;
+    add_lines_on_top(state, lines);
+    return lines.lines();
+  };
+  const auto dark = lines_in(Theme::dark), light = lines_in(Theme::light);
+  ASSERT_EQ(dark.size(), light.size());
+  ASSERT_EQ(dark.size(), 6u) << "the error with its edge, and two dots with theirs";
+  EXPECT_GT(light_of(dark.back().color_from), light_of(light.back().color_from)) << "the proxy's";
+  EXPECT_EQ(light.back().color_from.a, 1);
+  for (const auto& [on, bright] : {std::pair(&dark, true), std::pair(&light, false)}) {
+    EXPECT_EQ(light_of((*on)[1].color_from) > 1.5f, bright) << "the error, against the ground";
+    EXPECT_EQ(light_of((*on)[0].color_from) < 1.5f, bright) << "its edge, against the error";
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -47,8 +47,6 @@ Pose placed() {
   return pose;
 }
 
-Bounds bounds_of(const Item& item) { return moved(item.model.bounds(), item.pose); }
-
 void expect_same_bounds(const Bounds& a, const Bounds& b) {
   EXPECT_LT((a.min() - b.min()).cwiseAbs().maxCoeff(), 1e-3);
   EXPECT_LT((a.max() - b.max()).cwiseAbs().maxCoeff(), 1e-3);
@@ -95,7 +93,9 @@ TEST(SceneItems, HaveASlabUnderEachPlane) {
     EXPECT_LT(lowest, -0.005);
     const bool level = normal.head<2>().norm() == 0;
     ASSERT_EQ(items.level_planes.size(), level ? 1u : 0u);
-    if (level) EXPECT_EQ(items.level_planes[0], -0.04);
+    if (level) {
+      EXPECT_EQ(items.level_planes[0], -0.04);
+    }
   }
 }
 

@@ -143,7 +143,8 @@ class Desk {
 
  private:
   static Call read(BusMessage message) {
-    Call call{.message = std::move(message)};
+    Call call;
+    call.message = std::move(message);
     call.method = dbus_message_get_member(call.message.get());
     call.sender = dbus_message_get_sender(call.message.get());
     DBusMessageIter at, entry, pair;

@@ -216,5 +216,16 @@ TEST(GltfLimits, ReadsNoMeshOfAFileThatIsNotWantedAnyMore) {
   EXPECT_LT(part.load(), 0.5);  // three of the four would be three quarters
 }
 
+TEST(GltfViews, AreRefusedWhereTheyReachOutsideOfTheirBuffer) {
+  for (const char* view : {R"({"buffer":0,"byteOffset":0,"byteLength":1000})",
+                           R"({"buffer":0,"byteOffset":900,"byteLength":36})"}) {
+    GltfBuilder file;
+    file.view(std::vector<float>(9, 0.5f));
+    file.views = view;
+    file.attribute("POSITION", file.accessor(0, 5126, "VEC3", 3));
+    expect_refusal(file.binary(), "reaches outside of its buffer");
+  }
+}
+
 }  // namespace
 }  // namespace limpid
