@@ -7,8 +7,8 @@
 namespace limpid {
 
 // Returns the folder that holds assets/ and shaders/. It is share/limpid beside one of the folders
-// that this program, or Limpid's library, is in: PREFIX/share/limpid if installed, a link to the source tree in a build
-// folder. Throws std::runtime_error if it is not there.
+// that this program, or Limpid's library, is in: PREFIX/share/limpid if installed, a link to the
+// source tree in a build folder. Throws std::runtime_error if it is not there.
 std::filesystem::path data_dir();
 
 inline std::filesystem::path default_device() { return data_dir() / "assets/devices/omni.urdf"; }

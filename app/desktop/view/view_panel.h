@@ -85,8 +85,8 @@ class ViewPanel {
   void follow_task(const ViewScene& scene, const ViewState& view);
 
   Magnifier magnifier_;
-  std::string task_;        // sentence of the scene that is shown
-  bool task_done_ = false;  // something of it was touched since, or pulled on
+  std::string task_;                 // sentence of the scene that is shown
+  bool task_done_ = false;           // something of it was touched since, or pulled on
   std::optional<ScreenRect> drawn_;  // place of the view
   bool dragging_ = false;            // drags the hand
   bool pulls_ = false;               // the left button would take the hand here
