@@ -299,13 +299,22 @@ TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
 }
 
 TEST_F(CouplingWords, OfARerunHaveNothingOfTheLoop) {
-  show([this] { draw_coupling_of_rerun(p_, {.analysis = a_, .arm = arm_}); });
+  const Parameters recorded = p_;
+  Parameters live = p_;
+  live.eta = 0.3;
+  show([&] { draw_coupling_of_rerun(p_, recorded, live, {.analysis = a_, .arm = arm_}); });
+  EXPECT_THAT(sentences(), HasSubstr("As recorded: change a setting"));
   EXPECT_TRUE(find("Passivity"));
   EXPECT_FALSE(find("Break passivity"));
   EXPECT_FALSE(find("Energy given E_c"));
   click("Tank");
   EXPECT_EQ(p_.kind, CouplingKind::tank);
   EXPECT_FALSE(find("Passivity"));
+  EXPECT_EQ(value("Coupling"), std::string(name(recorded.kind)) + " \xE2\x86\x92 tank");
+  click("As recorded");
+  EXPECT_EQ(p_, recorded);
+  click("Take mine");
+  EXPECT_EQ(p_, live);
 }
 
 }  // namespace
