@@ -27,11 +27,12 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/limpidConfigVersion.cmake
 file(RELATIVE_PATH limpid_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/limpid.pc @ONLY CONTENT [[
 prefix=${pcfiledir}/@limpid_prefix@
+libdir=${prefix}/@CMAKE_INSTALL_LIBDIR@
 Name: limpid
 Description: haptic loop with virtual couplings
 Version: @PROJECT_VERSION@
 Cflags: -I${prefix}/include
-Libs: -L${prefix}/@CMAKE_INSTALL_LIBDIR@ -llimpid
+Libs: -L${libdir} -llimpid
 ]])
 install(FILES ${PROJECT_BINARY_DIR}/limpidConfig.cmake ${PROJECT_BINARY_DIR}/limpidConfigVersion.cmake
   DESTINATION ${limpid_package_folder} COMPONENT dev)

@@ -46,8 +46,11 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
              known.by);
   fmt::print("eta_min, all frequencies   {:.4f}   (25), of the proposed law alone\n", a.eta_min);
   if (a.eta_min_band) fmt::print("eta_min, the band alone    {:.4f}\n", *a.eta_min_band);
-  fmt::print("eta_min, in this grip      {:.4f}   (below it the proposed law is unstable)\n",
+  fmt::print("eta_min, in this grip      {:.4f}   (Routh; below it the proposed law is unstable)\n",
              a.eta_min_grip);
+  fmt::print(
+      "eta_min, coupling's spring {:.4f}   (the same, with the proxy behind k_vc and b_vc)\n",
+      a.eta_min_compliant);
   if (a.condition3.known) {
     fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",
                a.condition3.holds ? "holds" : "BROKEN", a.condition3.device_margin,
@@ -176,6 +179,7 @@ int analyze_command(const AnalyzeOptions& options) {
                               {"eta_min", a.eta_min}};
   if (a.eta_min_band) json["eta_min_band"] = *a.eta_min_band;
   json["eta_min_grip"] = a.eta_min_grip;
+  json["eta_min_compliant"] = a.eta_min_compliant;
   json["condition3"] = {{"device_margin", a.condition3.device_margin},
                         {"proxy_margin", a.condition3.proxy_margin},
                         {"known", a.condition3.known},

@@ -90,6 +90,7 @@ struct Loop::State {
   RigStart scratch;            // with room for all that the rig has
   std::uint64_t ticks = 0;
   Clock::time_point before{};
+  std::size_t wrong_count = 0;  // positions of the last reading, if they were not one a joint
   std::atomic<std::uint32_t> arms{0}, cuts{0};
   std::uint32_t known_arms = 0, known_cuts = 0;
   std::unique_ptr<Recorder> recorder;
@@ -240,7 +241,7 @@ DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> posit
         if (options.motors == Motors::real && options.arm.empty() && options.arm_text.empty()) {
           throw LoopError("arm: is not given; a device with real motors needs its own");
         }
-        auto state = std::make_unique<State>(read_plan(options), options);
+        auto state = std::make_unique<State>(read_plan(options, true), options);
         state->device.emplace(state->plan.arm, state->real);
         state->rig.emplace(state->plan.arm, state->plan.document.scene, &*state->device);
         state->rig->limit(limits_of(options.limits));
@@ -254,6 +255,10 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   double elapsed = reading.elapsed > 0 ? reading.elapsed : 0;
   if (elapsed == 0 && s.real && s.ticks > 0) elapsed = seconds_between(s.before, now);
   s.before = now;
+  const std::size_t positions = reading.position.size();
+  s.wrong_count = positions == s.plan.arm.joints.size() ? 0 : positions + 1;
+  if (s.wrong_count > 0) s.device->stop();
+  if (s.wrong_count > 0 && !s.real) return s.device->torque();  // a simulated device cannot trip
   const double T = s.plan.parameters.tick;
   const double passed = elapsed > 0 ? elapsed : T;
   s.device->take(reading.position, reading.fresh, reading.hand, reading.fault, passed);
@@ -270,12 +275,16 @@ void DeviceLoop::cut() noexcept { state_->cuts.fetch_add(1, std::memory_order_re
 bool DeviceLoop::armed() const noexcept { return state_->rig->force().armed(); }
 double DeviceLoop::force_share() const noexcept { return state_->rig->force().gain(); }
 std::string DeviceLoop::force_text() const {
+  if (state_->wrong_count > 0) {
+    return fmt::format("force off: a reading has {} positions; needed: {}, one a joint",
+                       state_->wrong_count - 1, joints());
+  }
   return limpid::force_text(state_->rig->force_state());
 }
 
 SimulatedLoop::SimulatedLoop(const LoopOptions& options)
     : Loop(as_library([&] {
-        auto state = std::make_unique<State>(read_plan(options), options);
+        auto state = std::make_unique<State>(read_plan(options, false), options);
         state->real = false;
         state->rig.emplace(state->plan.arm, state->plan.document.scene);
         state->begin(rest_at(state->plan.arm, rest_tip(state->plan.arm)));

@@ -53,6 +53,9 @@ SceneDocument read_scene_of(const LoopOptions& options, const ArmDescription& ar
 Parameters chosen(const LoopOptions& options, Parameters base) {
   if (!options.config.empty()) apply_config(base, options.config);
   for (const std::string& setting : options.settings) apply_setting(base, setting);
+  if (base.tick != Parameters{}.tick && base.tick != options.period) {
+    throw FieldError("loop.tick: is the option `period` here");
+  }
   set_parameter(base, "loop.tick", options.period);
   return base;
 }
@@ -64,13 +67,23 @@ void refuse_fixed(const ParameterInfo& info) {
 
 }  // namespace
 
-LibraryPlan read_plan(const LoopOptions& options) {
+LibraryPlan read_plan(const LoopOptions& options, bool device) {
   LibraryPlan all;
   RunPlan& plan = all.plan;
   plan.arm = read_arm(options);
   plan.document = read_scene_of(options, plan.arm);
   plan.models = build_meshes(plan.document);
-  plan.parameters = chosen(options, fitted(plan.arm, chosen(options, {})));
+  Parameters fit = fitted(plan.arm, chosen(options, {}));
+  if (const double known = chosen(options, {}).damping; device && std::isnan(known)) {
+    if (!std::isnan(fit.damping)) {
+      all.notes.push_back(fmt::format(
+          "the arm's joints have no damping: gains are fitted as if they had {:.3g} N m s/rad, the "
+          "account counts none; device.damping says what there is",
+          fit.damping));
+    }
+    fit.damping = kFromArm;
+  }
+  plan.parameters = chosen(options, fit);
   all.notes = plan.arm.warnings;
   for (std::string& warning : mesh_warnings(plan.document.scene, plan.models)) {
     all.notes.push_back(std::move(warning));
@@ -127,7 +140,8 @@ void set_live(Parameters& p, const std::string& key_value) {
 
 void set_live(Parameters& p, std::string_view key, double value) {
   const ParameterInfo* const info = find_parameter(key);
-  if (info == nullptr) throw FieldError(std::string(key) + ": no such key");
+  if (info == nullptr)
+    throw FieldError(std::string(key) + ": no such key; setting_list() has all of them");
   refuse_fixed(*info);
   if (info->kind == FieldInfo::Kind::flag) return set_value(*info, p, value != 0);
   set_value(*info, p, value);

@@ -16,8 +16,9 @@ struct LibraryPlan {
   std::vector<std::string> notes;
 };
 
-// Errors: FileError, FieldError.
-LibraryPlan read_plan(const LoopOptions& options);
+// Reads the options. Damping that the arm's file does not say is made up for a simulated arm alone:
+// of a device the loop counts no more than is known. Errors: FileError, FieldError.
+LibraryPlan read_plan(const LoopOptions& options, bool device);
 
 // Returns the path of rows of time [s], x, y, z [m]. Errors: FileError.
 HandPath hand_of_rows(std::span<const double> rows);

@@ -83,9 +83,9 @@ Passivity by_condition3(const Condition3& c) {
 
 Passivity of_feedforward(const Analysis& a, const Parameters& p) {
   if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
-  if (p.eta < a.eta_min_grip) {
-    return {false,
-            fmt::format("eta is below {:.4f}, where this grip makes it unstable", a.eta_min_grip)};
+  if (p.eta < a.eta_min_compliant) {
+    return {false, fmt::format("eta is below {:.4f}, where this grip makes it unstable",
+                               a.eta_min_compliant)};
   }
   const Passivity spring = by_condition3(a.condition3);
   if (spring.passive == false) return spring;
@@ -169,9 +169,9 @@ Analysis analyze(const ArmDescription& arm, const Eigen::VectorXd& x, const Para
                  std::optional<double> w_b) {
   const Held held = held_at(arm, x, p);
   Analysis a = of_modes(locked_modes(held.M_L, held.b, p.alpha), arm, p, w_b);
-  const double rigid = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
-  a.eta_min_grip =
-      eta_min_compliant(held.M_L, device_damping(arm, p), p, held.K_h, held.B_h, rigid);
+  a.eta_min_grip = eta_min_grip(held.M_L, held.b, p.alpha, held.K_h, held.B_h);
+  a.eta_min_compliant =
+      eta_min_compliant(held.M_L, device_damping(arm, p), p, held.K_h, held.B_h, a.eta_min_grip);
   return a;
 }
 
@@ -207,7 +207,7 @@ Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,
                  std::optional<double> w_b) {
   const LockedMode mode{mass, device_damping(arm, p).minCoeff() + p.b_v, p.alpha};
   Analysis a = of_modes({mode}, arm, p, w_b);
-  a.eta_min_grip = eta_min_grip(mode, p.hand_stiffness, p.hand_damping);
+  a.eta_min_grip = a.eta_min_compliant = eta_min_grip(mode, p.hand_stiffness, p.hand_damping);
   return a;
 }
 

@@ -34,7 +34,8 @@ struct Analysis {
   double b = 0;                        // b_d + b_v at the least damped joint [N m s/rad]
   double eta_min = 0;                  // (25), the worst mode
   std::optional<double> eta_min_band;  // eta_min if only frequencies up to w_b count
-  double eta_min_grip = 0;             // stable in a grip of hand.stiffness and hand.damping
+  double eta_min_grip = 0;             // Routh, for hand.stiffness and hand.damping
+  double eta_min_compliant = 0;        // the same with the proxy behind the coupling's spring
   double delay = 0;                    // of the motors, in (3) [s]
   double link = 0;                     // of the link each way, in (3) [s]
   bool measured = false;  // inertia, damping and delay are measured on the device itself

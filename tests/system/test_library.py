@@ -129,6 +129,15 @@ for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
         assert str(error)
     else:
         raise AssertionError("refused nothing")
+assert "place" not in row and row.get("place", 0) == 0 and "device/position" in row
+simulated = limpid.DeviceLoop([0, 0.6, -1.1], motors="simulated")
+for wrong in ("ab", [0, 0], None, [0, 0, "x"]):
+    try:
+        simulated.tick(wrong)
+    except limpid.LimpidError as error:
+        assert "position" in str(error)
+    else:
+        raise AssertionError("refused nothing")
 print("as said")
 """), "as said\n")
 

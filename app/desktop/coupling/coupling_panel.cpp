@@ -246,13 +246,13 @@ void draw_observer(const Parameters& p, const Analysis& a) {
            fmt::format("{:.3f}  {}", a.eta_min, a.above_eta_min ? "ok" : "broken"),
            eta_broken(p, a), "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
   const std::string unstable =
-      p.eta < a.eta_min_grip
+      p.eta < a.eta_min_compliant
           ? fmt::format(
                 "eta {:.3g} is below {:.3f}, the limit of this grip: the loop is "
                 "unstable while the hand holds. Raise eta or soften the grip.",
-                p.eta, a.eta_min_grip)
+                p.eta, a.eta_min_compliant)
           : std::string();
-  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_grip), unstable,
+  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_compliant), unstable,
            "Below it the loop is unstable in a hand of this stiffness and damping: Routh's limit, "
            "with the proxy "
            "behind the coupling's spring");

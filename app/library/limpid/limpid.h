@@ -36,8 +36,8 @@
 #include <string_view>
 #include <vector>
 
-// Version of this header by the rules of semantic versioning: what it says changes its meaning with
-// the first number, or before 1.0.0 with the second.
+// Version of this header by the rules of semantic versioning: incompatible changes raise the first
+// number, before 1.0.0 the second.
 #define LIMPID_VERSION_MAJOR 0
 #define LIMPID_VERSION_MINOR 2
 #define LIMPID_VERSION_PATCH 0
@@ -64,11 +64,12 @@ enum class Motors : std::uint8_t { real, simulated };
 
 // Limits for real motors. They can be lowered only: the values here are the largest allowed.
 struct LoopLimits {
-  double joint_speed = 15;  // Fastest joint, 0.5 to 15 rad/s; force is gone at 1.5 of it.
-  double tip_speed = 2;     // Tip, 0.05 to 2 m/s; force is gone at 1.5 of it.
-  double tip_force = 10;    // Motors' force at the tip, 0.1 to 10 N.
-  double energy = 1.5;      // Energy that motors put out in a second, 0.02 to 1.5 J; more trips.
-  double range = 1;         // Part of each joint's range, about its middle, 0.1 to 1.
+  double joint_speed =
+      15;  // Fastest joint, 0.5 to 15 rad/s, over some ticks; force is gone at 1.5 of it.
+  double tip_speed = 2;   // Tip, 0.05 to 2 m/s; force is gone at 1.5 of it.
+  double tip_force = 10;  // Motors' force at the tip, 0.1 to 10 N.
+  double energy = 1.5;    // Energy that motors put out in a second, 0.02 to 1.5 J; more trips.
+  double range = 1;       // Part of each joint's range, about its middle, 0.1 to 1.
 };
 
 struct LoopOptions {
@@ -89,11 +90,12 @@ struct LoopOptions {
   // TOML file of settings, as `limpid run --config` takes it. Empty: none.
   std::string config;
   // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
-  // setting_list() has all of them. Gains that no setting names are fitted to the arm. Of a device
-  // say the step of its encoders, device.encoder_step, and its delay in ticks, model.delay.
+  // setting_list() has all of them. The law is "proposed" unless coupling.kind says another. Gains
+  // that no setting names are fitted to the arm. Of a device say the step of its encoders,
+  // device.encoder_step, and its delay in ticks, model.delay.
   std::vector<std::string> settings;
   // Time from a tick to the next, 1e-5 to 0.1 s: what your loop keeps. Faster loops render stiffer
-  // walls. Walls of a simulated hand are tried at 0.001.
+  // walls. Most of what Limpid promises was tried at 0.001.
   double period = 0.001;
   // The two below are a DeviceLoop's.
   Motors motors = Motors::real;
@@ -118,13 +120,14 @@ struct ArmJoint {
   Point3 position{};                   // Origin in the frame of the joint before [m].
   Point3 rpy{};                        // Roll, pitch and yaw of the origin [rad].
   Point3 axis{0, 0, 1};                // Any length but 0.
-  double lower = -3.14, upper = 3.14;  // Range [rad or m]; a real device's has to be within it.
-  double effort = 0;                   // Motor's largest torque or force, at least 0 [N m or N].
-  double damping = 0;                  // b_d, viscous [N m s/rad or N s/m]: known, not guessed up.
-  double friction = 0;                 // Coulomb's [N m or N].
-  double mass = 0;                     // Link [kg]; some link of the arm has one.
-  Point3 center{};                     // Centre of the link's mass in its frame [m].
-  std::array<double, 6> inertia{};     // xx, xy, xz, yy, yz, zz about the centre [kg m^2].
+  double lower = -3.14, upper = 3.14;  // Range [rad or m]; it contains the real device's.
+  double effort = 0;    // Motor's largest torque or force [N m or N]; 0: guessed, see notes().
+  double damping = 0;   // b_d, viscous [N m s/rad or N s/m]: only what is measured: too much lets
+                        // the loop give energy.
+  double friction = 0;  // Coulomb's [N m or N].
+  double mass = 0;      // Link [kg]; some link of the arm has one.
+  Point3 center{};      // Centre of the link's mass in its frame [m].
+  std::array<double, 6> inertia{};  // xx, xy, xz, yy, yz, zz about the centre [kg m^2].
 };
 
 struct ArmModel {
@@ -199,7 +202,7 @@ class LIMPID_API Loop {
   // is made (SettingInfo::live).
   void set(const std::string& key_value);        // "coupling.kind=standard"
   void set(std::string_view key, double value);  // of a number or a flag; does not allocate
-  double get(std::string_view key) const;        // of a choice the place of its word
+  double get(std::string_view key) const;  // of a choice the place of its word; NaN: the arm's own
 
   // The row of the last tick, which recordings keep. NaN stands for what nobody knows.
   const std::vector<RowColumn>& columns() const;
@@ -211,10 +214,10 @@ class LIMPID_API Loop {
   // True once the loop was unstable: force is off, and stays off.
   bool diverged() const noexcept;
 
-  // Records every row from the coming tick on that finds the force steady. A thread of its own
-  // writes. With simulated motors a tick waits where the disk is slower; with real ones rows that
-  // find no room are lost, and counted. Errors: the file exists and not `replace`; it cannot be
-  // written.
+  // Records every row from the coming tick on; where force fades in, from its end on. A thread of
+  // its own writes. With simulated motors a tick waits where the disk is slower; with real ones
+  // rows that find no room are lost, and counted. Errors: the file exists and not `replace`; it
+  // cannot be written.
   void record(const std::string& file, bool replace = false);
   // Ends the recording and returns the number of lost rows. Without it FILE.part is left, which
   // `limpid recover` mends. Errors: a write failed; nothing was being recorded.
@@ -244,19 +247,23 @@ class LIMPID_API DeviceLoop : public Loop {
   // `position`: of each joint now, where the proxy begins. Errors: LoopError.
   DeviceLoop(const LoopOptions& options, std::span<const double> position);
 
-  // Runs the tick and returns each joint's torque or force, to be held until the next one. Readings
-  // that cannot be (not finite, far outside of the range, faster than 100 rad/s or 10 m/s, of
-  // another number of joints) trip the force. What leaves when your loop hangs is the device's
-  // matter: let its own watchdog end a torque that is not renewed within 5 to 20 ms.
+  // Runs the tick and returns each joint's torque or force, to be held until the next one; valid
+  // until then. With real motors force trips where a reading is not finite, far outside of the
+  // range, of another number of joints, or further from the last one than 100 rad/s or 10 m/s make
+  // in the time between and 5 ms more (0.6 rad at 1 kHz); smaller jumps count as speed. If your
+  // loop hangs, the last torque stays: let the device's own watchdog end what is not renewed within
+  // 5 to 20 ms.
   std::span<const double> tick(const Reading& reading) noexcept;
 
   // Ask for force, and end it; heard at the next tick. Whoever calls arm() answers for a person who
   // holds the device.
   void arm() noexcept;
   void cut() noexcept;
-  bool armed() const noexcept;          // asked for, and not cut since
+  bool armed() const noexcept;          // asked for, and not cut since; also after a trip
   double force_share() const noexcept;  // part of the torque that leaves, 0 to 1
-  std::string force_text() const;       // why there is no force, or less; empty while it is on
+  // Why there is no force, or less; empty while it is on. "held back" returns by itself, "off"
+  // after arm().
+  std::string force_text() const;
 };
 
 // A loop of the library's simulated arm, which a simulated hand leads: what `limpid run` does.
@@ -285,9 +292,10 @@ class LIMPID_API SimulatedLoop : public Loop {
     std::string why;  // what was unstable, and when; else empty
   };
   // Leads a hand along a path as fast as it goes, with the present settings: the rows of `limpid
-  // run`, bit for bit. `path` has rows of time [s], x, y, z [m], at least two, of increasing time
-  // from 0; between them a monotone cubic leads. `duration` [s]; 0: the path's. The loop itself
-  // stays as it is, so that threads may run one loop at once. Errors: LoopError.
+  // run`, bit for bit. `path` has rows of time [s], x, y, z [m], at least two, of increasing time,
+  // of which the first counts as 0; between them a monotone cubic leads. `duration` [s]; 0: the
+  // path's. The loop itself stays as it is, so that threads may run one loop at once. Errors:
+  // LoopError.
   RunEnd run(std::span<const double> path, double duration, const TakeRow& take) const;
 };
 

@@ -24,6 +24,12 @@ if TYPE_CHECKING:
 SHAPES = {"contact/point": (-1, 3), "contact/force": (-1, 3), "objects/pose": (-1, 7), "objects/velocity": (-1, 6)}
 
 
+class NoChannel(ArgumentError, KeyError):
+    """There is no channel of that name."""
+
+    __str__ = Exception.__str__  # KeyError's has quotes
+
+
 class Energy(NamedTuple):
     """Energies of the coupling since the loop began [J]."""
 
@@ -56,7 +62,7 @@ class Channels(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         known = name.lstrip("/") if isinstance(name, str) else name
         if known not in self._places:
-            raise ArgumentError(f"{name} is no channel; there are {', '.join(self._places)}")
+            raise NoChannel(f"{name} is no channel; there are {', '.join(self._places)}")
         offset, width = self._places[known]
         if width == 1 and known not in SHAPES:
             found = self.values_of_all[..., offset]
@@ -247,7 +253,13 @@ class DeviceLoop(_AnyLoop):
         """Runs the tick on a reading of each joint; returns the torques to be held until the next
         one. `fresh`: not the same reading as at the last tick. `hand`: the dead-man switch is closed.
         `fault`: the device is not well. `elapsed`: time since the last tick [s]; 0: measured here."""
-        return self._loop.tick(position, fresh, hand, fault, elapsed)
+        try:
+            count = len(position)
+            if count == self.joints:
+                return self._loop.tick(position, fresh, hand, fault, elapsed)
+        except TypeError as error:
+            raise ArgumentError(f"position: {position!s:.60} is not allowed; allowed: a number for each joint") from error
+        raise ArgumentError(f"position: has {count} numbers; needed: {self.joints}, one a joint")
 
     def arm(self) -> None:
         """Asks for force; whoever does so answers for a person who holds the device."""

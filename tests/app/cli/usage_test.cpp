@@ -20,7 +20,7 @@ using testing::StartsWith;
 
 const std::vector<std::string> kCommands{"run",    "serve", "experiment", "sweep",   "analyze",
                                          "check",  "info",  "recover",    "devices", "identify",
-                                         "doctor", "story", "play"};
+                                         "doctor", "story", "play",       "manual"};
 
 class Usage : public test::Program {};
 

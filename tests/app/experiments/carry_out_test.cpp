@@ -62,9 +62,11 @@ TEST_F(CarryOut, LeavesTableFigureAndVerdict) {
   EXPECT_EQ(verdict.at("name"), "sound");
   EXPECT_EQ(verdict.at("passed"), true);
   ASSERT_EQ(verdict.at("checks").size(), 2u);
-  EXPECT_EQ(verdict.at("checks")[0],
-            (nlohmann::json{
-                {"what", "three at most four"}, {"value", 3.0}, {"bound", 4.0}, {"passed", true}}));
+  EXPECT_EQ(verdict.at("checks")[0], (nlohmann::json{{"what", "three at most four"},
+                                                     {"value", 3.0},
+                                                     {"relation", "at most"},
+                                                     {"bound", 4.0},
+                                                     {"passed", true}}));
 }
 
 TEST_F(CarryOut, CallsAValueThatIsNotFiniteAFailure) {
@@ -91,6 +93,7 @@ TEST_F(CarryOut, MeasuresAndDoesNotJudgeWhatAKnownFaultSpoils) {
   EXPECT_EQ(verdict.at("passed"), true);
   EXPECT_EQ(verdict.at("checks")[0], (nlohmann::json{{"what", "roll: error [%]"},
                                                      {"value", 0.5},
+                                                     {"relation", "at most"},
                                                      {"bound", 1.0},
                                                      {"passed", true},
                                                      {"expected", 4.0},
@@ -198,7 +201,7 @@ TEST_F(CarryOut, ReportsComparisonsInColumnsOfTheirOwn) {
   EXPECT_EQ(rows[1][1], "4 m/s²");
   EXPECT_EQ(rows[1][2], "4.02 m/s²");
   EXPECT_EQ(rows[3],
-            (std::vector<std::string>{"three at most four", "", "", "3", "4", "✓ passed"}));
+            (std::vector<std::string>{"three at most four", "", "", "3", "&le; 4", "✓ passed"}));
   EXPECT_EQ(rows[4][1], "");
   EXPECT_EQ(rows[4][2], "7 mm");
 }
@@ -209,7 +212,7 @@ TEST_F(CarryOut, ReportsNoComparisonsWhereThereAreNone) {
   const auto rows = table_of(read(dir_ / "report.html"));
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"Check", "Value", "Bound", "Verdict"}));
-  EXPECT_EQ(rows[1], (std::vector<std::string>{"three at most four", "3", "4", "✓ passed"}));
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"three at most four", "3", "&le; 4", "✓ passed"}));
 }
 
 TEST_F(CarryOut, ReportsPastAVerdictThatIsDamaged) {

@@ -282,6 +282,31 @@ TEST(DeviceLoop, EndsForceWithoutFreshReadingsHandOrHealth) {
   EXPECT_NEAR(after([](auto& r) { r.elapsed = 0.006; }).first, 0, 0.02);
 }
 
+TEST(DeviceLoop, SaysThatAReadingHasAnotherNumberOfJoints) {
+  for (const Motors motors : {Motors::real, Motors::simulated}) {
+    LoopOptions options = slide();
+    options.motors = motors;
+    DeviceLoop loop(options, std::array{0.004});
+    DeviceLoop::Reading reading;
+    const std::array<double, 2> two{0.004, 0};
+    reading.position = two;
+    EXPECT_EQ(loop.tick(reading)[0], 0);
+    EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions; needed: 1"));
+  }
+}
+
+// Energy that nobody knows to be lost is not lent to the law.
+TEST(DeviceLoop, MakesUpNoDamping) {
+  LoopOptions options = slide();
+  const std::string known = "damping=\"0.5\"";
+  options.arm_text.replace(options.arm_text.find(known), known.size(), "damping=\"0\"");
+  const DeviceLoop loop(options, std::array{0.0});
+  EXPECT_TRUE(std::isnan(loop.get("device.damping")));
+  EXPECT_THAT(loop.notes(), testing::Contains(HasSubstr("have no damping")));
+  const SimulatedLoop simulated(options);
+  EXPECT_GT(simulated.get("device.damping"), 0);
+}
+
 TEST(DeviceLoop, RecordsWhatItsRowsWere) {
   const test::TempDir dir;
   const auto file = (dir / "own.h5").string();
@@ -330,6 +355,7 @@ TEST(Loops, SayWhatIsNotAllowed) {
   EXPECT_THAT(making([](auto& o) { o.limits.tip_force = 11; }),
               AllOf(HasSubstr("tip_force: 11"), HasSubstr("0.1 to 10 N")));
   EXPECT_THAT(making([](auto& o) { o.period = 1; }), HasSubstr("loop.tick: 1"));
+  EXPECT_THAT(making([](auto& o) { o.settings = {"loop.tick=0.002"}; }), HasSubstr("period"));
   EXPECT_THAT(making([](auto& o) { o.scene_text += "[[ball]]\n"; }), HasSubstr("scene_text:"));
   EXPECT_THAT(making([](auto& o) { o.scene = "table.toml"; }), HasSubstr("both given"));
   EXPECT_THAT(making([](auto& o) {

@@ -141,7 +141,7 @@ TEST(Passivity, IsNoneOfSpringAndDamperWhereConditionThreeIsBroken) {
 TEST(Passivity, OfAGripIsNoneBelowRouthsLimit) {
   Analysis a;
   a.eta_min = 0.4;
-  a.eta_min_grip = 0.463;
+  a.eta_min_grip = a.eta_min_compliant = 0.463;
   a.above_eta_min = true;
   a.condition3.holds = true;
   Parameters p;

@@ -60,7 +60,7 @@ TEST(GripLimit, IsAboveRouthsInAStiffGrip) {
   p.hand_damping = 0;
   const auto limit = [&](double stiffness) {
     p.hand_stiffness = stiffness;
-    return analyze(arm, rest_pose(arm), p, std::nullopt).eta_min_grip;
+    return analyze(arm, rest_pose(arm), p, std::nullopt).eta_min_compliant;
   };
   EXPECT_GT(limit(10'000), 0.65);
   p.kind = CouplingKind::proposed;

@@ -1104,7 +1104,7 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   }
   EXPECT_EQ(at(0).eta, 0.9);
   EXPECT_EQ(at(0.99).kind, CouplingKind::standard);
-  EXPECT_EQ(desktop->tuning.edited().eta, 3) << "for the re-run";
+  EXPECT_EQ(desktop->tuning.edited().eta, 0.9) << "the re-run begins as the recording did";
 }
 
 TEST_F(ADesktop, NamesTheRunsOfARecordedTwinAsTheyAreAtTheCursor) {
