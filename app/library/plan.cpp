@@ -71,6 +71,7 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
   LibraryPlan all;
   RunPlan& plan = all.plan;
   plan.arm = read_arm(options);
+  all.notes = plan.arm.warnings;
   plan.document = read_scene_of(options, plan.arm);
   plan.models = build_meshes(plan.document);
   Parameters fit = fitted(plan.arm, chosen(options, {}));
@@ -84,12 +85,11 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
     fit.damping = kFromArm;
   }
   plan.parameters = chosen(options, fit);
-  all.notes = plan.arm.warnings;
   for (std::string& warning : mesh_warnings(plan.document.scene, plan.models)) {
     all.notes.push_back(std::move(warning));
   }
-  if (const std::string fit = fit_text(fitted(plan.arm, chosen(options, {}))); !fit.empty()) {
-    all.notes.push_back("gains fitted to the arm, but for those that are set: " + fit);
+  if (const std::string text = fit_text(fit); !text.empty()) {
+    all.notes.push_back("gains fitted to the arm, but for those that are set: " + text);
   }
   for (std::string& note : notes_on(plan.parameters)) all.notes.push_back(std::move(note));
   return all;
