@@ -119,7 +119,7 @@ void write_verdict(const std::string& name, const Outcome& outcome,
   for (const Check& c : outcome.checks) {
     nlohmann::ordered_json check{{"what", c.what},
                                  {"value", c.value},
-                                 {"relation", c.least ? "at least" : "at most"},
+                                 {"relation", relation(c)},
                                  {"bound", c.bound},
                                  {"passed", c.passed}};
     if (!c.unjudged.empty()) {

@@ -75,6 +75,11 @@ struct Check {
   bool failed() const { return !passed && unjudged.empty(); }
 };
 
+// Returns how a check's value is judged by its bound, in words.
+inline const char* relation(const Check& c) {
+  return !c.unjudged.empty() ? "measured" : c.least ? "at least" : "at most";
+}
+
 inline Check at_most(std::string what, double value, double bound) {
   return {std::move(what), value, bound, value <= bound};
 }
