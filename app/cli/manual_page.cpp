@@ -91,7 +91,7 @@ std::string plain_text(std::string_view html) {
 }
 
 // Replaces links to files that are not in the page by their text, and gives headings anchors.
-std::string with_anchors(const Chapter& chapter, std::string html) {
+std::string with_anchors(const Chapter& chapter, const std::string& html) {
   std::string out;
   std::size_t at = 0;
   while (at < html.size()) {

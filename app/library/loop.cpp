@@ -154,7 +154,7 @@ void Loop::State::step(const RigInput& input) noexcept {
 void Loop::State::in_si(std::span<const double> of_rig, std::span<double> into) const noexcept {
   std::ranges::copy(of_rig, into.begin());
   for (const SessionUnits::Scaled& each : units.scaled()) {
-    double& x = into[static_cast<std::size_t>(layout.offset(each.column) + each.part)];
+    double& x = layout.in(into, each.column)[static_cast<std::size_t>(each.part)];
     x = SessionUnits::filed(each, x).value;
   }
   file_points(layout.in(into, Column::contact_point), layout.in(of_rig, Column::contact_force));

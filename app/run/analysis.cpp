@@ -87,7 +87,7 @@ Passivity of_feedforward(const Analysis& a, const Parameters& p) {
     return {false, fmt::format("eta is below {:.4f}, where this grip makes it unstable",
                                a.eta_min_compliant)};
   }
-  const Passivity spring = by_condition3(a.condition3);
+  Passivity spring = by_condition3(a.condition3);
   if (spring.passive == false) return spring;
   if (p.linked()) return {std::nullopt, "no bound is known of what is fed forward through a link"};
   if (a.delay > 0) {

@@ -36,7 +36,7 @@ fs::path own_binary() {
 fs::path own_program(const char* name) {
   std::error_code none;
   const fs::path own = own_binary();
-  const fs::path beside = fs::path(own).replace_filename(name);
+  fs::path beside = fs::path(own).replace_filename(name);
   if (fs::exists(beside, none)) return beside;
   for (fs::path folder = own; folder.has_relative_path();) {
     folder = folder.parent_path();

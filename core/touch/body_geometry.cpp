@@ -255,8 +255,8 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
         solid->triangles->addTriangle(at[0], at[1], at[2]);
       }
       solid->shape = std::make_unique<btBvhTriangleMeshShape>(solid->triangles.get(), true);
-      solid->model.reset(
-          new TouchedModel{mesh->triangles, MeshEdges(mesh->triangles), mesh->size()});
+      solid->model = std::make_unique<TouchedModel>(
+          TouchedModel{mesh->triangles, MeshEdges(mesh->triangles), mesh->size()});
       solid->at.setUserPointer(solid->model.get());
     } else {
       auto hull = std::make_unique<btConvexHullShape>();

@@ -67,7 +67,7 @@ struct MagnetContact {
   }
   Mat3 push(ContactRow<N>& row, double T, const Vec3& v) const {
     const double K = row.material.stiffness, k = K * T / 2 + row.B;
-    const Mat3 slope = -k * (Mat3::Identity() + k * row.W_body).inverse();
+    Mat3 slope = -k * (Mat3::Identity() + k * row.W_body).inverse();
     row.push = slope / k * (K * stretch + k * v);
     return slope;
   }
