@@ -90,7 +90,8 @@ bool accepted() {
 }
 
 void note_at(const char* label, ImVec2 place) {
-  notes().all.push_back({ImGui::GetCurrentWindow()->RootWindow->Name, label, place});
+  const ImGuiWindow& window = *ImGui::GetCurrentWindow()->RootWindow;
+  notes().all.push_back({window.Name, label, place, window.ID});
 }
 
 void note_place(const char* label) {
@@ -107,8 +108,9 @@ bool noted_button(const char* label) {
 const std::vector<NotedPlace>& noted_places() { return notes().all; }
 
 std::optional<ImVec2> noted_place(std::string_view window, std::string_view label) {
+  const ImGuiID id = ImHashStr(window.data(), window.size());
   for (const NotedPlace& note : notes().all) {
-    if (note.window == window && note.label == label) return note.at;
+    if (note.id == id && note.label == label) return note.at;
   }
   return std::nullopt;
 }

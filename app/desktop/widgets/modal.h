@@ -58,6 +58,7 @@ struct NotedPlace {
   std::string window;
   std::string label;
   ImVec2 at;
+  ImGuiID id;  // of the window, the same while the words of its name change
 };
 // Return what the present frame has noted so far; the first of one label, or nothing.
 const std::vector<NotedPlace>& noted_places();
