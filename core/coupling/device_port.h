@@ -30,7 +30,7 @@ class DevicePort {
     return !std::exchange(first_, false) && elapsed_ > 0;
   }
   void applied(const Vec<N>& torque) {
-    std::ranges::rotate(sent_, sent_.end() - 1);
+    std::rotate(sent_.begin(), sent_.end() - 1, sent_.end());
     sent_[0] = torque;
   }
 
