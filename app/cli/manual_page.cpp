@@ -7,7 +7,9 @@
 #include <array>
 #include <cctype>
 
+#include "app/base/markup.h"
 #include "app/base/version.h"
+#include "app/cli/options.h"
 #include "core/tick/parameters.h"
 #include "devices/files/text_file.h"
 
@@ -34,19 +36,6 @@ constexpr std::array kChapters{
     Chapter{"assets/python/lessons/README.md", "Lessons"},
     Chapter{"app/library/README.md", "Library"},
 };
-
-std::string escaped_html(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 // The part of a link behind '#', as on the pages of a forge: "A delay" becomes "a-delay".
 std::string anchor_of(std::string_view heading) {
@@ -135,13 +124,9 @@ std::string settings_html() {
       "<th>default</th><th>allowed</th><th></th></tr></thead><tbody>\n";
   for (const ParameterInfo& info : parameter_table()) {
     const std::string usual = parameter_text(Parameters{}, info);
-    std::string allowed = fmt::format("{} to {}", info.minimum, info.maximum);
-    if (!info.words.empty()) allowed = fmt::format("{}", fmt::join(info.words, ", "));
-    if (info.kind == FieldInfo::Kind::flag) allowed = "true, false";
-    if (info.has_unit()) allowed += std::string(" ") + info.unit;
     out += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                       info.key, usual.empty() ? "automatic" : escaped_html(usual),
-                       escaped_html(allowed), escaped_html(info.meaning));
+                       info.key, usual.empty() ? "automatic" : escaped(usual),
+                       escaped(allowed_values(info)), escaped(info.meaning));
   }
   return out + "</tbody></table>";
 }
@@ -152,11 +137,11 @@ std::string keys_html(const std::vector<ManualKey>& keys) {
   for (const ManualKey& key : keys) {
     if (group != key.group) {
       out += fmt::format("{}<h2>{}</h2><table><tbody>\n", group.empty() ? "" : "</tbody></table>",
-                         escaped_html(key.group));
+                         escaped(key.group));
       group = key.group;
     }
-    out += fmt::format("<tr><td><kbd>{}</kbd></td><td>{}</td></tr>\n", escaped_html(key.keys),
-                       escaped_html(key.what));
+    out += fmt::format("<tr><td><kbd>{}</kbd></td><td>{}</td></tr>\n", escaped(key.keys),
+                       escaped(key.what));
   }
   return out + "</tbody></table>";
 }

@@ -52,14 +52,6 @@ CLI::Validator whole_number() {
           ""};
 }
 
-// Allowed values of a parameter, as in the help.
-std::string allowed_values(const FieldInfo& info) {
-  if (!info.words.empty()) return fmt::format("{}", fmt::join(info.words, ", "));
-  if (info.kind == FieldInfo::Kind::flag) return "true, false";
-  const std::string unit = info.has_unit() ? std::string(" ") + info.unit : "";
-  return fmt::format("{} to {}{}", info.minimum, info.maximum, unit);
-}
-
 // Plan of a session with its own world and parameters; options override them.
 RunPlan plan_from_session(const InputOptions& options) {
   const Session session = read_session(options.hand);
@@ -304,6 +296,13 @@ void keep_apart(const char* option, const std::filesystem::path& out, const Inpu
   std::vector<std::string> read = input.configs;
   read.insert(read.end(), {input.device, input.scene, input.hand});
   keep_apart(option, out, read);
+}
+
+std::string allowed_values(const FieldInfo& info) {
+  if (!info.words.empty()) return fmt::format("{}", fmt::join(info.words, ", "));
+  if (info.kind == FieldInfo::Kind::flag) return "true, false";
+  const std::string unit = info.has_unit() ? std::string(" ") + info.unit : "";
+  return fmt::format("{} to {}{}", info.minimum, info.maximum, unit);
 }
 
 std::string parameter_help() {

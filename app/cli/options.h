@@ -77,6 +77,8 @@ void keep_apart(const char* option, const std::filesystem::path& out, const Inpu
 // name, is replaced by that one. A similar name is refused with the right one. Errors: UsageError.
 std::function<std::string(std::string)> or_shipped(Kinds kinds);
 
+// Returns the allowed values of a parameter, for people.
+std::string allowed_values(const FieldInfo& info);
 // Help on parameters: every key with its default and allowed values.
 std::string parameter_help();
 // Breaks the texts of all options into lines that fit into a terminal.

@@ -74,8 +74,9 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
   all.notes = plan.arm.warnings;
   plan.document = read_scene_of(options, plan.arm);
   plan.models = build_meshes(plan.document);
-  Parameters fit = fitted(plan.arm, chosen(options, {}));
-  if (const double known = chosen(options, {}).damping; device && std::isnan(known)) {
+  const Parameters asked = chosen(options, {});
+  Parameters fit = fitted(plan.arm, asked);
+  if (device && std::isnan(asked.damping)) {
     if (!std::isnan(fit.damping)) {
       all.notes.push_back(fmt::format(
           "the arm's joints have no damping: gains are fitted as if they had {:.3g} N m s/rad, the "

@@ -38,10 +38,13 @@ class Installed(SystemTest):
     def modules(self) -> Path:
         return next(self.prefix.rglob("limpid/__init__.py")).parent.parent
 
+    def environment(self) -> dict[str, str]:
+        """Of a program that has the installed package, and no other program's name."""
+        others = {name: value for name, value in os.environ.items() if name != "LIMPID"}
+        return {**others, "PYTHONPATH": str(self.modules()), "PYTHONDONTWRITEBYTECODE": "1"}
+
     def python(self, text: str) -> str:
-        environment = {name: value for name, value in os.environ.items() if name != "LIMPID"}
-        return must(PYTHON, "-c", text, env={**environment, "PYTHONPATH": str(self.modules()),
-                                             "PYTHONDONTWRITEBYTECODE": "1"})
+        return must(PYTHON, "-c", text, env=self.environment())
 
     def test_examples_are_built_by_cmake_and_run(self) -> None:
         examples = self.prefix / "share/doc/limpid/examples/library"
@@ -155,9 +158,7 @@ print("alike")
 """), "alike\n")
 
     def test_a_learner_presses_as_hard_as_it_is_asked_to(self) -> None:
-        environment = {name: value for name, value in os.environ.items() if name != "LIMPID"}
-        said = must(PYTHON, self.prefix / "share/doc/limpid/examples/touch_env.py",
-                    env={**environment, "PYTHONPATH": str(self.modules())})
+        said = must(PYTHON, self.prefix / "share/doc/limpid/examples/touch_env.py", env=self.environment())
         self.assertIn("at last 0.50 N", said)
 
     def test_scenes_and_arms_are_values(self) -> None:
@@ -223,8 +224,7 @@ except limpid.LimpidError as error:
     def test_rows_of_a_running_loop_are_sent_over_udp(self) -> None:
         folder = self.directory / "run"
         folder.mkdir(mode=0o700, exist_ok=True)
-        environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "PYTHONPATH": str(self.modules())}
-        environment.pop("LIMPID", None)
+        environment = {**self.environment(), "XDG_RUNTIME_DIR": str(folder)}
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as into:
             into.bind(("127.0.0.1", 0))
             into.settimeout(30)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 namespace {
@@ -47,8 +48,9 @@ limpid::ArmModel arm_of(const mjModel* m) {
 }  // namespace
 
 int main() {
-  std::ofstream("arm.xml") << kArm;
-  mjModel* m = mj_loadXML("arm.xml", nullptr, nullptr, 0);
+  const std::string file = std::filesystem::temp_directory_path() / "limpid_arm.xml";
+  std::ofstream(file) << kArm;
+  mjModel* m = mj_loadXML(file.c_str(), nullptr, nullptr, 0);
   if (m == nullptr) return 1;
   mjData* d = mj_makeData(m);
   d->qpos[1] = 1.2;  // bent
@@ -62,9 +64,7 @@ int main() {
   options.motors = limpid::Motors::simulated;
   limpid::DeviceLoop loop(options, {d->qpos, 2});
   for (int k = 0; k < 3000; ++k) {
-    limpid::DeviceLoop::Reading reading;
-    reading.position = {d->qpos, 2};
-    const auto motors = loop.tick(reading);
+    const auto motors = loop.tick({.position = {d->qpos, 2}});
     mjtNum J[6];
     mj_jacSite(m, d, J, nullptr, 0);
     const double hand = 200 * (goal - d->site_xpos[1]);  // [N], along y
