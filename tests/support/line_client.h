@@ -57,4 +57,14 @@ class LineClient {
   std::string received_;
 };
 
+// Return the answer of a line that grants a request, and the reason of one that refuses it.
+inline nlohmann::json granted(const nlohmann::json& line) {
+  EXPECT_TRUE(line.contains("ok")) << line;
+  return line.value("ok", nlohmann::json());
+}
+inline std::string reason(const nlohmann::json& line) {
+  EXPECT_TRUE(line.contains("error")) << line;
+  return line.value("error", "");
+}
+
 }  // namespace limpid::test

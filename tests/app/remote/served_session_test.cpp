@@ -72,16 +72,8 @@ class Served : public testing::Test {
     until([&] { return (line = client->take()).has_value(); });
     return line.value_or(json());
   }
-  json ask(const json& request) {
-    const json line = answer(request);
-    EXPECT_TRUE(line.contains("ok")) << line;
-    return line.value("ok", json());
-  }
-  std::string refused(const json& request) {
-    const json line = answer(request);
-    EXPECT_TRUE(line.contains("error")) << line;
-    return line.value("error", "");
-  }
+  json ask(const json& request) { return test::granted(answer(request)); }
+  std::string refused(const json& request) { return test::reason(answer(request)); }
   json state() { return ask({{"do", "get"}, {"keys", json::array()}})["state"]; }
   json value(const std::string& channel) {
     return ask({{"do", "row"}, {"channels", {channel}}})["values"][channel];

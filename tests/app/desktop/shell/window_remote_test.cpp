@@ -52,16 +52,8 @@ class LedWindow : public WholeWindow {
     return hear(*client);
   }
   // Return the answer to a request that is granted, and the reason of one that is refused.
-  json ask(const json& request) {
-    const json line = answer(request);
-    EXPECT_TRUE(line.contains("ok")) << line;
-    return line.value("ok", json());
-  }
-  std::string refused(const json& request) {
-    const json line = answer(request);
-    EXPECT_TRUE(line.contains("error")) << line;
-    return line.value("error", "");
-  }
+  json ask(const json& request) { return test::granted(answer(request)); }
+  std::string refused(const json& request) { return test::reason(answer(request)); }
   json state() { return ask({{"do", "get"}, {"keys", json::array()}})["state"]; }
   double eta() const { return desktop->settings.parameters().eta; }
 
