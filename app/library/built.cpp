@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/library/limpid/limpid.h"
 #include "app/run/urdf_writer.h"
 #include "devices/files/rpy.h"
@@ -37,6 +40,11 @@ std::string urdf_text(const ArmModel& arm) {
   ArmDescription out;
   out.name = arm.name;
   for (const ArmJoint& of : arm.joints) {
+    if (of.effort <= 0) {
+      throw LoopError(
+          fmt::format("arm: joint '{}': effort {} is not allowed; allowed: above 0, or kGuessed",
+                      of.name, of.effort));
+    }
     const double unit = of.slides ? kSlideUnit : 1;
     Joint joint;
     joint.name = of.name;
@@ -46,7 +54,7 @@ std::string urdf_text(const ArmModel& arm) {
     joint.axis = vec3(of.axis);
     joint.lower = of.lower / unit;
     joint.upper = of.upper / unit;
-    joint.effort = of.effort * unit;
+    joint.effort = std::isnan(of.effort) ? 0 : of.effort * unit;  // URDF's 0 is guessed
     joint.damping = of.damping * unit * unit;
     joint.friction = of.friction * unit;
     Link link;

@@ -23,6 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+Point3 point3(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
+
 double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
@@ -39,7 +41,27 @@ auto as_library(const Work& work) {
   }
 }
 
-RigStart start_at(const ArmDescription& arm, std::span<const double> position) {
+// Says a joint that is outside of its range, and refuses one that is far outside: such a position
+// is of another device, or has another unit.
+void compare_range(const ArmDescription& arm, std::size_t joint, double x,
+                   std::vector<std::string>& notes) {
+  const Joint& of = arm.joints[joint];
+  if (x >= of.lower && x <= of.upper) return;
+  const double unit = arm.slides(joint) ? kSlideUnit : 1;
+  const std::string range = fmt::format("{:.4g} to {:.4g} {}", of.lower * unit, of.upper * unit,
+                                        arm.slides(joint) ? "m" : "rad");
+  constexpr double kBeyond = 0.1;  // part of the range
+  const double room = kBeyond * (of.upper - of.lower);
+  if (x < of.lower - room || x > of.upper + room) {
+    throw LoopError(fmt::format("position: joint {} has {:.4g}; needed: {}, as the arm has it",
+                                joint + 1, x * unit, range));
+  }
+  notes.push_back(fmt::format("joint {} begins at {:.4g}, outside of its range of {}", joint + 1,
+                              x * unit, range));
+}
+
+RigStart start_at(const ArmDescription& arm, std::span<const double> position,
+                  std::vector<std::string>& notes) {
   if (position.size() != arm.joints.size()) {
     throw LoopError(fmt::format("position: has {} numbers; needed: {}, one a joint",
                                 position.size(), arm.joints.size()));
@@ -52,6 +74,7 @@ RigStart start_at(const ArmDescription& arm, std::span<const double> position) {
                                   position[joint]));
     }
     x[i] = position[joint] / (arm.slides(joint) ? kSlideUnit : 1);
+    compare_range(arm, joint, x[i], notes);
   }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
   return {x, zero, x, zero, zero};
@@ -78,6 +101,7 @@ struct Loop::State {
   }
 
   RunPlan plan;  // its parameters are the loop's present ones
+  Arm<kAnyDof> kinematics;
   std::vector<std::string> notes;
   std::optional<CallerDevice> device;  // of a DeviceLoop
   std::optional<Rig> rig;
@@ -99,6 +123,7 @@ struct Loop::State {
 
 Loop::State::State(LibraryPlan read, const LoopOptions& options)
     : plan(std::move(read.plan)),
+      kinematics(plan.arm),
       notes(std::move(read.notes)),
       real(options.motors == Motors::real),
       layout(plan.layout()),
@@ -170,19 +195,17 @@ double Loop::period() const { return state_->plan.parameters.tick; }
 const std::vector<std::string>& Loop::notes() const { return state_->notes; }
 
 void Loop::set(const std::string& key_value) {
-  as_library([&] { set_live(state_->plan.parameters, key_value); });
+  as_library([&] { set_live(state_->plan.parameters, key_value, state_->device.has_value()); });
   state_->tell_recorder();
 }
 
 void Loop::set(std::string_view key, double value) {
-  as_library([&] { set_live(state_->plan.parameters, key, value); });
+  as_library([&] { set_live(state_->plan.parameters, key, value, state_->device.has_value()); });
   state_->tell_recorder();
 }
 
 double Loop::get(std::string_view key) const {
-  const ParameterInfo* const info = find_parameter(key);
-  if (info == nullptr) throw LoopError(std::string(key) + ": no such key");
-  return parameter_number(state_->plan.parameters, *info);
+  return as_library([&] { return parameter_number(state_->plan.parameters, setting_named(key)); });
 }
 
 const std::vector<RowColumn>& Loop::columns() const { return state_->columns; }
@@ -192,16 +215,22 @@ std::span<const double> Loop::row(std::string_view path) const {
   for (const RowColumn& each : state_->columns) {
     if (each.path == path) return row().subspan(each.offset, each.width);
   }
-  throw LoopError(std::string(path) + ": no such column; columns() has all of them");
+  std::vector<std::string> paths;
+  for (const RowColumn& each : state_->columns) paths.push_back(each.path);
+  throw LoopError(fmt::format("{}: no such column; {}", path, meant_or(path, paths, "columns()")));
 }
 
 double Loop::time() const noexcept {
   return state_->layout.in(std::span<const double>(state_->row), Column::time)[0];
 }
 
-Point3 Loop::tip() const noexcept {
-  const Vec3 at = state_->rig->tip();
-  return {at.x(), at.y(), at.z()};
+Point3 Loop::tip() const noexcept { return point3(state_->rig->tip()); }
+
+Point3 Loop::proxy_tip() const noexcept {
+  const State& s = *state_;
+  if (s.ticks == 0) return tip();
+  const auto x = s.layout.in(std::span<const double>(s.row), Column::proxy_position);
+  return point3(s.kinematics.tip_at(Eigen::Map<const Vec<kAnyDof>>(x.data(), s.plan.arm.dof())));
 }
 
 LoopEnergy Loop::energy() const noexcept {
@@ -245,7 +274,7 @@ DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> posit
         state->device.emplace(state->plan.arm, state->real);
         state->rig.emplace(state->plan.arm, state->plan.document.scene, &*state->device);
         state->rig->limit(limits_of(options.limits));
-        state->begin(start_at(state->plan.arm, position));
+        state->begin(start_at(state->plan.arm, position, state->notes));
         return state;
       })) {}
 

@@ -13,6 +13,7 @@
 #include "app/run/shipped_files.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
+#include "devices/files/toml_reader.h"
 #include "devices/files/urdf_file.h"
 
 namespace limpid {
@@ -60,6 +61,12 @@ Parameters chosen(const LoopOptions& options, Parameters base) {
   return base;
 }
 
+// Refuses a setting of the simulated hand where a person's hand is.
+void refuse_hand(std::string_view key, bool device) {
+  if (!device || !key.starts_with("hand.")) return;
+  throw FieldError(fmt::format("{}: is of the simulated hand, which a DeviceLoop has not", key));
+}
+
 void refuse_fixed(const ParameterInfo& info) {
   if (info.live) return;
   throw FieldError(std::string(info.key) + ": is fixed once the loop is made; make another loop");
@@ -68,6 +75,7 @@ void refuse_fixed(const ParameterInfo& info) {
 }  // namespace
 
 LibraryPlan read_plan(const LoopOptions& options, bool device) {
+  for (const std::string& setting : options.settings) refuse_hand(setting, device);
   LibraryPlan all;
   RunPlan& plan = all.plan;
   plan.arm = read_arm(options);
@@ -130,7 +138,20 @@ SafetyLimits limits_of(const LoopLimits& wanted) {
   return limits;
 }
 
-void set_live(Parameters& p, const std::string& key_value) {
+std::string meant_or(std::string_view name, const std::vector<std::string>& all, const char* list) {
+  const auto meant = nearest(name, all);
+  return meant ? fmt::format("did you mean {}?", *meant) : fmt::format("{} has all of them", list);
+}
+
+const ParameterInfo& setting_named(std::string_view key) {
+  if (const ParameterInfo* const info = find_parameter(key)) return *info;
+  std::vector<std::string> keys;
+  for (const ParameterInfo& each : parameter_table()) keys.emplace_back(each.key);
+  throw FieldError(fmt::format("{}: no such key; {}", key, meant_or(key, keys, "setting_list()")));
+}
+
+void set_live(Parameters& p, const std::string& key_value, bool device) {
+  refuse_hand(key_value, device);
   Parameters changed = p;
   apply_setting(changed, key_value);
   for (const ParameterInfo& info : parameter_table()) {
@@ -139,13 +160,12 @@ void set_live(Parameters& p, const std::string& key_value) {
   p = changed;
 }
 
-void set_live(Parameters& p, std::string_view key, double value) {
-  const ParameterInfo* const info = find_parameter(key);
-  if (info == nullptr)
-    throw FieldError(std::string(key) + ": no such key; setting_list() has all of them");
-  refuse_fixed(*info);
-  if (info->kind == FieldInfo::Kind::flag) return set_value(*info, p, value != 0);
-  set_value(*info, p, value);
+void set_live(Parameters& p, std::string_view key, double value, bool device) {
+  refuse_hand(key, device);
+  const ParameterInfo& info = setting_named(key);
+  refuse_fixed(info);
+  if (info.kind == FieldInfo::Kind::flag) return set_value(info, p, value != 0);
+  set_value(info, p, value);
 }
 
 }  // namespace limpid

@@ -26,8 +26,15 @@ HandPath hand_of_rows(std::span<const double> rows);
 // Returns limits of the loop's safety layer. Errors: FieldError for one that is not allowed.
 SafetyLimits limits_of(const LoopLimits& wanted);
 
-// Sets one setting of a loop that is made. Errors: FieldError.
-void set_live(Parameters& p, const std::string& key_value);
-void set_live(Parameters& p, std::string_view key, double value);
+// Returns the setting of that key. Errors: FieldError.
+const ParameterInfo& setting_named(std::string_view key);
+
+// Returns "did you mean X?" if one of all has nearly that name, else where all are: `list`.
+std::string meant_or(std::string_view name, const std::vector<std::string>& all, const char* list);
+
+// Sets one setting of a loop that is made, of a device's or of the simulated arm's. Errors:
+// FieldError.
+void set_live(Parameters& p, const std::string& key_value, bool device);
+void set_live(Parameters& p, std::string_view key, double value, bool device);
 
 }  // namespace limpid

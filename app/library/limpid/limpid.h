@@ -29,6 +29,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -92,7 +93,8 @@ struct LoopOptions {
   // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
   // setting_list() has all of them. The law is "proposed" unless coupling.kind says another. Gains
   // that no setting names are fitted to the arm. Of a device say the step of its encoders,
-  // device.encoder_step, and its delay in ticks, model.delay.
+  // device.encoder_step, and its delay in ticks, model.delay. hand.* is
+  // the simulated hand's; a DeviceLoop refuses it.
   std::vector<std::string> settings;
   // Time from a tick to the next, 1e-5 to 0.1 s: what your loop keeps. Faster loops render stiffer
   // walls. Most of what Limpid promises was tried at 0.001.
@@ -113,6 +115,8 @@ struct SettingInfo {
 };
 LIMPID_API std::vector<SettingInfo> setting_list();
 
+constexpr double kGuessed = std::numeric_limits<double>::quiet_NaN();
+
 // A joint and the link that it moves. Its frame is that of its origin; the axis is in it.
 struct ArmJoint {
   std::string name;                    // Unique in the arm.
@@ -121,7 +125,9 @@ struct ArmJoint {
   Point3 rpy{};                        // Roll, pitch and yaw of the origin [rad].
   Point3 axis{0, 0, 1};                // Any length but 0.
   double lower = -3.14, upper = 3.14;  // Range [rad or m]; it contains the real device's.
-  double effort = 0;    // Motor's largest torque or force [N m or N]; 0: guessed, see notes().
+  // Motor's largest torque or force, above 0 [N m or N]. kGuessed: twice what holds the arm
+  // stretched out; notes() say how much.
+  double effort = kGuessed;
   double damping = 0;   // b_d, viscous [N m s/rad or N s/m]: only what is measured: too much lets
                         // the loop give energy.
   double friction = 0;  // Coulomb's [N m or N].
@@ -135,7 +141,7 @@ struct ArmModel {
   std::vector<ArmJoint> joints;  // 1 to 32, base first
   Point3 tip{};                  // in the last joint's frame [m]
 };
-// Returns the arm as URDF, for LoopOptions::arm_text or a file.
+// Returns the arm as URDF, for LoopOptions::arm_text or a file. Errors: an effort of 0 or less.
 LIMPID_API std::string urdf_text(const ArmModel& arm);
 
 // Surface of an object. Stiffness up to 1e6, damping up to 1000, friction 0 to 1.
@@ -209,7 +215,8 @@ class LIMPID_API Loop {
   std::span<const double> row() const noexcept;
   std::span<const double> row(std::string_view path) const;  // Errors: no such column.
   double time() const noexcept;                              // t_k [s]
-  Point3 tip() const noexcept;                               // of the device
+  Point3 tip() const noexcept;                               // of the device [m]
+  Point3 proxy_tip() const noexcept;  // of the proxy, and of the device before the first tick [m]
   LoopEnergy energy() const noexcept;
   // True once the loop was unstable: force is off, and stays off.
   bool diverged() const noexcept;
@@ -244,7 +251,9 @@ class LIMPID_API DeviceLoop : public Loop {
     double elapsed = 0;
   };
 
-  // `position`: of each joint now, where the proxy begins. Errors: LoopError.
+  // `position`: of each joint now, where the proxy begins. notes() say which joint is outside of
+  // its range. Errors: LoopError, also for a joint that is outside by more than a tenth of its
+  // range.
   DeviceLoop(const LoopOptions& options, std::span<const double> position);
 
   // Runs the tick and returns each joint's torque or force, to be held until the next one; valid

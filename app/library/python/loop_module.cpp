@@ -112,6 +112,7 @@ void declare_loops(py::module_& module) {
       .def_property_readonly("diverged", &Loop::diverged)
       .def_property_readonly("time", &Loop::time)
       .def_property_readonly("tip", &Loop::tip)
+      .def_property_readonly("proxy_tip", &Loop::proxy_tip)
       .def("set", py::overload_cast<const std::string&>(&Loop::set))
       .def("get", &Loop::get)
       .def("row", [](const Loop& loop) { return copied(loop.row()); })

@@ -23,6 +23,8 @@ from limpid.runs import run, sweep
 from limpid.session import Contact, Session, session
 from limpid.worlds import Arm, Scene
 
+__version__ = "0.2.0"
+
 __all__ = [
     "Answer", "Arm", "ArgumentError", "Channels", "Client", "Contact", "DeviceLoop", "Energy", "LimpidError",
     "Loop", "ProgramError", "RecordingError", "RequestError", "Rows", "Run", "RunWarning", "Scene", "Session",

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, 
 
 from limpid.errors import ArgumentError, LimpidError, ProgramError
 from limpid.program import find_program
-from limpid.values import PathLike, Value, hand_rows, is_path, names_of, number, path_of, settings_of, text_of
+from limpid.values import PathLike, Value, hand_rows, is_path, names_of, no_channel, number, path_of, settings_of, text_of
 from limpid.worlds import Arm, Scene
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Channels(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         known = name.lstrip("/") if isinstance(name, str) else name
         if known not in self._places:
-            raise NoChannel(f"{name} is no channel; there are {', '.join(self._places)}")
+            raise NoChannel(no_channel(name, self._places))
         offset, width = self._places[known]
         if width == 1 and known not in SHAPES:
             found = self.values_of_all[..., offset]
@@ -127,6 +127,11 @@ class _AnyLoop:
     def tip(self) -> Tuple[float, float, float]:
         """The device's tip [m]."""
         return tuple(self._loop.tip)  # type: ignore[return-value]
+
+    @property
+    def proxy_tip(self) -> Tuple[float, float, float]:
+        """The proxy's tip; before the first tick the device's [m]."""
+        return tuple(self._loop.proxy_tip)  # type: ignore[return-value]
 
     @property
     def row(self) -> Channels:
@@ -208,7 +213,7 @@ class Loop(_AnyLoop):
             places, kept = {}, []
             for name in dict.fromkeys(["time", *(each.lstrip("/") for each in names_of("channels", channels))]):
                 if name not in self._places:
-                    raise ArgumentError(f"{name} is no channel; there are {', '.join(self._places)}")
+                    raise ArgumentError(no_channel(name, self._places))
                 offset, width = self._places[name]
                 places[name] = (len(kept), width)
                 kept += range(offset, offset + width)

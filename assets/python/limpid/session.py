@@ -10,7 +10,7 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from limpid.errors import LimpidError
-from limpid.values import PathLike, names_of, path_of
+from limpid.values import PathLike, names_of, no_channel, path_of
 
 if TYPE_CHECKING:
     import numpy
@@ -120,7 +120,7 @@ class _Recording:
         name = name.lstrip("/")
         if name in self.units:
             return name
-        raise LimpidError(f"{self.file}: {name} is no channel; there are {', '.join(self.units)}")
+        raise LimpidError(f"{self.file}: {no_channel(name, self.units)}")
 
     def channel(self, name: str) -> "numpy.ndarray":
         import numpy

@@ -6,6 +6,7 @@ further than here.
 
 from __future__ import annotations
 
+import difflib
 import math
 import numbers
 import os
@@ -17,6 +18,13 @@ PathLike = Union[str, "os.PathLike[str]"]
 Hand = Union[PathLike, Iterable[Sequence[float]]]
 Value = Union[bool, int, float, str]
 FEWEST_ROWS = 2
+
+
+def no_channel(name: Any, known: Iterable[str]) -> str:
+    """The sentence that says so, with the one of nearly that name."""
+    among = list(known)
+    near = difflib.get_close_matches(str(name).lstrip("/"), among, n=1)
+    return f"{name} is no channel; " + (f"did you mean {near[0]}? " if near else "") + f"there are {', '.join(among)}"
 
 
 def plain(name: str, value: Any) -> Value:

@@ -12,7 +12,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Seque
 
 from limpid.errors import ArgumentError, LimpidError
 from limpid.program import assets
-from limpid.values import PathLike, path_of
+from limpid.values import PathLike, number, path_of
 
 KINDS = ("plane", "sphere", "box", "cylinder", "capsule", "mesh", "joint_contact", "body", "spring", "probe", "visual")
 
@@ -120,8 +120,12 @@ class Arm:
         xml.SubElement(joint, "parent", link=parent)
         xml.SubElement(joint, "child", link=link)
         xml.SubElement(joint, "axis", xyz=_numbers("axis", given.pop("axis", (0, 0, 1))))
+        effort = given.pop("effort", None)
+        if effort is not None and not number("effort", effort) > 0:
+            raise ArgumentError(f"joint {name}: effort {effort} is not allowed; allowed: above 0, or none: "
+                                "what holds the arm stretched out, twice")  # fmt: skip
         limit = {"lower": given.pop("lower", -3.14), "upper": given.pop("upper", 3.14),
-                 "effort": given.pop("effort", 0), "velocity": 10}  # fmt: skip
+                 "effort": effort or 0, "velocity": 10}  # fmt: skip
         xml.SubElement(joint, "limit", {key: _number(key, value) for key, value in limit.items()})
         dynamics = {key: given.pop(key, 0) for key in ("damping", "friction")}
         xml.SubElement(joint, "dynamics", {key: _number(key, value) for key, value in dynamics.items()})

@@ -307,6 +307,48 @@ TEST(DeviceLoop, MakesUpNoDamping) {
   EXPECT_GT(simulated.get("device.damping"), 0);
 }
 
+TEST(DeviceLoop, SaysAStartOutsideOfTheRangeAndRefusesOneFarOutside) {
+  // The slide goes from -0.2 to 0.2 m.
+  const DeviceLoop near(slide(), std::array{0.21});
+  EXPECT_THAT(near.notes(), testing::Contains(HasSubstr("joint 1 begins at 0.21")));
+  const DeviceLoop inside(slide(), std::array{0.19});
+  EXPECT_THAT(inside.notes(), testing::Not(testing::Contains(HasSubstr("begins at"))));
+  try {
+    const DeviceLoop far(slide(), std::array{-0.25});
+    FAIL();
+  } catch (const LoopError& error) {
+    EXPECT_STREQ(error.what(),
+                 "position: joint 1 has -0.25; needed: -0.2 to 0.2 m, as the arm has it");
+  }
+}
+
+TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHand) {
+  LoopOptions options = slide();
+  options.settings.emplace_back("hand.stiffness=300");
+  EXPECT_THROW(DeviceLoop(options, std::array{0.0}), LoopError);
+  EXPECT_NO_THROW(SimulatedLoop{options});
+  DeviceLoop loop(slide(), std::array{0.0});
+  EXPECT_THROW(loop.set("hand.damping=5"), LoopError);
+  EXPECT_THROW(loop.set("hand.damping", 5), LoopError);
+}
+
+// A spring of the wall's k and the coupling's k_vc in a row: the proxy is where both hold as much.
+TEST(DeviceLoop, TellsWhereTheProxysTipIs) {
+  LoopOptions options = slide();
+  options.motors = Motors::simulated;
+  options.settings = {"coupling.kind=standard"};
+  const std::array<double, 1> x{0.01};
+  DeviceLoop loop(options, std::array{-0.01});
+  EXPECT_EQ(loop.proxy_tip(), loop.tip());
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  std::span<const double> torque;
+  for (int k = 0; k < 5000; ++k) torque = loop.tick(reading);
+  EXPECT_NEAR(loop.tip()[0], 0.01, 1e-12);
+  EXPECT_NEAR(loop.proxy_tip()[0], -torque[0] / 500, 1e-5);
+  EXPECT_NEAR(loop.proxy_tip()[0], loop.row("/proxy/position")[0], 1e-9);
+}
+
 TEST(DeviceLoop, RecordsWhatItsRowsWere) {
   const test::TempDir dir;
   const auto file = (dir / "own.h5").string();
@@ -377,7 +419,8 @@ TEST(Loops, SayWhatIsNotAllowed) {
   EXPECT_THAT(refusal([&] { loop.set("loop.tick", 0.002); }), HasSubstr("fixed"));
   EXPECT_THAT(refusal([&] { loop.set("loop.tick=0.002"); }), HasSubstr("fixed"));
   EXPECT_THAT(refusal([&] { loop.set("coupling.eta", 1e9); }), HasSubstr("allowed"));
-  EXPECT_THAT(refusal([&] { (void)loop.row("/device/place"); }), HasSubstr("no such column"));
+  EXPECT_THAT(refusal([&] { (void)loop.row("/device/positon"); }),
+              HasSubstr("no such column; did you mean /device/position?"));
   loop.set("coupling.kind=standard");
   EXPECT_EQ(loop.get("coupling.kind"), 0);
 }
