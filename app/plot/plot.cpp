@@ -1,5 +1,6 @@
 #include "app/plot/plot.h"
 
+#include <fmt/format.h>
 #include <imgui_internal.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "app/plot/axis.h"
 #include "app/plot/plot_frame.h"
 #include "app/style/ticks.h"
+#include "core/coupling/laws.h"
 
 namespace limpid {
 
@@ -56,7 +58,13 @@ std::string value_text(const PlotAxis& axis, const AxisMap& map, double value) {
   return number_text(axis, map, value) + " " + axis.unit;
 }
 
-Rgb ink_of(const PlotFrame& frame, const Curve& curve) { return colour_of(frame.palette, curve); }
+// Returns the curve's name in this row: of a part that another law made, both laws.
+std::string label_at(const History& history, const Curve& curve, SampleIndex row) {
+  const int law = law_at(history, curve, row);
+  if (curve.law < 0 || law < 0 || law == curve.law) return curve.label;
+  return fmt::format("{}, now {}", info(CouplingKind{static_cast<std::uint8_t>(law)}).key,
+                     curve.label);
+}
 
 std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
                                 const History& history, SampleIndex row) {
@@ -73,7 +81,10 @@ std::vector<Line> visible_lines(const PlotFrame& frame, const PlotSpec& spec,
       x = frame.x_of(across);
       text += ", " + value_text(spec.x, frame.x, across);
     }
-    lines.push_back({curve.label, std::move(text), ink_of(frame, curve), {x, frame.y_of(value)}});
+    lines.push_back({label_at(history, curve, row),
+                     std::move(text),
+                     colour_of(frame.palette, curve, law_at(history, curve, row)),
+                     {x, frame.y_of(value)}});
   }
   return lines;
 }
@@ -385,9 +396,8 @@ void Plot::draw_curves(const PlotFrame& frame, const History& history) {
     }
     const bool pointed_at = hovered_curve_ == static_cast<int>(i);
     const float emphasis = hovered_curve_ < 0 ? 1.0f : pointed_at ? 1.5f : 0.3f;
-    const Rgb rgb = colour_of(frame.palette, curve);
-    draw_trace(frame, traces_[i], rgb, emphasis);
-    draw_run_signs(frame, traces_[i], curve.sign, colour(rgb, std::min(1.0f, emphasis)));
+    draw_trace(frame, traces_[i], curve, emphasis);
+    draw_run_signs(frame, traces_[i], curve, emphasis);
   }
   const bool nothing = history.empty() || spec_.curves.empty();
   if (!nothing) return;
@@ -632,7 +642,7 @@ void draw_spectrum_read_out(const PlotFrame& frame, const PlotSpec& spec,
     at = static_cast<double>(best) * s.step;
     lines.push_back({spec.curves[i].label,
                      value_text(spec.y, frame.y, s.amplitude[best]),
-                     ink_of(frame, spec.curves[i]),
+                     colour_of(frame.palette, spec.curves[i]),
                      {x + 0.5f, frame.y_of(s.amplitude[best])}});
   }
   if (lines.empty()) return;
@@ -684,7 +694,7 @@ void draw_end_labels(const PlotFrame& frame, const PlotSpec& spec, const History
     const bool nothing = std::abs(value) < 1e-6 * frame.y.limits.span();  // beside the others
     lines.push_back({"",
                      short_text(nothing ? 0 : value * spec.y.factor / std::pow(10.0, exponent)),
-                     ink_of(frame, curve),
+                     colour_of(frame.palette, curve, law_at(history, curve, row)),
                      {0, frame.y_of(value)}});
   }
   std::ranges::sort(lines, {}, [](const Line& line) { return line.at.y; });

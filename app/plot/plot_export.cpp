@@ -333,8 +333,9 @@ class PlotDrawing {
         const auto tint = static_cast<double>(each.tint);
         if (each.laws) {
           const Rgb law = law_ink(palette_, stretch.said);
-          canvas_->rect(box, law, tint);
-          canvas_->rect({box.left, box.top, box.width, kSvgEdge}, law, 1);
+          if (each.lane < 0) canvas_->rect(box, law, tint);
+          const double edge = box.top + (kSvgEdge + 1) * std::max(0, each.lane);
+          canvas_->rect({box.left, edge, box.width, kSvgEdge}, law, 1);
         } else if (each.striped) {
           canvas_->stripes(box, palette_.muted);
         } else {
@@ -369,9 +370,9 @@ class PlotDrawing {
       }
       for (const TraceRun& run : trace.runs) {
         const auto points = std::span(trace.points).subspan(run.first, run.count);
-        const Rgb rgb = colour_of(palette_, curve);
+        const Rgb rgb = colour_of(palette_, curve, run.law);
         trace.band ? band(points, rgb) : polyline(points, rgb);
-        if (spec_.kind == PlotKind::time) signs(points, curve);
+        if (spec_.kind == PlotKind::time) signs(points, curve.sign, rgb);
       }
     }
   }
@@ -389,18 +390,25 @@ class PlotDrawing {
     canvas_->polygon(outline, rgb, kLine);
   }
 
-  void sign(double x, double y, const Curve& curve) {
-    const Rgb back = paper_of(palette_), rgb = colour_of(palette_, curve);
-    if (curve.sign == RunSign::square) canvas_->square({x, y}, kSvgSign, rgb, back);
-    if (curve.sign == RunSign::ring) canvas_->ring({x, y}, kSvgSign, rgb, back);
+  void sign(double x, double y, RunSign sign, Rgb rgb) {
+    const Rgb back = paper_of(palette_);
+    if (sign == RunSign::square) canvas_->square({x, y}, kSvgSign, rgb, back);
+    if (sign == RunSign::ring) canvas_->ring({x, y}, kSvgSign, rgb, back);
+    if (sign != RunSign::triangle) return;
+    const auto triangle = [&](double r, Rgb fill) {
+      const std::array<Point, 3> corners{{{x, y - r}, {x + r, y + 0.8 * r}, {x - r, y + 0.8 * r}}};
+      canvas_->polygon(corners, fill, 0);
+    };
+    triangle(kSvgSign + 2, back);
+    triangle(kSvgSign, rgb);
   }
 
-  void signs(std::span<const TracePoint> points, const Curve& curve) {
+  void signs(std::span<const TracePoint> points, RunSign each, Rgb rgb) {
     double next = left_ + kSvgBetween / 2;
     for (const TracePoint& p : points) {
       const double x = x_at((static_cast<double>(p.x) - first_column_) / columns_);
       if (x < next) continue;
-      sign(x, y_of(0.5 * static_cast<double>(p.low + p.high)), curve);
+      sign(x, y_of(0.5 * static_cast<double>(p.low + p.high)), each, rgb);
       next = kSvgBetween * std::ceil((x - left_) / kSvgBetween + 0.5) + left_ - kSvgBetween / 2;
     }
   }
@@ -417,7 +425,7 @@ class PlotDrawing {
       if (!curve.visible) continue;
       const double y = picture_.height - 10;
       canvas_->line({x, y - 4}, {x + 18, y - 4}, colour_of(palette_, curve), kLine, 0, 0);
-      sign(x + 9, y - 4, curve);
+      sign(x + 9, y - 4, curve.sign, colour_of(palette_, curve));
       label(x + 23, y, Anchor::start, palette_.text, curve.label);
       x += 40 + 0.6 * kCanvasFont * static_cast<double>(curve.label.size());
     }

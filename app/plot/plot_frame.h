@@ -79,12 +79,13 @@ void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const Histor
 // Returns the time of the note under the mouse; nothing without one.
 std::optional<double> note_near(const PlotFrame& frame, const History& history, ImVec2 mouse);
 
-// Draws a curve; `emphasis` below 1 fades it, above 1 thickens it.
-void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis);
+// Draws a curve, each part in the colour of what made it; `emphasis` below 1 fades it, above 1
+// thickens it.
+void draw_trace(const PlotFrame& frame, const Trace& trace, const Curve& curve, float emphasis);
 
 // Draws signs that tell a second run's curve from the first one's; over time they move with the
 // data.
-void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, ImU32 rgba);
+void draw_run_signs(const PlotFrame& frame, const Trace& trace, const Curve& curve, float emphasis);
 // Draws one sign around a point.
 void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 back, float scale);
 

@@ -353,6 +353,7 @@ void for_stretches(const PlotFrame& frame, const Band& band, const History& hist
 // Draws the names of a band at `line`, counted from the top; each band has its own.
 void draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
                 const std::vector<SampleIndex>& rows) {
+  const auto edges = static_cast<float>(std::max(1, band.lane + 1));
   float free_from = frame.area.min.x;
   int before = -1;
   for_stretches(frame, band, history, rows, [&](int now, float left, float right) {
@@ -366,7 +367,7 @@ void draw_names(const PlotFrame& frame, const Band& band, float line, const Hist
     if (frame.area.height() < 6 * label.y) return;
     // A short time under another law is a line without a name.
     if (!band.names.front().empty() && right - left < label.x) return;
-    const float y = frame.area.min.y + kLawEdge * frame.scale + line * label.y;
+    const float y = frame.area.min.y + edges * (kLawEdge * frame.scale + 1) + line * label.y;
     draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
                      0.85f);
     free_from = x + label.x + 12 * frame.scale;
@@ -406,7 +407,7 @@ void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset)
   }
 }
 
-void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float emphasis) {
+void draw_trace(const PlotFrame& frame, const Trace& trace, const Curve& curve, float emphasis) {
   const float thickness = kThickness * frame.scale * std::max(1.0f, emphasis);
   const float half = trace.band ? 0.5f * (thickness - 1) : 0;
   const float alpha = std::min(1.0f, emphasis);
@@ -419,7 +420,7 @@ void draw_trace(const PlotFrame& frame, const Trace& trace, Rgb rgb, float empha
           {frame.area.min.x + p.x, frame.y_of(p.high) - half, frame.y_of(p.low) + half});
     }
     if (!trace.wanders) simplify(on_screen);
-    const ImU32 solid = colour(rgb, alpha);
+    const ImU32 solid = colour(colour_of(frame.palette, curve, run.law), alpha);
     if (trace.band) {
       draw_band(frame.list, on_screen, solid);
     } else {
@@ -449,8 +450,9 @@ void draw_run_sign(ImDrawList& list, ImVec2 at, RunSign sign, ImU32 rgba, ImU32 
 }
 
 // Draws signs at whole distances along the time axis, or along the curve if that wanders.
-void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, ImU32 rgba) {
-  if (sign == RunSign::none) return;
+void draw_run_signs(const PlotFrame& frame, const Trace& trace, const Curve& curve,
+                    float emphasis) {
+  if (curve.sign == RunSign::none) return;
   const float apart = std::round(kBetweenSigns * frame.scale);
   const auto place = [&](const TracePoint& p) {
     return ImVec2{frame.area.min.x + p.x, 0.5f * (frame.y_of(p.low) + frame.y_of(p.high))};
@@ -459,6 +461,7 @@ void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, Im
                                       : std::fmod(static_cast<double>(frame.window.first_pixel),
                                                   static_cast<double>(apart));
   for (const TraceRun& run : trace.runs) {
+    const ImU32 rgba = colour(colour_of(frame.palette, curve, run.law), std::min(1.0f, emphasis));
     double way = 0;
     for (std::size_t i = run.first; i + 1 < run.first + run.count; ++i) {
       const ImVec2 from = place(trace.points[i]), to = place(trace.points[i + 1]);
@@ -469,8 +472,8 @@ void draw_run_signs(const PlotFrame& frame, const Trace& trace, RunSign sign, Im
       if (step > 0 && next <= way + step) {
         const auto part = static_cast<float>((next - way) / step);
         draw_run_sign(frame.list,
-                      {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)}, sign,
-                      rgba, colour(frame.palette.panel), frame.scale);
+                      {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)},
+                      curve.sign, rgba, colour(frame.palette.panel), frame.scale);
       }
       way += step;
     }
@@ -579,10 +582,13 @@ void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& his
       if (band.striped && now > 0) return draw_stripes(frame, left, right);
       if (band.laws) {
         const Rgb law = law_ink(frame.palette, now);
-        frame.list.AddRectFilled({left, frame.area.min.y}, {right, frame.area.max.y},
-                                 colour(law, band.tint));
-        frame.list.AddRectFilled({left, frame.area.min.y},
-                                 {right, frame.area.min.y + kLawEdge * frame.scale}, colour(law));
+        const float edge = kLawEdge * frame.scale;
+        const float top =
+            frame.area.min.y + (edge + 1) * static_cast<float>(std::max(0, band.lane));
+        if (band.lane < 0) {
+          frame.list.AddRectFilled({left, top}, {right, frame.area.max.y}, colour(law, band.tint));
+        }
+        frame.list.AddRectFilled({left, top}, {right, top + edge}, colour(law));
         return;
       }
       if (now == 0) return;

@@ -34,12 +34,20 @@ struct Curve {
   Ink ink = Ink::neutral;
   float shade = 0;  // see ink()
   bool visible = true;
-  int law = -1;  // the curve has this law's colour instead of its thing's
+  int law = -1;  // of now: the curve has its colour instead of its thing's
+  // Channel of the law that made each value: parts of another law have that one's colour.
+  int law_channel = -1;
   RunSign sign = RunSign::none;
 };
 inline Rgb colour_of(const Palette& palette, const Curve& curve) {
   const Rgb pure = curve.law < 0 ? ink(palette, curve.ink) : law_ink(palette, curve.law);
   return shaded(palette, pure, curve.shade);
+}
+
+// Returns the colour of a part that this law made; -1: the law of now.
+inline Rgb colour_of(const Palette& palette, const Curve& curve, int made_by) {
+  if (curve.law < 0 || made_by < 0 || made_by == curve.law) return colour_of(palette, curve);
+  return law_ink(palette, made_by);
 }
 
 struct Threshold {
@@ -59,6 +67,7 @@ struct Band {
   bool striped = false;
   // Values are coupling laws: each, 0 too, has its colour, and an edge of it at the top.
   bool laws = false;
+  int lane = -1;  // of laws in several lanes: an edge of this lane's place alone, without a tint
   // Key of marks that say the same as the band: they have no label while it is seen.
   std::string key = {};
 };

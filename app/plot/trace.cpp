@@ -27,6 +27,12 @@ std::vector<BandStretch> band_stretches(const Band& band, const History& history
   return stretches;
 }
 
+int law_at(const History& history, const Curve& curve, SampleIndex row) {
+  if (curve.law_channel < 0) return -1;
+  const float law = history.value(curve.law_channel, row);
+  return std::isfinite(law) ? static_cast<int>(std::lround(law)) : -1;
+}
+
 namespace {
 
 // Extends two neighbouring bands to the middle of the step between them: no holes where steep.
@@ -56,7 +62,7 @@ void trace_bands(const History& history, const Curve& curve, const std::vector<S
         close_step(pen.last(), point, before, after);
       }
     }
-    pen.put(point);
+    pen.put(point, law_at(history, curve, from));
   }
 }
 
@@ -69,7 +75,8 @@ void trace_samples(const History& history, const Curve& curve, const PixelWindow
     const float value = history.value(curve.channel, row);
     if (!std::isfinite(value) || history.gap_before(row)) pen.lift();
     if (!std::isfinite(value)) continue;
-    pen.put({static_cast<float>(window.pixel(history.time(row))), value, value});
+    pen.put({static_cast<float>(window.pixel(history.time(row))), value, value},
+            law_at(history, curve, row));
   }
 }
 
@@ -125,7 +132,8 @@ void make_cross_trace(const History& history, const Curve& curve, SampleIndex fr
     if (pen.down() && std::max(std::abs(x - last_x), std::abs(y - last_y)) < kApart) continue;
     last_x = x;
     last_y = y;
-    pen.put({static_cast<float>(std::clamp(x, -1e5, 1e5)), value, value});
+    pen.put({static_cast<float>(std::clamp(x, -1e5, 1e5)), value, value},
+            law_at(history, curve, row));
   }
 }
 

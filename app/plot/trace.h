@@ -50,11 +50,15 @@ struct TracePoint {
   float high;
 };
 
-// A run of points that are joined to one another.
+// A run of points that are joined to one another. `law` made them; -1: not asked for.
 struct TraceRun {
   std::size_t first;
   std::size_t count;
+  int law;
 };
+
+// Returns the law that made the curve's value of this row; -1 where the curve does not ask.
+int law_at(const History& history, const Curve& curve, SampleIndex row);
 
 struct Trace {
   bool band = false;     // a point holds the extent of all samples of a pixel
@@ -75,9 +79,15 @@ class TracePen {
 
   void lift() { down_ = false; }
 
-  // Joins the point to the one before while the pen is down.
-  void put(const TracePoint& point) {
-    if (!down_) trace_.runs.push_back({trace_.points.size(), 0});
+  // Joins the point to the one before while the pen is down. Where another law begins, so does a
+  // run, at the end of the one before.
+  void put(const TracePoint& point, int law = -1) {
+    const bool other = down_ && trace_.runs.back().law != law;
+    if (!down_ || other) trace_.runs.push_back({trace_.points.size(), 0, law});
+    if (other) {
+      trace_.points.push_back(TracePoint(last()));
+      ++trace_.runs.back().count;
+    }
     down_ = true;
     trace_.points.push_back(point);
     ++trace_.runs.back().count;

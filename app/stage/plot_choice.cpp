@@ -1,5 +1,7 @@
 #include "app/stage/plot_choice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -76,6 +78,11 @@ void tell_apart(Curve& curve, const std::vector<Curve>& others) {
   }
 }
 
+// Returns the channel of a run's law.
+int law_channel(std::size_t run, const TraceChannels& channels) {
+  return static_cast<int>(Channel::kind) + static_cast<int>(run) * channels.count();
+}
+
 // Returns the curve of the same channel of a further run.
 Curve of_run(std::size_t run, const Curve& first, std::size_t number, const TraceChannels& channels,
              const RunNames& names) {
@@ -89,10 +96,12 @@ Curve of_run(std::size_t run, const Curve& first, std::size_t number, const Trac
     const auto before = std::span(names.laws).first(std::min(run, names.laws.size()));
     const bool another = curve.law >= 0 && std::ranges::count(before, names.law(run)) == 0;
     if (curve.law >= 0) curve.law = names.law(run);
+    if (curve.law >= 0) curve.law_channel = law_channel(run, channels);
     if (!another) curve.shade = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
   } else {
     curve.sign = RunSign::ring;
-    curve.law = -1;
+    curve.law = names.law(run);
+    curve.law_channel = curve.law >= 0 ? law_channel(run, channels) : -1;
     curve.ink = Ink::rerun;
     curve.shade = kShades[number % kShades.size()];
   }
@@ -122,16 +131,29 @@ Band force_band(int channel) {
   return band;
 }
 
-// Returns bands for the law of a single run, for motors at their limit, and for missing force.
-std::vector<Band> bands(const TraceChannels& channels, bool single) {
+// Returns the band of a run's law; of several runs at once each has an edge of its own.
+Band law_band(std::size_t run, const TraceChannels& channels, const RunNames& names) {
+  Band laws{
+      .channel = law_channel(run, channels), .tint = 0.12f, .laws = true, .key = "coupling.kind"};
+  std::string whose;
+  if (names.several()) {
+    laws.lane = static_cast<int>(run);
+    laws.key = (run == kMainLane ? "" : lane_mark(run)) + laws.key;
+    whose =
+        names.names.size() == 2 ? (run == 0 ? "left " : "right ") : fmt::format("run {} ", run + 1);
+  }
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    laws.names.push_back(whose + info(CouplingKind{i}).key);
+  }
+  return laws;
+}
+
+// Returns bands for the laws of runs, for motors at their limit, and for missing force.
+std::vector<Band> bands(const TraceChannels& channels, const RunNames& names) {
   std::vector<Band> bands;
-  if (single) {
-    Band laws{.channel = static_cast<int>(Channel::kind),
-              .tint = 0.12f,
-              .laws = true,
-              .key = "coupling.kind"};
-    for (std::uint8_t i = 0; i < kLaws; ++i) laws.names.emplace_back(info(CouplingKind{i}).key);
-    bands.push_back(std::move(laws));
+  const bool again = names.several() && !names.beside;  // a re-run lies over the first
+  for (std::size_t run = 0; run < std::max<std::size_t>(1, names.names.size()) && !again; ++run) {
+    bands.push_back(law_band(run, channels, names));
   }
   bands.push_back({static_cast<int>(Channel::limited), {"", "motor at its limit"}});
   bands.push_back(force_band(*channels.find("device/force_state")));
@@ -172,6 +194,13 @@ std::vector<PlotChoice> default_plots() {
        .channels = {"coordination/error"}}};
 }
 
+std::vector<PlotChoice> simple_plots() {
+  return {{.title = "coordination error", .channels = {"coordination/error"}},
+          {.title = "controller energy", .channels = {"energy/controller_total"}},
+          {.title = "human and contact torque",
+           .channels = {"hand/torque_norm", "proxy/contact_torque_norm"}}};
+}
+
 std::string title_of(const PlotChoice& choice, const TraceChannels& channels) {
   if (!choice.title.empty()) return choice.title;
   const auto label = [&](const std::string& key) {
@@ -206,7 +235,10 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     firsts.push_back(std::move(curve));
   }
   // A curve that is its run's only one has the colour of the run's law.
-  if (names.beside && firsts.size() == 1) firsts[0].law = names.law(kMainLane);
+  if (names.beside && firsts.size() == 1) {
+    firsts[0].law = names.law(kMainLane);
+    firsts[0].law_channel = law_channel(kMainLane, channels);
+  }
   spec.y = axis_for(shown, choice.kind == PlotKind::spectrum);
   if (spec.y.unit.find(',') != std::string::npos) {
     for (std::size_t i = 0; i < firsts.size(); ++i) firsts[i].label += " [" + shown[i].unit + "]";
@@ -225,7 +257,7 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     spec.x = axis_for({at(*across)}, false);
     spec.x.label = at(*across).label;
   }
-  spec.bands = bands(channels, !names.several());
+  spec.bands = bands(channels, names);
   spec.end_labels = names.several();
   return spec;
 }

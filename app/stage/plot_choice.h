@@ -26,6 +26,9 @@ const char* name(PlotKind kind);
 // torque.
 std::vector<PlotChoice> default_plots();
 
+// Returns what a first hour needs of them, without what tells of the observer and the motors.
+std::vector<PlotChoice> simple_plots();
+
 // Names of several runs, in front of their curves' labels.
 struct RunNames {
   std::vector<std::string> names;  // fewer than two for a single run

@@ -174,7 +174,12 @@ std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
 
 void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
-  stage_->name_runs({{"", again.name}, false});
+  const RowLayout& layout = player_.session().layout;
+  const auto first = std::span<const double>(again.rows)
+                         .first(again.rows.empty() ? 0 : static_cast<std::size_t>(layout.stride()));
+  RunNames names{{"", again.name}, false};
+  if (!first.empty()) names.laws = {-1, static_cast<int>(layout.in(first, Column::kind)[0])};
+  stage_->name_runs(names);
   rerun_ = std::move(again.rows);
   show(std::move(marks_));
 }

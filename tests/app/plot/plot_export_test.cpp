@@ -1,5 +1,6 @@
 #include "app/plot/plot_export.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -144,6 +145,27 @@ TEST(PlotSvg, StripesWhatABandMarksFromWhereToWhere) {
   marked.bands[0].channel = 0;
   EXPECT_EQ(plot_svg(marked, history, {0, 3, {}, {{-3, 3}}}).find("url(#stripes)"),
             std::string::npos);
+}
+
+// A printed curve has the colours of the laws that made it, none of a law that did not.
+TEST(PlotSvg, DrawsPartsInTheColoursOfTheirLaws) {
+  History history({.channels = 2, .seconds = 5});
+  for (int i = 0; i < 2000; ++i) {
+    history.append(i * 0.001, std::array{0.001 * i, i < 1000 ? 0.0 : 1.0});
+  }
+  PlotSpec spec{.title = "error",
+                .curves = {{.channel = 0, .label = "now predictive", .law = 2, .law_channel = 1}}};
+  const std::string svg = plot_svg(spec, history, {0, 2, {}, {{0, 2}}});
+  const auto drawn = [&](int law) {
+    const Rgb c = law_ink(kLightPalette, law);
+    const std::string begins = fmt::format("<polygon fill=\"#{:02x}{:02x}{:02x}\"", c.r, c.g, c.b);
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = svg.find(begins, at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_EQ(drawn(0), 1u);
+  EXPECT_EQ(drawn(1), 1u);
+  EXPECT_EQ(drawn(2), 0u);
 }
 
 TEST(PlotSvg, LeavesHiddenCurvesOut) {

@@ -154,7 +154,7 @@ TEST_F(APlot, PutsSignsOnTheCurveOfASecondRun) {
       const PlotFrame in{list, current_palette(),  1,        area,
                          area, {1e-3, first, 640}, {{0, 1}}, {{0, 2}}};
       const int before = list.VtxBuffer.Size;
-      draw_run_signs(in, trace, sign, colour(Rgb{1, 2, 3}));
+      draw_run_signs(in, trace, {.sign = sign}, 1);
       return list.VtxBuffer.Size - before;
     };
     EXPECT_EQ(drawn(0, RunSign::none), 0);

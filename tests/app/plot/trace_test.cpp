@@ -89,6 +89,44 @@ TEST(Trace, MissingValuesAreAGapOfTheirCurveAlone) {
   EXPECT_EQ(trace_of(history, {.channel = 1}, pixel_window(10, 10, 500)).runs.size(), 1u);
 }
 
+// A ramp of 2 s, of which law 0 made the first half and law 2 the rest.
+History switched() {
+  History history({.channels = 3, .seconds = 5});
+  for (int i = 0; i < 2000; ++i)
+    history.append(i * T, std::array{i * T, i < 1000 ? 0.0 : 2.0, 1.0});
+  return history;
+}
+
+// Parts of a curve belong to the law that made them, and meet where the law changed.
+TEST(Trace, KeepsTheLawThatMadeEachPart) {
+  const History history = switched();
+  const Curve curve{.channel = 0, .law_channel = 1};
+  for (const int pixels : {200, 4000}) {
+    const PixelWindow window = pixel_window(2, 2, pixels);
+    const Trace trace = trace_of(history, curve, window);
+    EXPECT_EQ(trace.band, pixels == 200);
+    ASSERT_EQ(trace.runs.size(), 2u);
+    EXPECT_EQ(trace.runs[0].law, 0);
+    EXPECT_EQ(trace.runs[1].law, 2);
+    const TracePoint& end = trace.points[trace.runs[0].count - 1];
+    const TracePoint& start = trace.points[trace.runs[1].first];
+    EXPECT_EQ(end.x, start.x);
+    EXPECT_EQ(end.high, start.high);
+    EXPECT_NEAR(window.time(static_cast<double>(start.x)), 1, 2 * window.per_pixel + T);
+  }
+  EXPECT_EQ(trace_of(history, {.channel = 0}, pixel_window(2, 2, 200)).runs.size(), 1u)
+      << "a curve that does not ask";
+}
+
+TEST(Trace, OverAnotherChannelKeepsItsLaws) {
+  const History history = switched();
+  Trace trace;
+  make_cross_trace(history, {.channel = 0, .across = 2, .law_channel = 1}, 0, history.end(),
+                   {{{0, 2}}, {{0, 2}}, 100, 100}, trace);
+  ASSERT_EQ(trace.runs.size(), 2u);
+  EXPECT_EQ(trace.runs[1].law, 2);
+}
+
 TEST(Trace, AnEmptyHistoryLeavesNoTrace) {
   const History history({.channels = 1});
   EXPECT_TRUE(trace_of(history, {.channel = 0}, pixel_window(10, 10, 100)).runs.empty());

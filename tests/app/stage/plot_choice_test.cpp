@@ -119,6 +119,36 @@ TEST(PlotChoice, DrawsTheRunsOfATwinByTheirLaws) {
   }
 }
 
+// The past keeps the colour of the law that made it, and each run an edge with its laws.
+TEST(PlotChoice, AsksWhichLawMadeTheRunsOfATwin) {
+  const TraceChannels channels{RowLayout(3)};
+  RunNames names = kTwin;
+  names.laws = {0, 2};
+  const PlotSpec spec = plot_spec(default_plots().front(), channels, names);
+  const int kind = static_cast<int>(Channel::kind);
+  for (const int run : {0, 1}) {
+    const Curve& curve = spec.curves[static_cast<std::size_t>(run)];
+    EXPECT_EQ(curve.law_channel, kind + run * channels.count());
+    EXPECT_EQ(colour_of(kDarkPalette, curve, 1), law_ink(kDarkPalette, 1));
+    EXPECT_EQ(colour_of(kDarkPalette, curve, -1), colour_of(kDarkPalette, curve));
+    const Band& band = spec.bands[static_cast<std::size_t>(run)];
+    EXPECT_EQ(band.channel, curve.law_channel);
+    EXPECT_EQ(band.lane, run);
+    EXPECT_EQ(band.names.front(), run == 0 ? "left standard" : "right standard");
+  }
+  const PlotSpec torques = plot_spec(default_plots()[2], channels, names);
+  EXPECT_EQ(torques.curves.front().law_channel, -1) << "it has its thing's colour";
+}
+
+TEST(PlotChoice, DrawsARerunInItsLawsColour) {
+  const TraceChannels channels{RowLayout(3)};
+  RunNames names = kRerun;
+  names.laws = {-1, 2};
+  const PlotSpec spec = plot_spec(default_plots()[0], channels, names);
+  EXPECT_EQ(colour_of(kLightPalette, spec.curves[1]), law_ink(kLightPalette, 2));
+  EXPECT_NE(colour_of(kLightPalette, spec.curves[0]), law_ink(kLightPalette, 2));
+}
+
 TEST(PlotChoice, PutsRingsOnTheCurvesOfARerun) {
   const TraceChannels channels{RowLayout(3)};
   const PlotSpec spec = plot_spec(default_plots()[2], channels, kRerun);
