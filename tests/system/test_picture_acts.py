@@ -89,6 +89,16 @@ class Picture(WindowTest):
         self.assertNotIn("center = [0.17, -0.07, -0.05]", changed)
         self.key("ctrl+z")
 
+        self.key("g")  # by a number: 25 mm to the right, with a slip on the way
+        self.key("y")
+        for key in ("minus", "2", "4", "BackSpace", "5"):
+            self.key(key)
+        self.settled()
+        self.key("Return")
+        changed = self.text()
+        self.assertRegex(changed[changed.index('"block"'):], r"center = \[0\.17, -0\.095, -0\.05\]")
+        self.key("ctrl+z")
+
         self.move(x + 60, y)
         self.settled()
         self.key("s")

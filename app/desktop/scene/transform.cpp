@@ -105,10 +105,28 @@ Transform::Result Transform::moved(const Camera& camera, const Eigen::Vector2d& 
   }
   const Vec3 line = direction(*axis);
   const auto a = along(camera.ray(begin), pivot, line), b = along(camera.ray(now), pivot, line);
-  const double way = a && b ? whole(*b - *a, kStep, steps) : 0;
-  object.pose.translation() += way * line;
+  return moved_along(*axis, a && b ? whole(*b - *a, kStep, steps) : 0);
+}
+
+Transform::Result Transform::moved_along(int line, double way) const {
+  Object object = from;
+  object.pose.translation() += way * direction(line);
   return {object,
-          fmt::format("{} {:.1f} mm", kAxisNames[static_cast<std::size_t>(*axis)], 1e3 * way)};
+          fmt::format("{} {:.1f} mm", kAxisNames[static_cast<std::size_t>(line)], 1e3 * way)};
+}
+
+Transform::Result Transform::by(const Camera& camera, double amount) const {
+  switch (kind) {
+    case TransformKind::move: return moved_along(axis.value_or(0), 1e-3 * amount);
+    case TransformKind::turn: {
+      // Numbers turn about the axis itself, whichever side is looked at.
+      const bool from_behind = axis && direction(*axis).dot(camera.forward()) > 0;
+      const double angle = amount * std::numbers::pi / 180;
+      return turned(camera, from_behind ? -angle : angle, false);
+    }
+    case TransformKind::scale: return scaled(amount, false);
+  }
+  return {from, ""};
 }
 
 Transform::Result Transform::turned(const Camera& camera, double angle, bool steps) const {

@@ -40,12 +40,16 @@ struct Transform {
   };
   Result to(const Camera& camera, const Eigen::Vector2d& begin, const Eigen::Vector2d& now,
             bool steps) const;
+  // Returns the same for an amount in numbers: mm along the axis, or x without one; degrees; a
+  // factor.
+  Result by(const Camera& camera, double amount) const;
   // Returns the change's name for undo.
   const char* what() const;
 
  private:
   Result moved(const Camera& camera, const Eigen::Vector2d& begin, const Eigen::Vector2d& now,
                bool steps) const;
+  Result moved_along(int axis, double way) const;
   Result turned(const Camera& camera, double angle, bool steps) const;
   Result scaled(double factor, bool steps) const;
 };

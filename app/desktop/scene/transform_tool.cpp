@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -30,6 +31,23 @@ float apart_from(ImVec2 place, ImVec2 a, ImVec2 b) {
 void TransformTool::begin(TransformKind kind) { wanted_ = kind; }
 
 void TransformTool::lock(int axis) { axis_ = axis_ == axis ? std::nullopt : std::optional(axis); }
+
+bool TransformTool::type(unsigned character) {
+  if (!transform_ || character > '~') return false;
+  const char c = character == ',' ? '.' : static_cast<char>(character);
+  constexpr std::size_t kLongest = 9;
+  const bool fits = c == '-'   ? typed_.empty()
+                    : c == '.' ? typed_.find('.') == std::string::npos
+                               : c >= '0' && c <= '9';
+  if (fits && typed_.size() < kLongest) typed_ += c;
+  return fits;
+}
+
+bool TransformTool::untype() {
+  if (typed_.empty()) return false;
+  typed_.pop_back();
+  return true;
+}
 
 void TransformTool::give_up(Document& document) {
   wanted_.reset();
@@ -80,6 +98,7 @@ void TransformTool::start(Document& document, const Object& now, const Eigen::Ve
   place_ = *document.editor().selected();
   before_ = document.editor().version();
   begin_ = mouse;
+  typed_.clear();
   transform_.emplace(kind_, now, document.editor().models()[place_].get());
 }
 
@@ -91,10 +110,15 @@ void TransformTool::follow(Document& document, const Camera& camera, const Eigen
                             : !ImGui::IsMouseDown(ImGuiMouseButton_Left);
   if (done) return accept();
   transform_->axis = axis_;
-  const auto [object, text] = transform_->to(camera, begin_, mouse, ImGui::GetIO().KeyCtrl);
+  double amount = 0;
+  const char* const end = typed_.data() + typed_.size();
+  const bool typed = std::from_chars(typed_.data(), end, amount).ec == std::errc();
+  const auto [object, text] = typed ? transform_->by(camera, amount)
+                                    : transform_->to(camera, begin_, mouse, ImGui::GetIO().KeyCtrl);
   const Object& present = document.scene().objects[place_];
   const bool same = object.pose.isApprox(present.pose, 1e-12) && object.shape == present.shape;
-  if (!same && mouse != begin_) document.editor().set(place_, object, transform_->what());
+  if (!same && (typed || mouse != begin_))
+    document.editor().set(place_, object, transform_->what());
   const ImVec2 at = ImGui::GetIO().MousePos;
   ImFont* face = font(Face::small);
   const float em = face->FontSize;

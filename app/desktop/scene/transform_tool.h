@@ -21,6 +21,10 @@ class TransformTool {
   // Transforms along this axis alone; the same axis again frees it.
   void lock(int axis);
   void accept() { transform_.reset(); }
+  // Takes a character of a number that is typed instead of moving the mouse: mm, degrees, a factor.
+  // Returns whether it is part of one.
+  bool type(unsigned character);
+  bool untype();  // takes back the last one
   // Puts all back as it was before.
   void give_up(Document& document);
   // Returns whether the object follows the mouse.
@@ -50,6 +54,7 @@ class TransformTool {
   Eigen::Vector2d begin_ = Eigen::Vector2d::Zero();  // of the mouse [px]
   std::optional<int> axis_;
   bool by_key_ = false;
+  std::string typed_;       // amount in numbers; empty: the mouse's way
   std::optional<int> hot_;  // axis of the handle under the mouse
   bool over_ = false;       // a handle is under the mouse
 };

@@ -43,6 +43,30 @@ TEST(Transform, MovesSoThatTheGraspedPointStaysUnderTheMouse) {
   EXPECT_EQ(moved.shape, seen.object.shape);
 }
 
+// Millimetres, degrees about the axis from whichever side, and a factor.
+TEST(Transform, TakesNumbersAsTheyAreTyped) {
+  Seen seen;
+  const auto by = [&](TransformKind kind, std::optional<int> axis, double amount) {
+    Transform transform(kind, seen.object, nullptr);
+    transform.axis = axis;
+    return transform.by(seen.camera, amount).object;
+  };
+  const Vec3 middle = seen.object.pose.translation();
+  EXPECT_LT(
+      (by(TransformKind::move, 1, -25).pose.translation() - middle + 0.025 * Vec3::UnitY()).norm(),
+      1e-15);
+  for (const auto view : {Camera::View::top, Camera::View::front, Camera::View::side}) {
+    seen.camera.look(view);
+    seen.camera.finish();
+    for (int axis = 0; axis < 3; ++axis) {
+      const Mat3 turned = by(TransformKind::turn, axis, 30).pose.linear();
+      const Mat3 wanted = Eigen::AngleAxisd(kPi / 6, Vec3::Unit(axis)).toRotationMatrix();
+      EXPECT_LT((turned - wanted).norm(), 1e-12) << axis;
+    }
+  }
+  EXPECT_EQ(std::get<Box>(by(TransformKind::scale, 2, 1.5).shape).size, Vec3(0.02, 0.03, 0.06));
+}
+
 TEST(Transform, MovesAlongOneAxisToWhereTheMouseIsNearestToIt) {
   const Seen seen;
   const Vec3 middle = seen.object.pose.translation();
