@@ -62,6 +62,7 @@ struct ViewState {
   bool magnet_holds = false;       // holds something
   // A point of a body, and where it is pulled to [m].
   std::optional<std::array<Vec3, 2>> pull;
+  std::size_t pulled = 0;  // number of that body
   std::vector<ContactMark> contacts;
   std::optional<ContactShade> shade;
   // Frames of the scene's moving objects, in their order. An object whose frame is missing or not

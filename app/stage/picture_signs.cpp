@@ -12,8 +12,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kLeastGap = 1e-5;  // least gap that is shown [m]
-constexpr float kBetween = 2;       // between the pictures of runs side by side [px]
+constexpr double kLeastGap = 1e-5;    // least gap that is shown [m]
+constexpr double kLeastForce = 0.05;  // least force that is written [N]
+constexpr double kLeastDrop = 0.004;  // least height above something that is shown [m]
+constexpr float kBetween = 2;         // between the pictures of runs side by side [px]
 
 bool overlap(ScreenRect a, ScreenRect b) {
   return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
@@ -54,6 +56,23 @@ void draw_ring(const Vec3& around, float radius, float thick, Rgb tint, const Ca
   list.AddCircle(middle, radius, colour(tint), 0, thick);
 }
 
+// Draws a force below a point that is held.
+void draw_newtons(double force, const Vec3& at, const Camera& camera, ScreenRect picture,
+                  ImDrawList& list) {
+  const auto pixel = camera.project(at);
+  if (!pixel || !(force >= kLeastForce)) return;
+  const std::string text = fmt::format("{:.1f} N", force);
+  ImFont* face = font(Face::small);
+  const float em = face->FontSize, pad = 0.3f * em;
+  const ImVec2 size = face->CalcTextSizeA(em, 1e9f, 0, text.c_str());
+  const ImVec2 middle = in_window(picture, *pixel);
+  const ImVec2 place(middle.x - 1.8f * em - size.x, middle.y + 0.9f * em);
+  list.AddRectFilled({place.x - pad, place.y - 0.5f * pad},
+                     {place.x + size.x + pad, place.y + size.y + 0.5f * pad},
+                     colour(current_palette().backdrop, 0.75f), 3);
+  list.AddText(face, em, place, colour(ink(current_palette(), Ink::hand)), text.c_str());
+}
+
 }  // namespace
 
 ImVec2 in_window(ScreenRect picture, const Eigen::Vector2d& pixel) {
@@ -78,7 +97,8 @@ void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, I
   }
 }
 
-void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list) {
+void draw_pull(const ViewState& view, double force, const Camera& camera, ScreenRect picture,
+               ImDrawList& list) {
   if (!view.pull) return;
   const float em = font(Face::small)->FontSize;
   const Rgb hand = ink(current_palette(), Ink::hand);
@@ -91,6 +111,20 @@ void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, 
   }
   draw_ring(point, 0.3f * em, 0.3f * em, hand, camera, picture, list);
   draw_ring(target, 0.6f * em, 0.15f * em, hand, camera, picture, list);
+  draw_newtons(force, target, camera, picture, list);
+}
+
+void draw_drop(const ViewState& view, double below, const Camera& camera, ScreenRect picture,
+               ImDrawList& list) {
+  if (view.device.links.empty() || below < kLeastDrop) return;
+  const Vec3 foot = view.device.tip - below * Vec3::UnitZ();
+  const auto from = camera.project(view.device.tip), to = camera.project(foot);
+  if (!from || !to) return;
+  const float em = font(Face::small)->FontSize;
+  const ImVec2 a = in_window(picture, *from), b = in_window(picture, *to);
+  list.AddLine(a, b, colour(current_palette().backdrop, 0.75f), 0.1f * em + 2);
+  list.AddLine(a, b, colour(ink(current_palette(), Ink::hand), 0.8f), 0.1f * em);
+  draw_ring(foot, 0.3f * em, 0.15f * em, ink(current_palette(), Ink::hand), camera, picture, list);
 }
 
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture,
@@ -105,6 +139,9 @@ void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture,
   const float em = font(Face::small)->FontSize;
   draw_ring(view.device.tip, 1.3f * em, 0.15f * em, ink(current_palette(), Ink::hand), camera,
             picture, list);
+  if (view.hand_grips) {
+    draw_newtons(view.hand_force.norm(), view.device.tip, camera, picture, list);
+  }
 }
 
 void draw_run_name(const RunNames& names, std::size_t run, ScreenRect part, ImDrawList& list) {

@@ -26,12 +26,18 @@ struct GapPlace {
 // Draws the gap at the two tips. Runs in one picture have a number each, with its run's name.
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
-// Draws a line from the body that is pulled to the point it is pulled to.
-void draw_pull(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
+// Draws a line from the body that is pulled to the point it is pulled to, with the pull's force
+// [N].
+void draw_pull(const ViewState& view, double force, const Camera& camera, ScreenRect picture,
+               ImDrawList& list);
+// Draws a line from the device's tip to what is `below` it [m].
+void draw_drop(const ViewState& view, double below, const Camera& camera, ScreenRect picture,
+               ImDrawList& list);
 // Draws a ring around the proxy's tip while its magnet is on, thick while the magnet holds
 // something.
 void draw_magnet(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
-// Draws a ring around the device's tip: the mouse has hold of it, or would have.
+// Draws a ring around the device's tip: the mouse has hold of it, then with the hand's force, or
+// would have.
 void draw_grasp(const ViewState& view, const Camera& camera, ScreenRect picture, ImDrawList& list);
 // Draws a run's name at the top of its part of the picture, with a sample of its curves.
 void draw_run_name(const RunNames& names, std::size_t run, ScreenRect part, ImDrawList& list);

@@ -103,6 +103,7 @@ ViewState RowView::view(const RowLayout& layout, std::span<const double> row) co
     const auto body = static_cast<std::size_t>(std::max(0.0, at(Column::hand_pull)[0]));
     if (body > 0 && body <= view.bodies.size()) {
       const auto vector = [&](Column c) { return Vec3(at(c)[0], at(c)[1], at(c)[2]); };
+      view.pulled = body - 1;
       view.pull = {view.bodies[body - 1] * vector(Column::pull_point), vector(Column::pull_target)};
     }
   }

@@ -1,12 +1,6 @@
 #include "core/touch/pull_link.h"
 
 namespace limpid {
-namespace {
-
-constexpr double kSwing = 25;      // frequency of the spring, which is critically damped [rad/s]
-constexpr double kLongest = 0.04;  // distance beyond which the pull grows no more [m]
-
-}  // namespace
 
 void PullLink::prepare(Bodies& bodies) {
   const Vec3 at = bodies.place(a, pull.point);

@@ -1,5 +1,6 @@
 #include "app/desktop/scene/picking.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +11,10 @@ namespace limpid {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kPlaneReach = 0.5;  // of a plane around its point, as it is drawn [m]
+constexpr double kPlaneReach = 0.5;   // of a plane around its point, as it is drawn [m]
+constexpr double kFarthestAim = 5;    // along a ray [m]
+constexpr double kAimDepth = 0.01;    // behind a surface [m]
+constexpr double kDeepestDrop = 0.5;  // [m]
 
 double at_least_zero(double way) { return way >= 0 ? way : kNone; }
 
@@ -130,6 +134,18 @@ double way_to(const Ray& ray, const Object& object, const Model* model) {
   return way;
 }
 
+// Returns the way to the object, by a mesh's contact triangles; kNone beyond `within`.
+double quick_way_to(const Ray& ray, const Object& object, double within) {
+  const double way = way_to(ray, object, nullptr);
+  const auto* mesh = std::get_if<Mesh>(&object.shape);
+  if (mesh == nullptr || !mesh->triangles) return way;
+  const Ray local = in_frame(ray, mesh->stood(object.pose), mesh->size());
+  const Vec3 from = local.origin - mesh->triangles->middle();
+  MeshPoint met;
+  if (!mesh->triangles->crossing(from, from + within * local.direction, met)) return way;
+  return std::min(way, (met.point - from).norm() / local.direction.norm());
+}
+
 struct Met {
   std::size_t object = 0;
   double way = kNone;  // along the ray [m]
@@ -166,16 +182,36 @@ Object placed_now(const Scene& scene, std::size_t place, std::span<const Pose> b
 bool covered(const Ray& ray, double within, const Scene& scene, std::span<const Pose> bodies) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (std::holds_alternative<Plane>(scene.objects[i].shape)) continue;
-    const Object object = placed_now(scene, i, bodies);
-    if (way_to(ray, object, nullptr) < within) return true;
-    const auto* mesh = std::get_if<Mesh>(&object.shape);
-    if (mesh == nullptr || !mesh->triangles) continue;
-    const Ray local = in_frame(ray, mesh->stood(object.pose), mesh->size());
-    const Vec3 from = local.origin - mesh->triangles->middle();
-    MeshPoint met;
-    if (mesh->triangles->crossing(from, from + within * local.direction, met)) return true;
+    if (quick_way_to(ray, placed_now(scene, i, bodies), within) < within) return true;
   }
   return false;
+}
+
+std::optional<Aim> aim_along(const Ray& ray, const Scene& scene, std::span<const Pose> bodies) {
+  std::optional<Aim> aim;
+  double first = kFarthestAim;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (std::holds_alternative<Plane>(scene.objects[i].shape)) continue;
+    const Object object = placed_now(scene, i, bodies);
+    const double way = quick_way_to(ray, object, first);
+    if (!(way < first)) continue;
+    first = way;
+    const Ray back{ray.origin + kFarthestAim * ray.direction, -ray.direction};
+    const double thick = kFarthestAim - quick_way_to(back, object, kFarthestAim) - way;
+    const double deep = std::clamp(0.5 * thick, 0.0, kAimDepth);
+    aim = Aim{i, ray.origin + (way + deep) * ray.direction};
+  }
+  return aim;
+}
+
+std::optional<double> drop_below(const Vec3& point, const Scene& scene,
+                                 std::span<const Pose> bodies) {
+  const Ray down{point, -Vec3::UnitZ()};
+  double drop = kDeepestDrop;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    drop = std::min(drop, quick_way_to(down, placed_now(scene, i, bodies), drop));
+  }
+  return drop < kDeepestDrop ? std::optional(drop) : std::nullopt;
 }
 
 std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,

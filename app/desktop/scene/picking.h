@@ -20,6 +20,20 @@ std::optional<std::size_t> object_under(const Ray& ray, const Scene& scene,
 std::optional<BodyPull> body_under(const Ray& ray, const Scene& scene, const MeshModels& models,
                                    std::span<const Pose> bodies);
 
+// Place to aim at: in an object, a centimetre behind the surface, or in the middle of what is
+// thinner.
+struct Aim {
+  std::size_t object;
+  Vec3 point;  // [m]
+};
+// Returns the place to aim at along the ray; nothing if no object is met. Planes do not count, as
+// everything stands on them. Answers as quickly as covered().
+std::optional<Aim> aim_along(const Ray& ray, const Scene& scene, std::span<const Pose> bodies);
+
+// Returns how far below the point something is, within half a metre [m]; planes count.
+std::optional<double> drop_below(const Vec3& point, const Scene& scene,
+                                 std::span<const Pose> bodies);
+
 // Returns whether an object is met within `within` [m] of the ray's origin. Planes do not count:
 // things are drawn on them. Uses a mesh's contact triangles, which answer at once whatever its
 // size.

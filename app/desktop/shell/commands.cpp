@@ -359,7 +359,8 @@ constexpr std::array kCommands{
     row("edit.redo", "Redo", "Edit", "Ctrl+Y, Ctrl+Shift+Z", "redo",
         [](Desktop& d) { d.marking.can_redo() ? d.marking.redo() : d.document.redo(); },
         {.repeats = true}),
-    row("object.move", "Move", "Edit", "G", "selected object: move, turn, scale it with the mouse",
+    row("object.move", "Move", "Edit", "G",
+        "selected object: move, turn, scale it with the mouse, or by a number: G X 2 5 Enter",
         begin_transform<TransformKind::move>,
         {.apart = true, .reach = Reach::selection, .why_not = cannot<TransformKind::move>}),
     row("object.turn", "Turn", "Edit", "R", "", begin_transform<TransformKind::turn>,
@@ -396,6 +397,10 @@ constexpr std::array kCommands{
         {.checked = is_shown<&Settings::show_right>}),
     row("view.plots", "Plots", "View", "F4", "", show_or_hide<&Settings::show_plots>,
         {.checked = is_shown<&Settings::show_plots>}),
+    row("view.everything", "All settings and figures", "View", "F8",
+        "all settings and figures, or what a first hour needs",
+        [](Desktop& d) { show_everything(d.settings, !d.settings.everything); },
+        {.checked = is_shown<&Settings::everything>}),
     row("plots.add", "Add a plot...", "View/Plots of", "N",
         "a new plot: of any channel, over time, against another one, or its spectrum",
         [](Desktop& d) { d.plots.add(); }, {.apart = true}),
@@ -731,7 +736,12 @@ const Command* command_of(KeyOwner owner, const KeyPress& press) {
 void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop) {
   for (const KeyPress& press : pressed) {
     // The owner is asked for each key, as the key before may have opened something.
-    const Command* command = command_of(owner_of(desktop.focus()), press);
+    const KeyOwner owner = owner_of(desktop.focus());
+    if (owner == KeyOwner::transform) {
+      const bool back = press.key == GLFW_KEY_BACKSPACE;
+      if (back ? desktop.transform.untype() : desktop.transform.type(press.character)) continue;
+    }
+    const Command* command = command_of(owner, press);
     if (command != nullptr) run_or_say(command->id, desktop);
   }
 }

@@ -59,9 +59,8 @@ void Frame::draw() {
     below_banners_ = draw_banners(desktop_.banners(), at.view, signs_box(at.view), act_);
   });
   part([&] {
-    if (desktop_.dialog.kind() == nullptr && !desktop_.playback.on()) {
-      draw_your_turn(settings, at.view);
-    }
+    const bool free = desktop_.dialog.kind() == nullptr && !desktop_.playback.on();
+    free ? your_turn_.draw(settings, at.view, view_.crowd()) : your_turn_.hide();
   });
   part([&] {
     const std::string_view open = desktop_.dialog.name();
@@ -130,9 +129,19 @@ ViewScene Frame::view_scene() {
                         bodies_of(desktop_.shown.stage(), desktop_.shown.row()));
     };
   }
+  if (!scene.recorded) {
+    const auto bodies = [this] { return bodies_of(desktop_.shown.stage(), desktop_.shown.row()); };
+    scene.aim = [this, bodies](const Ray& ray) {
+      return aim_along(ray, desktop_.document.scene(), bodies());
+    };
+    scene.drop = [this, bodies](const Vec3& point) {
+      return drop_below(point, desktop_.document.scene(), bodies());
+    };
+  }
   scene.asked = desktop_.dialog.name() == "ask";
   if (scene.blind && scene.beside.size() == 1) scene.names = {{"left", "right"}, true};
   if (scene.blind && scene.beside.size() == 2) scene.names = {{"left", "middle", "right"}, true};
+  if (your_turn_.rect()) scene.cards.push_back(*your_turn_.rect());
   scene.pad = desktop_.pads.leading();
   scene.overlaid = desktop_.settings.overlaid;
   return scene;
@@ -221,10 +230,20 @@ void Frame::draw_coupling(ScreenRect rect) {
   for (int j = 0; j < layout.dof(); ++j) {
     if (channels.limited(row, j)) reading.limited.push_back(j);
   }
+  std::vector<double> values(static_cast<std::size_t>(channels.count()));
+  channels.values(row, values);
+  const auto value = [&](const char* key) {
+    const auto channel = channels.find(key);
+    return channel ? values[static_cast<std::size_t>(*channel)] : 0;
+  };
+  reading.error = value("coordination/error");
+  reading.gap = value("coordination/gap");
+  reading.contact = value("contact/total_force_norm");
   const CouplingSituation now{.analysis = desktop_.tuning.analysis(),
                               .arm = shown.arm(),
                               .real = desktop_.live.loop().device_in_place(),
-                              .broken = passivity_broken(desktop_.settings)};
+                              .broken = passivity_broken(desktop_.settings),
+                              .everything = desktop_.settings.everything};
   begin_panel("coupling", rect);
   if (rows.size() > 1) {
     LaneSettings& lanes = desktop_.settings.lanes;
@@ -243,8 +262,14 @@ void Frame::draw_coupling(ScreenRect rect) {
 void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
                         const CouplingSituation& now) {
   if (section("In this recording", true)) {
-    draw_recorded(session);
-    draw_reading(reading, session.settings(), desktop_.tuning.recorded_analysis());
+    draw_recorded(session, now.everything);
+    const Analysis& analysis = desktop_.tuning.recorded_analysis();
+    if (now.everything) {
+      draw_reading(reading, session.settings(), analysis);
+    } else {
+      draw_simple_reading(reading, session.settings(),
+                          {.analysis = analysis, .arm = now.arm, .everything = false});
+    }
   }
   if (section("For the re-run (E)", true)) {
     draw_coupling_of_rerun(desktop_.tuning.edited(), session.began_with(),

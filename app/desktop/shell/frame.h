@@ -11,6 +11,7 @@
 #include "app/desktop/shell/layout.h"
 #include "app/desktop/shell/menu.h"
 #include "app/desktop/shell/sections.h"
+#include "app/desktop/view/over_view.h"
 #include "app/desktop/view/view_panel.h"
 
 namespace limpid {
@@ -63,6 +64,7 @@ class Frame {
   WindowLayout layout_;
   FileMenus files_;
   ViewPanel view_;
+  YourTurn your_turn_;
   RangePanel figures_;
   Sections sections_;
   Dialogs dialogs_;

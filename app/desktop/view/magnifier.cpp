@@ -26,21 +26,19 @@ Vec3 middle(const ViewState& state) { return 0.5 * (state.device.tip + state.pro
 
 }  // namespace
 
-std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips) {
+std::vector<ScreenRect> lens_corners(ScreenRect view, float words) {
   const ImVec2 size = view.size();
   const float edge = std::floor(std::min(kShare * size.y, kMostWide * size.x));
   const float gap = 0.6f * ImGui::GetFontSize();
-  if (edge < kLeast * current_scale()) return std::nullopt;
-  const ImVec2 low(std::floor(view.max.x - gap - edge), std::floor(view.max.y - gap - edge));
-  const ScreenRect lower{low, {low.x + edge, low.y + edge}};
-  const float room = 0.25f * edge;
-  const bool hides = tips.x > lower.min.x - room && tips.y > lower.min.y - room;
-  if (!hides) return lower;
-  const float top = std::floor(view.min.y + words + gap), left = std::floor(view.min.x + gap);
-  if (words > 0 && tips.y < top + edge + room) {
-    return ScreenRect{{left, low.y}, {left + edge, low.y + edge}};
+  if (edge < kLeast * current_scale()) return {};
+  const float left = std::floor(view.min.x + gap), right = std::floor(view.max.x - gap - edge);
+  const float low = std::floor(view.max.y - gap - edge);
+  const float top = std::floor(view.min.y + words + gap);
+  std::vector<ScreenRect> corners;
+  for (const ImVec2 at : {ImVec2(right, low), {right, top}, {left, low}, {left, top}}) {
+    if (at.y + edge < view.max.y) corners.push_back({at, {at.x + edge, at.y + edge}});
   }
-  return ScreenRect{{low.x, top}, {low.x + edge, top + edge}};
+  return corners;
 }
 
 bool worth_magnifying(const ViewState& state, const Camera& camera) {
@@ -51,12 +49,12 @@ bool worth_magnifying(const ViewState& state, const Camera& camera) {
 }
 
 void Magnifier::draw(SceneView& picture, const ViewState& state, const Camera& camera,
-                     const LensPlace& place) {
+                     const LensPlace& place, const Crowd& crowd) {
   const double now = ImGui::GetTime();
   if (worth_magnifying(state, camera)) until_ = now + kMoment;
-  const auto tips = seen(state) ? camera.project(middle(state)) : std::nullopt;
-  rect_ = tips && now <= until_ ? lens_corner(place.view, place.words, in_window(place.view, *tips))
-                                : std::nullopt;
+  const bool shown = seen(state) && camera.project(middle(state)) && now <= until_;
+  if (!shown) corner_.forget();
+  rect_ = shown ? corner_.choose(lens_corners(place.view, place.words), crowd) : std::nullopt;
   view_ = place.view;
   if (!rect_) return;
   const auto pixels = [&](float points) {

@@ -5,7 +5,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/desktop/view/free_place.h"
 #include "app/plot/plot_frame.h"
 #include "render/camera.h"
 #include "render/scene_view.h"
@@ -25,16 +27,15 @@ struct LensPlace {
   float words = 0;         // height of words at the view's top, over all of its width [points]
 };
 
-// Returns the lens's place: the lower right corner, or the upper right one if the lens would hide
-// the tips. If `words` (see LensPlace) leave no room there, it is the lower left one. Nothing if
-// the view is too small.
-std::optional<ScreenRect> lens_corner(ScreenRect view, float words, ImVec2 tips);
+// Returns the lens's places, best first: the view's corners, the upper ones below `words` (see
+// LensPlace). None if the view is too small.
+std::vector<ScreenRect> lens_corners(ScreenRect view, float words);
 
 class Magnifier {
  public:
-  // Draws the lens in OpenGL, while it is worth it and a moment longer.
+  // Draws the lens in OpenGL, while it is worth it and a moment longer, where it covers the least.
   void draw(SceneView& picture, const ViewState& state, const Camera& camera,
-            const LensPlace& place);
+            const LensPlace& place, const Crowd& crowd);
   // Draws frame, scale and magnification over the lens.
   void draw_frame(const ViewState& state, const Camera& camera, ImDrawList& list) const;
   void hide() { rect_.reset(); }
@@ -42,6 +43,7 @@ class Magnifier {
 
  private:
   std::optional<ScreenRect> rect_;
+  FreePlace corner_;
   ScreenRect view_{};
   double until_ = -1;  // ImGui's time [s]
 };

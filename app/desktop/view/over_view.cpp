@@ -84,6 +84,27 @@ void draw_next_step(Settings& settings) {
   if (noted_button("Close")) settings.your_turn = false;
 }
 
+void draw_steps(Settings& settings) {
+  heading("Your turn");
+  if (ImGui::BeginTable("steps", 2, ImGuiTableFlags_SizingFixedFit)) {
+    const Palette& colours = current_palette();
+    const float side = 0.75f * ImGui::GetFontSize();
+    for (const FirstStepInfo& step : kFirstSteps) {
+      const bool ticked = done(settings, step.step);
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      draw_tick({at.x, at.y + 0.5f * (ImGui::GetTextLineHeight() - side)}, side, ticked);
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 1.5f * side);
+      ImGui::TextColored(colour_vector(ticked ? colours.muted : colours.text), "%s", step.what);
+      ImGui::TableNextColumn();
+      ImGui::TextColored(colour_vector(colours.muted), "%s", step.how);
+    }
+    ImGui::EndTable();
+  }
+  if (noted_button(all_done(settings) ? "Done" : "Enough of it")) settings.your_turn = false;
+}
+
 }  // namespace
 
 ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, ScreenRect signs,
@@ -174,10 +195,18 @@ void draw_video_bar(Playback& playback, ScreenRect view) {
   ImGui::End();
 }
 
-void draw_your_turn(Settings& settings, ScreenRect view) {
+void YourTurn::draw(Settings& settings, ScreenRect view, const Crowd& crowd) {
+  rect_.reset();
   if (!settings.your_turn) return;
-  const float em = ImGui::GetFontSize(), side = 0.75f * em;
-  ImGui::SetNextWindowPos({view.min.x + 1.6f * em, view.max.y - em}, ImGuiCond_Always, {0, 1});
+  const float em = ImGui::GetFontSize(), edge = 1.6f * em;
+  const float right = view.max.x - edge - size_.x, low = view.max.y - em - size_.y;
+  const float top = view.min.y + 3 * em;
+  std::vector<ScreenRect> places;
+  for (const ImVec2 at : {ImVec2(view.min.x + edge, low), {right, low}, {right, top}}) {
+    places.push_back({at, {at.x + size_.x, at.y + size_.y}});
+  }
+  const ImVec2 at = corner_.choose(places, crowd)->min;
+  ImGui::SetNextWindowPos({std::round(at.x), std::round(at.y)}, ImGuiCond_Always);
   ImGui::SetNextWindowBgAlpha(0.92f);
   ImGui::Begin("Your turn", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
@@ -186,27 +215,12 @@ void draw_your_turn(Settings& settings, ScreenRect view) {
   // If the list would hide the arm, only the next step is shown.
   if (view.height() < 30 * em || view.width() < 50 * em) {
     draw_next_step(settings);
-    ImGui::End();
-    return;
+  } else {
+    draw_steps(settings);
   }
-  heading("Your turn");
-  if (ImGui::BeginTable("steps", 2, ImGuiTableFlags_SizingFixedFit)) {
-    const Palette& colours = current_palette();
-    for (const FirstStepInfo& step : kFirstSteps) {
-      const bool ticked = done(settings, step.step);
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      const ImVec2 at = ImGui::GetCursorScreenPos();
-      draw_tick({at.x, at.y + 0.5f * (ImGui::GetTextLineHeight() - side)}, side, ticked);
-      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 1.5f * side);
-      ImGui::TextColored(colour_vector(ticked ? colours.muted : colours.text), "%s", step.what);
-      ImGui::TableNextColumn();
-      ImGui::TextColored(colour_vector(colours.muted), "%s", step.how);
-    }
-    ImGui::EndTable();
-  }
-  if (noted_button(all_done(settings) ? "Done" : "Enough of it")) settings.your_turn = false;
+  size_ = ImGui::GetWindowSize();
   ImGui::End();
+  rect_ = ScreenRect{at, {at.x + size_.x, at.y + size_.y}};
 }
 
 bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,

@@ -1,6 +1,7 @@
 // Signs over the picture: banners, notices, and work that goes on.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "app/desktop/base/settings.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/scene/scene_loader.h"
+#include "app/desktop/view/free_place.h"
 #include "app/plot/plot_frame.h"
 
 namespace limpid {
@@ -38,9 +40,19 @@ void draw_loading(SceneLoader& loader, ScreenRect view);
 // Draws the progress of a video at the top right of the view.
 void draw_video_bar(Playback& playback, ScreenRect view);
 
-// Draws the list of first steps at the lower left of the view, each ticked once it is done; closing
-// it is enough of it.
-void draw_your_turn(Settings& settings, ScreenRect view);
+// List of first steps, each ticked once it is done, in the corner of the view where it covers the
+// least; closing it is enough of it.
+class YourTurn {
+ public:
+  void draw(Settings& settings, ScreenRect view, const Crowd& crowd);
+  void hide() { rect_.reset(); }
+  const std::optional<ScreenRect>& rect() const { return rect_; }  // nothing if it is not shown
+
+ private:
+  FreePlace corner_;
+  std::optional<ScreenRect> rect_;
+  ImVec2 size_{};  // of the last frame
+};
 
 // Draws the button for the story of a first start, above its hint if `hinted`. Returns true when it
 // is pressed.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"
 #include "app/style/theme.h"
+#include "core/touch/pull_link.h"
 #include "render/near_surface.h"
 
 namespace limpid {
@@ -25,6 +27,10 @@ constexpr double kDepthStep = 0.004;  // depth of one wheel notch while dragging
 constexpr double kPullReach = 40;     // reach of the mouse around the tips, at scale 1 [px]
 constexpr double kFarthestPull = 5;   // largest distance of a target from the origin [m]
 constexpr double kClickReach = 4;     // largest motion of a click [px]
+constexpr double kAimReach = 28;  // reach of the mouse around what is dragged onto, at scale 1 [px]
+constexpr double kLeastDrag = 8;  // motion before the hand is dragged onto something [px]
+constexpr double kToDepth = 0.08;    // time constant of a change of depth [s]
+constexpr double kBeforeName = 0.5;  // rest of the mouse before a name is shown [s]
 
 // Returns the least distance of a place from the arm's links, drawn as lines between joints [px].
 float apart_from(const ArmPose& arm, const Camera& camera, ScreenRect rect, ImVec2 place) {
@@ -107,40 +113,48 @@ std::string task_of(const SceneDocument& document) {
   return task;
 }
 
-// Draws hints of a first start, each until its step was done once, and the scene's task before.
-void draw_hint(const std::string& task, const std::string& pad, const Settings& settings,
-               ScreenRect rect, ImDrawList& list) {
-  const Palette& colours = current_palette();
-  ImFont* face = font(Face::semibold);
-  const std::string of_pad = "Left stick of " + pad + ": your hand pulls the arm onto the table.";
-  const std::pair<FirstStep, const char*> all[] = {
-      {FirstStep::pull, pad.empty() ? "Drag the arm by its tip: your hand pulls it onto the table."
-                                    : of_pad.c_str()},
+// Returns hints of a first start, each until its step was done once, and the scene's task before.
+std::vector<std::string> hints(const std::string& task, const std::string& pad,
+                               const Settings& settings) {
+  const std::pair<FirstStep, std::string> all[] = {
+      {FirstStep::pull, pad.empty()
+                            ? "Drag the arm by its tip: your hand pulls it onto the table."
+                            : "Left stick of " + pad + ": your hand pulls the arm onto the table."},
       {FirstStep::push, pad.empty()
                             ? "Wheel while dragging: nearer and farther."
                             : "Its triggers: nearer and farther. A lets go, B cuts the force."},
       {FirstStep::law,
        "C switches the coupling: the standard one lets hand and world drift apart."}};
-  std::vector<const char*> lines;
+  std::vector<std::string> lines;
+  // The hint of how to pull the arm comes first.
+  if (!task.empty() && done(settings, FirstStep::pull)) lines.push_back(task);
   for (const auto& [step, line] : all) {
     if (!done(settings, step)) lines.push_back(line);
   }
-  // The hint of how to pull the arm comes first.
-  if (!task.empty() && done(settings, FirstStep::pull)) lines.insert(lines.begin(), task.c_str());
-  float size = face->FontSize * 1.15f;
-  for (const char* line : lines) {  // as large as the widest line allows
-    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
-    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
+  return lines;
+}
+
+// Returns the place of a body in the picture: of the ball around its bounds.
+std::optional<ScreenRect> seen_place(const Object& object, const Model* model, const Camera& camera,
+                                     ScreenRect rect) {
+  const Bounds box = bounds_of(object, model);
+  if (box.isEmpty()) return std::nullopt;
+  const auto pixel = camera.project(box.center());
+  if (!pixel) return std::nullopt;
+  const auto radius =
+      static_cast<float>(0.5 * box.diagonal().norm() / camera.meters_per_pixel(box.center()));
+  const ImVec2 at = in_window(rect, *pixel);
+  return ScreenRect{{at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}};
+}
+
+// Returns the force of the pull on a body that stands still [N].
+double pull_on(const Scene& scene, const ViewState& view) {
+  std::size_t number = view.pulled;
+  for (const Object& object : scene.objects) {
+    if (!object.body || number-- > 0) continue;
+    return PullLink::force_of(object.body->mass, ((*view.pull)[1] - (*view.pull)[0]).norm());
   }
-  float line_y = rect.max.y - (0.7f + 1.5f * static_cast<float>(lines.size())) * size;
-  for (const char* line : lines) {
-    const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
-    const ImVec2 place((rect.min.x + rect.max.x - extent.x) / 2, line_y);
-    list.AddRectFilled({place.x - 8, place.y - 2}, {place.x + extent.x + 8, place.y + extent.y + 2},
-                       colour(colours.backdrop, 0.72f), 4);
-    list.AddText(face, size, place, colour(colours.text), line);
-    line_y += 1.5f * size;
-  }
+  return 0;
 }
 
 // Returns the view of a row, of either run.
@@ -217,9 +231,12 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
                  pixels(part.width()), pixels(part.height()), SceneView::sheet_of(run));
   };
   const ViewState view = state_of(scene, settings);
+  see_crowd(scene, view, camera, settings, rect);
   paint(view, *drawn_, kMainLane);
   if (settings.show_lens && !scene.split()) {
-    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words});
+    Crowd crowd = around_;
+    if (hinted_) crowd.kept_free.push_back(*hinted_);
+    magnifier_.draw(picture, view, camera, {rect, scale, scene.pixel_height, scene.words}, crowd);
   } else {
     magnifier_.hide();
   }
@@ -249,6 +266,82 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   draw_told(scene.told, rect, list);
 }
 
+// Notes where tips are and what is acted on, in all pictures.
+void ViewPanel::see_crowd(const ViewScene& scene, const ViewState& view, const Camera& camera,
+                          const Settings& settings, ScreenRect rect) {
+  crowd_ = {};
+  const float around = 2.2f * font(Face::small)->FontSize;
+  const auto keep = [&](const Vec3& point, ScreenRect part) {
+    const auto pixel = point.allFinite() ? camera.project(point) : std::nullopt;
+    if (!pixel) return;
+    const ImVec2 at = in_window(part, *pixel);
+    crowd_.kept_free.push_back({{at.x - around, at.y - around}, {at.x + around, at.y + around}});
+  };
+  const auto see = [&](const ViewState& state, ScreenRect part) {
+    if (!state.device.links.empty()) keep(state.device.tip, part);
+    if (!state.proxy.links.empty()) keep(state.proxy.tip, part);
+    if (!state.pull) return;
+    for (const Vec3& end : *state.pull) keep(end, part);
+  };
+  const std::size_t pictures = scene.pictures();
+  see(view, part_of(rect, 0, pictures));
+  for (std::size_t run = 1; run < pictures; ++run) {
+    see(state_beside(scene, run, settings), part_of(rect, run, pictures));
+  }
+  const ScreenRect first = part_of(rect, 0, pictures);
+  if (scene.selected) {
+    if (const auto place = seen_place(*scene.selected, nullptr, camera, first)) {
+      crowd_.kept_free.push_back(*place);
+    }
+  }
+  const SceneDocument& document = scene.stage.document();
+  for (std::size_t i = 0; i < document.scene.objects.size(); ++i) {
+    if (!document.scene.objects[i].body) continue;
+    const Object now = placed_now(document.scene, i, view.bodies);
+    if (const auto place = seen_place(now, nullptr, camera, first)) {
+      crowd_.better_free.push_back(*place);
+    }
+  }
+  crowd_.kept_free.push_back(legend_box(rect));
+  around_ = crowd_;
+  around_.kept_free.insert(around_.kept_free.end(), scene.cards.begin(), scene.cards.end());
+}
+
+// Draws hints at the foot of the picture, or at its top if the tip is at the foot.
+void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, ScreenRect rect,
+                           ImDrawList& list) {
+  const Palette& colours = current_palette();
+  ImFont* face = font(Face::semibold);
+  hinted_.reset();
+  const auto lines = hints(task_done_ ? std::string() : task_, scene.pad, settings);
+  if (lines.empty()) return;
+  float size = face->FontSize * 1.15f, widest = 0;
+  for (const std::string& line : lines) {  // as large as the widest line allows
+    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line.c_str()).x;
+    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
+  }
+  for (const std::string& line : lines) {
+    widest = std::max(widest, face->CalcTextSizeA(size, 1e9f, 0, line.c_str()).x);
+  }
+  const float high = 1.5f * size * static_cast<float>(lines.size());
+  const float middle = (rect.min.x + rect.max.x) / 2;
+  const auto at = [&](float top) {
+    return ScreenRect{{middle - widest / 2 - 8, top}, {middle + widest / 2 + 8, top + high}};
+  };
+  const std::array places{at(rect.max.y - 0.7f * size - high),
+                          at(std::max(rect.min.y + scene.words, legend_box(rect).max.y) + size)};
+  hinted_ = hint_place_.choose(places, around_);
+  float line_y = hinted_->min.y;
+  for (const std::string& line : lines) {
+    const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line.c_str());
+    const ImVec2 place(middle - extent.x / 2, line_y);
+    list.AddRectFilled({place.x - 8, place.y - 2}, {place.x + extent.x + 8, place.y + extent.y + 2},
+                       colour(colours.backdrop, 0.72f), 4);
+    list.AddText(face, size, place, colour(colours.text), line.c_str());
+    line_y += 1.5f * size;
+  }
+}
+
 // Notes when the scene's task was begun: then it is not told any more.
 void ViewPanel::follow_task(const ViewScene& scene, const ViewState& view) {
   if (std::string task = task_of(scene.stage.document()); task != task_) {
@@ -260,7 +353,7 @@ void ViewPanel::follow_task(const ViewScene& scene, const ViewState& view) {
 
 // Draws over the picture: the selected object's outline, words and numbers.
 void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
-                           const Settings& settings, ScreenRect rect) const {
+                           const Settings& settings, ScreenRect rect) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   if (scene.selected) draw_outline(*scene.selected, camera, rect, list);
   list.PushClipRect(rect.min, rect.max);
@@ -269,12 +362,19 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
                      magnifier_.rect(), list);
   }
   draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
-  draw_pull(view, camera, rect, list);
+  if (view.pull) {
+    draw_pull(view, pull_on(scene.stage.document().scene, view), camera, rect, list);
+  }
   draw_magnet(view, camera, rect, list);
   if (pulls_) draw_grasp(view, camera, rect, list);
+  if (const auto below = dragging_ && scene.drop ? scene.drop(view.device.tip) : std::nullopt) {
+    draw_drop(view, *below, camera, rect, list);
+  }
   magnifier_.draw_frame(view, camera, list);
   if (!scene.recorded && scene.beside.empty() && !settings.your_turn && !scene.asked) {
-    draw_hint(task_done_ ? std::string() : task_, scene.pad, settings, rect, list);
+    draw_hints(scene, settings, rect, list);
+  } else {
+    hinted_.reset();
   }
   list.PopClipRect();
 }
@@ -334,6 +434,9 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
          controls.grab ? controls.goal
                        : scene.stage.rows().tip(layout.in(scene.row, Column::device_position)),
          pixel);
+    aimed_at_.reset();
+    to_depth_ = 0;
+    began_at_ = pixel;
     settings.hint_seen = true;
     note_done(settings, FirstStep::pull);
   }
@@ -343,7 +446,8 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
     dragging_ = false;
     if (!settings.hold_on_release) controls.grab = false;
   }
-  if (dragging_) drag_hand(scene.stage.arm(), camera, controls, rect, pixel);
+  if (dragging_) drag_hand(scene, camera, controls, rect, pixel);
+  if (over && !dragging_ && !on_body) name_what_is_there(scene, camera, pixel);
 
   ViewRequest asked;
   for (const int button : {ImGuiMouseButton_Left, ImGuiMouseButton_Right}) {
@@ -373,14 +477,71 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   return asked;
 }
 
-// Moves the target in the plane through it that is parallel to the picture; the wheel moves that
-// plane. If the camera has moved since the last frame, the target stays in the world.
-void ViewPanel::drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
+// Moves the target in the plane through it that is parallel to the picture. The wheel moves that
+// plane, and so does an object that the mouse comes to. If the camera has moved since the last
+// frame, the target stays in the world.
+void ViewPanel::drag_hand(const ViewScene& scene, const Camera& camera, Controls& controls,
                           ScreenRect rect, const Eigen::Vector2d& pixel) {
   stay(camera, rect, controls.grab ? controls.goal : anchor_, pixel);
-  if (ImGui::GetIO().MouseWheel != 0) pushed_ = true;
-  controls.goal = within_reach(arm, dragged_to(camera, pixel));
+  if (ImGui::GetIO().MouseWheel != 0) {
+    pushed_ = true;
+    to_depth_ = 0;
+  }
+  aim_at(scene, camera, pixel);
+  controls.goal = within_reach(scene.stage.arm(), dragged_to(camera, pixel));
   controls.grab = true;
+}
+
+// Returns the place to aim at under the mouse, or else the nearest to it.
+std::optional<Aim> ViewPanel::aim_near(const ViewScene& scene, const Camera& camera,
+                                       const Eigen::Vector2d& pixel) const {
+  if (!scene.aim) return std::nullopt;
+  if (auto aim = scene.aim(camera.ray(pixel))) return aim;
+  const double reach = kAimReach * static_cast<double>(current_scale());
+  for (const double radius : {reach / 2, reach}) {
+    for (int i = 0; i < 8; ++i) {
+      const double angle = 0.25 * std::numbers::pi * i;
+      const Eigen::Vector2d there =
+          pixel + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      if (auto aim = scene.aim(camera.ray(there))) return aim;
+    }
+  }
+  return std::nullopt;
+}
+
+// Takes the depth of an object when the mouse comes to it, once: what is pushed away is not
+// followed.
+void ViewPanel::aim_at(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) {
+  // What lies behind the tip at first is not dragged onto before the mouse has moved.
+  const double still = kLeastDrag * static_cast<double>(current_scale());
+  if (began_at_ && (pixel - *began_at_).norm() < still) return;
+  began_at_.reset();
+  const auto aim = aim_near(scene, camera, pixel);
+  const auto object = aim ? std::optional(aim->object) : std::nullopt;
+  if (object && object != aimed_at_) to_depth_ = (aim->point - anchor_).dot(camera.forward());
+  if (object != aimed_at_) aimed_at_ = object;
+  const double part = 1 - std::exp(-static_cast<double>(ImGui::GetIO().DeltaTime) / kToDepth);
+  anchor_ += part * to_depth_ * camera.forward();
+  to_depth_ -= part * to_depth_;
+}
+
+// Shows an object's name, and how to pick it up, where the mouse rests on it.
+void ViewPanel::name_what_is_there(const ViewScene& scene, const Camera& camera,
+                                   const Eigen::Vector2d& pixel) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool moves = io.MouseDelta.x != 0 || io.MouseDelta.y != 0 || ImGui::IsAnyMouseDown();
+  if (moves) rests_since_ = ImGui::GetTime();
+  if (ImGui::GetTime() < rests_since_ + kBeforeName || !scene.aim || scene.blind) return;
+  const auto aim = scene.aim(camera.ray(pixel));
+  const Scene& objects = scene.stage.document().scene;
+  if (!aim || aim->object >= objects.objects.size()) return;
+  const Object& object = objects.objects[aim->object];
+  if (object.name.empty()) return;
+  std::string text = object.name;
+  const std::string mass = object.body ? fmt::format("{:.3g} g", 1e3 * object.body->mass) : "";
+  if (!mass.empty() && mass != object.name) text += ", " + mass;
+  if (object.body && object.body->magnet) text += "\nH picks it up at the tip";
+  ImGui::SetTooltip("%s", text.c_str());
 }
 
 void ViewPanel::stay(const Camera& camera, ScreenRect rect, const Vec3& point,

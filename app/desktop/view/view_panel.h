@@ -9,6 +9,7 @@
 #include <span>
 
 #include "app/desktop/base/settings.h"
+#include "app/desktop/scene/picking.h"
 #include "app/desktop/scene/scene_editor.h"
 #include "app/desktop/view/magnifier.h"
 #include "app/live/live_loop.h"
@@ -32,12 +33,17 @@ struct ViewScene {
   std::optional<Object> selected = {};
   // Returns the body under the mouse, with the point to pull at; null: no body may be pulled.
   std::function<std::optional<BodyPull>(const Ray&)> grasp = {};
-  bool asked = false;      // a question covers its lower edge, where hints are
-  bool blind = false;      // picture only: no words, no numbers
-  int quality = 0;         // a level of Quality
-  double pixel_scale = 1;  // pixels per point
-  int pixel_height = 0;    // height of the window [px]
-  float words = 0;         // height of words at the top, over all of its width [points]
+  // Return the place to aim at along a ray, and how far below a point something is; null: the hand
+  // cannot be led here.
+  std::function<std::optional<Aim>(const Ray&)> aim = {};
+  std::function<std::optional<double>(const Vec3&)> drop = {};
+  bool asked = false;                  // a question covers its lower edge, where hints are
+  bool blind = false;                  // picture only: no words, no numbers
+  int quality = 0;                     // a level of Quality
+  double pixel_scale = 1;              // pixels per point
+  int pixel_height = 0;                // height of the window [px]
+  float words = 0;                     // height of words at the top, over all of its width [points]
+  std::vector<ScreenRect> cards = {};  // windows over the picture
 
   // Number of pictures side by side.
   std::size_t pictures() const { return overlaid ? 1 : 1 + beside.size(); }
@@ -63,10 +69,17 @@ class ViewPanel {
   // Returns whether the picture has changed since it was drawn. To be called once a turn, before
   // draw().
   bool differs(const ViewScene& scene, const Camera& camera, const Settings& settings);
+  // Returns what cards over the pictures should not cover, as drawn last: tips, what is acted on,
+  // objects that move.
+  const Crowd& crowd() const { return crowd_; }
 
  private:
+  void see_crowd(const ViewScene& scene, const ViewState& view, const Camera& camera,
+                 const Settings& settings, ScreenRect rect);
+  void draw_hints(const ViewScene& scene, const Settings& settings, ScreenRect rect,
+                  ImDrawList& list);
   void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,
-                  const Settings& settings, ScreenRect rect) const;
+                  const Settings& settings, ScreenRect rect);
   void draw_pictures(const ViewScene& scene, const Camera& camera, const Settings& settings,
                      ScreenRect rect);
   static ViewState state_of(const ViewScene& scene, const Settings& settings);
@@ -79,12 +92,20 @@ class ViewPanel {
   Vec3 dragged_to(const Camera& camera, const Eigen::Vector2d& pixel);
   bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) const;
   void hold(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
-  void drag_hand(const ArmDescription& arm, const Camera& camera, Controls& controls,
-                 ScreenRect rect, const Eigen::Vector2d& pixel);
+  void drag_hand(const ViewScene& scene, const Camera& camera, Controls& controls, ScreenRect rect,
+                 const Eigen::Vector2d& pixel);
+  std::optional<Aim> aim_near(const ViewScene& scene, const Camera& camera,
+                              const Eigen::Vector2d& pixel) const;
+  void aim_at(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel);
+  void name_what_is_there(const ViewScene& scene, const Camera& camera,
+                          const Eigen::Vector2d& pixel);
 
   void follow_task(const ViewScene& scene, const ViewState& view);
 
   Magnifier magnifier_;
+  Crowd crowd_, around_;  // without and with the cards
+  FreePlace hint_place_;
+  std::optional<ScreenRect> hinted_;  // place of the hints in the last frame
   std::string task_;                 // sentence of the scene that is shown
   bool task_done_ = false;           // something of it was touched since, or pulled on
   std::optional<ScreenRect> drawn_;  // place of the view
@@ -95,8 +116,12 @@ class ViewPanel {
   std::array<bool, 2> moved_{};                              // since pressed
   bool pushed_ = false;                                      // the wheel pushed the hand
   std::size_t under_mouse_ = 0;                              // picture in which the mouse began
-  Vec3 anchor_ = Vec3::Zero();  // point that is dragged, without depth [m]
-  Vec3 offset_ = Vec3::Zero();  // from the mouse's point to anchor_ [m]
+  Vec3 anchor_ = Vec3::Zero();               // point that is dragged, without depth [m]
+  Vec3 offset_ = Vec3::Zero();               // from the mouse's point to anchor_ [m]
+  std::optional<std::size_t> aimed_at_;      // object whose depth the hand has taken
+  double to_depth_ = 0;                      // still to go to that depth [m]
+  std::optional<Eigen::Vector2d> began_at_;  // of a drag that has not left its place yet
+  double rests_since_ = 0;                   // the mouse, in the picture [ImGui's clock]
   // Camera when the hand was dragged last.
   Eigen::Matrix4d looked_ = Eigen::Matrix4d::Identity();
   ImVec2 corner_{};

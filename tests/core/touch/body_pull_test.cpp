@@ -11,7 +11,7 @@ namespace limpid::test {
 namespace {
 
 constexpr double kSwing = 25;      // frequency of the pull's spring with the body [rad/s]
-constexpr double kLongest = 0.04;  // distance beyond which the pull grows no further [m]
+constexpr double kLongest = 0.12;  // distance beyond which the pull grows no further [m]
 
 TEST(BodyPull, HoldsABodyAsFarBelowTheTargetWhateverItsMass) {
   for (const double mass : {0.0005, 0.05, 5.0}) {

@@ -60,6 +60,36 @@ double distance(const Shape& shape, const Vec3& p) {
   return (p - Vec3(0, 0, z)).norm() - pill.radius;
 }
 
+// The place to aim at is a centimetre deep, or in the middle of what is thinner; a plane is none.
+TEST(Picking, AimsIntoObjects) {
+  Scene scene;
+  scene.add({.name = "floor", .shape = Plane{Vec3::UnitZ()}});
+  scene.add({.name = "slab", .pose = pose_at({0, 0, 0.1}), .shape = Box{{0.1, 0.1, 0.006}}});
+  scene.add({.name = "block", .pose = pose_at({0.3, 0, 0.1}), .shape = Box{{0.1, 0.1, 0.1}}});
+  const auto down = [&](double x) {
+    return aim_along({{x, 0.01, 0.5}, -Vec3::UnitZ()}, scene, {});
+  };
+  const auto slab = down(0.02), block = down(0.31);
+  ASSERT_TRUE(slab && block);
+  EXPECT_EQ(slab->object, 1u);
+  EXPECT_LT((slab->point - Vec3(0.02, 0.01, 0.1)).norm(), 1e-12);
+  EXPECT_EQ(block->object, 2u);
+  EXPECT_LT((block->point - Vec3(0.31, 0.01, 0.14)).norm(), 1e-12);
+  EXPECT_FALSE(down(0.15)) << "nothing but the floor";
+}
+
+TEST(Picking, TellsWhatIsBelow) {
+  Scene scene;
+  scene.add({.name = "floor", .shape = Plane{Vec3::UnitZ()}});
+  scene.add({.name = "ball", .pose = pose_at({0.1, 0, 0.03}), .shape = Sphere{0.03}});
+  const std::array moved{Pose(pose_at({-0.1, 0, 0.03}))};
+  EXPECT_NEAR(*drop_below({0, 0, 0.2}, scene, {}), 0.2, 1e-12);
+  EXPECT_NEAR(*drop_below({0.1, 0, 0.2}, scene, {}), 0.14, 1e-12);
+  EXPECT_FALSE(drop_below({0, 0, 0.7}, scene, {})) << "too far";
+  scene.objects[1].body = Body{};
+  EXPECT_NEAR(*drop_below({-0.1, 0, 0.2}, scene, moved), 0.14, 1e-12) << "where it is now";
+}
+
 TEST(Picking, GraspsABodyByThePointUnderTheMouse) {
   Shapes all;
   Object block{.name = "block", .pose = pose_at({0.1, 0, 0}), .shape = Box{{0.02, 0.02, 0.02}}};

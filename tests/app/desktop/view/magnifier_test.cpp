@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "app/stage/picture_signs.h"
 #include "tests/app/plot/imgui_frames.h"
 
@@ -48,7 +50,9 @@ TEST_F(Lens, HidesNeitherTheTipsNorWordsAndStaysInTheView) {
         const ScreenRect said{view.min, {view.max.x, view.min.y + words}};
         for (float x = view.min.x; x < view.max.x; x += 15) {
           for (float y = view.min.y + words; y < view.max.y; y += 15) {
-            const auto lens = lens_corner(view, words, {x, y});
+            FreePlace corner;
+            const ScreenRect tips{{x - 30, y - 30}, {x + 30, y + 30}};
+            const auto lens = corner.choose(lens_corners(view, words), {{tips}, {}});
             ASSERT_TRUE(lens);
             EXPECT_FALSE(lens->contains({x, y})) << x << ", " << y << " below " << words;
             EXPECT_FALSE(overlap(*lens, said));
@@ -57,8 +61,31 @@ TEST_F(Lens, HidesNeitherTheTipsNorWordsAndStaysInTheView) {
         }
       }
     }
-    EXPECT_FALSE(lens_corner({{0, 0}, {120, 90}}, 0, {20, 20})) << "too small to show anything";
+    EXPECT_TRUE(lens_corners({{0, 0}, {120, 90}}, 0).empty()) << "too small to show anything";
   });
+}
+
+const ScreenRect kOnePlace{{0, 0}, {100, 100}}, kOtherPlace{{200, 0}, {300, 100}};
+
+TEST(FreePlace, TakesTheFirstThatCoversNothing) {
+  const std::array places{kOnePlace, kOtherPlace};
+  FreePlace place;
+  EXPECT_EQ(place.choose(places, {})->min.x, 0);
+  EXPECT_EQ(place.choose(places, {{{{40, 40}, {60, 60}}}, {}})->min.x, 200) << "a tip";
+  EXPECT_FALSE(FreePlace().choose({}, {}));
+}
+
+// Objects count less than tips, and a place is not left for a little.
+TEST(FreePlace, MovesOnlyForSomethingThatCounts) {
+  const std::array places{kOnePlace, kOtherPlace};
+  FreePlace place;
+  const ScreenRect small{{90, 90}, {110, 110}}, large{{0, 0}, {100, 50}};
+  EXPECT_EQ(place.choose(places, {{}, {small}})->min.x, 200);
+  EXPECT_EQ(place.choose(places, {})->min.x, 200) << "it stays where it covers nothing";
+  EXPECT_EQ(place.choose(places, {{}, {{{200, 0}, {209, 100}}}})->min.x, 200) << "for so little";
+  EXPECT_EQ(place.choose(places, {{}, {{{200, 0}, {220, 100}}}})->min.x, 0);
+  EXPECT_EQ(place.choose(places, {{{{250, 50}, {260, 60}}}, {large}})->min.x, 0)
+      << "rather an object than a tip";
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ class AView : public ImGuiFrames {
   ViewScene scene() {
     ViewScene all{.stage = *stage_, .row = row_, .pixel_height = 600};
     all.grasp = [this](const Ray&) { return under_; };
+    all.aim = [this](const Ray& ray) { return aim_along(ray, objects_, {}); };
     return all;
   }
   void draw() {
@@ -71,6 +72,7 @@ class AView : public ImGuiFrames {
   ScreenRect rect_{{0, 0}, {400, 300}};
   bool taken_ = false;
   std::optional<BodyPull> under_;
+  Scene objects_;
   ViewRequest asked_;
   Settings settings_;
 };
@@ -144,6 +146,41 @@ TEST_F(AView, PullsABodyWithCtrl) {
   press(0, false);
   EXPECT_EQ(controls_.pull, BodyPull{});
   EXPECT_FALSE(asked_.clicked);
+}
+
+// A block before the tip, and beside it in the picture.
+TEST_F(AView, DragsTheHandOntoWhatTheMouseComesTo) {
+  draw();
+  const Vec3 middle = tip() - 0.04 * camera_.forward() - 0.1 * camera_.right();
+  objects_.add({.name = "block", .pose = pose_at(middle), .shape = Sphere{0.008}});
+  const Eigen::Vector2d at = seen(tip()), block = seen(middle);
+  ASSERT_GT((block - at).norm(), 60) << "out of the mouse's reach at first";
+  const auto depth = [&](const Vec3& point) { return (point - tip()).dot(camera_.forward()); };
+  point(at);
+  press(0, true);
+  point(at + Eigen::Vector2d(10, 0));
+  EXPECT_NEAR(depth(controls_.goal), 0, 1e-6) << "nothing is there";
+  point(block);
+  for (int i = 0; i < 60; ++i) draw();
+  EXPECT_NEAR(depth(controls_.goal), depth(middle), 1e-3) << "in the middle of what is thin";
+  EXPECT_LT((seen(controls_.goal) - block).norm(), 1) << "under the mouse as ever";
+
+  // What is pushed away is not followed, and what the wheel says stays.
+  objects_.objects[0].pose.translation() += 0.02 * camera_.forward();
+  for (int i = 0; i < 60; ++i) draw();
+  EXPECT_NEAR(depth(controls_.goal), depth(middle), 1e-3);
+  press(0, false);
+}
+
+TEST_F(AView, DoesNotJumpToWhatIsBehindTheTipAtFirst) {
+  draw();
+  objects_.add(
+      {.name = "wall", .pose = pose_at(tip() + 0.2 * camera_.forward()), .shape = Sphere{0.08}});
+  point(seen(tip()));
+  press(0, true);
+  for (int i = 0; i < 20; ++i) point(seen(tip()) + Eigen::Vector2d(0.2 * i, 0));
+  EXPECT_NEAR((controls_.goal - tip()).dot(camera_.forward()), 0, 1e-6);
+  press(0, false);
 }
 
 TEST_F(AView, StopsPullingWhenTheSceneHasChanged) {
