@@ -68,6 +68,33 @@ class Limits {
   bool started_ = false;
 };
 
+CheckEnd why_not_well(bool here, const DeviceReading& reading) {
+  if (!here) return CheckEnd::gone;
+  if (!reading.hand) return CheckEnd::open_hand;
+  if (reading.fault) return CheckEnd::fault;
+  return reading.age <= SafetyLimits::kStaleReading ? CheckEnd::none : CheckEnd::stale;
+}
+
+// Notes the first reason.
+void note(AxisCheckProgress& progress, CheckEnd why) {
+  CheckEnd none = CheckEnd::none;
+  progress.end.compare_exchange_strong(none, why);
+}
+
+const char* explain(CheckEnd end) {
+  switch (end) {
+    case CheckEnd::none: return "";
+    case CheckEnd::stopped: return " You stopped it.";
+    case CheckEnd::no_window: return " The window did not answer for 0.4 s.";
+    case CheckEnd::gone: return " The device was gone. Plug it in again.";
+    case CheckEnd::open_hand: return " The device says that no hand holds it.";
+    case CheckEnd::fault: return " The device reported a fault.";
+    case CheckEnd::stale:
+      return " The device gave no reading for 5 ms. Close other programs, or try another port.";
+  }
+  return "";
+}
+
 }  // namespace
 
 AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
@@ -83,11 +110,14 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
     HapticThread thread(ask);
     const auto tick = [&](const TickTiming& timing) {
       if (done) return;
-      if (progress.cancel) check.cancel();
+      if (progress.cancel) {
+        check.cancel();
+        note(progress, CheckEnd::stopped);
+      }
       DeviceReading reading;
-      const bool here = device.read(reading);
-      const bool well =
-          here && reading.hand && !reading.fault && reading.age <= SafetyLimits::kStaleReading;
+      const CheckEnd ill = why_not_well(device.read(reading), reading);
+      const bool well = ill == CheckEnd::none;
+      if (!well) note(progress, ill);
       const std::span<const double> x = std::span(reading.x).first(joints);
       const double T = timing.periods * 1e-3;
       if (well && !set.allow(x, T)) check.exceed();
@@ -99,21 +129,23 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
     thread.start(kCheckTick, tick, Overdue::given_up);
     while (!done && thread.status().running) {
       std::this_thread::sleep_for(milliseconds(10));
-      if (std::chrono::steady_clock::now() - progress.window_seen.load() > kSilence)
+      if (std::chrono::steady_clock::now() - progress.window_seen.load() > kSilence) {
+        note(progress, CheckEnd::no_window);
         progress.cancel = true;
+      }
     }
   }
   device.stop();
   return check;
 }
 
-std::string report_of(const AxisCheck& check) {
+std::string report_of(const AxisCheck& check, CheckEnd end) {
   std::string text;
   for (int i = 0; i < check.dof(); ++i) {
     text +=
         fmt::format("{}axis {}: {}", i == 0 ? "" : "\n", i + 1, explain(check.finding(i).verdict));
   }
-  return text;
+  return check.passed() ? text : text + explain(end);
 }
 
 }  // namespace limpid

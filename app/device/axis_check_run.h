@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <string>
 
 #include "core/dynamics/arm_description.h"
 #include "core/realtime/realtime.h"
@@ -11,11 +13,15 @@
 
 namespace limpid {
 
+// Why a check ended before it was done.
+enum class CheckEnd : std::uint8_t { none, stopped, no_window, gone, open_hand, fault, stale };
+
 // Exchange between window and check; for any thread.
 struct AxisCheckProgress {
   std::atomic<int> axis{0};
   std::atomic<AxisStage> stage{AxisStage::resting};
   std::atomic<bool> cancel{false};
+  std::atomic<CheckEnd> end{CheckEnd::none};
   std::atomic<std::chrono::steady_clock::time_point> window_seen{std::chrono::steady_clock::now()};
 
   void see_window() { window_seen = std::chrono::steady_clock::now(); }
@@ -28,7 +34,7 @@ struct AxisCheckProgress {
 AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const SafetyLimits& limits,
                          AxisCheckProgress& progress, const AskForPriority& ask);
 
-// Result of a check, for people.
-std::string report_of(const AxisCheck& check);
+// Result of a check, for people; with `end`, why it was interrupted.
+std::string report_of(const AxisCheck& check, CheckEnd end = CheckEnd::none);
 
 }  // namespace limpid

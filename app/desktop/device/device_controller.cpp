@@ -184,6 +184,7 @@ void DeviceController::start_check() {
   choose();
   progress_ = std::make_shared<AxisCheckProgress>();
   problem_.clear();
+  check_failed_ = false;
   connecting_id_ = hub_.in_use();
   check_ = live_.device_tasks().run(hub_.checking(progress_));
 }
@@ -194,7 +195,8 @@ void DeviceController::follow_check() {
   try {
     const auto check = take_ready(check_);
     if (!check || connecting_id_ != hub_.in_use()) return;
-    problem_ = report_of(*check);
+    problem_ = report_of(*check, progress_->end);
+    check_failed_ = !check->passed();
     if (!remember_check(*check, hub_.notes(hub_.in_use()))) {
       return notices_.say("The check has not passed; the device stays out of the loop.", true);
     }
@@ -220,6 +222,7 @@ void DeviceController::use(const std::string& id) {
     hub_.use(id);
     cancel_check();
     problem_.clear();
+    check_failed_ = false;
     unchecked_.clear();
     retry_at_ = services_at_ = {};
     save();

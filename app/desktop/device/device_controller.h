@@ -64,6 +64,7 @@ class DeviceController {
   void cancel_check() {
     if (progress_) progress_->cancel = true;
   }
+  bool check_failed() const { return check_failed_; }  // problem() says why
   // Returns the progress of the check; null: none runs.
   const AxisCheckProgress* check() const { return check_.valid() ? progress_.get() : nullptr; }
 
@@ -116,6 +117,7 @@ class DeviceController {
   bool blocked_ = false;   // the problem is an obstacle
   std::future<AxisCheck> check_;
   std::shared_ptr<AxisCheckProgress> progress_;
+  bool check_failed_ = false;  // the last one
 };
 
 }  // namespace limpid

@@ -70,102 +70,6 @@ void choices(DeviceController& devices, const PadChoice& pads) {
   if (!known) choice(devices, "the one used before", devices.hub().in_use(), "Not plugged in.");
 }
 
-// Draws the guided check of a new device's axes; returns whether there is one to show.
-bool axis_check(DeviceController& devices) {
-  if (const AxisCheckProgress* check = devices.check()) {
-    ImGui::TextWrapped("Axis %d of the check: %s", check->axis + 1, what_to_do(check->stage));
-    if (ImGui::Button("Stop (Esc)")) devices.cancel_check();
-    return true;
-  }
-  if (!devices.awaits_check()) return false;
-  ImGui::TextWrapped("%s", devices.problem().c_str());
-  if (noted_button(kCheckAxes)) devices.start_check();
-  tooltip(
-      "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
-      "device stand free, the hands beside it; Esc stops it.");
-  return true;
-}
-
-void status(DeviceController& devices, const LiveLoop& loop) {
-  if (devices.hub().in_use().empty() || axis_check(devices)) return;
-  if (!devices.problem().empty()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));
-    ImGui::TextWrapped("%s", devices.problem().c_str());
-    ImGui::PopStyleColor();
-    const FoundDevice* found = devices.hub().present();
-    const std::string missing = found != nullptr ? found->missing : std::string();
-    const std::size_t from = missing.find('\''), to = missing.rfind('\'');
-    if (devices.waits_for_choice() && ImGui::Button("Connect to it")) {
-      devices.use(devices.hub().in_use());
-    }
-    if (from < to && ImGui::SmallButton("copy the command")) {
-      ImGui::SetClipboardText(missing.substr(from + 1, to - from - 1).c_str());
-    }
-    return;
-  }
-  if (!loop.device_in_place()) return;
-  const ForceState state = loop.snapshot().force_state;
-  read_out("force", explain(state), {},
-           "Force is off until the hand has the device and F arms it; it then fades in.");
-  const std::string words = device_words(loop.snapshot().reading);
-  if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());
-}
-
-// Draws measured and assumed values of the device, and the delay that the law reckons with. Returns
-// true if the user wants more measured.
-bool knowledge(DeviceController& devices, const LiveStage& live, Parameters& p) {
-  if (!live.loop().device_in_place()) return false;
-  const DeviceNotes& notes = devices.hub().notes(devices.hub().in_use());
-  const bool found = !notes.arm.empty();
-  read_out("inertia, friction", found ? "measured" : "assumed", {},
-           "Measured: by limpid identify, and remembered for this device. Assumed: what the arm's "
-           "file says. Condition (3), \xCE\xB7_min and the walls in the analysis rest on them.");
-  if (notes.torque_scale != 1) {
-    read_out("motors", fmt::format("give {:.3f} of what they are told", notes.torque_scale), {},
-             "Measured with a load at the tip; what they are told takes it into account.");
-  }
-  const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
-  tooltip("Moves it by itself and finds inertia, friction, weight and delay.");
-  if (std::isnan(notes.delay)) {
-    read_out("delay", "not measured", {}, "Identifying the device finds it.");
-    return wanted;
-  }
-  read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
-           "From a reading to the torque that answers it, beyond the tick.");
-  const Parameters with = reckoning_with(p, notes.delay);
-  if (with.delay == p.delay) return wanted;
-  const std::string text =
-      fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
-  if (ImGui::Button(text.c_str())) p = with;
-  tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
-  return wanted;
-}
-
-// Asks which arm the device is; returns true if a file is to be chosen.
-bool arm_question(DeviceController& devices, const LiveStage& live) {
-  const DeviceHub& hub = devices.hub();
-  if (!hub.may_say_arm()) return false;
-  const bool in_place = live.loop().device_in_place();
-  if (in_place) read_out("arm", live.stage().arm().name, {}, "That the device is taken for.");
-  if (!hub.asks_for_arm()) {
-    if (ImGui::SmallButton("Another arm...")) devices.say_arm({});
-    tooltip("Asks again which arm the device is.");
-    return false;
-  }
-  ImGui::TextWrapped("Which arm is it? Until you say so it is a built-in one, with little force.");
-  tooltip(
-      "Its ranges and levers bound the force. Of more than three joints there is no built-in one: "
-      "then there is no force.");
-  if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
-  tooltip("assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
-  ImGui::SameLine();
-  const NamedArm open = devices.open_arm();
-  if (noted_button(kOpenArmButton)) devices.say_arm(open);
-  tooltip(fmt::format("{}", open.file).c_str());
-  ImGui::SameLine();
-  return noted_button(kArmOfFileButton);
-}
-
 // Draws which part of the device's own forces the motors compensate.
 void compensation(const ArmDescription& arm, Parameters& p) {
   if (!section("Compensation", true)) return;
@@ -326,19 +230,13 @@ NotesEdited draw_notes(DeviceNotes& notes, std::span<const double> angles,
   return edited;
 }
 
-Parameters reckoning_with(Parameters p, double delay) {
-  set_parameter_number(p, *find_parameter("model.delay"), delay / p.tick);
-  return p;
-}
-
-DevicePanelAsks draw_device_panel(DeviceController& devices, const LiveStage& live,
-                                  const PadChoice& pads, Parameters& p) {
-  DevicePanelAsks asks;
+DeviceCardAsks draw_device_panel(DeviceController& devices, const LiveStage& live,
+                                 const PadChoice& pads, Parameters& p) {
+  DeviceCardAsks asks;
   choices(devices, pads);
-  status(devices, live.loop());
   if (!devices.hub().in_use().empty()) {
-    asks.arm_file = arm_question(devices, live);
-    asks.identify = knowledge(devices, live, p);
+    ImGui::Spacing();
+    asks = draw_device_card(devices, live, p);
     if (live.loop().device_in_place()) compensation(live.stage().arm(), p);
     adjustments(devices, live);
   }

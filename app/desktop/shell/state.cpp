@@ -159,7 +159,7 @@ json state_of(const DeviceController& controller) {
           {"check", check ? place(*check) : json()},
           {"arm", arm ? place(*arm) : json()},
           {"checking", controller.check() != nullptr},
-          {"explains_force", noted_place(kSidePanel, "force").has_value()}};
+          {"explains_force", noted_place(kSidePanel, "Force").has_value()}};
 }
 
 // Returns the places of the device's tip and the scene's objects in the window [px]; null behind

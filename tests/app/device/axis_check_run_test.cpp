@@ -1,6 +1,6 @@
 #include "app/device/axis_check_run.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <thread>
 
@@ -87,6 +87,7 @@ TEST(AxisCheckRun, EndsWithoutForceWhenItIsCancelled) {
   const AxisCheck check = checked(device, progress);
   hand.join();
   EXPECT_FALSE(check.passed());
+  EXPECT_EQ(progress.end, CheckEnd::stopped);
   EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
   EXPECT_EQ(device.told, (std::array<double, kMaxDof>{}));
   DeviceNotes notes;
@@ -97,6 +98,7 @@ TEST(AxisCheckRun, EndsWhenTheWindowHangs) {
   Yielding device({1e-9, 1e-9});  // a hard axis, which takes seconds
   AxisCheckProgress progress;
   const AxisCheck check = checked(device, progress, true);
+  EXPECT_EQ(progress.end, CheckEnd::no_window);
   EXPECT_EQ(check.finding(check.axis()).verdict, AxisVerdict::given_up);
   EXPECT_EQ(device.told, (std::array<double, kMaxDof>{}));
 }
@@ -108,6 +110,7 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   progress.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
   const AxisCheck check = run_axis_check(device, stick(), {}, progress, {});
   EXPECT_EQ(check.finding(0).verdict, AxisVerdict::given_up);
+  EXPECT_THAT(report_of(check, progress.end), testing::HasSubstr("no reading for 5 ms"));
   EXPECT_TRUE(device.stopped);
 }
 
