@@ -66,6 +66,7 @@ void each(S& s, Visit&& visit) {
   visit("left", s.left);
   visit("right", s.right);
   visit("plots", s.plots);
+  visit("everything", s.everything);
   visit("show_left", s.show_left);
   visit("show_right", s.show_right);
   visit("show_plots", s.show_plots);
@@ -279,12 +280,23 @@ void remember_recent(Settings& settings, const std::string& file) {
   if (settings.recent.size() > kMostRecent) settings.recent.resize(kMostRecent);
 }
 
+void show_everything(Settings& settings, bool everything) {
+  const auto& [now, then] = everything ? std::pair(simple_plots(), default_plots())
+                                       : std::pair(default_plots(), simple_plots());
+  if (settings.plot_choices == now) settings.plot_choices = then;
+  settings.everything = everything;
+}
+
 bool kept_alike(const Settings& a, const Settings& b) { return table_of(a) == table_of(b); }
 
 Settings load_settings(std::string& complaint) {
   const fs::path file = settings_file();
   std::error_code none;
-  if (!fs::exists(file, none)) return {};
+  if (!fs::exists(file, none)) {
+    Settings first;
+    show_everything(first, false);
+    return first;
+  }
   try {
     return settings_of(read_text(file, kLongestSettings), file, complaint);
   } catch (const std::exception& e) {

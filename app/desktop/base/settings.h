@@ -54,6 +54,7 @@ struct Settings {
   double ui_scale = 0;  // 0: the screen's scale
   int width = 1440, height = 900;
   double left = 300, right = 290, plots = 250;  // sizes of the panels at scale 1 [px]
+  bool everything = true;                       // the whole bench, else what a first hour needs
   bool show_left = true, show_right = true, show_plots = true;
   bool show_ghost = true, show_trail = true, show_forces = true, show_grid = true;
   bool show_lens = true;  // while gap or contact is small
@@ -82,7 +83,11 @@ struct Settings {
 // Puts a file at the front of the recent ones.
 void remember_recent(Settings& settings, const std::string& file);
 
-// Reads $XDG_CONFIG_HOME/limpid/settings.toml. Unreadable values keep their default; `complaint`
+// Shows the whole bench, or what a first hour needs. Plots that nobody has changed follow.
+void show_everything(Settings& settings, bool everything);
+
+// Reads $XDG_CONFIG_HOME/limpid/settings.toml. Without the file these are a first start's, which
+// shows what a first hour needs. Unreadable values keep their default; `complaint`
 // then says why.
 Settings load_settings(std::string& complaint);
 // Writes only the differences from `began`, as another window may have written the file meanwhile.

@@ -141,9 +141,9 @@ void comparison_list(Parameters& p) {
   ImGui::EndCombo();
 }
 
-void law_choice(Parameters& p) {
+void law_choice(Parameters& p, bool for_comparison) {
   kind_buttons(p);
-  comparison_list(p);
+  if (for_comparison || info(p.kind).for_comparison) comparison_list(p);
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
   // The verdict has the same height for every law, so that nothing below it moves.
   const float below = ImGui::GetCursorPosY() + 2 * ImGui::GetTextLineHeightWithSpacing();
@@ -190,9 +190,9 @@ void draw_link(Parameters& p) {
   if (!section(set.c_str(), false)) return;
   if (!info(p.kind).knows_link()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped("This law %s, and knows no link.", info(p.kind).on_device
-                                                              ? "renders walls on the device itself"
-                                                              : "solves device and proxy at once");
+    ImGui::TextWrapped("This law %s. It has no link.", info(p.kind).on_device
+                                                           ? "renders walls on the device itself"
+                                                           : "solves device and proxy together");
     ImGui::PopStyleColor();
     return;
   }
@@ -241,7 +241,7 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
 void draw_observer(const Parameters& p, const Analysis& a) {
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
-           "alpha / m over the modes of the inertia at the rest pose, (18)");
+           "alpha / m, (18), for each mode of the inertia in the rest pose");
   read_out("Least passive inertia \xCE\xB7_min",
            fmt::format("{:.3f}  {}", a.eta_min, a.above_eta_min ? "ok" : "broken"),
            eta_broken(p, a), "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
@@ -275,9 +275,13 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
                           : fmt::format("broken  {:+.2g}", margin);
   };
   read_out("Condition (3), device", verdict(device, a.condition3.device_margin), device,
-           ("b_d less " + device_needs(p, a) + " [N m s/rad]: not negative").c_str());
+           ("b_d minus (" + device_needs(p, a) +
+            ") [N m s/rad]. The condition holds while this is not negative.")
+               .c_str());
   read_out("Condition (3), proxy", verdict(proxy, a.condition3.proxy_margin), proxy,
-           ("b_v less " + proxy_needs(p, a) + " [N m s/rad]: not negative").c_str());
+           ("b_v minus (" + proxy_needs(p, a) +
+            ") [N m s/rad]. The condition holds while this is not negative.")
+               .c_str());
 }
 
 void share(const char* label, double part, const char* cut, const char* meaning) {
@@ -289,7 +293,7 @@ void draw_shares(const CouplingReading& now, const LawInfo& law) {
   if (law.torque_share == nullptr && law.damper_share == nullptr) return;
   heading(law.label);
   if (law.torque_share != nullptr) {
-    share("Torque let through", now.torque_governor,
+    share("Torque rendered", now.torque_governor,
           "A part of the walls' torque is held back: they feel softer than set.", law.torque_share);
   }
   if (law.damper_share != nullptr) {
@@ -306,7 +310,7 @@ void draw_tanks(const CouplingReading& now) {
   share("Proxy moves freely", now.contact_governor,
         "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
         "Its damping by that with what its tank adds");
-  share("Torque let through", now.torque_governor,
+  share("Torque rendered", now.torque_governor,
         "The device's tank is low: of the torque only so much is let through as it can pay for. "
         "Moving the device fills it.",
         "100 % while the device's tank can pay for the tick that comes");
@@ -349,21 +353,25 @@ void draw_ledger(const CouplingReading& now) {
   heading("Energy ledger");
   read_out("Reserve", energy_text(now.reserve), {},
            "What the human may still be given; more after dissipating, 20 mJ at most");
-  share("Wall force let through", now.contact_governor,
+  share("Wall force rendered", now.contact_governor,
         "The reserve runs low: the ledger holds a part of the wall's force back, so that the "
         "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
         "keep it from acting.",
         "100 % unless the reserve runs low; then the proxy leaves the device for a while");
-  share("Damping cancelled", now.damping_governor,
+  share("Damping removed", now.damping_governor,
         "The reserve runs low: less of the device's damping is cancelled.",
-        "Of what the damping slider asks for");
+        "Share of the damping slider's value that is in use");
   share(
-      "Torque let through", now.torque_governor,
+      "Torque rendered", now.torque_governor,
       "The hand was given nearly all that it may be given: the ledger holds all torque back until "
       "the hand has put some in again. Force that is armed anew, and a loop that starts anew, "
       "begin with a full ledger. A known delay (model.delay) or a lower stiffness keep it from "
       "acting.",
       "100 % unless the hand was given nearly 5 mJ more than it put in");
+}
+
+// Draws in how many ticks forces were not found, if there were any.
+void draw_unsolved(const CouplingReading& now) {
   if (now.unsettled > 0) {
     const char* why =
         "Motors at their limit and contacts had no common solution in these ticks: the proxy stood "
@@ -398,19 +406,29 @@ const char* way_out(const Parameters& p) {
              : "A softer k_vc, more damping (condition (3)), or the predictive law, avoid it.";
 }
 
-// Draws E_c as in the plots, by its sources; only the coupling's own part is judged.
-void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
-  const EnergyAccount& energy = now.energy;
+// Returns the part of E_c that is the coupling's own, and why it is a fault; empty if it is none.
+struct OwnEnergy {
+  double joules;
+  std::string broken;
+  bool at_fault;
+};
+OwnEnergy own_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   const bool at_fault = now.chatters || passivity(a, p).passive == false;
   // A law with a ledger makes another promise, which the ledger shows.
   const bool judged = now.chatters || !info(p.kind).keeps_ledger();
-  const double own = at_fault ? energy.without_limits() : energy.own();
-  const std::string broken =
-      judged && own > kGivenEnergy
-          ? fmt::format(
-                "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
-                energy_text(own), way_out(p))
-          : "";
+  const double own = at_fault ? now.energy.without_limits() : now.energy.own();
+  if (!judged || own <= kGivenEnergy) return {own, "", at_fault};
+  return {own,
+          fmt::format(
+              "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
+              energy_text(own), way_out(p)),
+          at_fault};
+}
+
+// Draws E_c as in the plots, by its sources; only the coupling's own part is judged.
+void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
+  const EnergyAccount& energy = now.energy;
+  const auto [own, broken, at_fault] = own_energy(now, p, a);
   read_out("Energy given E_c", energy_text(now.energy_total), {},
            "What the coupling gave since the start, with the device's own damping, as the plots "
            "show it. Below it stands whose it is.");
@@ -420,15 +438,15 @@ void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis
   const auto apart = [](const char* label, double joules, const char* help) {
     if (std::abs(joules) > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
   };
-  apart("Put in by switching", energy.by_changes(),
+  apart("From switching", energy.by_changes(),
         "Of E_c: changing a law or a setting while the coupling is stretched puts energy in, as "
         "bending a spring does. It is no fault of the coupling.");
   apart("Before the last change", energy.forgiven(),
         "Of E_c: what settings gave that are no longer there.");
-  apart("For the device's own forces", now.compensation,
+  apart("From compensation", now.compensation,
         "Of E_c: what the motors gave for the device's weight, springs and friction.");
   if (at_fault) return;
-  apart("Put in at the motors' limit", energy.by_limits(),
+  apart("From motors at their limit", energy.by_limits(),
         "Of E_c: a motor at its limit gives another torque than the coupling asks for. It is no "
         "fault of the coupling.");
 }
@@ -458,6 +476,25 @@ void draw_break(bool broken, const Act& act) {
                    "begins to tremble, and E_c climbs. Repair puts everything back.");
 }
 
+// Draws the inertia felt, of a law that scales it.
+void draw_eta(Parameters& p, const Analysis& a) {
+  const auto& sliders = info(p.kind).sliders;
+  if (std::ranges::find(sliders, std::string_view("coupling.eta")) == sliders.end()) return;
+  slider(p, "coupling.eta", eta_broken(p, a));
+}
+
+// Draws whether the law is passive with these settings, in a word.
+void draw_passive(const Parameters& p, const Analysis& a) {
+  const Passivity found = passivity(a, p);
+  if (!found.passive) return read_out("Passive", "not known", {}, found.by.c_str());
+  const std::string broken =
+      *found.passive
+          ? ""
+          : fmt::format("It can give energy without end, by {}.\n{}", found.by, way_out(p));
+  read_out("Passive", *found.passive ? "yes" : "no", broken,
+           fmt::format("Why: {}.", found.by).c_str());
+}
+
 }  // namespace
 
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
@@ -468,14 +505,43 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
   } else {
     draw_shares(reading, info(p.kind));
   }
+  draw_unsolved(reading);
   draw_energy(reading, p, analysis);
+  draw_limited(reading.limited);
+}
+
+void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
+                         const CouplingSituation& now) {
+  read_out("Apart at the tip", fmt::format("{:.2f} mm", 1e3 * reading.gap), {},
+           "How far the tips of your device and of its avatar, the proxy, are apart.");
+  read_out("Apart in the joints",
+           fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
+           "Coordination error |x_E|: the joints' angles of the device less those of the proxy. "
+           "The first plot shows it.");
+  read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
+           "How hard the scene pushes on the proxy.");
+  const OwnEnergy energy = own_energy(reading, p, now.analysis);
+  read_out("Energy given E_c", energy_text(reading.energy_total), energy.broken,
+           "What the coupling gave since the start. It stays below zero while the coupling is "
+           "passive. The second plot shows it.");
+  draw_passive(p, now.analysis);
+  draw_unsolved(reading);
   draw_limited(reading.limited);
 }
 
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
                    const Act& act) {
-  law_choice(p);
+  law_choice(p, now.everything);
   ImGui::Spacing();
+  if (!now.everything) {
+    draw_eta(p, now.analysis);
+    draw_simple_reading(reading, p, now);
+    if (!now.real) draw_break(now.broken, act);
+    if (ImGui::Button("Show all", {ImGui::GetContentRegionAvail().x, 0})) act("view.everything");
+    note_place("Show all");
+    tooltip("All settings and figures: gains, passivity, energy, analysis and timing (F8).");
+    return;
+  }
   draw_sliders(p, now.analysis, now.arm);
   if (!now.real) draw_break(now.broken, act);
   if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
@@ -485,8 +551,9 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
 void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,
                             const CouplingSituation& now) {
   draw_differences(p, recorded, live);
-  law_choice(p);
+  law_choice(p, now.everything);
   ImGui::Spacing();
+  if (!now.everything) return draw_eta(p, now.analysis);
   draw_sliders(p, now.analysis, now.arm);
   if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
 }

@@ -1,6 +1,7 @@
 // Panel of the coupling: its law, its parameters, and whether it is passive.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/desktop/base/notices.h"
@@ -24,15 +25,21 @@ struct CouplingReading {
   double unsettled;    // ticks without a joint solution for contacts and motors at their limit
   double left_out;     // contacts of bodies for which there was no room
   double stood_still;  // ticks in which forces of bodies were not found
+  double error = 0;    // |x_E| in its unit
+  std::string error_unit = "rad";
+  double gap = 0;      // of the tips of device and proxy [m]
+  double contact = 0;  // how hard the scene pushes on the proxy [N]
 };
 
 // Situation of the coupling. `analysis` is of these parameters; `real`: a device is in the arm's
-// place, and its grip cannot be chosen; `broken`: passivity is broken on purpose.
+// place, and its grip cannot be chosen; `broken`: passivity is broken on purpose; `everything`:
+// else what a first hour needs.
 struct CouplingSituation {
   const Analysis& analysis;
   const ArmDescription& arm;
   bool real = false;
   bool broken = false;
+  bool everything = true;
 };
 // Draws the running loop's coupling into the open ImGui window, as the two below do.
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
@@ -41,6 +48,10 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
 // loop's own.
 void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,
                             const CouplingSituation& now);
+// Draws what a first hour needs of a row: how far device and proxy are apart, what is felt, and
+// whether that is safe.
+void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
+                         const CouplingSituation& now);
 // Draws energy and motors at a recording's row.
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis);
 

@@ -25,11 +25,14 @@ bool has_slider(const Parameters& p, const std::string& key) {
                              [&](std::string_view each) { return each == key; });
 }
 
-// Returns whether a setting has a line: the grip, the law's sliders, and unusual values do.
-bool told(const ParameterInfo& info, const Parameters& p) {
+// Returns whether a setting has a line: the law, unusual values and, with `everything`, the grip
+// and the law's sliders do.
+bool told(const ParameterInfo& info, const Parameters& p, bool everything) {
   const std::string key = info.key;
-  if (key == "coupling.kind" || key == "hand.stiffness" || key == "hand.damping") return true;
-  return has_slider(p, key) || parameter_text(p, info) != parameter_text(Parameters{}, info);
+  if (key == "coupling.kind") return true;
+  if (parameter_text(p, info) != parameter_text(Parameters{}, info)) return true;
+  const bool of_grip = key == "hand.stiffness" || key == "hand.damping";
+  return everything && (of_grip || has_slider(p, key));
 }
 
 void cell(const std::string& text, Rgb ink) {
@@ -49,10 +52,10 @@ void row(const RecordedSetting& setting) {
 
 }  // namespace
 
-std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes) {
+std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes, bool everything) {
   std::vector<RecordedSetting> all;
   for (const ParameterInfo& each : parameter_table()) {
-    const auto has_line = [&](const Parameters& p) { return told(each, p); };
+    const auto has_line = [&](const Parameters& p) { return told(each, p, everything); };
     if (std::ranges::none_of(lanes, has_line)) continue;
     RecordedSetting& setting = all.emplace_back(RecordedSetting{each.caption, {}, each.meaning});
     for (const Parameters& p : lanes) setting.values.push_back(value_of(each, p));
@@ -60,7 +63,7 @@ std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes
   return all;
 }
 
-void draw_recorded(PlayedSession& session) {
+void draw_recorded(PlayedSession& session, bool everything) {
   std::vector<Parameters> lanes = session.lane_settings();
   if (session.has_rerun()) lanes.resize(1);
   const int columns = 1 + static_cast<int>(lanes.size());
@@ -74,7 +77,7 @@ void draw_recorded(PlayedSession& session) {
       row({fact.name, std::vector<std::string>(lanes.size(), fact.value)});
     }
   }
-  for (const RecordedSetting& setting : recorded_settings(lanes)) row(setting);
+  for (const RecordedSetting& setting : recorded_settings(lanes, everything)) row(setting);
   ImGui::EndTable();
 }
 

@@ -15,10 +15,12 @@ struct RecordedSetting {
   std::vector<std::string> values;  // of each lane
   std::string help = {};
 };
-// Returns law and its sliders, the grip, and all unusual settings, of all lanes.
-std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes);
+// Returns law and its sliders, the grip, and all unusual settings, of all lanes; without
+// `everything` the law and what is unusual.
+std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes,
+                                               bool everything = true);
 
 // Draws into the open ImGui window.
-void draw_recorded(PlayedSession& session);
+void draw_recorded(PlayedSession& session, bool everything);
 
 }  // namespace limpid

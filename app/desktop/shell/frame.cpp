@@ -237,6 +237,7 @@ void Frame::draw_coupling(ScreenRect rect) {
     return channel ? values[static_cast<std::size_t>(*channel)] : 0;
   };
   reading.error = value("coordination/error");
+  reading.error_unit = channels.infos()[static_cast<std::size_t>(Channel::error)].unit;
   reading.gap = value("coordination/gap");
   reading.contact = value("contact/total_force_norm");
   const CouplingSituation now{.analysis = desktop_.tuning.analysis(),

@@ -48,8 +48,11 @@ DrawSection scene_section(Desktop& d) {
 DrawSection hand_section(Desktop& d) {
   return [&d](const Act&) {
     say_for_rerun(d);
-    draw_parameters(d.settings.parameters(), d.shown.stage().arm(),
-                    {"hand.stiffness", "hand.damping", "hand.mass"});
+    const ArmDescription& arm = d.shown.stage().arm();
+    draw_parameters(d.settings.parameters(), arm, {"hand.stiffness"});
+    if (d.settings.everything) {
+      draw_parameters(d.settings.parameters(), arm, {"hand.damping", "hand.mass"});
+    }
     ImGui::Checkbox("hold where released", &d.settings.hold_on_release);
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
   };
@@ -59,12 +62,13 @@ DrawSection device_section(Desktop& d) {
   return [&d](const Act&) {
     Parameters& parameters = d.settings.parameters();
     const ArmDescription& arm = d.shown.stage().arm();
-    const DevicePanelAsks asks =
+    const DeviceCardAsks asks =
         draw_device_panel(d.devices, d.live, {d.pads.all(), d.settings.gamepad}, parameters);
     if (asks.identify) d.dialog.open("identify");
     if (asks.arm_file) d.dialog.open("device arm");
     say_for_rerun(d);
-    if (!d.live.loop().device_in_place()) {
+    // Nothing beside a device acts on the virtual arm.
+    if (d.devices.hub().in_use().empty()) {
       draw_parameters(
           parameters, arm,
           {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
@@ -104,14 +108,17 @@ DrawSection tick_section(Desktop& d) {
 bool always(const Desktop&) { return true; }
 bool never(const Desktop&) { return false; }
 bool with_device(const Desktop& d) { return !d.devices.hub().in_use().empty(); }
+bool with_any_device(const Desktop& d) {
+  return with_device(d) || !d.devices.hub().found().empty() || !d.pads.all().empty();
+}
 
 constexpr std::array kSections{
-    SectionKind{"Scene", always, scene_section},
-    SectionKind{"Hand", always, hand_section},
-    SectionKind{"Device", with_device, device_section},
-    SectionKind{"Analysis", never, analysis_section},
-    SectionKind{"This tick", never, tick_section},
-    SectionKind{"Timing", always, timing_section},
+    SectionKind{"Scene", always, scene_section, always},
+    SectionKind{"Hand", always, hand_section, always},
+    SectionKind{"Device", with_device, device_section, with_any_device},
+    SectionKind{"Analysis", never, analysis_section, never},
+    SectionKind{"This tick", never, tick_section, never},
+    SectionKind{"Timing", always, timing_section, never},
 };
 
 }  // namespace
@@ -121,8 +128,14 @@ Sections::Sections(Desktop& desktop) : desktop_(desktop) {
 }
 
 void Sections::draw(const Act& act) {
-  for (const auto& [kind, draw_it] : drawn_) {
-    if (section(kind->title, kind->open(desktop_))) draw_it(act);
+  // A device that is in use comes first: nothing of it is below the fold.
+  const bool device = with_device(desktop_);
+  for (const bool first : {true, false}) {
+    for (const auto& [kind, draw_it] : drawn_) {
+      if ((device && kind->make == device_section) != first) continue;
+      if (!desktop_.settings.everything && !kind->simple(desktop_)) continue;
+      if (section(kind->title, kind->open(desktop_))) draw_it(act);
+    }
   }
 }
 

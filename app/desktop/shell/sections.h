@@ -15,8 +15,9 @@ using DrawSection = std::function<void(const Act&)>;
 
 struct SectionKind {
   const char* title;
-  bool (*open)(const Desktop&);   // at the start of the window
-  DrawSection (*make)(Desktop&);  // with the section's own state; once
+  bool (*open)(const Desktop&);    // at the start of the window
+  DrawSection (*make)(Desktop&);   // with the section's own state; once
+  bool (*simple)(const Desktop&);  // whether it stands in the simple window, too
 };
 
 class Sections {

@@ -60,6 +60,36 @@ TEST_F(SettingsFile, ThatIsMissingMeansDefaults) {
   EXPECT_EQ(s.parameters(), Settings{}.parameters());
 }
 
+// A first start shows what a first hour needs, and so does the next one, until somebody asks for
+// everything. Who has used an older Limpid keeps the bench.
+TEST_F(SettingsFile, BeginsSimplyAndRemembersWhatWasAskedFor) {
+  Settings first = load();
+  EXPECT_FALSE(first.everything);
+  EXPECT_EQ(first.plot_choices, simple_plots());
+  EXPECT_EQ(save_settings(first, first), "");
+  EXPECT_FALSE(load().everything);
+  EXPECT_EQ(load().plot_choices, simple_plots());
+  Settings asked = first;
+  show_everything(asked, true);
+  EXPECT_EQ(asked.plot_choices, default_plots());
+  EXPECT_EQ(save_settings(asked, first), "");
+  EXPECT_TRUE(load().everything);
+
+  write("[window]\nwidth = 1000\n");
+  EXPECT_TRUE(load().everything);
+  EXPECT_EQ(load().plot_choices, default_plots());
+}
+
+TEST_F(SettingsFile, LeavesPlotsAloneThatSomebodyChose) {
+  Settings settings;
+  settings.plot_choices = {{.title = "mine", .channels = {"time"}}};
+  const auto mine = settings.plot_choices;
+  for (const bool everything : {false, true, false}) {
+    show_everything(settings, everything);
+    EXPECT_EQ(settings.plot_choices, mine);
+  }
+}
+
 TEST_F(SettingsFile, KeepsTheFilesOpenedLastTheNewestFirstAndEachOnce) {
   Settings s;
   for (int i = 0; i < 20; ++i) remember_recent(s, fmt::format("/a/session {}.h5", i));

@@ -30,6 +30,16 @@ TEST(RecordedSettings, TellLawGripAndWhatIsNotAsUsual) {
   EXPECT_EQ(recorded_settings(std::span(&p, 1)).size(), plain.size() + 1);
 }
 
+TEST(RecordedSettings, AreTheLawAndWhatIsNotAsUsualInTheSimpleWindow) {
+  Parameters p;
+  p.kind = CouplingKind::proposed;
+  EXPECT_EQ(recorded_settings(std::span(&p, 1), false).size(), 1u);
+  p.hand_stiffness = 450;
+  const auto two = recorded_settings(std::span(&p, 1), false);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_NE(two[1].values.at(0).find("450"), std::string::npos);
+}
+
 TEST(RecordedSettings, OfTwoRunsStandSideBySide) {
   std::vector<Parameters> lanes(2);
   lanes[0].kind = CouplingKind::standard;

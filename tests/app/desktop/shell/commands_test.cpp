@@ -92,6 +92,7 @@ const Case kCases[] = {
     {"F4", GLFW_KEY_F4, 0, "view.plots", "view.plots"},
     {"F5", GLFW_KEY_F5, 0, "experiments.show", "experiments.show"},
     {"F6", GLFW_KEY_F6, 0, "sweep.show", "sweep.show"},
+    {"F8", GLFW_KEY_F8, 0, "view.everything", "view.everything"},
     {"F7", GLFW_KEY_F7, 0, "device.identify", "device.identify"},
     {"F10", GLFW_KEY_F10, 0, "window.menu", "window.menu"},
     {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
