@@ -13,6 +13,7 @@
 #include "app/base/markup.h"
 #include "app/plot/axis.h"
 #include "app/plot/plot_canvas.h"
+#include "app/plot/shifted_canvas.h"
 #include "app/plot/trace.h"
 #include "app/run/provenance.h"
 #include "app/style/ticks.h"
@@ -104,17 +105,16 @@ Rgb paper_of(const Palette& palette) { return palette.dark ? palette.panel : kPa
 
 class SvgCanvas : public PlotCanvas {
  public:
-  SvgCanvas(const PlotPicture& picture, const Palette& palette, const Area& area) {
+  // `height` is that of the document, which may be of several pictures.
+  SvgCanvas(const PlotPicture& picture, double height, const Palette& palette) {
     const std::string unit = picture.millimetres > 0 ? "mm" : "";
     const double size = picture.millimetres > 0 ? picture.millimetres / picture.width : 1;
     add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}{6}\" height=\"{1:g}{6}\" "
         "viewBox=\"0 0 {2} {3}\" font-family=\"Inter, Helvetica, Arial, sans-serif\" "
         "font-size=\"{4}\">\n<rect width=\"100%\" height=\"100%\" fill=\"{5}\"/>\n",
-        size * picture.width, size * picture.height, picture.width, picture.height, kCanvasFont,
+        size * picture.width, size * height, picture.width, height, kCanvasFont,
         hex(paper_of(palette)), unit);
-    add("<clipPath id=\"area\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
-        area.left, area.top, area.width, area.height);
     add("<pattern id=\"stripes\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" "
         "patternTransform=\"rotate(45)\"><rect width=\"7\" height=\"7\" fill=\"{0}\" "
         "fill-opacity=\"0.1\"/><line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"7\" stroke=\"{0}\" "
@@ -167,7 +167,11 @@ class SvgCanvas : public PlotCanvas {
         escaped(what));
   }
   void clip(const Area* box) override {
-    add("{}", box != nullptr ? "<g clip-path=\"url(#area)\">\n" : "</g>\n");
+    if (box == nullptr) return add("</g>\n");
+    ++areas_;
+    add("<clipPath id=\"area{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n"
+        "<g clip-path=\"url(#area{})\">\n",
+        areas_, box->left, box->top, box->width, box->height, areas_);
   }
 
  private:
@@ -186,6 +190,7 @@ class SvgCanvas : public PlotCanvas {
   }
 
   std::string text_;
+  int areas_ = 0;
 };
 
 // Draws the picture of a plot on any canvas.
@@ -470,15 +475,30 @@ std::string csv_text(const PlotTable& table) {
   return text;
 }
 
-std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
-  PlotDrawing drawing(spec, history, picture);
-  SvgCanvas canvas(picture, drawing.colours(), drawing.area());
-  drawing.draw(canvas);
+std::string figure_svg(std::span<const FigurePart> parts, const History& history) {
+  const PlotPicture& first = parts.front().picture;
+  const double height = static_cast<double>(parts.size()) * first.height;
+  SvgCanvas canvas(first, height, palette(first.theme));
+  draw_figure(parts, history, canvas);
   // Provenance names no settings, as they may have changed within the plot's time.
   return with_metadata(canvas.end(), provenance("", std::nullopt));
 }
 
+std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture) {
+  const FigurePart one{spec, picture};
+  return figure_svg(std::span(&one, 1), history);
+}
+
 Rgb paper_of(const PlotPicture& picture) { return paper_of(palette(picture.theme)); }
+
+void draw_figure(std::span<const FigurePart> parts, const History& history, PlotCanvas& canvas) {
+  double down = 0;
+  for (const FigurePart& part : parts) {
+    ShiftedCanvas below(canvas, down);
+    draw_plot(part.spec, history, part.picture, below);
+    down += part.picture.height;
+  }
+}
 
 void draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
                PlotCanvas& canvas) {

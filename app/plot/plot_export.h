@@ -1,6 +1,7 @@
 // Plots as tables and pictures: SVG documents, or drawn on a canvas.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,19 @@ struct PlotPicture {
   Theme theme = Theme::light;
   double millimetres = 0;  // printed width; 0: as many pixels
 };
-// Returns a complete SVG document, `width` x `height` [px].
+// A plot of a figure, below the one before.
+struct FigurePart {
+  PlotSpec spec;
+  PlotPicture picture;
+};
+// Returns a complete SVG document of all parts, which have one width and one look, and `height`
+// each [px]; or of one plot.
+std::string figure_svg(std::span<const FigurePart> parts, const History& history);
 std::string plot_svg(const PlotSpec& spec, const History& history, const PlotPicture& picture);
 // Returns the colour of a picture's paper.
 Rgb paper_of(const PlotPicture& picture);
-// Draws the same picture on another canvas.
+// Draws the same figure, or picture, on another canvas.
+void draw_figure(std::span<const FigurePart> parts, const History& history, PlotCanvas& canvas);
 void draw_plot(const PlotSpec& spec, const History& history, const PlotPicture& picture,
                PlotCanvas& canvas);
 // Draws the same picture in pixels, `scale` of them for one of the layout.

@@ -22,15 +22,19 @@ namespace fs = std::filesystem;
 using What = ExportOrder::What;
 using Format = ExportOrder::Format;
 
-constexpr std::array kWhat{"a plot, as a picture", "a plot, as a table (CSV)", "the whole window",
+constexpr std::array kWhat{"a plot, as a picture", "all plots, as one figure",
+                           "a plot, as a table (CSV)", "the whole window",
                            "the recording, as a video"};
 constexpr double kLeastSize = 40, kMostSize = 400;  // limits of a size [mm]
 constexpr int kLeastDpi = 72, kMostDpi = 1200;
 
+// Tells whether plots are drawn for print.
+bool is_drawn(What what) { return what == What::plot || what == What::figure; }
+
 const char* ending(const ExportOrder& order) {
   if (order.what == What::table) return "csv";
   constexpr std::array kEndings{"png", "svg", "pdf"};
-  return order.what == What::plot ? kEndings[static_cast<std::size_t>(order.format)] : "png";
+  return is_drawn(order.what) ? kEndings[static_cast<std::size_t>(order.format)] : "png";
 }
 
 // Returns a free name for the file.
@@ -38,7 +42,8 @@ fs::path offer(const ExportOrder& order, const Stage& stage, const fs::path& fol
   const bool of_plot = order.what == What::plot || order.what == What::table;
   const std::string name = of_plot && order.plot < stage.plots.size()
                                ? stage.plots[order.plot].spec().file_name
-                               : "limpid";
+                           : order.what == What::figure ? "plots"
+                                                        : "limpid";
   std::error_code none;
   for (int number = 1;; ++number) {
     fs::path file = folder / fmt::format("{}-{:03}.{}", name, number, ending(order));
@@ -54,6 +59,7 @@ void ExportDialog::draw_what(const Stage& stage, bool recorded) {
       const auto what = static_cast<What>(i);
       if (what == What::video && !recorded) continue;
       if (ImGui::Selectable(kWhat[i], what == order_.what)) order_.what = what;
+      note_place(kWhat[i]);
     }
     ImGui::EndCombo();
   }
@@ -72,7 +78,7 @@ void ExportDialog::draw_what(const Stage& stage, bool recorded) {
 
 void ExportDialog::draw_stretch(const Stage& stage) {
   const auto range = stage.group.range();
-  if (!range || (order_.what != What::plot && order_.what != What::table)) return;
+  if (!range || (!is_drawn(order_.what) && order_.what != What::table)) return;
   const std::string label =
       fmt::format("only the selected stretch, {:.3f} to {:.3f} s", range->start, range->stop);
   ImGui::Checkbox(label.c_str(), &order_.stretch);
@@ -112,7 +118,7 @@ std::string ExportDialog::why_not() const {
   const auto outside = [](double x, double least, double most) {
     return !(x >= least && x <= most);
   };
-  if (order_.what == What::plot) {
+  if (is_drawn(order_.what)) {
     if (outside(order_.width, kLeastSize, kMostSize) ||
         outside(order_.height, kLeastSize, kMostSize)) {
       return fmt::format("The size is {:g} x {:g} mm; allowed: {:g} to {:g} mm.", order_.width,
@@ -149,7 +155,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
   ImGui::PushItemWidth(-6 * em);
   draw_what(stage, recorded);
   draw_stretch(stage);
-  if (order_.what == What::plot) draw_size();
+  if (is_drawn(order_.what)) draw_size();
   // The name follows the choices until the user types another one.
   if (file_ == offered_) file_ = offered_ = offer(order_, stage, folder).string();
   const bool video = order_.what == What::video;
@@ -160,8 +166,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
     ImGui::TextDisabled("Length, size and speed are asked for next.");
   }
   ImGui::PopItemWidth();
-  const bool no_plot =
-      stage.plots.empty() && (order_.what == What::plot || order_.what == What::table);
+  const bool no_plot = stage.plots.empty() && (is_drawn(order_.what) || order_.what == What::table);
   const std::string wrong = video ? "" : no_plot ? "There is no plot." : why_not();
   std::error_code none;
   const fs::path file = expanded(file_);

@@ -11,14 +11,14 @@
 namespace limpid {
 
 struct ExportOrder {
-  enum class What : std::uint8_t { plot, table, window, video };
+  enum class What : std::uint8_t { plot, figure, table, window, video };
   enum class Format : std::uint8_t { png, svg, pdf };
 
   What what = What::plot;
   std::size_t plot = 0;
   bool stretch = true;  // only the selected stretch of time, if there is one
   Format format = Format::png;
-  double width = 160, height = 80;  // when printed [mm]
+  double width = 160, height = 80;  // of each plot when printed [mm]
   int dpi = 300;                    // of the pixels
   Theme theme = Theme::light;
   std::filesystem::path file = {};

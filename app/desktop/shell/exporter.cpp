@@ -43,35 +43,49 @@ std::function<PlotNotice()> said(Work work) {
   };
 }
 
+// Returns the plots of an order, as they are shown, in the order's size and colours.
+std::vector<FigurePart> parts_of(const ExportOrder& order, const Stage& stage) {
+  std::vector<FigurePart> parts;
+  for (std::size_t i = 0; i < stage.plots.size(); ++i) {
+    if (order.what != ExportOrder::What::figure && i != order.plot) continue;
+    PlotPicture picture = stage.plots[i].picture(stage.group);
+    if (const auto range = stage.group.range(); range && order.stretch) {
+      picture.start = range->start;
+      picture.stop = range->stop;
+    }
+    picture.width = static_cast<int>(std::lround(order.width * kLayoutPerMillimetre));
+    picture.height = static_cast<int>(std::lround(order.height * kLayoutPerMillimetre));
+    picture.theme = order.theme;
+    picture.millimetres = order.width;
+    parts.push_back({stage.plots[i].spec(), picture});
+  }
+  return parts;
+}
+
 }  // namespace
 
 fs::path Exporter::carry_out(const ExportOrder& order, const Stage& stage) {
   if (order.what == ExportOrder::What::window) return order.file;
-  if (order.plot >= stage.plots.size()) return {};
-  const Plot& plot = stage.plots[order.plot];
-  PlotPicture picture = plot.picture(stage.group);
-  if (const auto range = stage.group.range(); range && order.stretch) {
-    picture.start = range->start;
-    picture.stop = range->stop;
-  }
+  const std::vector<FigurePart> parts = parts_of(order, stage);
+  if (parts.empty()) return {};
+  const PlotPicture& first = parts.front().picture;
   if (order.what == ExportOrder::What::table) {
     const auto table = std::make_shared<const PlotTable>(
-        plot_table(plot.spec(), stage.history, picture.start, picture.stop));
+        plot_table(parts.front().spec, stage.history, first.start, first.stop));
     live_.save_beside(
         said([table, file = order.file] { return written_as(file, bytes_of(csv_text(*table))); }));
     return {};
   }
-  picture.width = static_cast<int>(std::lround(order.width * kLayoutPerMillimetre));
-  picture.height = static_cast<int>(std::lround(order.height * kLayoutPerMillimetre));
-  picture.theme = order.theme;
-  picture.millimetres = order.width;
   if (order.format == ExportOrder::Format::svg) {
-    live_.save_beside(said([svg = plot_svg(plot.spec(), stage.history, picture),
-                            file = order.file] { return written_as(file, bytes_of(svg)); }));
+    live_.save_beside(said([svg = figure_svg(parts, stage.history), file = order.file] {
+      return written_as(file, bytes_of(svg));
+    }));
     return {};
   }
   const auto tape = std::make_shared<CanvasTape>();
-  draw_plot(plot.spec(), stage.history, picture, *tape);
+  draw_figure(parts, stage.history, *tape);
+  PlotPicture picture = first;
+  picture.height *= static_cast<int>(parts.size());
   if (order.format == ExportOrder::Format::pdf) {
     live_.save_beside(said([tape, picture, file = order.file] {
       // Provenance names no settings, as they may have changed within the plot's time.

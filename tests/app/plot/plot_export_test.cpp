@@ -168,6 +168,34 @@ TEST(PlotSvg, DrawsPartsInTheColoursOfTheirLaws) {
   EXPECT_EQ(drawn(2), 0u);
 }
 
+// Two plots stand below one another, each with its own title, axes and clipped curves.
+TEST(PlotSvg, OfAFigureHasAllPlotsBelowOneAnother) {
+  PlotSpec other = spec();
+  other.title = "Energy";
+  const PlotPicture picture{0, 3, {}, {{-3, 3}}, 400, 200};
+  const std::array parts{FigurePart{spec(), picture}, FigurePart{other, picture}};
+  const std::string svg = figure_svg(parts, two_channels());
+  expect_well_formed(svg);
+  EXPECT_NE(svg.find("viewBox=\"0 0 400 400\""), std::string::npos);
+  const std::string one = plot_svg(spec(), two_channels(), picture);
+  const auto count = [](const std::string& text, const char* what) {
+    std::size_t all = 0;
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++all;
+    return all;
+  };
+  EXPECT_EQ(count(svg, "<polygon"), 2 * count(one, "<polygon"));
+  EXPECT_EQ(count(svg, "<clipPath id=\"area1\""), 1u);
+  EXPECT_EQ(count(svg, "<clipPath id=\"area2\""), 1u);
+  double first = 0, second = 0;
+  ASSERT_EQ(std::sscanf(svg.c_str() + svg.rfind("<text", svg.find("Error")),
+                        "<text x=\"%*f\" y=\"%lf\"", &first),
+            1);
+  ASSERT_EQ(std::sscanf(svg.c_str() + svg.rfind("<text", svg.find("Energy")),
+                        "<text x=\"%*f\" y=\"%lf\"", &second),
+            1);
+  EXPECT_EQ(second - first, 200);
+}
+
 TEST(PlotSvg, LeavesHiddenCurvesOut) {
   const std::string svg = plot_svg(spec(), two_channels(), {0, 3, {}, {{-3, 3}}});
   EXPECT_EQ(svg.find("hidden"), std::string::npos);
