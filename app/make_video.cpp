@@ -19,7 +19,10 @@ namespace fs = std::filesystem;
 
 // Reads the size, "1280x720", and the other options of the picture.
 FilmLook look(const VideoOptions& options, double text_scale) {
-  FilmLook look{.plots = options.plots, .overlaid = options.overlaid, .text_scale = text_scale};
+  FilmLook look{.plots = options.plots,
+                .overlaid = options.overlaid,
+                .lens = options.lens,
+                .text_scale = text_scale};
   if (options.size.empty()) return look;
   int width = 0, height = 0, read = 0;
   if (std::sscanf(options.size.c_str(), "%5dx%5d%n", &width, &height, &read) != 2 ||
@@ -52,7 +55,8 @@ FilmOrder order_of(const VideoOptions& options, double text_scale) {
           .fps = options.fps,
           .from = options.from,
           .to = options.to,
-          .speed = options.speed};
+          .speed = options.speed,
+          .rerun = options.rerun};
 }
 
 int stopped(double at, double whole, const std::string& out) {

@@ -26,6 +26,14 @@ void VideoOptions::add(CLI::App& command) {
   of_video(command.add_flag("--plots,!--no-plots", plots, "with the plots, or without"));
   of_video(command.add_flag("--overlaid", overlaid,
                             "two runs in one picture; default: one beside the other"));
+  of_video(
+      command.add_flag("--lens", lens, "with the lens at the tip, while gap or contact is small"));
+  of_video(
+      command
+          .add_option("--rerun", rerun,
+                      "with a re-run of the hand, in which this setting is changed; may be given "
+                      "several times")
+          ->type_name("KEY=VALUE"));
   of_video(command.add_flag("--force", force, "replace OUT if it exists"));
   of_video(command.add_flag("--print-progress", print_progress,
                             "print the part that is done, 0 to 1, line by line"));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -21,6 +22,8 @@ struct VideoOptions {
   double speed = 1;
   bool plots = true;
   bool overlaid = false;
+  bool lens = false;
+  std::vector<std::string> rerun;  // settings of a re-run; none: no re-run
   bool force = false;
   bool print_progress = false;
 

@@ -57,6 +57,19 @@ double longest_stretch(const std::vector<StoryStep>& steps, const FilmCut& cut) 
   return longest <= kWhole ? longest : kPart;
 }
 
+// Returns where the tips are: the lens keeps away from them.
+Crowd tips_in(const ViewState& view, const Camera& camera, ScreenRect rect) {
+  Crowd crowd;
+  const float around = 2.2f * font(Face::small)->FontSize;
+  for (const ArmPose* arm : {&view.device, &view.proxy}) {
+    const auto pixel = arm->links.empty() ? std::nullopt : camera.project(arm->tip);
+    if (!pixel) continue;
+    const ImVec2 at = in_window(rect, *pixel);
+    crowd.kept_free.push_back({{at.x - around, at.y - around}, {at.x + around, at.y + around}});
+  }
+  return crowd;
+}
+
 // A session on its stage, played from one time to the next.
 class Shown {
  public:
@@ -66,13 +79,15 @@ class Shown {
   };
 
   Shown(const Session& session, const std::string& where, const FilmOrder& order,
-        const FilmCut& cut, const FilmFrame& frame)
+        const FilmCut& cut, const FilmFrame& frame, const RerunRows& again)
       : session_(session),
         order_(order),
         frame_(frame),
-        stage_(stage(session, where, cut, order.steps)),
+        again_(again),
+        stage_(stage(session, where, cut, order.steps, lanes_shown())),
         row_(index(cut.from)),
         seconds_(1.0 / cut.fps) {
+    if (!again.rows.empty()) name_rerun();
     for (std::size_t i = 0; i < session.lanes(); ++i) {
       runs_.emplace_back(session.lane(i), session_parameters(session.lane(i), where));
     }
@@ -91,7 +106,8 @@ class Shown {
       apply_changes(row_);
       enter_step(row_);
       std::vector<Row> rows;
-      for (std::size_t i = 0; i < session_.lanes(); ++i) rows.push_back(session_.lane(i).row(row_));
+      for (std::size_t i = 0; i < runs_shown(); ++i) rows.push_back(session_.lane(i).row(row_));
+      if (!again_.rows.empty()) rows.push_back(row_again(row_));
       stage_.append(rows);
       for (const Mark& mark : session_.marks) {
         if (mark.tick == row_) stage_.history.mark(time_at(row_), mark.text, kNoteMark);
@@ -107,6 +123,7 @@ class Shown {
     if (runs_shown() > 1) {
       caption.text = fmt::format("{}", fmt::join(stage_.names().names, "  |  "));
     }
+    if (!again_.rows.empty()) caption.text += "  |  " + again_.name;
     if (step_ != nullptr) caption.told = step_->caption;
     const double force = session_.layout.in(row, Column::force_state)[0];
     caption.sign = force_text(static_cast<ForceState>(force));
@@ -125,10 +142,10 @@ class Shown {
   };
 
   static Stage stage(const Session& session, const std::string& where, const FilmCut& cut,
-                     const std::vector<StoryStep>& steps) {
+                     const std::vector<StoryStep>& steps, std::size_t curves) {
     RunPlan world = replay(session, where, {});
     const double shown = longest_stretch(steps, cut);
-    const int lanes = static_cast<int>(session.lanes());
+    const int lanes = static_cast<int>(curves);
     History history({.channels = TraceChannels(session.layout).count() * lanes,
                      .seconds = shown + 1,
                      .tick = session.info.tick});
@@ -140,11 +157,28 @@ class Shown {
     return std::min(k, session_.size() - 1);
   }
   std::size_t runs_shown() const {
+    if (!again_.rows.empty()) return 1;
     return step_ == nullptr || step_->beside ? session_.lanes() : 1;
+  }
+  // Returns how many runs have curves.
+  std::size_t lanes_shown() const { return again_.rows.empty() ? session_.lanes() : 2; }
+  Row row_again(std::size_t k) const {
+    const auto stride = static_cast<std::size_t>(session_.layout.stride());
+    return std::span<const double>(again_.rows).subspan(k * stride, stride);
+  }
+  void name_rerun() {
+    const double law = session_.layout.in(row_again(0), Column::kind)[0];
+    stage_.name_runs({{"", again_.name}, false, {-1, static_cast<int>(law)}});
   }
 
   Moment see(std::size_t k) {
     Moment moment{.view = view(session_.row(k), stage_.memory[kMainLane]), .beside = {}};
+    if (!again_.rows.empty()) {
+      const Row again = row_again(k);
+      moment.view.rerun = stage_.rows().pose(session_.layout.in(again, Column::proxy_position));
+      moment.view.rerun_bodies = stage_.rows().bodies(session_.layout, again);
+      return moment;
+    }
     for (std::size_t i = 1; i < session_.lanes(); ++i) {
       ViewState beside = view(session_.lane(i).row(k), stage_.memory[i]);
       if (i < runs_shown()) moment.beside.push_back(std::move(beside));
@@ -172,7 +206,7 @@ class Shown {
       }
     }
     stage_.follow(runs_.front().parameters);
-    if (runs_.size() == 1 || !order_.steps.empty()) return;
+    if (runs_.size() == 1 || !order_.steps.empty() || !again_.rows.empty()) return;
     std::vector<Parameters> now;
     for (const Run& run : runs_) now.push_back(run.parameters);
     name_runs(lane_names(now), time_at(k));
@@ -205,6 +239,7 @@ class Shown {
   const Session& session_;
   const FilmOrder& order_;
   const FilmFrame& frame_;
+  const RerunRows& again_;  // without rows: no re-run
   Stage stage_;
   Camera camera_;
   std::size_t row_;  // next row for the plots
@@ -253,7 +288,9 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
   stage.picture.set_pixel_scale(scale_);
   draw_picture(at.picture, stage, view, camera, beside);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  draw_legend(at.picture, overlaid ? stage.names() : RunNames(), !beside.empty());
+  draw_legend(at.picture, {.beside = view.rerun ? "proxy of the re-run (ghost)" : nullptr,
+                           .runs = overlaid ? stage.names().names : std::vector<std::string>(),
+                           .compact = !beside.empty()});
   draw_caption(at.caption, caption);
   draw_told(caption.told, at.picture, list);
   draw_sign(caption.sign, at.picture, !beside.empty(), list);
@@ -263,7 +300,7 @@ std::vector<unsigned char> FilmFrame::draw(Stage& stage, ViewState view, const C
 }
 
 void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
-                             const Camera& camera, std::span<const ViewState> beside) const {
+                             const Camera& camera, std::span<const ViewState> beside) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto paint = [&](const ViewState& state, const ScreenRect& part, std::size_t run) {
     stage.picture.draw(state, camera, static_cast<int>(part.min.x),
@@ -272,11 +309,15 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
   };
   if (beside.empty()) {
     paint(view, rect, kMainLane);
-    if (view.beside.empty()) return;
     Camera shown = camera;
     shown.resize(rect.width(), rect.height());
     list.PushClipRect(rect.min, rect.max);
-    draw_gap(view, shown, {rect}, list, stage.names());
+    if (look_.lens) {
+      const LensPlace place{rect, 1, look_.height, 0};
+      magnifier_.draw(stage.picture, view, shown, place, tips_in(view, shown, rect));
+      magnifier_.draw_frame(view, shown, list);
+    }
+    if (!view.beside.empty()) draw_gap(view, shown, {rect}, list, stage.names());
     return list.PopClipRect();
   }
   for (std::size_t run = 0; run <= beside.size(); ++run) {
@@ -292,11 +333,10 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
   }
 }
 
-void FilmFrame::draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool compact) const {
+void FilmFrame::draw_legend(const ScreenRect& rect, PictureLegend legend) const {
   const float em = font(Face::small)->FontSize;
   if (rect.height() < 10 * em) return;
-  draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max,
-                      {.runs = overlaid.names, .compact = compact});
+  draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max, legend);
 }
 
 void FilmFrame::draw_caption(const ScreenRect& rect, const FilmCaption& caption) const {
@@ -363,8 +403,14 @@ FilmEnd film(const Session& session, const std::string& where, const FilmOrder& 
   VideoFile video(order.out,
                   {order.look.width, order.look.height, plan.fps, provenance_of(session.info)},
                   order.force);
+  RerunRows again;
+  if (!order.rerun.empty()) {
+    again = run_once_more(session, where, with_changes(session, where, order.rerun), stop,
+                          [](double) {});
+    if (again.rows.empty()) return {true, 0};
+  }
   FilmFrame frame(order.look);
-  Shown shown(session, where, order, plan, frame);
+  Shown shown(session, where, order, plan, frame, again);
   const double drawing = video_kind(order.out) == VideoKind::gif ? kDrawingOfGif : 1;
   for (std::size_t i = 0; i < plan.pictures(); ++i) {
     if (stop) return {true, static_cast<double>(i) / plan.fps};

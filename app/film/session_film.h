@@ -11,9 +11,12 @@
 
 #include "app/film/video_file.h"
 #include "app/plot/plot_frame.h"
+#include "app/run/rerun.h"
+#include "app/stage/magnifier.h"
 #include "app/stage/stage.h"
 #include "app/story/story.h"
 #include "app/style/imgui_gl.h"
+#include "app/style/picture_legend.h"
 #include "devices/files/session/session.h"
 #include "render/camera.h"
 #include "render/gl/offscreen.h"
@@ -24,6 +27,7 @@ struct FilmLook {
   int width = 1280, height = 720;  // [px]
   bool plots = true;               // left out if there is no room for them
   bool overlaid = false;           // all runs in one picture
+  bool lens = false;               // at the tip, while gap or contact is small, in one picture
   double text_scale = 0;           // 1 as in the window on an ordinary screen; 0: by the size
   Theme theme = Theme::dark;
 };
@@ -60,8 +64,8 @@ class FilmFrame {
   };
   Places lay_out() const;
   void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
-                    const Camera& camera, std::span<const ViewState> beside) const;
-  void draw_legend(const ScreenRect& rect, const RunNames& overlaid, bool compact) const;
+                    const Camera& camera, std::span<const ViewState> beside);
+  void draw_legend(const ScreenRect& rect, PictureLegend legend) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 
@@ -69,6 +73,7 @@ class FilmFrame {
   float scale_;
   OffscreenContext context_;
   ImGuiGl imgui_;
+  Magnifier magnifier_;
 };
 
 // Order for the video of a recorded session.
@@ -76,12 +81,13 @@ struct FilmOrder {
   std::filesystem::path out = {};
   bool force = false;
   FilmLook look = {};
-  std::optional<int> fps = {};        // none: the usual one for such a file
-  double from = 0;                    // [s] of the session
-  std::optional<double> to = {};      // none: its end
-  double speed = 1;                   // of the session in the video, 0.01 to 100
-  std::string title = {};             // at the right of the caption
-  std::vector<StoryStep> steps = {};  // of the recorded story; none: the session is no story's
+  std::optional<int> fps = {};          // none: the usual one for such a file
+  double from = 0;                      // [s] of the session
+  std::optional<double> to = {};        // none: its end
+  double speed = 1;                     // of the session in the video, 0.01 to 100
+  std::string title = {};               // at the right of the caption
+  std::vector<StoryStep> steps = {};    // of the recorded story; none: the session is no story's
+  std::vector<std::string> rerun = {};  // settings of a re-run beside the first lane; none: none
 };
 
 // Moments of a session, one for each picture of its video.

@@ -74,6 +74,17 @@ class Video(SystemTest):
                              (b"\x89PNG\r\n\x1a\n", b"IHDR", 480, 400))  # fmt: skip
         self.assertEqual(len(set(pictures)), 4, "it stands still")
 
+    def test_a_rerun_and_the_lens_are_in_the_picture(self) -> None:
+        whole = ("--size", "640x480", "--from", "3", "--to", "3.1", "--fps", "10")
+        pictures = []
+        for more in ((), ("--rerun", "coupling.kind=standard"), ("--lens",)):
+            out = self.out("")
+            self.video(out, *whole, *more)
+            pictures.append((out / "frame-000001.png").read_bytes())
+        self.assertEqual(len(set(pictures)), 3)
+        self.assertIn("did you mean coupling.eta", self.refused(
+            "--video", self.directory / "no.mp4", "--rerun", "coupling.etta=1"))
+
     def test_each_step_of_a_story_has_its_camera_wherever_the_video_begins(self) -> None:
         script = self.out(".toml")
         script.write_text(TWO_CAMERAS)

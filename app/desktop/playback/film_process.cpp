@@ -32,6 +32,10 @@ std::vector<std::string> words_of(const VideoRequest& request) {
   add("--to", request.to);
   if (!request.plots) words.emplace_back("--no-plots");
   if (request.overlaid) words.emplace_back("--overlaid");
+  if (request.lens) words.emplace_back("--lens");
+  for (const std::string& change : request.rerun) {
+    words.insert(words.end(), {"--rerun", change});
+  }
   return words;
 }
 

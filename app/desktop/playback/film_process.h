@@ -18,7 +18,9 @@ struct VideoRequest {
   int width = 1280, height = 720;  // [px]
   std::optional<int> fps = {};     // none: the usual rate of the kind
   double speed = 1;                // times the session's
-  bool plots = true, overlaid = false;
+  bool plots = true, overlaid = false, lens = false;
+  std::vector<std::string> rerun =
+      {};                         // settings of a re-run, as "coupling.eta=0.5"; none: no re-run
   double from = 0;                // beginning in the session [s]
   std::optional<double> to = {};  // end in the session [s]; none: its end
 };

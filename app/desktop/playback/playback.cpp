@@ -125,9 +125,10 @@ bool Playback::take_results() {
     shown_->player().play();
     opened = true;
   }
-  if (auto again = rerunning_.take(); again && shown_ && !again->rows.empty()) {
-    const RunEnd end = again->end;
-    if (!again->note.empty() && !std::exchange(told_of_build_, true)) notices_.say(again->note);
+  if (auto again = rerunning_.take(); again && shown_ && !again->run.rows.empty()) {
+    const RunEnd end = again->run.end;
+    const std::string& note = again->run.note;
+    if (!note.empty() && !std::exchange(told_of_build_, true)) notices_.say(note);
     shown_->show(std::move(*again));
     if (end.diverged) {
       notices_.say(fmt::format("The re-run is unstable from {:.3f} s on: {}. It is shown up to its "

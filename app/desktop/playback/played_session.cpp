@@ -109,28 +109,13 @@ std::optional<LoadedSession> load_hand(const fs::path& hand, RunPlan world, cons
 
 Rerun run_again(const Session& session, const std::string& where, const Parameters& chosen,
                 TaskProgress& progress) {
-  RunPlan plan = replay(session, where, chosen);
-  plan.beside.clear();
-  LargeVector<double> rows;
-  rows.reserve(session.rows.size());
-  std::uint64_t count = 0;
-  ForgetBehind forget;
-  const RunEnd end = simulate(plan, {.realtime = false, .stop = &progress.cancel},
-                              [&](std::span<const double> row, LaneChanges) {
-                                rows.insert(rows.end(), row.begin(), row.end());
-                                forget.passed(row.size_bytes());
-                                progress.part =
-                                    static_cast<double>(++count) / static_cast<double>(plan.rows);
-                                return true;
-                              });
-  if (end.stopped || rows.empty())
-    return {{}, end, history_of(session, where, plan.arm, {}, {}), {}, {}};
-  const std::vector<double> last(rows.end() - session.layout.stride(), rows.end());
-  while (rows.size() < session.rows.size()) rows.insert(rows.end(), last.begin(), last.end());
-  const std::span<const double> again(rows);
-  History history = history_of(session, where, plan.arm, LaneRows(&again, 1), {});
-  const std::array both{session_parameters(session, where), chosen};
-  return {std::move(rows), end, std::move(history), "re-run: " + lane_names(both)[1], plan.note};
+  RerunRows again = run_once_more(session, where, chosen, progress.cancel,
+                                  [&](double part) { progress.part = part; });
+  const ArmDescription arm = replay(session, where, chosen).arm;
+  const std::span<const double> rows(again.rows);
+  const LaneRows beside = again.rows.empty() ? LaneRows() : LaneRows(&rows, 1);
+  History history = history_of(session, where, arm, beside, {});
+  return {std::move(again), std::move(history), changed_settings(session, where, chosen)};
 }
 
 RecordedSettings::RecordedSettings(const Session& session, const std::string& where)
@@ -175,12 +160,15 @@ std::unique_ptr<Stage> PlayedSession::make_stage(History history) const {
 void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
   const RowLayout& layout = player_.session().layout;
-  const auto first = std::span<const double>(again.rows)
-                         .first(again.rows.empty() ? 0 : static_cast<std::size_t>(layout.stride()));
-  RunNames names{{"", again.name}, false};
-  if (!first.empty()) names.laws = {-1, static_cast<int>(layout.in(first, Column::kind)[0])};
+  const std::span<const double> rows(again.run.rows);
+  RunNames names{{"", again.run.name}, false};
+  if (!rows.empty()) {
+    const auto first = rows.first(static_cast<std::size_t>(layout.stride()));
+    names.laws = {-1, static_cast<int>(layout.in(first, Column::kind)[0])};
+  }
   stage_->name_runs(names);
-  rerun_ = std::move(again.rows);
+  rerun_ = std::move(again.run.rows);
+  changes_of_rerun_ = std::move(again.changes);
   show(std::move(marks_));
 }
 

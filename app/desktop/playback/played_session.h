@@ -9,6 +9,7 @@
 
 #include "app/base/tasks.h"
 #include "app/desktop/playback/player.h"
+#include "app/run/rerun.h"
 #include "app/run/simulate.h"
 #include "app/stage/stage.h"
 #include "app/story/story.h"
@@ -52,11 +53,9 @@ class RecordedSettings {
 
 // Second run of a recording's hand.
 struct Rerun {
-  LargeVector<double> rows;  // as many as the session's
-  RunEnd end;                // after a divergence the last row is repeated
-  History history;           // of both runs
-  std::string name;          // "re-run: predictive", by what was changed
-  std::string note;          // why it may differ from the recording; for people
+  RerunRows run;
+  History history;                   // of both runs
+  std::vector<std::string> changes;  // of settings, as "coupling.eta=0.5"
 };
 
 // Loads a session; slow, as all below: not for the window's thread. Errors of all: FileError and
@@ -115,6 +114,8 @@ class PlayedSession {
   // Shows a re-run beside the recording. Errors: as Stage.
   void show(Rerun again);
   bool has_rerun() const { return !rerun_.empty(); }
+  // Returns the settings that the re-run changed, as "coupling.eta=0.5".
+  const std::vector<std::string>& changes_of_rerun() const { return changes_of_rerun_; }
   // Returns the re-run's row at the player's time; empty without one.
   std::span<const double> rerun_row() const;
   // Returns the rows of all lanes at the player's time; the first one's alone beside a re-run.
@@ -133,6 +134,7 @@ class PlayedSession {
   std::vector<Mark> marks_;
   std::vector<RecordedSettings> lanes_;
   LargeVector<double> rerun_;  // rows of the re-run; may be empty
+  std::vector<std::string> changes_of_rerun_;
   std::unique_ptr<Stage> stage_;
 };
 

@@ -61,9 +61,16 @@ void VideoDialog::draw_choices(const PlayedSession& session) {
     return speed == 1 ? std::string("as it was") : fmt::format("x{:g}", speed);
   });
   ImGui::Checkbox("with the plots", &request_.plots);
-  if (session.player().session().lanes() == 1) return;
-  ImGui::SameLine();
-  ImGui::Checkbox("all runs in one picture", &request_.overlaid);
+  const bool several = session.player().session().lanes() > 1 && !session.has_rerun();
+  if (!several || request_.overlaid) {
+    ImGui::SameLine();
+    ImGui::Checkbox("with the lens", &request_.lens);
+  }
+  if (several) ImGui::Checkbox("all runs in one picture", &request_.overlaid);
+  if (session.has_rerun()) {
+    ImGui::Checkbox("with the re-run", &rerun_);
+    note_place("with the re-run");
+  }
 }
 
 void VideoDialog::draw_span(const PlayedSession& session) {
@@ -89,7 +96,8 @@ void VideoDialog::draw_span(const PlayedSession& session) {
   to_ = std::clamp(to_, std::min(request_.from + kShortest, whole), whole);
 }
 
-std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playback, bool overlaid) {
+std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playback, bool overlaid,
+                                              bool lens) {
   const PlayedSession* session = playback.shown();
   if (session == nullptr) open = false;
   const float em = ImGui::GetFontSize();
@@ -99,6 +107,8 @@ std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playba
     request_.from = 0;
     to_ = session->player().duration();
     request_.overlaid = overlaid;
+    request_.lens = lens;
+    rerun_ = true;
   }
   was_shown_ = shown;
   if (!shown) return std::nullopt;
@@ -115,6 +125,7 @@ std::optional<VideoRequest> VideoDialog::draw(bool& open, const Playback& playba
   if (ImGui::Button("Write (Enter)") || accepted()) {
     asked = request_;
     asked->overlaid = request_.overlaid && session->player().session().lanes() > 1;
+    asked->rerun = rerun_ ? session->changes_of_rerun() : std::vector<std::string>();
     if (to_ < session->player().duration()) asked->to = to_;
   }
   ImGui::SameLine();

@@ -200,7 +200,7 @@ DrawDialog save_scene_as(Desktop& d) {
 
 DrawDialog video(Desktop& d) {
   return [&d, dialog = std::make_shared<VideoDialog>()](bool& open, ScreenRect) {
-    const auto order = dialog->draw(open, d.playback, d.settings.overlaid);
+    const auto order = dialog->draw(open, d.playback, d.settings.overlaid, d.settings.show_lens);
     if (order) d.playback.export_video(*order);
   };
 }

@@ -102,7 +102,7 @@ void draw_steps(Settings& settings) {
     }
     ImGui::EndTable();
   }
-  if (noted_button(all_done(settings) ? "Done" : "Enough of it")) settings.your_turn = false;
+  if (noted_button(all_done(settings) ? "Done" : "Close the list")) settings.your_turn = false;
 }
 
 }  // namespace

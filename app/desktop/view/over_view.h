@@ -10,7 +10,7 @@
 #include "app/desktop/base/settings.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/scene/scene_loader.h"
-#include "app/desktop/view/free_place.h"
+#include "app/stage/free_place.h"
 #include "app/plot/plot_frame.h"
 
 namespace limpid {

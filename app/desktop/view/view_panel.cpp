@@ -17,7 +17,6 @@
 #include "app/style/palette.h"
 #include "app/style/picture_legend.h"
 #include "app/style/theme.h"
-#include "core/touch/pull_link.h"
 #include "render/near_surface.h"
 
 namespace limpid {
@@ -145,16 +144,6 @@ std::optional<ScreenRect> seen_place(const Object& object, const Model* model, c
       static_cast<float>(0.5 * box.diagonal().norm() / camera.meters_per_pixel(box.center()));
   const ImVec2 at = in_window(rect, *pixel);
   return ScreenRect{{at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}};
-}
-
-// Returns the force of the pull on a body that stands still [N].
-double pull_on(const Scene& scene, const ViewState& view) {
-  std::size_t number = view.pulled;
-  for (const Object& object : scene.objects) {
-    if (!object.body || number-- > 0) continue;
-    return PullLink::force_of(object.body->mass, ((*view.pull)[1] - (*view.pull)[0]).norm());
-  }
-  return 0;
 }
 
 // Returns the view of a row, of either run.
@@ -363,7 +352,8 @@ void ViewPanel::draw_signs(const ViewScene& scene, const ViewState& view, const 
   }
   draw_gap(view, camera, {rect, magnifier_.rect()}, list, scene.split() ? RunNames() : scene.names);
   if (view.pull) {
-    draw_pull(view, pull_on(scene.stage.document().scene, view), camera, rect, list);
+    draw_pull(view, pull_on(scene.stage.document().scene, view.pulled, *view.pull), camera, rect,
+              list);
   }
   draw_magnet(view, camera, rect, list);
   if (pulls_) draw_grasp(view, camera, rect, list);
@@ -512,7 +502,7 @@ std::optional<Aim> ViewPanel::aim_near(const ViewScene& scene, const Camera& cam
 // Takes the depth of an object when the mouse comes to it, once: what is pushed away is not
 // followed.
 void ViewPanel::aim_at(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) {
-  // What lies behind the tip at first is not dragged onto before the mouse has moved.
+  // Something behind the tip is not dragged onto before the mouse has moved.
   const double still = kLeastDrag * static_cast<double>(current_scale());
   if (began_at_ && (pixel - *began_at_).norm() < still) return;
   began_at_.reset();

@@ -11,7 +11,7 @@
 #include "app/desktop/base/settings.h"
 #include "app/desktop/scene/picking.h"
 #include "app/desktop/scene/scene_editor.h"
-#include "app/desktop/view/magnifier.h"
+#include "app/stage/magnifier.h"
 #include "app/live/live_loop.h"
 #include "app/plot/plot_frame.h"
 #include "app/stage/stage.h"
@@ -106,12 +106,12 @@ class ViewPanel {
   Crowd crowd_, around_;  // without and with the cards
   FreePlace hint_place_;
   std::optional<ScreenRect> hinted_;  // place of the hints in the last frame
-  std::string task_;                 // sentence of the scene that is shown
-  bool task_done_ = false;           // something of it was touched since, or pulled on
-  std::optional<ScreenRect> drawn_;  // place of the view
-  bool dragging_ = false;            // drags the hand
-  bool pulls_ = false;               // the left button would take the hand here
-  bool pulling_ = false;             // pulls a body
+  std::string task_;                  // sentence of the scene that is shown
+  bool task_done_ = false;            // something of it was touched since, or pulled on
+  std::optional<ScreenRect> drawn_;   // place of the view
+  bool dragging_ = false;             // drags the hand
+  bool pulls_ = false;                // the left button would take the hand here
+  bool pulling_ = false;              // pulls a body
   std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // places: left, right
   std::array<bool, 2> moved_{};                              // since pressed
   bool pushed_ = false;                                      // the wheel pushed the hand

@@ -19,11 +19,14 @@ TEST(VideoOrders, BecomeTheCommandLinesWords) {
            .speed = 0.5,
            .plots = false,
            .overlaid = true,
+           .lens = true,
+           .rerun = {"coupling.kind=standard", "coupling.k_vc=8"},
            .from = 1.25,
            .to = 3.5};
   EXPECT_THAT(words_of(order),
               ElementsAre("--size", "640x360", "--speed", "0.5", "--from", "1.25", "--fps", "25",
-                          "--to", "3.5", "--no-plots", "--overlaid"));
+                          "--to", "3.5", "--no-plots", "--overlaid", "--lens", "--rerun",
+                          "coupling.kind=standard", "--rerun", "coupling.k_vc=8"));
 }
 
 TEST(VideoOrders, NeverGetANameThatIsTaken) {

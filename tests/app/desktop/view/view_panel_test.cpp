@@ -165,7 +165,7 @@ TEST_F(AView, DragsTheHandOntoWhatTheMouseComesTo) {
   EXPECT_NEAR(depth(controls_.goal), depth(middle), 1e-3) << "in the middle of what is thin";
   EXPECT_LT((seen(controls_.goal) - block).norm(), 1) << "under the mouse as ever";
 
-  // What is pushed away is not followed, and what the wheel says stays.
+  // Nothing that is pushed away is followed.
   objects_.objects[0].pose.translation() += 0.02 * camera_.forward();
   for (int i = 0; i < 60; ++i) draw();
   EXPECT_NEAR(depth(controls_.goal), depth(middle), 1e-3);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "app/desktop/view/free_place.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/free_place.h"
 #include "render/camera.h"
 #include "render/scene_view.h"
 

@@ -1,4 +1,4 @@
-#include "app/desktop/view/magnifier.h"
+#include "app/stage/magnifier.h"
 
 #include <gtest/gtest.h>
 

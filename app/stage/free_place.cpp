@@ -1,4 +1,4 @@
-#include "app/desktop/view/free_place.h"
+#include "app/stage/free_place.h"
 
 #include <algorithm>
 

@@ -1,0 +1,58 @@
+#include "app/run/rerun.h"
+
+#include <algorithm>
+#include <array>
+
+#include "app/run/lane_settings.h"
+#include "devices/files/config_file.h"
+
+namespace limpid {
+
+RerunRows run_once_more(const Session& session, const std::string& where, const Parameters& chosen,
+                        const std::atomic<bool>& stop, const std::function<void(double)>& at) {
+  RunPlan plan = replay(session, where, chosen);
+  plan.beside.clear();
+  RerunRows again;
+  again.rows.reserve(session.rows.size());
+  std::uint64_t count = 0;
+  ForgetBehind forget;
+  again.end = simulate(plan, {.realtime = false, .stop = &stop},
+                       [&](std::span<const double> row, LaneChanges) {
+                         again.rows.insert(again.rows.end(), row.begin(), row.end());
+                         forget.passed(row.size_bytes());
+                         at(static_cast<double>(++count) / static_cast<double>(plan.rows));
+                         return true;
+                       });
+  if (again.end.stopped || again.rows.empty()) {
+    again.rows.clear();
+    return again;
+  }
+  const std::vector<double> last(again.rows.end() - session.layout.stride(), again.rows.end());
+  while (again.rows.size() < session.rows.size()) {
+    again.rows.insert(again.rows.end(), last.begin(), last.end());
+  }
+  const std::array both{session_parameters(session, where), chosen};
+  again.name = "re-run: " + lane_names(both)[1];
+  again.note = plan.note;
+  return again;
+}
+
+std::vector<std::string> changed_settings(const Session& session, const std::string& where,
+                                          const Parameters& chosen) {
+  const Parameters before = session_parameters(session, where);
+  std::vector<std::string> changes;
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string text = parameter_text(chosen, info);
+    if (text != parameter_text(before, info)) changes.push_back(std::string(info.key) + "=" + text);
+  }
+  return changes;
+}
+
+Parameters with_changes(const Session& session, const std::string& where,
+                        const std::vector<std::string>& changes) {
+  Parameters p = session_parameters(session, where);
+  for (const std::string& change : changes) apply_setting(p, change);
+  return p;
+}
+
+}  // namespace limpid

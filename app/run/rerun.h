@@ -1,0 +1,34 @@
+// Re-run: a recording's hand once more, under other settings.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/run/replay.h"
+#include "core/base/large_memory.h"
+
+namespace limpid {
+
+// Rows of a re-run.
+struct RerunRows {
+  LargeVector<double> rows;  // as many as the session's; none if it was stopped
+  RunEnd end;                // after a divergence the last row is repeated
+  std::string name;          // "re-run: predictive", by what was changed
+  std::string note;          // why it may differ from the recording; for people
+};
+
+// Runs the session's hand again under `chosen` for all settings that may change. Tells `at` the
+// part that is done, 0 to 1. Errors: as replay().
+RerunRows run_once_more(const Session& session, const std::string& where, const Parameters& chosen,
+                        const std::atomic<bool>& stop, const std::function<void(double)>& at);
+
+// Returns the settings of a re-run that differ from the session's, as "coupling.eta=0.5".
+std::vector<std::string> changed_settings(const Session& session, const std::string& where,
+                                          const Parameters& chosen);
+// Returns the session's settings with these changes. Errors: FileError, ParameterError.
+Parameters with_changes(const Session& session, const std::string& where,
+                        const std::vector<std::string>& changes);
+
+}  // namespace limpid
