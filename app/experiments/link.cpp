@@ -36,7 +36,7 @@ struct LinkCurve {
   double width = 1.8;  // of its line; differs for curves that lie on one another [px]
   std::vector<double> walls = {}, felt = {}, energy = {};  // [N/m, N/m, J]
 
-  // Whether the whole trip is put into the motors' delay: the predictive law knows no link.
+  // Whether the whole trip is put into the motors' delay: the predictive law has no link.
   bool in_motors() const { return base.kind == CouplingKind::predictive; }
   std::vector<int> delays() const {
     std::vector<int> all;
@@ -274,7 +274,7 @@ Outcome link(TrialRunner& lab) {
       "them, one at the bottom has none that rests. Energies are drawn from {} mJ to {} J, what is "
       "beyond at these ends. The link delays each packet alike and loses "
       "none; the random links of the checks do. Gains by (3): k_vc, b_vc and b_v as condition (3) "
-      "has them for the link and the arm's damping. The predictive coupling knows no link; in its "
+      "has them for the link and the arm's damping. The predictive coupling has no link; in its "
       "place the torque of the motors comes the whole trip later, which it knows, as far as 20 ms. "
       "Theory: of the standard coupling the poles of hand, device, spring and wall; of the "
       "proposed one the damping against the lag of the contact.",

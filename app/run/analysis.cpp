@@ -89,10 +89,10 @@ Passivity of_feedforward(const Analysis& a, const Parameters& p) {
   }
   Passivity spring = by_condition3(a.condition3);
   if (spring.passive == false) return spring;
-  if (p.linked()) return {std::nullopt, "no bound is known of what is fed forward through a link"};
+  if (p.linked()) return {std::nullopt, "no bound is known for the feedforward through a link"};
   if (a.delay > 0) {
-    return {std::nullopt,
-            fmt::format("no bound is known of what is fed forward {:.3g} ms late", 1e3 * a.delay)};
+    return {std::nullopt, fmt::format("no bound is known for a feedforward that is {:.3g} ms late",
+                                      1e3 * a.delay)};
   }
   return {true, "eta is at or above eta_min, (25), and condition (3) holds"};
 }

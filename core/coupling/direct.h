@@ -20,11 +20,11 @@ struct DirectLaw {
       .key = "direct",
       .label = "Direct",
       .meaning = "the walls' springs on the device itself (god-object), without a virtual mass.",
-      .verdict = "What most programs do: as stiff as the hand damps.",
+      .verdict = "What most programs do: walls as stiff as the hand damps.",
       .promise = Promise::none,
       .on_device = true,
       .for_comparison = true,
-      .through_link = "the law renders walls on the device itself, and knows no link",
+      .through_link = "the law renders walls on the device itself and has no link",
       .sliders = kSliders,
   };
 

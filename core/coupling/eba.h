@@ -31,7 +31,7 @@ struct EbaLaw {
       .promise = Promise::port,
       .on_device = true,
       .for_comparison = true,
-      .through_link = "the law renders walls on the device itself, and knows no link",
+      .through_link = "the law renders walls on the device itself and has no link",
       .torque_share =
           "Share of the walls' torque that the account can pay for in the coming tick. A wall "
           "that was pressed when the law took over returns as the hand presses on.",

@@ -30,12 +30,12 @@ struct PopcLaw {
       .meaning =
           "walls on the device itself, with a damper that takes back what they gave (passivity "
           "observer and controller, Hannaford and Ryu 2002).",
-      .verdict = "Brakes what it gave. Loses to coarse encoders.",
+      .verdict = "Brakes after it gave energy. Coarse encoders mislead it.",
       .promise = Promise::observer,
       .on_device = true,
       .for_comparison = true,
-      .through_link = "the law renders walls on the device itself, and knows no link",
-      .damper_share = "1 less the damper in force, of the largest that is allowed",
+      .through_link = "the law renders walls on the device itself and has no link",
+      .damper_share = "100 % while no damper acts, 0 % at the largest one allowed",
       .sliders = kSliders,
   };
 

@@ -104,7 +104,7 @@ struct PredictiveLaw {
       .promise = Promise::ledger,
       .takes_eta = true,
       .solves_together = true,
-      .through_link = "the predictive law solves device and proxy at once, and knows no link",
+      .through_link = "the law solves device and proxy together and has no link",
       .sliders = kSliders,
   };
 

@@ -24,7 +24,7 @@ struct ProposedLaw {
       .promise = Promise::eta_min,
       .takes_eta = true,
       .observes = true,
-      .through_link = "of what is fed forward no bound is known",
+      .through_link = "no bound is known for the feedforward",
       .sliders = kSliders,
   };
 

@@ -49,7 +49,7 @@ struct LinkSettings {
         {{"link.delay", "link delay", "Link delay, each way", &P::link_delay, "ticks", 0,
           kMostLinkDelay, 0, 100, false, true,
           "Delay between device and proxy, each way, as if the world were far away. The predictive "
-          "coupling solves both at once and knows no link."},
+          "coupling solves both together and has no link."},
          {"link.jitter", "link jitter", "Link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter,
           0, 20, false, true,
           "Each packet between device and proxy takes up to so many ticks more, at random; each "

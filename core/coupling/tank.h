@@ -29,10 +29,10 @@ struct TankLaw {
       .meaning =
           "the standard coupling with an energy tank on each side, which bounds the energy given "
           "whatever the link between them does.",
-      .verdict = "Passive through any link; soft, and drags as the standard one.",
+      .verdict = "Passive through any delay; soft, and heavy as the standard one.",
       .promise = Promise::tanks,
       .for_links = true,
-      .through_link = "passive whatever it does",
+      .through_link = "passive at any delay, jitter and loss",
       .sliders = kSliders,
   };
 

@@ -33,7 +33,8 @@ struct TdpnLaw {
       .for_links = true,
       .for_comparison = true,
       .through_link = "what both ports gave is taken back; stiffness falls with the delay",
-      .damper_share = "1 less the device's damper in force, of the largest that is allowed",
+      .damper_share =
+          "100 % while the device's damper does not act, 0 % at the largest one allowed",
       .sliders = kSliders,
   };
 

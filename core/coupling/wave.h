@@ -31,7 +31,7 @@ struct WaveLaw {
       .meaning =
           "device and proxy tied by waves on a line, whatever its delay (Niemeyer and Slotine "
           "1991).",
-      .verdict = "Passive through any link; soft as its line.",
+      .verdict = "Passive through any delay; as soft as its line.",
       .promise = Promise::port,
       .for_links = true,
       .for_comparison = true,

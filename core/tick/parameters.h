@@ -34,18 +34,18 @@ struct CompensationSettings {
 
   template <class P>
   static constexpr std::array<Field<P>, 3> settings() {
-    return {
-        {{"model.gravity", "hold the weight", "Hold the weight", &P::holds_weight, "-", 0, 1, 0, 1,
-          false, true,
-          "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
-          "device does it by itself, as by counterweights."},
-         {"model.friction", "friction taken off", "Friction taken off", &P::friction_share, "-", 0,
-          kMostShare, 0, kMostShare, false, true,
-          "Share of the Coulomb friction that the motors take off the hand. Passive while that is "
-          "less than the friction that there is: leave what it may be wrong by."},
-         {"model.springs", "hold the springs", "Hold the springs", &P::holds_springs, "-", 0, 1, 0,
-          1, false, true,
-          "The motors hold against the device's own springs, as its file has them."}}};
+    return {{{"model.gravity", "hold the weight", "Motors hold the weight", &P::holds_weight, "-",
+              0, 1, 0, 1, false, true,
+              "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
+              "device holds it by itself, by counterweights for example."},
+             {"model.friction", "friction taken off", "Friction that motors cancel",
+              &P::friction_share, "-", 0, kMostShare, 0, kMostShare, false, true,
+              "Share of the joints' Coulomb friction that the motors cancel. It stays passive "
+              "while they "
+              "cancel less than there is: leave a margin for what you do not know."},
+             {"model.springs", "hold the springs", "Motors hold the springs", &P::holds_springs,
+              "-", 0, 1, 0, 1, false, true,
+              "The motors hold against the device's own springs, as its file has them."}}};
   }
 };
 
@@ -122,12 +122,13 @@ struct DeviceSettings {
           false, "Integration steps of the virtual device per tick, motor torque held."},
          {"device.delay", "delay", "Device delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5,
           false, true,
-          "Ticks between a command and the torque of the virtual device's motors. The predictive "
-          "coupling reckons with model.delay of them."},
+          "Ticks from a command to the torque of the virtual device's motors. model.delay tells "
+          "the "
+          "predictive coupling how many it has to expect."},
          {"device.encoder_step", "encoder step", "Encoder step", &P::encoder_step, "rad", 0,
           kMostEncoderStep, 0, 2e-3, false, true,
-          "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4. Of a real device no "
-          "less than what that says of itself."},
+          "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4. For a real device it is "
+          "at least what the device says."},
          {"device.friction", "friction", "Device friction", &P::friction, "N m", 0, 100, 0, 0.05,
           false, true, "Coulomb friction of every joint; default: the arm's file."},
          {"device.damping", "b_d", "Device damping b_d", &P::damping, "N m s/rad", 0, 100, 1e-4,
@@ -137,13 +138,15 @@ struct DeviceSettings {
          {"device.torque_limit", "torque limit", "Motors' largest torque", &P::torque_limit, "N m",
           1e-6, 1e4, 0.01, 5, true, true,
           "Largest torque of every motor (section 3.1); default: the arm's file."},
-         {"device.gravity", "weight", "The arm weighs", &P::weighs, "-", 0, 1, 0, 1, false, true,
-          "The virtual arm has the weight of its file and would fall; off: as if a counterweight "
-          "held it. model.gravity has the motors hold it."},
-         {"device.springs", "springs", "The arm has its springs", &P::springy, "-", 0, 1, 0, 1,
+         {"device.gravity", "weight", "Virtual arm has weight", &P::weighs, "-", 0, 1, 0, 1, false,
+          true,
+          "The virtual arm has the weight of its file, and falls without a hand. Off: "
+          "counterweights "
+          "hold it. model.gravity lets the motors hold it."},
+         {"device.springs", "springs", "Virtual arm has springs", &P::springy, "-", 0, 1, 0, 1,
           false, true,
-          "The virtual arm has the springs of its file, as one that was identified has; "
-          "model.springs has the motors hold against them."},
+          "The virtual arm has the springs of its file, as an identified one has. model.springs "
+          "lets the motors hold against them."},
          {"device.down", "down", "Down, seen from the base", choice<P, &P::down>(kDowns), "-", 0, 6,
           0, 6, false, true,
           "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "

@@ -109,7 +109,7 @@ class ThroughALink(SystemTest):
         self.assertEqual((late["link"], late["condition3"]["holds"], late["condition3"]["known"]), (0.006, False, True))
         self.assertFalse(found("--set", "link.loss=0.1")["condition3"]["known"])
         said = limpid("analyze", "--set", "link.delay=4", "--coupling", "tank").out
-        self.assertIn("passive whatever it does", said)
+        self.assertIn("passive at any delay, jitter and loss", said)
 
 
 class LiveThroughALink(RemoteTest):

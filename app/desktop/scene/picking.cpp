@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "app/desktop/scene/scene_editor.h"
+#include "core/touch/pull_link.h"
 #include "core/touch/triangle_mesh.h"
 
 namespace limpid {
@@ -202,6 +203,14 @@ std::optional<Aim> aim_along(const Ray& ray, const Scene& scene, std::span<const
     aim = Aim{i, ray.origin + (way + deep) * ray.direction};
   }
   return aim;
+}
+
+double pull_on(const Scene& scene, std::size_t body, const std::array<Vec3, 2>& pull) {
+  for (const Object& object : scene.objects) {
+    if (!object.body || body-- > 0) continue;
+    return PullLink::force_of(object.body->mass, (pull[1] - pull[0]).norm());
+  }
+  return 0;
 }
 
 std::optional<double> drop_below(const Vec3& point, const Scene& scene,

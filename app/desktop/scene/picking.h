@@ -1,6 +1,7 @@
 // Picking: the objects and bodies under the mouse.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -33,6 +34,9 @@ std::optional<Aim> aim_along(const Ray& ray, const Scene& scene, std::span<const
 // Returns how far below the point something is, within half a metre [m]; planes count.
 std::optional<double> drop_below(const Vec3& point, const Scene& scene,
                                  std::span<const Pose> bodies);
+
+// Returns the force of a pull from one point to the other on a moving object that stands still [N].
+double pull_on(const Scene& scene, std::size_t body, const std::array<Vec3, 2>& pull);
 
 // Returns whether an object is met within `within` [m] of the ray's origin. Planes do not count:
 // things are drawn on them. Uses a mesh's contact triangles, which answer at once whatever its

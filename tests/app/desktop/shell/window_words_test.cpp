@@ -368,7 +368,7 @@ TEST_F(Words, OfYourTurnTickWhatWasDone) {
   height = 900;
   desktop->settings.your_turn = true;
   frames(3);
-  EXPECT_TRUE(find("Enough of it", "Your turn"));
+  EXPECT_TRUE(find("Close the list", "Your turn"));
   note_all_done(desktop->settings);
   frames(2);
   click("Done", "Your turn");
