@@ -53,7 +53,7 @@ class JudgedLaws {
     const Passivity known = passivity(a_, p);
     if (known.passive == false) return {0, std::nullopt, known.by};
     if (!known.passive) return {std::nullopt, std::nullopt, known.by};
-    // Its conditions are about free motion and the spring.
+    // The conditions of (25) are about free motion and the spring.
     if (info(p.kind).promise == Promise::eta_min) {
       return {std::nullopt, std::nullopt,
               "free motion is; a contact's force is fed forward late, and no bound is known of it"};

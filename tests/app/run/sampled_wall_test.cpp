@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace limpid {
 namespace {
@@ -70,6 +71,24 @@ TEST(SampledWall, BehindASpringIsStableInEveryHandWhereConditionThreeHolds) {
     }
   }
   EXPECT_GT(unstable, 0);
+}
+
+// A damper alone, before a rigid wall: m D' = -b_vc D/T of the tick before, held. With a = b_d/m
+// and E = exp(-a T) a tick takes v to E v + (1 - E)/b_d f and moves by (1 - E)/a v + (T - (1 -
+// E)/a)/b_d f, f = -b_vc/T of the last motion.
+TEST(SampledWall, BehindADamperIsTheClosedForm) {
+  const double m = 0.02, b_d = 0.5, T = 0.001, E = std::exp(-b_d / m * T), p = (1 - E) * m / b_d;
+  for (const double b_vc : {8.0, 60.0, 100.0}) {
+    // Poles of [v, D] -> [E v - g D, p v - h D].
+    const double g = (1 - E) / b_d * b_vc / T, h = (T - p) / b_d * b_vc / T;
+    const std::complex<double> root =
+        std::sqrt(std::complex<double>((E - h) * (E - h) - 4 * (p * g - E * h)));
+    const double largest = std::max(std::abs(E - h + root), std::abs(E - h - root)) / 2;
+    EXPECT_NEAR(growth_behind_spring({m, b_d, 0, T, 0}, {0, b_vc, 1}, 0.001, 1e13),
+                std::max(largest, 1.0), 1e-6)
+        << b_vc;
+    EXPECT_EQ(largest > 1, b_vc > 50) << b_vc;
+  }
 }
 
 TEST(SampledWall, NoneIsStableWhereTheTipIsNot) {

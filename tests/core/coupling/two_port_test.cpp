@@ -73,6 +73,26 @@ TEST(Llewellyn, OfASpringIsTheClosedForm) {
   }
 }
 
+// d ticks of the motors and l of the link each way turn both: with u = pi f T the device's damping
+// is b_d - k T sin((2 d + 1) u)/(2 sin u), and the cosine is -cos(2 (d + 2 l + 1) u).
+TEST(Llewellyn, OfASpringIsTheClosedFormWithDelays) {
+  const double T = 0.001, b_d = 0.1;
+  const SpringDamper gains{10, 0, 0.03};
+  for (const int d : {0, 1, 3}) {
+    for (const int l : {0, 1, 7}) {
+      for (const double f : {3.0, 90.0, 260.0}) {
+        const double u = std::numbers::pi * f * T, sine = std::sin(u), kT = gains.k_vc * T;
+        const double damping = b_d - kT * std::sin((2 * d + 1) * u) / (2 * sine);
+        EXPECT_NEAR(llewellyn(spring_two_port(gains, {b_d, T, d, l}, f)),
+                    2 * damping * gains.b_v * 4 * sine * sine / (kT * kT) +
+                        std::cos(2 * (d + 2 * l + 1) * u),
+                    1e-9)
+            << d << " " << l << " " << f;
+      }
+    }
+  }
+}
+
 // Without b_vc the paper's condition is where both ports share the cost evenly: on the edge of
 // both.
 TEST(Llewellyn, IsMetOnTheEdgeOfConditionThreeAndNotBeyond) {
