@@ -61,11 +61,12 @@ struct BenchLaw {
 };
 constexpr std::array kBenchLaws{BenchLaw{CouplingKind::standard, kStandardInk, "1", 6},
                                 BenchLaw{CouplingKind::proposed, kProposedInk, "(12,4)", 5},
-                                BenchLaw{CouplingKind::predictive, kPredictiveInk, "1", 7},
+                                BenchLaw{CouplingKind::predictive, kPredictiveInk, "1", 15},
                                 BenchLaw{CouplingKind::tank, kTankInk, "1", 4},
-                                BenchLaw{CouplingKind::direct, kFamilyInk[3], "(2,3)", 2},
+                                BenchLaw{CouplingKind::direct, kFamilyInk[3], "(6,6)", 2},
                                 BenchLaw{CouplingKind::eba, kFamilyInk[0], "(8,3,2,3)", 9},
-                                BenchLaw{CouplingKind::popc, kFamilyInk[2], "(6,2,2,2,2,2)", 13}};
+                                BenchLaw{CouplingKind::popc, kFamilyInk[2], "(6,2,2,2,2,2)", 13},
+                                BenchLaw{CouplingKind::sfa, kFamilyInk[1], "(4,4)", 11}};
 
 struct BenchHand {
   double stiffness, damping;  // [N/m, N s/m]
@@ -243,7 +244,7 @@ const char* ink_of(CouplingKind kind) { return bench_law(kind).ink; }
 // Laws through a link, pressed for long in a hand that damps and in one that does not.
 constexpr std::array kLinks{0, 1, 2, 5, 10, 20, 50};  // each way [ticks]
 constexpr std::array kLinked{BenchLaw{CouplingKind::tank, kTankInk, "1", 4},
-                             BenchLaw{CouplingKind::wave, kFamilyInk[0], "(2,3)", 9},
+                             BenchLaw{CouplingKind::wave, kFamilyInk[0], "(6,6)", 9},
                              BenchLaw{CouplingKind::tdpn, kFamilyInk[2], "(8,3,2,3)", 13}};
 constexpr double kFarWall = 5000, kLong = 3;  // [N/m], [s]
 

@@ -142,6 +142,7 @@ class Analyze(SystemTest):
             (["--coupling", "eba"], True),
             (["--coupling", "direct"], None),
             (["--coupling", "popc"], None),
+            (["--coupling", "sfa"], None),
             (["--coupling", "wave", "--set", "link.delay=20"], True),
             (["--coupling", "tdpn", "--set", "link.delay=20"], None),
             (["--set", "link.delay=1", "--set", "coupling.k_vc=1"], None),

@@ -24,7 +24,7 @@ using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct",
-                                 "eba",      "popc",     "wave",       "tdpn"};
+                                 "eba",      "popc",     "wave",       "tdpn", "sfa"};
 
 class Commands : public test::Program {
  protected:

@@ -43,6 +43,9 @@ TEST(HandRange, NamesTheBoundsOfTheLiterature) {
   EXPECT_NEAR(*all.stepped.wall, std::min(2 * b / 1e-3, 2 * f_c / q), 1e-9);
   EXPECT_LT(*all.stepped.wall, *all.sampled.wall);
   EXPECT_NEAR(*law(all, CouplingKind::direct).in_any_hand.up_to, 2 * f_c / q, 1e-9);
+  p.friction_share = 0.25;
+  EXPECT_NEAR(*judged(p, 300, 3000).stepped.wall, 0.75 * 2 * f_c / q, 1e-9)
+      << "the motors take a share of the friction off";
   p.delay = p.device_delay = 2;
   all = judged(p, 300, 3000);
   EXPECT_NEAR(*all.sampled.wall, b / 2.5e-3, 1e-9);
@@ -120,7 +123,7 @@ TEST(HandRange, SaysOfEveryLawWhatIsKnown) {
   for (const CouplingKind passive : {standard, predictive, tank, eba, wave}) {
     EXPECT_TRUE(std::isinf(*law(all, passive).in_range.up_to)) << name(passive);
   }
-  for (const CouplingKind open : {proposed, popc, tdpn}) {
+  for (const CouplingKind open : {proposed, popc, tdpn, sfa}) {
     EXPECT_FALSE(law(all, open).in_range.up_to) << name(open);
     EXPECT_FALSE(law(all, open).in_any_hand.up_to) << name(open);
     EXPECT_FALSE(law(all, open).two_port) << name(open);
