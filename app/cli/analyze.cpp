@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/cli/commands.h"
+#include "app/cli/in_hands_text.h"
 #include "app/cli/options.h"
 #include "app/run/analysis.h"
 #include "app/run/provenance.h"
@@ -17,6 +18,7 @@ namespace {
 struct AnalyzeOptions {
   InputOptions input;
   std::optional<double> band, mass;
+  std::vector<double> grip;  // from, to [N/m]; empty: none
   bool json = false, all = false;
 };
 
@@ -152,6 +154,18 @@ std::string still_tip(const ArmDescription& arm) {
       arm.tip_link);
 }
 
+std::optional<InHands> judged_in_hands(const AnalyzeOptions& options, const ArmDescription& arm,
+                                       const Parameters& p, const Analysis& a,
+                                       const std::optional<TipLimits>& tip) {
+  if (options.grip.empty() || !tip) return std::nullopt;
+  const HandRange range{options.grip[0], options.grip[1]};
+  if (range.to < range.from) {
+    throw UsageError(fmt::format("--grip {} {}: the second number is less than the first",
+                                 range.from, range.to));
+  }
+  return in_hands(arm, rest_pose(arm), p, a, *tip, range);
+}
+
 int analyze_command(const AnalyzeOptions& options) {
   ArmDescription arm;
   SceneDocument document;
@@ -164,10 +178,12 @@ int analyze_command(const AnalyzeOptions& options) {
   const std::optional<TipLimits> tip =
       moves_tip(arm) ? std::optional(tip_limits(arm, rest_pose(arm), p, document.scene))
                      : std::nullopt;
+  const std::optional<InHands> hands = judged_in_hands(options, arm, p, a, tip);
   if (!options.json) {
     print(a, arm, p);
     if (options.mass) return 0;
     if (tip) print(*tip, p, options.all);
+    if (hands) print_in_hands(*hands, laws_told(p, options.all));
     if (!tip) fmt::print("\n{}\n", still_tip(arm));
     return 0;
   }
@@ -195,6 +211,10 @@ int analyze_command(const AnalyzeOptions& options) {
   json["measured"] = a.measured;
   if (!options.mass) json["tip"] = tip ? as_json(*tip, p) : nlohmann::ordered_json(nullptr);
   json["units"] = units();
+  if (!options.grip.empty()) {
+    json["grip"] = hands ? in_hands_json(*hands) : nlohmann::ordered_json(nullptr);
+    if (hands) json["units"].update(in_hands_units());
+  }
   fmt::print("{}\n", json.dump(2));
   return 0;
 }
@@ -214,7 +234,18 @@ Command declare_analyze(CLI::App& app) {
                    ->add_option("--mass", options->mass,
                                 "a scalar inertia in place of the arm's at its rest pose")
                    ->type_name("KG_M2");
+  auto* grip =
+      command
+          ->add_option(
+              "--grip", options->grip,
+              "hands from one stiffness to another, with hand.damping and hand.mass: which "
+              "walls are stable in all of them, beside those that are passive in every "
+              "hand; bounds by name; Llewellyn's criterion")
+          ->type_name("FROM TO")
+          ->expected(2)
+          ->excludes(mass);
   require_above_zero(band, 1e6, "Hz");
+  require_above_zero(grip, 1e6, "N/m");
   require_above_zero(mass, 1e6, "kg m^2");
   command->add_flag("--all", options->all, "laws for comparison too; JSON always has them");
   command->add_flag("--json", options->json, "one JSON object on standard output");

@@ -40,17 +40,33 @@ constexpr std::array kArms{
     BenchArm{"built-in, ideal", "omni.urdf", 0, 0}, BenchArm{"Touch", "touch.urdf", 4.19e-4, 1},
     BenchArm{"omega", "omega.urdf", 1e-4, 0}, BenchArm{"Inverse3", "inverse3.urdf", 1e-4, 1}};
 
+// A law is told by its ink, and without colours by the dash of its lines and the mark of its
+// points.
 struct BenchLaw {
   CouplingKind kind;
   const char* ink;
+  const char* dash;
+  int mark;
+
+  Series line() const {
+    Series line{info(kind).key, ink, Series::Style::line, {}};
+    line.dash = dash;
+    return line;
+  }
+  Series points() const {
+    Series points{info(kind).key, ink, Series::Style::points, {}};
+    points.mark = mark;
+    return points;
+  }
 };
-constexpr std::array kBenchLaws{BenchLaw{CouplingKind::standard, kStandardInk},
-                                BenchLaw{CouplingKind::proposed, kProposedInk},
-                                BenchLaw{CouplingKind::predictive, kPredictiveInk},
-                                BenchLaw{CouplingKind::tank, kTankInk},
-                                BenchLaw{CouplingKind::direct, kFamilyInk[3]},
-                                BenchLaw{CouplingKind::eba, kFamilyInk[0]},
-                                BenchLaw{CouplingKind::popc, kFamilyInk[2]}};
+constexpr std::array kBenchLaws{BenchLaw{CouplingKind::standard, kStandardInk, "1", 6},
+                                BenchLaw{CouplingKind::proposed, kProposedInk, "(12,4)", 5},
+                                BenchLaw{CouplingKind::predictive, kPredictiveInk, "1", 15},
+                                BenchLaw{CouplingKind::tank, kTankInk, "1", 4},
+                                BenchLaw{CouplingKind::direct, kFamilyInk[3], "(6,6)", 2},
+                                BenchLaw{CouplingKind::eba, kFamilyInk[0], "(8,3,2,3)", 9},
+                                BenchLaw{CouplingKind::popc, kFamilyInk[2], "(6,2,2,2,2,2)", 13},
+                                BenchLaw{CouplingKind::sfa, kFamilyInk[1], "(4,4)", 11}};
 
 struct BenchHand {
   double stiffness, damping;  // [N/m, N s/m]
@@ -220,15 +236,16 @@ constexpr std::array kLateTicks{0, 1, 2, 3};  // [ticks]
 constexpr std::array kOverDelay{CouplingKind::proposed, CouplingKind::predictive,
                                 CouplingKind::direct, CouplingKind::popc};
 
-const char* ink_of(CouplingKind kind) {
-  return std::ranges::find(kBenchLaws, kind, &BenchLaw::kind)->ink;
+const BenchLaw& bench_law(CouplingKind kind) {
+  return *std::ranges::find(kBenchLaws, kind, &BenchLaw::kind);
 }
+const char* ink_of(CouplingKind kind) { return bench_law(kind).ink; }
 
 // Laws through a link, pressed for long in a hand that damps and in one that does not.
 constexpr std::array kLinks{0, 1, 2, 5, 10, 20, 50};  // each way [ticks]
-constexpr std::array kLinked{BenchLaw{CouplingKind::tank, kTankInk},
-                             BenchLaw{CouplingKind::wave, kFamilyInk[0]},
-                             BenchLaw{CouplingKind::tdpn, kFamilyInk[2]}};
+constexpr std::array kLinked{BenchLaw{CouplingKind::tank, kTankInk, "1", 4},
+                             BenchLaw{CouplingKind::wave, kFamilyInk[0], "(6,6)", 9},
+                             BenchLaw{CouplingKind::tdpn, kFamilyInk[2], "(8,3,2,3)", 13}};
 constexpr double kFarWall = 5000, kLong = 3;  // [N/m], [s]
 
 struct Linked {
@@ -267,7 +284,7 @@ FigurePanel link_panel(const Linked& all) {
                     .x_range = std::pair(-1.0, 51.0),
                     .y_range = std::pair(2.0, 400.0)};
   for (std::size_t l = 0; l < kLinked.size(); ++l) {
-    Series line{info(kLinked[l].kind).key, kLinked[l].ink, Series::Style::line, {}};
+    Series line = kLinked[l].line();
     for (std::size_t i = 0; i < kLinks.size(); ++i) {
       const double felt = kFarWall * all.at(l, i, 0).felt;
       if (felt > 0) line.points.push_back({double(kLinks[i]), felt});
@@ -315,7 +332,7 @@ FigurePanel energy_panel(const Compared& all, const BenchArm& arm) {
                     .x_range = std::pair(20.0, 4000.0),
                     .y_range = std::pair(0.5 * kLeast, 2 * kMost)};
   for (const BenchLaw& law : kBenchLaws) {
-    Series points{info(law.kind).key, law.ink, Series::Style::points, {}};
+    Series points = law.points();
     for (std::size_t i = 0; i < all.taps.size(); ++i) {
       const Tap& tap = all.taps[i];
       if (tap.kind != law.kind || std::string_view(tap.arm.name) != arm.name) continue;
@@ -337,7 +354,7 @@ FigurePanel delay_panel(const std::vector<double>& walls) {
                     .y_range = std::pair(0.8 * kLeastWall, 1.5 * kMostWall)};
   std::size_t at = 0;
   for (const CouplingKind kind : kOverDelay) {
-    Series line{info(kind).key, ink_of(kind), Series::Style::line, {}};
+    Series line = bench_law(kind).line();
     for (const int delay : kLateTicks) line.points.push_back({double(delay), walls[at++]});
     panel.series.push_back(line);
   }
@@ -364,9 +381,9 @@ FigurePanel arms_panel(const Compared& all) {
                     .y_range = std::pair(0.8 * kLeastWall, 1.5 * kMostWall)};
   for (std::size_t a = 0; a < kArms.size(); ++a) panel.x_ticks.emplace_back(a, kArms[a].name);
   for (std::size_t l = 0; l < kBenchLaws.size(); ++l) {
-    Series points{info(kBenchLaws[l].kind).key, kBenchLaws[l].ink, Series::Style::points, {}};
+    Series points = kBenchLaws[l].points();
     for (std::size_t a = 0; a < kArms.size(); ++a) {
-      const double aside = 0.08 * (double(l) - 3);
+      const double aside = 0.08 * (double(l) - double(kBenchLaws.size() - 1) / 2);
       points.points.push_back({double(a) + aside, all.walls[a * kBenchLaws.size() + l]});
     }
     panel.series.push_back(points);

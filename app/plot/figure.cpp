@@ -204,10 +204,15 @@ std::string plot_words(const Series& series, const std::string& data) {
   const std::string end = fmt::format("lc rgb '{}' notitle", series.color);
   switch (series.style) {
     case Series::Style::line:
-      return data + fmt::format(" using 1:2 with lines lw {} ", series.width) + end;
+      return data + fmt::format(" using 1:2 with lines lw {} dt {} ", series.width, series.dash) +
+             end;
     case Series::Style::dashed:
       return data + fmt::format(" using 1:2 with lines lw {} dt (7,4) ", series.width) + end;
-    case Series::Style::points: return data + " using 1:2 with points pt 7 ps 0.35 " + end;
+    case Series::Style::points:
+      return data +
+             fmt::format(" using 1:2 with points pt {} ps {} ", series.mark,
+                         series.mark == 7 ? 0.35 : 0.6) +
+             end;
     case Series::Style::cells:
       return data + " using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder " +
              (series.color.empty() ? "fc palette notitle"
@@ -250,12 +255,13 @@ std::string sample_of(const Series& series, const Screen& screen, double x, doub
   switch (series.style) {
     case Series::Style::line:
     case Series::Style::dashed:
-      return fmt::format("set arrow from {} to {} nohead lw {} {} lc rgb '{}'\n", left, right,
-                         series.width, series.style == Series::Style::line ? "dt 1" : "dt (7,4)",
-                         series.color);
+      return fmt::format(
+          "set arrow from {} to {} nohead lw {} {} lc rgb '{}'\n", left, right, series.width,
+          series.style == Series::Style::line ? fmt::format("dt {}", series.dash) : "dt (7,4)",
+          series.color);
     case Series::Style::points:
-      return fmt::format("set label '' at {} point pt 7 ps 0.6 lc rgb '{}'\n",
-                         screen.at(x + kSample / 2, y), series.color);
+      return fmt::format("set label '' at {} point pt {} ps 0.6 lc rgb '{}'\n",
+                         screen.at(x + kSample / 2, y), series.mark, series.color);
     case Series::Style::cells:
     case Series::Style::band:
       return fmt::format("set object rectangle from {} to {} fc rgb '{}' fs {} noborder\n",

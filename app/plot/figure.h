@@ -31,6 +31,8 @@ struct Series {
   std::vector<FigurePoint> points;
   std::vector<FigureCell> cells = {};  // of a map, whose label stands at the bar of colours
   double width = 1.8;                  // of a line; wider for those that lie under another one [px]
+  const char* dash = "1";              // of a line, as gnuplot names it: "1" none, "(long,gap,...)"
+  int mark = 7;                        // of points, as gnuplot counts them: 7 a disc
 };
 
 // A pair of axes with its curves.

@@ -104,6 +104,13 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
       case CouplingKind::popc:
         return on_device(braked_wall(l.tip, s, p.popc_damping),
                          "the damping of arm and hand, and its own damper, held for a tick");
+      case CouplingKind::sfa: {
+        const double soft = p.sfa_soft * every_hands_wall(l.tip, p.tick, l.delay);
+        return {soft,
+                fmt::format("its soft spring; in this grip, at rest, an increment leaves {:.2g} of "
+                            "what a rigid wall lacks",
+                            1 - p.sfa_step * soft / (soft + p.hand_stiffness))};
+      }
     }
     return {};
   };
@@ -158,7 +165,8 @@ FeltAtTip felt_at_tip(const TipLimits& l, const Parameters& p, CouplingKind kind
       break;
     case CouplingKind::direct:
     case CouplingKind::eba:
-    case CouplingKind::popc: return {l.tip.mass, l.tip.damping};  // the arm alone
+    case CouplingKind::popc:
+    case CouplingKind::sfa: return {l.tip.mass, l.tip.damping};  // the arm alone
   }
   return {Z.imag() / (2 * std::numbers::pi * f), Z.real()};
 }

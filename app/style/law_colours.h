@@ -21,7 +21,7 @@ struct LawColour {
 // All laws for comparison share a colour: these people could tell no more of them apart.
 inline constexpr LawColour kForComparison{"#274060", "#93A5BC", "#6C8EBF"};
 
-inline constexpr std::array<LawColour, 9> kLawColours{{
+inline constexpr std::array<LawColour, 10> kLawColours{{
     {"#6B7280", "#B4B9C2", "#98A3AF"},  // standard
     {"#6A3D9A", "#B79BD3", "#9D72D6"},  // proposed
     {"#6B9100", "#B5CC6A", "#A3CC2F"},  // predictive
@@ -31,6 +31,7 @@ inline constexpr std::array<LawColour, 9> kLawColours{{
     kForComparison,                     // popc
     kForComparison,                     // wave
     kForComparison,                     // tdpn
+    kForComparison,                     // sfa
 }};
 
 // Returns "#rrggbb" as a number.

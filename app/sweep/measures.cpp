@@ -67,6 +67,14 @@ constexpr MeasureInfo kTable[] = {
      [](const RunMeter& m) { return m.wall_felt(); }, true},
     {"wall_rattle", "N", "rms of its force above 20 Hz in the second half",
      [](const RunMeter& m) { return m.wall_rattle(); }, true},
+    {"rate_hardness", "N/m",
+     "rise of the motors' force on the tip in the first 5 ms in it, over that time and the tip's "
+     "speed in the 5 ms before (Lawrence et al. 2000)",
+     [](const RunMeter& m) { return m.rate_hardness(); }, true},
+    {"ripple", "N",
+     "rms of that force about its mean, in the second half and in the wall: for hands that rest "
+     "then",
+     [](const RunMeter& m) { return m.ripple(); }, true},
     {"felt_inertia", "-", "inertia felt out of contact, of the arm's own",
      [](const RunMeter& m) { return m.felt_inertia_damping()[0]; }, true},
     {"felt_damping", "N m s/rad", "damping felt out of contact, of every joint",
@@ -94,7 +102,9 @@ RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool
   const HighPass fast(kFast, 1 / T);
   if (!felt) return;
   felt_.emplace(Felt{Arm<kAnyDof>(arm), {fast, fast, fast}});
-  if (wall != nullptr) wall_.emplace(arm, *wall, T, rows / 2);
+  if (wall == nullptr) return;
+  wall_.emplace(arm, *wall, T, rows / 2);
+  hardness_.emplace(arm, *wall, T, rows / 2);
 }
 
 void RunMeter::add(std::span<const double> row) {
@@ -118,6 +128,7 @@ void RunMeter::add(std::span<const double> row) {
     }
     if (felt_) add_felt(row);
     if (wall_) wall_->add(layout_, row);
+    if (hardness_) hardness_->add(layout_, row);
   }
   ++row_;
 }
@@ -198,6 +209,10 @@ double RunMeter::chatter() const {
 
 double RunMeter::wall_felt() const { return wall_ ? wall_->felt() : kNoMeasure; }
 double RunMeter::wall_rattle() const { return wall_ ? wall_->rattle() : kNoMeasure; }
+double RunMeter::rate_hardness() const {
+  return hardness_ ? hardness_->rate_hardness() : kNoMeasure;
+}
+double RunMeter::ripple() const { return hardness_ ? hardness_->ripple() : kNoMeasure; }
 
 double RunMeter::felt_stiffness() const {
   if (!felt_) return kNoMeasure;

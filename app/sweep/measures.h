@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/run/hardness_meter.h"
 #include "app/run/summary.h"
 #include "app/run/wall_tap.h"
 #include "core/dynamics/arm.h"
@@ -57,6 +58,9 @@ class RunMeter {
   double wall() const { return wall_stiffness_; }
   double wall_felt() const;
   double wall_rattle() const;
+  // See HardnessMeter [N/m, N].
+  double rate_hardness() const;
+  double ripple() const;
   double chatter() const;  // of the tip above 20 Hz in the second half, rms [m/s]
   // Slope of the hand's force over the tip's motion, along the mean force in contact [N/m].
   double felt_stiffness() const;
@@ -101,7 +105,8 @@ class RunMeter {
 
   std::optional<Felt> felt_;
   double wall_stiffness_;
-  std::optional<WallMeter> wall_;  // only with `felt`
+  std::optional<WallMeter> wall_;          // only with `felt`
+  std::optional<HardnessMeter> hardness_;  // likewise
 };
 
 }  // namespace limpid

@@ -15,6 +15,7 @@
 #include "core/coupling/popc.h"
 #include "core/coupling/predictive.h"
 #include "core/coupling/proposed.h"
+#include "core/coupling/sfa.h"
 #include "core/coupling/standard.h"
 #include "core/coupling/tank.h"
 #include "core/coupling/tdpn.h"
@@ -32,10 +33,11 @@ enum class CouplingKind : std::uint8_t {
   eba,
   popc,
   wave,
-  tdpn
+  tdpn,
+  sfa
 };
 using Laws = std::tuple<StandardLaw, ProposedLaw, PredictiveLaw, TankLaw, DirectLaw, EbaLaw,
-                        PopcLaw, WaveLaw, TdpnLaw>;
+                        PopcLaw, WaveLaw, TdpnLaw, SfaLaw>;
 
 namespace detail {
 

@@ -145,7 +145,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
      "share of the damping that the ledger lets the law cancel; popc: 1 less its damper in force"},
     {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
-     "share of all torque that the ledger, the device's tank or the account of eba lets through"},
+     "share of all torque that the ledger, the device's tank or the account of eba lets "
+     "through; sfa: of the walls' torque what it has built up"},
     {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
      "how the tick was solved: 0 as usual; with the predictive law 1 with motors at their limit, 2 "
      "contacts that did not settle one after the other; 3 not at all: the proxy stood still",

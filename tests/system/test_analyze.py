@@ -142,6 +142,7 @@ class Analyze(SystemTest):
             (["--coupling", "eba"], True),
             (["--coupling", "direct"], None),
             (["--coupling", "popc"], None),
+            (["--coupling", "sfa"], None),
             (["--coupling", "wave", "--set", "link.delay=20"], True),
             (["--coupling", "tdpn", "--set", "link.delay=20"], None),
             (["--set", "link.delay=1", "--set", "coupling.k_vc=1"], None),
@@ -202,6 +203,46 @@ class Analyze(SystemTest):
                 least = max(0, 1 - eta) * mass * 2 * math.pi * 5.3
                 self.assert_close(tip["least_damping"], least)
                 self.assertGreaterEqual(min(tip["predictive"]["felt_damping"][:3]), least)
+
+    def test_a_range_of_hands_beside_every_hand(self) -> None:
+        """Poles of the sampled loop by numpy's matrices, and the literature's bounds."""
+        tip = self.analyze()["tip"]
+        m, b_d, T = tip["mass"], tip["damping"], 1e-3
+
+        def stable(K: float, k_h: float, b_h: float, m_h: float) -> bool:
+            A = np.array([[0, 1, 0], [-k_h / (m + m_h), -(b_d + b_h) / (m + m_h), 1 / (m + m_h)], [0, 0, 0]])
+            step, term = np.eye(3), np.eye(3)
+            for k in range(1, 40):
+                term = term @ A * T / k
+                step = step + term
+            loop = step[:2, :2] - np.outer(step[:2, 2], [K, 0])
+            return bool(np.max(np.abs(np.linalg.eigvals(loop))) < 1)
+
+        for b_h, m_h in ((2.0, 0.0), (0.5, 0.1)):
+            with self.subTest(b_h=b_h):
+                hand = ["--set", f"hand.damping={b_h}", "--set", f"hand.mass={m_h}"]
+                grip = self.analyze("--grip", "200", "4000", *hand)["grip"]
+                self.assertEqual((grip["damping"], grip["mass"]), (b_h, m_h))
+                wall, worst = grip["direct"]["stable"]["wall"], grip["direct"]["stable"]["hand"]
+                self.assertTrue(stable(wall * 0.999, worst, b_h, m_h))
+                self.assertFalse(stable(wall * 1.001, worst, b_h, m_h))
+                for other in (200, 700, 4000):
+                    self.assertTrue(stable(wall * 0.999, other, b_h, m_h))
+        words = ["--set", "device.encoder_step=4e-4", "--set", "device.friction=1e-3"]
+        grip = self.analyze("--grip", "200", "4000", *words)["grip"]
+        self.assert_close(grip["colgate_schenkel"]["wall"], 2 * b_d / T)
+        self.assertLess(grip["abbott_okamura"]["wall"], grip["colgate_schenkel"]["wall"])
+        self.assertEqual(grip["direct"]["passive"]["wall"], grip["abbott_okamura"]["wall"])
+
+    def test_llewellyns_criterion_is_the_closed_form(self) -> None:
+        for k_vc, b_v in ((10.0, 0.012), (14.0, 0.006), (20.0, 0.012)):
+            with self.subTest(k_vc=k_vc):
+                words = ["--set", f"coupling.k_vc={k_vc}", "--set", f"coupling.b_v={b_v}", "--set", "coupling.b_vc=0"]
+                found = self.analyze("--grip", "300", "3000", *words)["grip"]["standard"]["llewellyn"]
+                half = k_vc * 1e-3 / 2
+                c = (0.012 - half) * b_v / half**2
+                self.assertEqual(found["fails_from"] is None, c >= 1)
+                self.assertAlmostEqual(found["least"], min(1, 2 * c - 1), delta=1e-6)
 
     def test_without_json_it_speaks_to_people(self) -> None:
         result = limpid("analyze")

@@ -88,9 +88,9 @@ class Bash(Tab):
         return {word for word in self.ask("bash", "-c", BASH, "-", SCRIPTS / "limpid.bash", line) if word}
 
     def test_values_behind_an_equals_sign(self) -> None:
-        self.assertEqual(self.offered("limpid run --coupling=s"), {"standard"})
+        self.assertEqual(self.offered("limpid run --coupling=st"), {"standard"})
         # bash completes the part after the '='.
-        self.assertEqual(self.offered("limpid run --set coupling.kind=s"), {"standard"})
+        self.assertEqual(self.offered("limpid run --set coupling.kind=st"), {"standard"})
 
     def test_names_with_spaces_and_folders(self) -> None:
         self.assertEqual(self.offered("limpid check two"), {"two words.toml"})
@@ -105,7 +105,7 @@ class Fish(Tab):
         return {answer.split("\t")[0] for answer in self.ask("fish", "--no-config", "-c", script)}
 
     def test_values_behind_an_equals_sign(self) -> None:
-        self.assertEqual(self.offered("limpid run --coupling=s"), {"--coupling=standard"})
+        self.assertEqual(self.offered("limpid run --coupling=st"), {"--coupling=standard"})
 
     def test_what_they_are(self) -> None:
         script = f"source {SCRIPTS / 'limpid.fish'}; complete -C 'limpid devi'"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray
 
 # As /coupling/kind has them.
-LAWS = ("standard", "proposed", "predictive", "tank", "direct", "eba", "popc", "wave", "tdpn")
+LAWS = ("standard", "proposed", "predictive", "tank", "direct", "eba", "popc", "wave", "tdpn", "sfa")
 # The runs that a recording keeps, by what the names of their channels begin with.
 MAIN, TWIN = "", "twin/"
 LANES = (MAIN, TWIN, "lane3/")

@@ -24,7 +24,7 @@ using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct",
-                                 "eba",      "popc",     "wave",       "tdpn"};
+                                 "eba",      "popc",     "wave",       "tdpn", "sfa"};
 
 class Commands : public test::Program {
  protected:
@@ -362,6 +362,44 @@ TEST_F(Commands, AnalyzeNamesTheUnitOfEveryNumberThatHasOne) {
     }
     EXPECT_TRUE(at->is_number() || at->is_array()) << key;
   }
+}
+
+TEST_F(Commands, AnalyzeOfARangeOfHandsSaysWhatIsKnownOfEveryLaw) {
+  const json told = parsed({"analyze", "--grip", "300", "3000", "--json"});
+  const std::string text = done({"analyze", "--grip", "300", "3000", "--all"});
+  EXPECT_EQ(told["grip"]["from"], 300);
+  EXPECT_EQ(told["grip"]["to"], 3000);
+  for (const char* law : kLaws) {
+    const json& of = told["grip"][law];
+    for (const char* which : {"stable", "passive"}) {
+      EXPECT_THAT(of[which]["by"].get<std::string>(), Not(IsEmpty())) << law;
+      EXPECT_EQ(of[which]["every_wall"].is_null() || of[which]["every_wall"] == true,
+                of[which]["wall"].is_null())
+          << law;
+    }
+    EXPECT_THAT(of["llewellyn_by"].get<std::string>(), Not(IsEmpty())) << law;
+    EXPECT_THAT(text, HasSubstr(std::string("stable walls, ") + law));
+    EXPECT_THAT(text, HasSubstr(std::string("passive walls, ") + law));
+  }
+  EXPECT_TRUE(told["grip"]["popc"]["llewellyn"].is_null());
+  EXPECT_LT(told["grip"]["direct"]["llewellyn"]["least"].get<double>(), -0.99);
+  EXPECT_EQ(told["grip"]["colgate_schenkel"]["wall"], told["tip"]["every_hand"]);
+  EXPECT_EQ(told["units"]["grip.LAW.stable.wall"], "N/m");
+  EXPECT_THAT(text, ContainsRegex("Colgate and Schenkel +[0-9]+ N/m"));
+  EXPECT_THAT(text, ContainsRegex("Abbott and Okamura +[0-9]+ N/m"));
+  EXPECT_THAT(text, HasSubstr("Llewellyn's criterion"));
+  EXPECT_THAT(done({"analyze"}), Not(HasSubstr("Llewellyn")));
+  EXPECT_FALSE(parsed({"analyze", "--json"}).contains("grip"));
+  const std::string late = done({"analyze", "--grip", "300", "3000", "--set", "device.delay=2"});
+  EXPECT_THAT(late, ContainsRegex("Abbott and Okamura +not known"));
+}
+
+TEST_F(Commands, AnalyzeRefusesARangeThatIsNone) {
+  for (const auto& [from, to] : {std::pair("300", "100"), {"0", "100"}, {"-1", "5"}}) {
+    EXPECT_NE(run({"analyze", "--grip", from, to}).status, 0) << from << " " << to;
+  }
+  EXPECT_NE(run({"analyze", "--grip", "300"}).status, 0);
+  EXPECT_NE(run({"analyze", "--grip", "300", "400", "--mass", "1"}).status, 0);
 }
 
 TEST_F(Commands, AnalyzeKnowsWhatIsNotPassiveAndWhatIsNotKnown) {

@@ -81,7 +81,7 @@ TEST_F(Usage, OfParametersNamesDefaultsAndWhatIsAllowed) {
   const std::string help = done({"analyze", "--help"});
   EXPECT_TRUE(
       std::regex_search(help, std::regex("coupling\\.kind +default \\S+ +standard, proposed, "
-                                         "predictive, tank, direct, eba, popc, wave, tdpn")));
+                                         "predictive, tank, direct, eba, popc, wave, tdpn, sfa")));
   EXPECT_TRUE(
       std::regex_search(help, std::regex("observer\\.anti_windup +default true +true, false")));
   EXPECT_TRUE(
@@ -159,7 +159,7 @@ TEST_F(Usage, IsCompletedWordByWord) {
   EXPECT_THAT(offered(complete({"run", "--"})), Contains("--record"));
   EXPECT_THAT(offered(complete({"analyze", "--"})), Not(Contains("--record")));
   const std::vector<std::string> laws{"standard", "proposed", "predictive", "tank", "direct",
-                                      "eba",      "popc",     "wave",       "tdpn"};
+                                      "eba",      "popc",     "wave",       "tdpn", "sfa"};
   EXPECT_EQ(offered(complete({"run", "--coupling", ""})), laws);
   EXPECT_EQ(offered(complete({"run", "--coupling="})), laws);
   EXPECT_EQ(complete({"run", "--scene", ""}), "\tfiles .toml\n");

@@ -59,9 +59,9 @@ RunPlan alone(const RunPlan& plan) {
 }
 
 TEST(Twin, HasTheCouplingsSettingsOfItsOwnAndNoOthers) {
-  constexpr std::array<std::string_view, 10> kOwn{"coupling.", "observer.", "predictor.", "ledger.",
+  constexpr std::array<std::string_view, 11> kOwn{"coupling.", "observer.", "predictor.", "ledger.",
                                                   "tank.",     "model.",    "eba.",       "popc.",
-                                                  "wave.",     "tdpn."};
+                                                  "wave.",     "tdpn.",     "sfa."};
   std::array<Parameters, 2> lanes;
   auto& [first, twin] = lanes;
   for (const ParameterInfo& info : parameter_table()) {

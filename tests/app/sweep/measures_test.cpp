@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "app/run/analysis.h"
@@ -71,10 +72,10 @@ TEST_F(Measures, OfAWallAreNoneWhereThereIsNoneOrMoreThanOne) {
   read(R"(scene = "free.toml"
 hand = "free.csv"
 seconds = 0.1
-measure = ["wall", "wall_felt", "wall_rattle"]
+measure = ["wall", "wall_felt", "wall_rattle", "rate_hardness", "ripple"]
 axis = [{ key = "coupling.eta", values = [1] }]
 )");
-  for (const char* name : {"wall", "wall_felt", "wall_rattle"}) {
+  for (const char* name : {"wall", "wall_felt", "wall_rattle", "rate_hardness", "ripple"}) {
     EXPECT_TRUE(std::isnan(measured(0, name))) << name;
   }
 }
@@ -160,6 +161,86 @@ TEST_F(Measures, ChatterIsTheFastPartOfTheTipsSpeed) {
     const double expected = r * A * w / std::sqrt(2) * std::sin(w * T / 2) / (w * T / 2);
     EXPECT_NEAR(meter.chatter(), f > 20 ? expected : 0, 0.01 * expected) << f;
   }
+}
+
+// A tip that goes straight into a wall, and motors that push along its normal as `force` says [N].
+// Depth and time are those of the row.
+struct Pushed {
+  double rate_hardness, ripple;
+};
+Pushed pushed_into_a_wall(double T, double speed, double seconds,
+                          const std::function<double(double depth, double t)>& force) {
+  const ArmDescription omni = test::omni();
+  const RowLayout layout(omni.dof());
+  const Arm<kAnyDof> arm(omni);
+  Eigen::VectorXd x = rest_pose(omni);
+  const Vec3 start = arm.tip_at(x), out = Vec3(1, 2, -1).normalized();
+  constexpr double kAway = 0.0031;  // [m]
+  const Object wall{"", pose_at(start - kAway * out), Plane{out}, {500}};
+  const auto rows = static_cast<std::uint64_t>(std::llround(seconds / T));
+  HardnessMeter meter(omni, wall, T, rows / 2);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+  for (std::uint64_t k = 0; k < rows; ++k) {
+    const double t = static_cast<double>(k) * T, way = std::min(speed * t, kAway + 0.004);
+    x = rest_at(omni, start - way * out).x1;
+    const Eigen::VectorXd tau =
+        arm_at(omni, x).J.transpose() * (force(way - kAway, t) * out + Vec3(2, -1, 0) * 0.3);
+    std::ranges::copy(x, layout.in(std::span(row), Column::device_position).begin());
+    std::ranges::copy(tau, layout.in(std::span(row), Column::motor_torque).begin());
+    meter.add(layout, row);
+  }
+  return {meter.rate_hardness(), meter.ripple()};
+}
+
+// A spring K is K; behind a lag of t_l only 1 - t_l/W of it, W the initial time; a damper b gives
+// at once what counts as b/W.
+TEST(Hardness, IsTheRateOfTheForceOverTheSpeed) {
+  for (const double T : {0.001, 0.0005}) {
+    for (const double speed : {0.05, 0.2}) {
+      const auto measured = [&](const std::function<double(double, double)>& force) {
+        return pushed_into_a_wall(T, speed, 0.4, force).rate_hardness;
+      };
+      EXPECT_NEAR(measured([](double d, double) { return 700 * std::max(0.0, d); }), 700, 1);
+      const double lag = 0.002, W = HardnessMeter::kInitial;
+      // The first row at or after W is up to a tick later.
+      EXPECT_NEAR(measured([&](double d, double) { return 700 * std::max(0.0, d - lag * speed); }),
+                  700 * (1 - lag / W), 700 * T / W * lag / W + 1);
+      EXPECT_NEAR(measured([&](double d, double) { return d > 0 ? 3 * speed : 0; }), 3 / W,
+                  3 / W * T / W + 1);
+      EXPECT_NEAR(measured([](double d, double) { return 1.5 + 700 * std::max(0.0, d); }), 700, 1)
+          << "what motors gave before does not count";
+    }
+  }
+}
+
+TEST(Hardness, IsNoneWithoutAFirstContact) {
+  EXPECT_TRUE(std::isnan(
+      pushed_into_a_wall(0.001, 0.001, 0.4, [](double, double) { return 1; }).rate_hardness));
+}
+
+// A sine of amplitude A has an rms of A/sqrt 2, whatever force it is about.
+TEST(Ripple, IsTheRmsOfTheForceAboutItsMean) {
+  for (const double mean : {0.0, 3.0}) {
+    const Pushed found = pushed_into_a_wall(0.001, 0.1, 0.8, [&](double, double t) {
+      return mean + (t > 0.35 ? 0.2 * std::sin(2 * std::numbers::pi * 50 * t) : 5);
+    });
+    EXPECT_NEAR(found.ripple, 0.2 / std::sqrt(2), 1e-3);
+  }
+}
+
+// A wall on the device itself: K less what a light tip is slowed within the initial time; the
+// spring of the standard law in a row with it is softer, and eba shows no more than it can pay.
+TEST_F(Measures, HardnessOfLawsThatRenderTheSameWall) {
+  read(R"(hand = { tap = 1 }
+seconds = 2
+measure = ["rate_hardness", "ripple"]
+axis = [{ key = "coupling.kind", values = ["direct", "standard", "eba"] },
+        { key = "scene.stiffness", values = [400, 3000] }]
+)");
+  EXPECT_NEAR(measured(0, "rate_hardness"), 400, 0.2 * 400);
+  EXPECT_GT(measured(0, "rate_hardness"), 1.5 * measured(2, "rate_hardness"));
+  EXPECT_LT(measured(5, "rate_hardness"), 700) << "2 b_d/T at the tip is 500 N/m";
+  EXPECT_LT(measured(0, "ripple"), 0.01);
 }
 
 TEST_F(Measures, OfALoopThatDivergedSayWhen) {

@@ -250,7 +250,7 @@ TEST_P(CouplingOfJoints, StandardIsSpringAndDamperAlone) {
 
 TEST(Laws, AreKnownByTheirKeysAndTakenByTurns) {
   EXPECT_THAT(kLawKeys, testing::ElementsAre("standard", "proposed", "predictive", "tank", "direct",
-                                             "eba", "popc", "wave", "tdpn"));
+                                             "eba", "popc", "wave", "tdpn", "sfa"));
   CouplingKind kind = CouplingKind::standard;
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     EXPECT_STREQ(info(kind).key, kLawKeys[i]);

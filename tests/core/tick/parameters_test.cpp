@@ -85,7 +85,10 @@ TEST(Parameters, HaveEveryKeyOfTheContractOnce) {
                                        "wave.b",
                                        "wave.matched",
                                        "tdpn.damping",
-                                       "tdpn.drift"};
+                                       "tdpn.drift",
+                                       "sfa.soft",
+                                       "sfa.step",
+                                       "sfa.extended"};
   std::set<std::string> found;
   for (const ParameterInfo& info : parameter_table()) {
     EXPECT_TRUE(found.insert(info.key).second) << info.key;

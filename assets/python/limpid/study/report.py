@@ -20,7 +20,7 @@ LEFT, RIGHT, TOP, BOTTOM = 64, 16, 34, 48  # its margins [px]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 # Of each law as the program has it (app/style/law_colours.h).
 LAW_COLOURS = {"standard": "#6B7280", "proposed": "#6A3D9A", "predictive": "#6B9100", "tank": "#7A2E0E",
-               **dict.fromkeys(("direct", "eba", "popc", "wave", "tdpn"), "#274060")}  # fmt: skip
+               **dict.fromkeys(("direct", "eba", "popc", "wave", "tdpn", "sfa"), "#274060")}  # fmt: skip
 
 
 def colours_of(names: Iterable[str]) -> List[str]:

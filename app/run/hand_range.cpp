@@ -1,0 +1,187 @@
+#include "app/run/hand_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/run/sampled_wall.h"
+#include "core/math/elementary.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kEvery = std::numeric_limits<double>::infinity();
+
+// Hands of a range, evenly in the logarithm, with both ends.
+std::vector<double> hands_of(const HandRange& range) {
+  constexpr int kHands = 16;
+  std::vector<double> hands;
+  const double low = std::max(range.from, 1.0), high = std::max(range.to, 1.0);
+  for (int i = 1; i < kHands; ++i) {
+    hands.push_back(low * power(high / low, static_cast<double>(i) / kHands));
+  }
+  hands.insert(hands.begin(), range.from);
+  hands.push_back(range.to);
+  return hands;
+}
+
+// Whole ticks that are at least as late as `delay` [s].
+int ticks_of(double delay, double T) { return static_cast<int>(std::ceil(delay / T - 1e-6)); }
+
+class JudgedLaws {
+ public:
+  JudgedLaws(const ArmDescription& arm, const Parameters& p, const Analysis& a,
+             const TipLimits& tip, const HandRange& range)
+      : arm_(arm), p_(p), a_(a), tip_(tip), hands_(hands_of(range)) {}
+
+  LawInHands judge(CouplingKind kind, const InHands& all) const {
+    Parameters p = p_;
+    p.kind = kind;
+    LawInHands law;
+    law.in_any_hand = kind == CouplingKind::direct ? on_device(all) : passive_walls(p);
+    const bool every = law.in_any_hand.up_to == kEvery;
+    law.in_range = every ? SafeWalls{kEvery, std::nullopt, "as in every hand"} : in_range(kind);
+    law.two_port_why = unknown_two_port(kind);
+    if (law.two_port_why.empty()) criterion(kind, law);
+    return law;
+  }
+
+ private:
+  SafeWalls passive_walls(const Parameters& p) const {
+    const Passivity known = passivity(a_, p);
+    if (known.passive == false) return {0, std::nullopt, known.by};
+    if (!known.passive) return {std::nullopt, std::nullopt, known.by};
+    // The conditions of (25) are about free motion and the spring.
+    if (info(p.kind).promise == Promise::eta_min) {
+      return {std::nullopt, std::nullopt,
+              "free motion is; a contact's force is fed forward late, and no bound is known of it"};
+    }
+    return {kEvery, std::nullopt, known.by};
+  }
+  SafeWalls on_device(const InHands& all) const {
+    const double stepped = all.stepped.wall.value_or(kEvery), sampled = *all.sampled.wall;
+    return {std::min(sampled, stepped), std::nullopt,
+            (stepped < sampled ? all.stepped : all.sampled).name};
+  }
+  // The hand of the range in which the softest wall is unstable.
+  SafeWalls in_range(CouplingKind kind) const {
+    const double T = p_.tick, lever2 = tip_.tip.lever2;
+    const SpringDamper gains{p_.k_vc / lever2, p_.b_vc / lever2, p_.b_v / lever2};
+    switch (kind) {
+      case CouplingKind::direct: break;
+      case CouplingKind::standard:
+        if (!p_.linked()) break;
+        return {std::nullopt, std::nullopt, "it is not reckoned through a link"};
+      case CouplingKind::proposed:
+        return {std::nullopt, std::nullopt, "walls are not reckoned; see the least stable eta"};
+      default: return {std::nullopt, std::nullopt, "it is not linear, and no bound is known"};
+    }
+    SafeWalls found{kEvery, std::nullopt,
+                    "the sampled loop of tip, hand and wall, with exact encoders"};
+    for (const double hand : hands_) {
+      const HeldTip held{tip_.tip.mass + p_.hand_mass_at_tip, tip_.tip.damping + p_.hand_damping,
+                         hand, T, ticks_of(tip_.delay, T)};
+      const double wall = stable_up_to([&](double K) {
+        return kind == CouplingKind::direct
+                   ? growth_on_device(held, K)
+                   : growth_behind_spring(held, gains, p_.inertia_ratio * tip_.tip.mass, K);
+      });
+      if (wall < *found.up_to) {
+        found.up_to = wall;
+        found.hand = hand;
+      }
+    }
+    return found;
+  }
+  std::string unknown_two_port(CouplingKind kind) const {
+    switch (kind) {
+      case CouplingKind::direct: return {};
+      case CouplingKind::standard:
+        if (p_.link_jitter > 0 || p_.link_loss > 0) {
+          return "not known: the criterion asks for a link whose delay does not change";
+        }
+        return {};
+      case CouplingKind::proposed:
+        return "not known: forces are fed forward; (25) is the condition on them";
+      case CouplingKind::tank:
+        return "not known: tanks cut what the spring gives, so that it is not linear";
+      default: return "not known: the law is not linear";
+    }
+  }
+  void criterion(CouplingKind kind, LawInHands& law) const {
+    const Eigen::VectorXd b_d = device_damping(arm_, p_);
+    const SampledJoint joint{b_d.minCoeff(), p_.tick, ticks_of(tip_.delay, p_.tick), p_.link_delay};
+    law.two_port = llewellyn(
+        [&](double f) {
+          return kind == CouplingKind::direct ? device_two_port(joint, f)
+                                              : spring_two_port(p_, joint, f);
+        },
+        p_.tick);
+    law.two_port_why = !law.two_port->fails_from
+                           ? "every passive hand is stable on every passive contact"
+                       : kind == CouplingKind::direct
+                           ? "without a spring between, some wall is unstable in some hand"
+                           : "some contact is unstable in some hand";
+  }
+
+  const ArmDescription& arm_;
+  const Parameters& p_;
+  const Analysis& a_;
+  const TipLimits& tip_;
+  std::vector<double> hands_;
+};
+
+NamedBound colgate_schenkel(const TipLimits& tip) {
+  return {"Colgate and Schenkel", "Colgate and Schenkel 1997, J. Robotic Systems 14, 37",
+          "K <= b_d/(T/2 + delay), b_d of the arm at the tip", tip.every_hand};
+}
+
+NamedBound abbott_okamura(const ArmDescription& arm, const ArmAt& at, const Parameters& p,
+                          const TipLimits& tip) {
+  NamedBound bound{"Abbott and Okamura", "Abbott and Okamura 2005, IEEE Trans. Robotics 21, 952",
+                   "K <= min(2 b_d/T, 2 f_c/q), f_c the friction and q the encoders' step at the "
+                   "tip",
+                   std::nullopt};
+  if (tip.delay > 0) {
+    bound.rule += "; it is known without a delay only";
+    return bound;
+  }
+  const double friction = (1 - p.friction_share) * friction_at_tip(at.J, device_friction(arm, p));
+  const double q = p.encoder_step * std::sqrt(tip.tip.lever2);
+  bound.wall = std::min(2 * tip.tip.damping / p.tick, q > 0 ? 2 * friction / q : kEvery);
+  return bound;
+}
+
+// The largest of the smallest stable eta in hands of the range.
+double eta_min_in(const ArmDescription& arm, const Eigen::VectorXd& x, Parameters p,
+                  const HandRange& range) {
+  double most = 0;
+  for (const double hand : hands_of(range)) {
+    p.hand_stiffness = hand;
+    most = std::max(most, analyze(arm, x, p, std::nullopt).eta_min_compliant);
+  }
+  return most;
+}
+
+}  // namespace
+
+InHands in_hands(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
+                 const Analysis& a, const TipLimits& tip, const HandRange& range) {
+  InHands all{range,
+              p.hand_damping,
+              p.hand_mass_at_tip,
+              colgate_schenkel(tip),
+              abbott_okamura(arm, arm_at(arm, x), p, tip),
+              eta_min_in(arm, x, p, range),
+              a.eta_min,
+              {}};
+  const JudgedLaws laws(arm, p, a, tip, range);
+  for (std::size_t i = 0; i < kLaws; ++i) {
+    all.laws[i] = laws.judge(static_cast<CouplingKind>(i), all);
+  }
+  return all;
+}
+
+}  // namespace limpid

@@ -1,0 +1,68 @@
+// Successive force augmentation on the device itself, after Singh, Janetzko, Jafari, Weber, Lee and
+// Ryu (2020, T-IE 67, 809). The rule of the increment is rebuilt here: the paper's own is not
+// known.
+//
+// Walls begin soft, and a force o is added until they push as they should. With tau_e the walls'
+// torque, f its size, U what the walls store, B the device's damping b_d, and
+//     kappa = min(1, rho 2 U/((T/2 + delay) tau_e.B^-1 tau_e)),
+// so that kappa K of a wall K at the tip is at most rho b_n/(T/2 + delay), b_n the damping there:
+//     tau1 = (kappa f + o) tau_e/f,   o = max(0, o + sigma kappa (f* - (kappa f* + o))),
+// where pressing turns into letting go (f* the largest f), and each 20 ticks at rest (f* = f). At
+// rest in a grip k_h each update leaves 1 - sigma K_r (K + k_h)/(K (K_r + k_h)) of what is missing,
+// K_r = kappa K. Once the wall is left o is 0. The increments give energy: nothing is promised.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/base/field.h"
+#include "core/coupling/law_info.h"
+
+namespace limpid {
+
+struct SfaLaw {
+  static constexpr std::array kSliders{"sfa.soft", "sfa.step"};
+  static constexpr LawInfo kInfo{
+      .key = "sfa",
+      .label = "Augmentation",
+      .meaning =
+          "soft walls on the device itself, whose force grows in the hand until it is right "
+          "(successive force augmentation, Singh and others 2020).",
+      .verdict = "Grows stiff in the hand; gives energy for it.",
+      .promise = Promise::none,
+      .on_device = true,
+      .for_comparison = true,
+      .through_link = "the law renders walls on the device itself, and knows no link",
+      .torque_share = "Share of the walls' torque that the law has built up.",
+      .sliders = kSliders,
+  };
+
+  struct Settings {
+    double sfa_soft = 0.5;     // rho
+    double sfa_step = 0.5;     // sigma
+    bool sfa_extended = true;  // the walls as they are, until pressing first turns
+
+    template <class P>
+    static constexpr std::array<Field<P>, 3> settings() {
+      return {
+          {{"sfa.soft", "softness rho", "Stiffness to begin with", &P::sfa_soft, "-", 0.05, 1, 0.05,
+            1, false, true,
+            "Augmentation: stiffness to begin with, as a part of b_d/(T/2 + delay), up to which "
+            "every hand is stable."},
+           {"sfa.step", "step sigma", "Part added at a time", &P::sfa_step, "-", 0.01, 1, 0.01, 1,
+            false, true,
+            "Augmentation: part of what is missing that one increment makes up for, before the "
+            "hand yields."},
+           {"sfa.extended", "extended", "Begin with the whole wall", &P::sfa_extended, "-", 0, 1, 0,
+            1, false, true,
+            "Augmentation: a wall pushes in full until the hand first turns back or rests. Off: "
+            "it is soft from the start."}}};
+    }
+  };
+
+  // Makes the law.
+  template <int N>
+  static std::unique_ptr<Law<N>> make();
+};
+
+}  // namespace limpid
