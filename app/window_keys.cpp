@@ -1,5 +1,6 @@
 #include "app/window_keys.h"
 
+#include "app/desktop/shell/command_keys.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/key_labels.h"
 

@@ -39,6 +39,7 @@ void draw_track(const ImRect& track, const FieldInfo& info, double value, double
   };
   list.AddRectFilled({track.Min.x, middle - r}, {track.Max.x, middle + r},
                      colour(hovered ? p.frame_active : p.frame_hovered), r);
+  ImGui::RenderFrameBorder({track.Min.x, middle - r}, {track.Max.x, middle + r}, r);
   if (!std::isnan(usual)) {
     const float x = std::round(x_of(usual));
     list.AddRectFilled({x - 0.75f * scale, middle - 6 * scale},
@@ -174,6 +175,11 @@ void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered)
   const Rgb rgb = chosen ? p.panel : hovered ? p.text : p.muted;
   list.PushClipRect(box.Min, box.Max, true);
   list.AddText(at, colour(rgb), text);
+  // A theme with borders shows by more than a colour what is chosen.
+  const float line = 1.5f * current_scale() * ImGui::GetStyle().FrameBorderSize;
+  if (chosen) {
+    list.AddRectFilled({at.x, at.y + size.y - line}, {at.x + size.x, at.y + size.y}, colour(rgb));
+  }
   list.PopClipRect();
 }
 
@@ -186,6 +192,7 @@ bool choices(const FieldInfo& info, double& place) {
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
                                             colour(current_palette().frame),
                                             ImGui::GetStyle().FrameRounding);
+  ImGui::RenderFrameBorder(at, {at.x + size.x, at.y + size.y}, ImGui::GetStyle().FrameRounding);
   bool changed = false;
   for (int i = 0; i < count; ++i) {
     const char* word = info.words[static_cast<std::size_t>(i)];
@@ -198,6 +205,7 @@ bool choices(const FieldInfo& info, double& place) {
     }
     const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
     draw_choice(box, word, place == i, ImGui::IsItemHovered());
+    ImGui::RenderNavHighlight(box, ImGui::GetItemID());
   }
   return changed;
 }
@@ -257,7 +265,9 @@ bool number_slider(const FieldInfo& info, double& value, double usual, bool brok
 
   const bool hovered = ImGui::IsItemHovered();
   const ImGuiIO& io = ImGui::GetIO();
-  const bool type = hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]);
+  const bool by_keys = ImGui::GetCurrentContext()->NavActivateId == id;
+  const bool type =
+      by_keys || (hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]));
   const float r = 6 * scale;
   const ImRect track({box.Min.x + r, box.Min.y + text + 2 * scale}, {box.Max.x - r, box.Max.y});
   bool changed = false;
@@ -283,6 +293,7 @@ bool number_slider(const FieldInfo& info, double& value, double usual, bool brok
   draw_caption(box, info, value, broken);
   draw_track(track, info, value, usual, broken, over, from_track);
   if (broken) draw_broken_frame(box.Min, box.Max);
+  ImGui::RenderNavHighlight(box, id);
   return changed;
 }
 

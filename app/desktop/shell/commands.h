@@ -6,10 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include "app/desktop/shell/focus.h"
-#include "app/desktop/shell/input.h"
 
 namespace limpid {
 
@@ -21,6 +17,7 @@ enum class Reach : std::uint8_t {
   playback,      // while a recording is shown
   selection,     // while an object of the scene is selected
   transform,     // while the selected object follows the mouse
+  panel,         // as view, and while keys lead through a panel
   question,      // in the question about unsaved changes
   all_but_text,  // always, with any modifiers, but not while the user types
   all,           // always, with any modifiers
@@ -63,22 +60,5 @@ std::string why_not(const Command& command, const Desktop& desktop, Asker who = 
 std::string run_command(std::string_view id, Desktop& desktop, Asker who = Asker::person);
 // Runs a command for the person at the window: a notice says why not.
 void run_or_say(std::string_view id, Desktop& desktop);
-
-// Returns the command of a key for its owner; null: none. `repeated` presses count only for
-// commands that repeat.
-const Command* command_of(KeyOwner owner, const KeyPress& press);
-// Runs the commands of the keys pressed in this frame.
-void handle_keys(std::span<const KeyPress> pressed, Desktop& desktop);
-
-// Returns "Ctrl+Shift+S", the command's first key, with this keyboard's labels; empty without a
-// key.
-std::string key_text(const Command& command, const KeyLabels& labels);
-
-// Line of the help on keys and mouse; shortcuts() returns them group after group.
-struct Shortcut {
-  std::string_view group;
-  std::string keys, what;
-};
-std::vector<Shortcut> shortcuts(const KeyLabels& labels);
 
 }  // namespace limpid

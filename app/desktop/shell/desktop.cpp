@@ -338,6 +338,7 @@ Focus Desktop::focus() const {
           .dialog = dialog.name(),
           .asked = question.number(),
           .modal = dialog.modal(),
+          .panel = led_panel != LedPanel::none,
           .playback = playback.on(),
           .selection = document.editor().selected().has_value(),
           .transform = transform.follows()};
@@ -394,6 +395,8 @@ bool Desktop::close_one() {
     ImGui::ClosePopupToLevel(level, true);
   } else if (now.question) {
     document.stay();
+  } else if (owner_of(now) == KeyOwner::panel) {
+    led_panel = LedPanel::none;
   } else if (owner_of(now) == KeyOwner::transform) {
     transform.give_up(document);
   } else if (playback.loading_part() > 0 && playback.loading()) {
@@ -436,6 +439,11 @@ std::vector<Banner> Desktop::banners() const {
     all.push_back({.id = "banner of the experiments",
                    .text = "Experiments go on: " + experiments_under_way + ".",
                    .buttons = {{"Show (F5)", "experiments.show"}}});
+  }
+  if (sweep.runner().busy()) {
+    all.push_back({.id = "banner of the sweep's work",
+                   .text = "The sweep goes on: " + sweep.runner().under_way() + ".",
+                   .buttons = {{"Show (F6)", "sweep.show"}}});
   }
   if (kept.any()) {
     all.push_back({.id = "banner of what was kept",

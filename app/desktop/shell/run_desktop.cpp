@@ -13,6 +13,7 @@
 #include "app/desktop/base/kept_settings.h"
 #include "app/desktop/device/pads.h"
 #include "app/desktop/scene/unsaved.h"
+#include "app/desktop/shell/command_keys.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/frame.h"
 #include "app/desktop/shell/state.h"
@@ -113,6 +114,7 @@ Window::Options Application::prepare_window() {
   return {.width = settings.width,
           .height = settings.height,
           .ui_scale = options_.ui_scale > 0 ? options_.ui_scale : settings.ui_scale,
+          .text_size = settings.text_size,
           .theme = settings.theme};
 }
 
@@ -200,6 +202,7 @@ void Application::turn() {
   bool asked_for = false;
   guard(notices, [&] { asked_for = remote_ && remote_->turn(); });
   bool drawing = window_.due() || asked_for;
+  window_.set_look(desktop_.settings.theme, desktop_.settings.text_size);
   if (drawing) {
     window_.begin_frame(desktop_.focus());
     desktop_.document.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
@@ -249,8 +252,7 @@ void Application::say_what_was_saved() {
   if (remote_) remote_->saved(window_.saved());
   for (const SavedPicture& picture : window_.saved()) {
     if (picture.error.empty()) {
-      desktop_.notices.say("Saved " + picture.file.string());
-      desktop_.exporter.wrote(picture.file);
+      desktop_.exporter.wrote(picture.file);  // a banner says so
     } else {
       desktop_.notices.say(
           picture.error + ". See to it that the folder is there and can be written to.", true);

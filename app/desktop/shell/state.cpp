@@ -84,6 +84,13 @@ json state_of(const SweepController& controller) {
   return state;
 }
 
+// Returns the state of the work on a sweep; null without any.
+json sweeping(const SweepRunner& runner) {
+  if (!runner.busy()) return nullptr;
+  return {
+      {"folder", runner.folder().string()}, {"done", runner.done()}, {"points", runner.points()}};
+}
+
 json place(const ImVec2& at) { return {at.x, at.y}; }
 
 // Returns the places of what may be clicked, by windows of ImGui and labels [px].
@@ -234,6 +241,8 @@ json settings_of(Desktop& d) {
           {"hand_settings", {{"stiffness", p.hand_stiffness}, {"damping", p.hand_damping}}},
           {"edited", {{"kind", name(edited.kind)}, {"eta", edited.eta}}},
           {"overlaid", settings.overlaid},
+          {"theme", static_cast<int>(settings.theme)},
+          {"text_size", settings.text_size},
           {"your_turn", settings.your_turn},
           {"tried", settings.tried}};
 }
@@ -256,6 +265,7 @@ json busy_with(Desktop& d) {
           {"dialog", focus.question ? "question" : focus.dialog},
           {"typing", focus.text},
           {"popup", focus.popup},
+          {"panel", static_cast<int>(d.led_panel)},
           {"notices", notices},
           {"told", told(d)},
           {"filming", d.playback.video().busy()},
@@ -272,6 +282,7 @@ json parts_of(Desktop& d) {
           {"notes", notes_of(stage)},
           {"shown", {stage.group.start(), stage.group.stop()}},
           {"sweep", state_of(d.sweep)},
+          {"sweeping", sweeping(d.sweep.runner())},
           {"identify", state_of(d.identify, d.live.loop().device_plugged())},
           {"device_panel", state_of(d.devices)},
           {"banners", banners_of(d)},

@@ -304,30 +304,32 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   hinted_.reset();
   const auto lines = hints(task_done_ ? std::string() : task_, scene.pad, settings);
   if (lines.empty()) return;
-  float size = face->FontSize * 1.15f, widest = 0;
-  for (const std::string& line : lines) {  // as large as the widest line allows
-    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line.c_str()).x;
-    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
-  }
+  const float size = face->FontSize * 1.15f, wrap = rect.width() - 3 * face->FontSize;
+  const auto extent_of = [&](const std::string& line) {
+    return face->CalcTextSizeA(size, 1e9f, wrap, line.c_str());
+  };
+  float widest = 0, high = 0;
   for (const std::string& line : lines) {
-    widest = std::max(widest, face->CalcTextSizeA(size, 1e9f, 0, line.c_str()).x);
+    widest = std::max(widest, extent_of(line).x);
+    high += extent_of(line).y + 0.5f * size;
   }
-  const float high = 1.5f * size * static_cast<float>(lines.size());
   const float middle = (rect.min.x + rect.max.x) / 2;
   const auto at = [&](float top) {
     return ScreenRect{{middle - widest / 2 - 8, top}, {middle + widest / 2 + 8, top + high}};
   };
-  const std::array places{at(rect.max.y - 0.7f * size - high),
+  // The tab that folds the plots is at the foot.
+  const float foot = rect.max.y - 20 * current_scale() - high + 0.5f * size;
+  const std::array places{at(foot),
                           at(std::max(rect.min.y + scene.words, legend_box(rect).max.y) + size)};
   hinted_ = hint_place_.choose(places, around_);
   float line_y = hinted_->min.y;
   for (const std::string& line : lines) {
-    const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line.c_str());
+    const ImVec2 extent = extent_of(line);
     const ImVec2 place(middle - extent.x / 2, line_y);
     list.AddRectFilled({place.x - 8, place.y - 2}, {place.x + extent.x + 8, place.y + extent.y + 2},
                        colour(colours.backdrop, 0.72f), 4);
-    list.AddText(face, size, place, colour(colours.text), line.c_str());
-    line_y += 1.5f * size;
+    list.AddText(face, size, place, colour(colours.text), line.c_str(), nullptr, wrap);
+    line_y += extent.y + 0.5f * size;
   }
 }
 

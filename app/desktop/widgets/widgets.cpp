@@ -54,6 +54,7 @@ void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* hel
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(rect.min, rect.max, colour(over ? colours.frame_active : colours.frame, 0.8f),
                      3 * current_scale());
+  ImGui::RenderFrameBorder(rect.min, rect.max, 3 * current_scale());
   const float size = 0.6f * ImGui::GetFontSize();
   ImGui::RenderArrow(
       &list, {(rect.min.x + rect.max.x - size) / 2, (rect.min.y + rect.max.y - size) / 2},
@@ -63,7 +64,7 @@ void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* hel
   ImGui::PopStyleVar(3);
 }
 
-void begin_panel(const char* name, ScreenRect rect) {
+void begin_panel(const char* name, ScreenRect rect, bool led) {
   // The backdrop shows behind the panel's round corners.
   ImGui::GetBackgroundDrawList()->AddRectFilled(rect.min, rect.max,
                                                 colour(current_palette().backdrop));
@@ -72,7 +73,8 @@ void begin_panel(const char* name, ScreenRect rect) {
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs);
+                   ImGuiWindowFlags_NoSavedSettings | (led ? 0 : ImGuiWindowFlags_NoNavInputs));
+  if (led) lead_window_by_keys();
 }
 
 bool section(const char* name, bool open_at_first) {
@@ -101,10 +103,17 @@ void read_out(const char* label, const std::string& value, const std::string& br
   const bool on_label = ImGui::IsItemHovered();
   const ImVec2 label_from = ImGui::GetItemRectMin();
   const float width = ImGui::CalcTextSize(value.c_str()).x;
-  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width);
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
+  // A value without room beside its label stands below it.
+  if (end + ImGui::GetStyle().ItemSpacing.x + width <= right) {
+    ImGui::SameLine(right - width);
+  } else {
+    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right - width));
+  }
   ImGui::PushStyleColor(ImGuiCol_Text,
                         colour_vector(broken.empty() ? colours.text : colours.broken));
-  ImGui::TextUnformatted(value.c_str());
+  ImGui::TextWrapped("%s", value.c_str());
   ImGui::PopStyleColor();
   if (!on_label && !ImGui::IsItemHovered()) return;
   const char* text = broken.empty() ? help : broken.c_str();
@@ -113,6 +122,15 @@ void read_out(const char* label, const std::string& value, const std::string& br
   ImGui::TextUnformatted(text);
   end_tooltip();
 }
+
+void flow(float width) {
+  const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
+  if (end + ImGui::GetStyle().ItemSpacing.x + width < ImGui::GetWindowContentRegionMax().x) {
+    ImGui::SameLine();
+  }
+}
+
+void flow(const char* words) { flow(ImGui::CalcTextSize(words).x + 2 * ImGui::GetFontSize()); }
 
 void underline_button(Rgb rgb) {
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
@@ -166,6 +184,7 @@ void progress_bar(double part, float width, std::string text) {
   };
   side(at.x, edge, colours.accent, colours.panel);
   side(edge, to.x, colours.frame, colours.text);
+  ImGui::RenderFrameBorder(at, to, ImGui::GetStyle().FrameRounding);
   ImGui::Dummy(size);
 }
 

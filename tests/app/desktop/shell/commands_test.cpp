@@ -1,4 +1,5 @@
 // The table of commands by itself, and every key against the help's list.
+#include "app/desktop/shell/command_keys.h"
 #include "app/desktop/shell/commands.h"
 
 #include <GLFW/glfw3.h>
@@ -21,8 +22,8 @@ namespace {
 
 constexpr int kShift = GLFW_MOD_SHIFT, kControl = GLFW_MOD_CONTROL;
 constexpr KeyOwner kOwners[] = {KeyOwner::view,      KeyOwner::playback, KeyOwner::selection,
-                                KeyOwner::transform, KeyOwner::dialog,   KeyOwner::popup,
-                                KeyOwner::question,  KeyOwner::text};
+                                KeyOwner::transform, KeyOwner::dialog,   KeyOwner::panel,
+                                KeyOwner::popup,     KeyOwner::question, KeyOwner::text};
 
 struct Case {
   const char* help;  // keys as written in the list of shortcuts
@@ -95,6 +96,13 @@ const Case kCases[] = {
     {"F8", GLFW_KEY_F8, 0, "view.everything", "view.everything"},
     {"F7", GLFW_KEY_F7, 0, "device.identify", "device.identify"},
     {"F10", GLFW_KEY_F10, 0, "window.menu", "window.menu"},
+    {"Ctrl++", GLFW_KEY_EQUAL, kControl | kShift, "view.text.larger", "view.text.larger"},
+    {"Ctrl+=", GLFW_KEY_EQUAL, kControl, "view.text.larger", "view.text.larger"},
+    {"Ctrl+Keypad +", GLFW_KEY_KP_ADD, kControl, "view.text.larger", "view.text.larger"},
+    {"Ctrl+-", GLFW_KEY_MINUS, kControl, "view.text.smaller", "view.text.smaller"},
+    {"Ctrl+Keypad -", GLFW_KEY_KP_SUBTRACT, kControl, "view.text.smaller", "view.text.smaller"},
+    {"Ctrl+0", GLFW_KEY_0, kControl, "view.text.usual", "view.text.usual"},
+    {"Ctrl+Tab", GLFW_KEY_TAB, kControl, "window.panels", "window.panels"},
     {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
     {"F12", GLFW_KEY_F12, 0, "window.save_picture", "window.save_picture"},
     {"Ctrl+E", GLFW_KEY_E, kControl, "export.begin", "export.begin"},
@@ -210,6 +218,16 @@ TEST(Keys, NoneActsThroughATextFieldADialogOrAMenu) {
       for (int modifiers = 0; modifiers < 16; ++modifiers) {
         EXPECT_EQ(id_of(owner, key, modifiers, false), "") << key;
       }
+    }
+  }
+}
+
+TEST(Keys, OfAPanelGoOnToTheNextOneAndRunNothingElse) {
+  for (int key = GLFW_KEY_SPACE + 1; key <= GLFW_KEY_LAST; ++key) {
+    if (key == GLFW_KEY_ESCAPE) continue;
+    for (int modifiers = 0; modifiers < 16; ++modifiers) {
+      const bool on = key == GLFW_KEY_TAB && modifiers == kControl;
+      EXPECT_EQ(id_of(KeyOwner::panel, key, modifiers, false), on ? "window.panels" : "") << key;
     }
   }
 }
