@@ -32,7 +32,7 @@ struct SfaLaw {
       .promise = Promise::none,
       .on_device = true,
       .for_comparison = true,
-      .through_link = "the law renders walls on the device itself, and knows no link",
+      .through_link = "the law renders walls on the device itself and has no link",
       .torque_share = "Share of the walls' torque that the law has built up.",
       .sliders = kSliders,
   };
