@@ -104,6 +104,30 @@ for law in ("standard", "predictive", "proposed"):
 print("the same")
 """), "the same\n")
 
+    def test_python_says_the_programs_version(self) -> None:
+        said = self.python("import limpid; print(limpid.__version__)").strip()
+        whole = must(LIMPID, "--version").split()[1]
+        self.assertEqual(said, whole.split("+")[0])
+
+    def test_python_says_which_channel_and_setting_was_meant(self) -> None:
+        self.assertEqual(self.python("""
+import limpid
+loop = limpid.Loop(scene="table.toml")
+row = loop.step(loop.tip)
+def said(work):
+    try:
+        work()
+    except limpid.LimpidError as error:
+        return str(error)
+assert "did you mean device/position?" in said(lambda: row["device/positon"])
+assert "did you mean coupling.eta?" in said(lambda: loop.set({"coupling.etta": 1}))
+assert "is of the simulated hand" in said(lambda: limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", hand__stiffness=3))
+assert "joint 1 has 9" in said(lambda: limpid.DeviceLoop([9, 0.6, -1.1], arm="omni.urdf"))
+assert "effort 0" in said(lambda: limpid.Arm("a", [dict(name="j", effort=0, mass=1)]))
+assert max(abs(a - b) for a, b in zip(loop.proxy_tip, loop.tip)) < 1e-6
+print("said")
+"""), "said\n")
+
     def test_python_steps_a_loop_and_one_of_a_device(self) -> None:
         self.assertEqual(self.python("""
 import limpid
