@@ -311,8 +311,9 @@ std::string parameter_help() {
     const std::string value = parameter_text(Parameters{}, info);
     const char* open =
         std::string_view(info.key).starts_with("device.") ? "the arm's" : "automatic";
-    text += fmt::format("  {:<20} default {:<11} {}\n", info.key, value.empty() ? open : value,
-                        allowed_values(info));
+    const std::string begin =
+        fmt::format("  {:<20} default {:<11} ", info.key, value.empty() ? open : value);
+    text += begin + in_lines(allowed_values(info), begin.size(), kHelpWidth).substr(begin.size());
     text += in_lines(info.meaning, 6, kHelpWidth);
   }
   return text;

@@ -1,6 +1,8 @@
 #include "core/coupling/popc.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/coupling/device_port.h"
 #include "core/coupling/device_walls.h"
@@ -25,7 +27,9 @@ class Popc final : public Law<N> {
   }
   Vec<N> step(const LawSettings& p, const LawInput<N>& in, Proxy<N>& proxy) override {
     const HeldContacts<N> walls = walls_.step(in, proxy);
-    const double U = p.popc_reference ? walls.stored : 0;
+    const double part = borne(walls.torque, in.limit);
+    const Vec<N> held = part * walls.torque;
+    const double U = p.popc_reference ? part * (2 - part) * walls.stored : 0;
     const bool ended = port_.read(in);
     if (std::exchange(fresh_, false)) {
       W_ = U;  // what is stored at the start was not given, or the damper would act at once
@@ -37,13 +41,13 @@ class Popc final : public Law<N> {
     double S = W_ - U;
     if (!walls.torque.isZero(0)) {
       const Vec<N> moved = port_.moved();
-      for (int j = 0; j < p.delay; ++j) S += (walls.torque - port_.sent(j)).dot(moved);
+      for (int j = 0; j < p.delay; ++j) S += (held - port_.sent(j)).dot(moved);
       const double ahead = static_cast<double>(p.delay + 1);
       S -= ahead * ahead * walls.spring_work;
     }
     const auto brake = port_.brake(S, p.popc_damping, p.delay, in);
     braked_ = brake.part;
-    return walls.torque - brake.torque;
+    return held - brake.torque;
   }
   void applied(const Vec<N>& torque) override { port_.applied(torque); }
   LawReport report() const override {
@@ -51,6 +55,18 @@ class Popc final : public Law<N> {
   }
 
  private:
+  // Part of the walls' torque that the motors bear. All joints keep to it: clipped one by one they
+  // would turn the force, and a way around would give energy. The walls then store as a spring does
+  // that is cut off there. A joint without a motor does not count.
+  static double borne(const Vec<N>& torque, const Vec<N>& limit) {
+    double part = 1;
+    for (Eigen::Index i = 0; i < torque.size(); ++i) {
+      const double size = std::abs(torque[i]);
+      if (limit[i] > 0 && size > limit[i]) part = std::min(part, limit[i] / size);
+    }
+    return part;
+  }
+
   DeviceWalls<N> walls_;
   bool fresh_ = true;
   double W_ = 0;  // energy that came in [J]
