@@ -16,7 +16,7 @@ constexpr double kEvery = std::numeric_limits<double>::infinity();
 
 // Hands of a range, evenly in the logarithm, with both ends.
 std::vector<double> hands_of(const HandRange& range) {
-  constexpr int kHands = 16;
+  constexpr int kHands = 6;
   std::vector<double> hands;
   const double low = std::max(range.from, 1.0), high = std::max(range.to, 1.0);
   for (int i = 1; i < kHands; ++i) {
@@ -32,9 +32,9 @@ int ticks_of(double delay, double T) { return static_cast<int>(std::ceil(delay /
 
 class JudgedLaws {
  public:
-  JudgedLaws(const ArmDescription& arm, const Parameters& p, const Analysis& a,
+  JudgedLaws(const ArmDescription& arm, const ArmAt& at, const Parameters& p, const Analysis& a,
              const TipLimits& tip, const HandRange& range)
-      : arm_(arm), p_(p), a_(a), tip_(tip), hands_(hands_of(range)) {}
+      : arm_(arm), at_(at), p_(p), a_(a), tip_(tip), hands_(hands_of(range)) {}
 
   LawInHands judge(CouplingKind kind, const InHands& all) const {
     Parameters p = p_;
@@ -61,14 +61,15 @@ class JudgedLaws {
     return {kEvery, std::nullopt, known.by};
   }
   SafeWalls on_device(const InHands& all) const {
+    if (p_.encoder_step > 0 && !all.stepped.wall) {
+      return {std::nullopt, std::nullopt, "no bound is known of encoder steps with a delay"};
+    }
     const double stepped = all.stepped.wall.value_or(kEvery), sampled = *all.sampled.wall;
     return {std::min(sampled, stepped), std::nullopt,
             (stepped < sampled ? all.stepped : all.sampled).name};
   }
   // The hand of the range in which the softest wall is unstable.
   SafeWalls in_range(CouplingKind kind) const {
-    const double T = p_.tick, lever2 = tip_.tip.lever2;
-    const SpringDamper gains{p_.k_vc / lever2, p_.b_vc / lever2, p_.b_v / lever2};
     switch (kind) {
       case CouplingKind::direct: break;
       case CouplingKind::standard:
@@ -79,14 +80,18 @@ class JudgedLaws {
       default: return {std::nullopt, std::nullopt, "it is not linear, and no bound is known"};
     }
     SafeWalls found{kEvery, std::nullopt,
-                    "the sampled loop of tip, hand and wall, with exact encoders"};
+                    "the sampled loop of arm, hand and wall, with exact encoders"};
+    const Eigen::VectorXd b_d = device_damping(arm_, p_);
+    const Eigen::MatrixXd JJ = at_.J.transpose() * at_.J;
+    const Eigen::VectorXd lever = at_.J.transpose() * least_damped(at_.J, b_d);
+    const Eigen::MatrixXd across = lever * lever.transpose(), M2 = p_.inertia_ratio * at_.M;
     for (const double hand : hands_) {
-      const HeldTip held{tip_.tip.mass + p_.hand_mass_at_tip, tip_.tip.damping + p_.hand_damping,
-                         hand, T, ticks_of(tip_.delay, T)};
+      const HeldArm held{at_.M + p_.hand_mass_at_tip * JJ,
+                         Eigen::MatrixXd(b_d.asDiagonal()) + p_.hand_damping * JJ, hand * JJ,
+                         p_.tick, ticks_of(tip_.delay, p_.tick)};
       const double wall = stable_up_to([&](double K) {
-        return kind == CouplingKind::direct
-                   ? growth_on_device(held, K)
-                   : growth_behind_spring(held, gains, p_.inertia_ratio * tip_.tip.mass, K);
+        return kind == CouplingKind::direct ? growth_on_device(held, K * across)
+                                            : growth_behind_spring(held, p_, M2, K * across);
       });
       if (wall < *found.up_to) {
         found.up_to = wall;
@@ -127,6 +132,7 @@ class JudgedLaws {
   }
 
   const ArmDescription& arm_;
+  const ArmAt& at_;
   const Parameters& p_;
   const Analysis& a_;
   const TipLimits& tip_;
@@ -169,15 +175,16 @@ double eta_min_in(const ArmDescription& arm, const Eigen::VectorXd& x, Parameter
 
 InHands in_hands(const ArmDescription& arm, const Eigen::VectorXd& x, const Parameters& p,
                  const Analysis& a, const TipLimits& tip, const HandRange& range) {
+  const ArmAt at = arm_at(arm, x);
   InHands all{range,
               p.hand_damping,
               p.hand_mass_at_tip,
               colgate_schenkel(tip),
-              abbott_okamura(arm, arm_at(arm, x), p, tip),
+              abbott_okamura(arm, at, p, tip),
               eta_min_in(arm, x, p, range),
               a.eta_min,
               {}};
-  const JudgedLaws laws(arm, p, a, tip, range);
+  const JudgedLaws laws(arm, at, p, a, tip, range);
   for (std::size_t i = 0; i < kLaws; ++i) {
     all.laws[i] = laws.judge(static_cast<CouplingKind>(i), all);
   }

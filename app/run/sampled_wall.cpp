@@ -1,5 +1,6 @@
 #include "app/run/sampled_wall.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
@@ -11,41 +12,44 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Motion of a held tip over a tick in which a force is held: x and v after it from x, v and the
-// force, m v' = -k x - b v + force. By a Taylor series over a part of the tick that is doubled.
-MatrixXd motion_in_a_tick(const HeldTip& tip) {
-  MatrixXd A = MatrixXd::Zero(3, 3);
-  A(0, 1) = 1;
-  A.row(1) << -tip.stiffness / tip.mass, -tip.damping / tip.mass, 1 / tip.mass;
-  A *= tip.T;
+// Motion of a held arm over a tick in which a torque is held: x and v after it from x, v and the
+// torque, M v' = -K x - D v + torque. By a Taylor series over a part of the tick that is doubled.
+MatrixXd motion_in_a_tick(const HeldArm& arm) {
+  const Index n = arm.inertia.rows();
+  const MatrixXd mobility = arm.inertia.inverse();
+  MatrixXd A = MatrixXd::Zero(3 * n, 3 * n);
+  A.block(0, n, n, n).setIdentity();
+  A.block(n, 0, n, n) = -mobility * arm.stiffness;
+  A.block(n, n, n, n) = -mobility * arm.damping;
+  A.block(n, 2 * n, n, n) = mobility;
+  A *= arm.T;
   int doublings = 0;
   for (double size = A.cwiseAbs().rowwise().sum().maxCoeff(); size > 0.5; size /= 2) ++doublings;
   A /= std::ldexp(1, doublings);
-  MatrixXd step = MatrixXd::Identity(3, 3), term = step;
+  MatrixXd step = MatrixXd::Identity(3 * n, 3 * n), term = step;
   for (int k = 1; k < 16; ++k) {
     term = (term * A / k).eval();
     step += term;
   }
   for (int i = 0; i < doublings; ++i) step = (step * step).eval();
-  return step.topRows(2);
+  return step.topRows(2 * n);
 }
 
-// The device's part of a state after a tick: x and v, and the forces on their way, the next to act
-// last.
+// The device's part of a state: x, v, and the torques on their way, the next to act last.
 struct HeldDevice {
   MatrixXd motion;
-  Index delay;
+  Index n, delay;
 
-  explicit HeldDevice(const HeldTip& tip) : motion(motion_in_a_tick(tip)), delay(tip.delay) {}
-  Index size() const { return 2 + delay; }
-  VectorXd after(const VectorXd& state, double force) const {
-    VectorXd next(size());
-    const double acts = delay > 0 ? state[size() - 1] : force;
-    next.head<2>() = motion * Eigen::Vector3d(state[0], state[1], acts);
-    if (delay > 0) {
-      next[2] = force;
-      for (Index i = 3; i < size(); ++i) next[i] = state[i - 1];
-    }
+  explicit HeldDevice(const HeldArm& arm)
+      : motion(motion_in_a_tick(arm)), n(arm.inertia.rows()), delay(arm.delay) {}
+  Index size() const { return (2 + delay) * n; }
+  // State after a tick at whose reading `torque` is sent.
+  VectorXd after(const VectorXd& state, const VectorXd& torque) const {
+    VectorXd way(size() + n);
+    way << state.head(2 * n), torque, state.tail(delay * n);
+    VectorXd moved(3 * n), next(size());
+    moved << way.head(2 * n), way.tail(n);
+    next << motion * moved, way.segment(2 * n, delay * n);
     return next;
   }
 };
@@ -59,31 +63,35 @@ double growth(Index size, const std::function<VectorXd(const VectorXd&)>& after)
 
 }  // namespace
 
-double growth_on_device(const HeldTip& tip, double K) {
-  const HeldDevice device(tip);
-  return growth(device.size(), [&](const VectorXd& at) { return device.after(at, -K * at[0]); });
+double growth_on_device(const HeldArm& arm, const MatrixXd& wall) {
+  const HeldDevice device(arm);
+  return growth(device.size(),
+                [&](const VectorXd& at) { return device.after(at, -wall * at.head(device.n)); });
 }
 
 // State of the proxy: x2, v2, its mean velocity over the tick before, and the device's motion in
 // that tick.
-double growth_behind_spring(const HeldTip& tip, const SpringDamper& g, double M2, double K) {
-  const HeldDevice device(tip);
-  const Index n = device.size();
-  const double T = tip.T;
-  return growth(n + 4, [&](const VectorXd& at) {
-    const double x1 = at[0], x2 = at[n], v2 = at[n + 1], vbar2 = at[n + 2], v1 = at[n + 3] / T;
-    const double force = -g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2);
-    const double vbar = (2 / T * M2 * v2 + g.b_vc * v1 - g.k_vc * (x2 - x1) - K * x2) /
-                        (2 / T * M2 + g.b_v + g.b_vc + (g.k_vc + K) * T / 2);
-    VectorXd next(n + 4);
-    next.head(n) = device.after(at.head(n), force);
-    next.tail<4>() << x2 + T * vbar, 2 * vbar - v2, vbar, next[0] - x1;
+double growth_behind_spring(const HeldArm& arm, const SpringDamper& g, const MatrixXd& M2,
+                            const MatrixXd& wall) {
+  const HeldDevice device(arm);
+  const Index n = device.n, begin = device.size();
+  const double T = arm.T, dampers = g.b_v + g.b_vc + g.k_vc * T / 2;
+  const MatrixXd impedance = 2 / T * M2 + dampers * MatrixXd::Identity(n, n) + T / 2 * wall;
+  const MatrixXd answer = impedance.inverse();
+  return growth(begin + 4 * n, [&](const VectorXd& at) {
+    const VectorXd x1 = at.head(n), x2 = at.segment(begin, n), v2 = at.segment(begin + n, n),
+                   vbar2 = at.segment(begin + 2 * n, n), v1 = at.tail(n) / T;
+    const VectorXd torque = -g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2);
+    const VectorXd vbar = answer * (2 / T * M2 * v2 + g.b_vc * v1 - g.k_vc * (x2 - x1) - wall * x2);
+    const VectorXd moved = device.after(at.head(begin), torque);
+    VectorXd next(begin + 4 * n);
+    next << moved, x2 + T * vbar, 2 * vbar - v2, vbar, moved.head(n) - x1;
     return next;
   });
 }
 
 double stable_up_to(const std::function<double(double)>& growth) {
-  constexpr int kEach = 8;  // walls tried in a decade
+  constexpr int kEach = 4;  // walls tried in a decade
   const auto stable = [&](double K) { return growth(K) < kStillStable; };
   if (!stable(0)) return 0;
   double low = 0;
@@ -94,7 +102,7 @@ double stable_up_to(const std::function<double(double)>& growth) {
       low = high;
       continue;
     }
-    while (high - low > 1e-6 * high) {
+    while (high - low > 1e-5 * high) {
       const double middle = (low + high) / 2;
       (stable(middle) ? low : high) = middle;
     }

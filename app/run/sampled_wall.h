@@ -1,27 +1,30 @@
-// A wall before a tip along a line, as the loop samples it, in the hand: whether it is stable.
-// Encoders are exact, and motors meet no limit.
+// A wall before an arm's tip, as the loop samples it, in the hand: whether it is stable. The arm is
+// near a pose, encoders are exact, and motors meet no limit.
 #pragma once
 
 #include <functional>
 
 #include "core/coupling/spring_damper.h"
+#include "core/math/sizes.h"
 
 namespace limpid {
 
-// Device and hand at the tip, along a line.
-struct HeldTip {
-  double mass = 0;       // of the device with the hand's [kg]
-  double damping = 0;    // of both [N s/m]
-  double stiffness = 0;  // of the hand [N/m]
-  double T = 0.001;      // [s]
-  int delay = 0;         // of the device's torque [ticks]
+// Device and hand near a pose, at the joints (n x n).
+struct HeldArm {
+  Eigen::MatrixXd inertia;    // of the device with the hand's [kg m^2]
+  Eigen::MatrixXd damping;    // of both [N m s/rad]
+  Eigen::MatrixXd stiffness;  // of the hand [N m/rad]
+  double T = 0.001;           // [s]
+  int delay = 0;              // of the device's torque [ticks]
 };
 
-// Largest growth in a tick with a wall K [N/m] on the device itself: its force is held for a tick.
-double growth_on_device(const HeldTip& tip, double K);
-// The same with the wall before a proxy of mass M2 [kg] behind spring and damper, (1)-(2), in N/m
-// and N s/m at the tip.
-double growth_behind_spring(const HeldTip& tip, const SpringDamper& gains, double M2, double K);
+// Largest growth in a tick with a wall on the device itself, whose torque is held for a tick. wall:
+// its stiffness at the joints (n x n) [N m/rad].
+double growth_on_device(const HeldArm& arm, const Eigen::MatrixXd& wall);
+// The same with the wall before a proxy of inertia M2 (n x n) [kg m^2] behind spring and damper,
+// (1)-(2).
+double growth_behind_spring(const HeldArm& arm, const SpringDamper& gains,
+                            const Eigen::MatrixXd& M2, const Eigen::MatrixXd& wall);
 
 // Stiffest walls that were reckoned, and growth that round-off makes.
 inline constexpr double kStiffestReckoned = 1e6;  // [N/m]

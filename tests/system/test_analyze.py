@@ -205,8 +205,9 @@ class Analyze(SystemTest):
                 self.assertGreaterEqual(min(tip["predictive"]["felt_damping"][:3]), least)
 
     def test_a_range_of_hands_beside_every_hand(self) -> None:
-        """Poles of the sampled loop by numpy's matrices, and the literature's bounds."""
-        tip = self.analyze()["tip"]
+        """An arm of one joint: poles of the sampled loop by numpy, and the literature's bounds."""
+        arm = ["--device", arms.write_arm(self.directory, 1).urdf]
+        tip = self.analyze(*arm)["tip"]
         m, b_d, T = tip["mass"], tip["damping"], 1e-3
 
         def stable(K: float, k_h: float, b_h: float, m_h: float) -> bool:
@@ -221,7 +222,7 @@ class Analyze(SystemTest):
         for b_h, m_h in ((2.0, 0.0), (0.5, 0.1)):
             with self.subTest(b_h=b_h):
                 hand = ["--set", f"hand.damping={b_h}", "--set", f"hand.mass={m_h}"]
-                grip = self.analyze("--grip", "200", "4000", *hand)["grip"]
+                grip = self.analyze(*arm, "--grip", "200", "4000", *hand)["grip"]
                 self.assertEqual((grip["damping"], grip["mass"]), (b_h, m_h))
                 wall, worst = grip["direct"]["stable"]["wall"], grip["direct"]["stable"]["hand"]
                 self.assertTrue(stable(wall * 0.999, worst, b_h, m_h))
@@ -229,7 +230,7 @@ class Analyze(SystemTest):
                 for other in (200, 700, 4000):
                     self.assertTrue(stable(wall * 0.999, other, b_h, m_h))
         words = ["--set", "device.encoder_step=4e-4", "--set", "device.friction=1e-3"]
-        grip = self.analyze("--grip", "200", "4000", *words)["grip"]
+        grip = self.analyze(*arm, "--grip", "200", "4000", *words)["grip"]
         self.assert_close(grip["colgate_schenkel"]["wall"], 2 * b_d / T)
         self.assertLess(grip["abbott_okamura"]["wall"], grip["colgate_schenkel"]["wall"])
         self.assertEqual(grip["direct"]["passive"]["wall"], grip["abbott_okamura"]["wall"])

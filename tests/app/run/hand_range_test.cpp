@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "app/run/analysis.h"
+#include "core/dynamics/arm.h"
+#include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
+#include "tests/support/rows.h"
 
 namespace limpid {
 namespace {
@@ -50,6 +53,9 @@ TEST(HandRange, NamesTheBoundsOfTheLiterature) {
   all = judged(p, 300, 3000);
   EXPECT_NEAR(*all.sampled.wall, b / 2.5e-3, 1e-9);
   EXPECT_FALSE(all.stepped.wall) << "the bound is not known with a delay";
+  EXPECT_FALSE(law(all, CouplingKind::direct).in_any_hand.up_to);
+  p.encoder_step = 0;
+  EXPECT_NEAR(*law(judged(p, 300, 3000), CouplingKind::direct).in_any_hand.up_to, b / 2.5e-3, 1e-9);
 }
 
 // The damping of arm and hand over the lag, in every hand of the range; no hand of it is worse.
@@ -92,6 +98,48 @@ TEST(HandRange, OfTheStandardLawGoesBeyondConditionThree) {
   EXPECT_TRUE(standard.two_port->fails_from);
   p.link_delay = 3;
   EXPECT_FALSE(law(judged(p, 300, 3000), CouplingKind::standard).in_range.up_to);
+}
+
+// Trembling in the last tenth of a second over that a second before, of a hand that has jumped in
+// free space [-].
+double lasts(const Parameters& p) {
+  const ArmDescription arm = test::omni();
+  const Vec3 home = Arm<3>(arm).tip_at(rest_pose(arm));
+  Rig rig(arm, Scene{});
+  rig.start(p, rest_at(arm, home));
+  test::Rows rows(rig.layout());
+  for (std::size_t k = 0; k < 1600 && !rig.diverged(); ++k) {
+    rig.step(p, {{home + Vec3(1e-4, 1e-4, 1e-4), 1}}, rows.add());
+  }
+  if (rig.diverged()) return HUGE_VAL;
+  const auto fastest = [&](std::size_t from) {
+    double most = 0;
+    for (std::size_t k = from; k < from + 100; ++k) {
+      most = std::max(most, rows.vec(k, Column::device_velocity).norm());
+    }
+    return most;
+  };
+  return fastest(1500) / fastest(500);
+}
+
+// The spring with which free motion is stable in a hand, as the poles say and as the arm does.
+TEST(HandRange, OfTheStandardLawEndsWhereTheArmBeginsToTremble) {
+  for (const int delay : {0, 1}) {
+    Parameters p;
+    p.kind = CouplingKind::standard;
+    p.torque_limit = 1000;
+    p.hand_stiffness = 300;
+    p.delay = p.device_delay = delay;
+    double low = 10, high = 1000;
+    while (high / low > 1.001) {
+      p.k_vc = std::sqrt(low * high);
+      (*law(judged(p, 300, 300), CouplingKind::standard).in_range.up_to > 0 ? low : high) = p.k_vc;
+    }
+    p.k_vc = 0.95 * low;
+    EXPECT_LT(lasts(p), 0.5) << delay << " " << low;
+    p.k_vc = 1.05 * low;
+    EXPECT_GT(lasts(p), 0.9) << delay << " " << low;
+  }
 }
 
 // A range of one hand is that hand; a wider one is as bad as its worst, and none is above (25).

@@ -10,6 +10,18 @@
 namespace limpid {
 namespace {
 
+HeldArm one_joint(double mass, double damping, double stiffness, double T, int delay) {
+  const auto number = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
+  return {number(mass), number(damping), number(stiffness), T, delay};
+}
+double on_device(const HeldArm& arm, double K) {
+  return growth_on_device(arm, Eigen::MatrixXd::Constant(1, 1, K));
+}
+double behind_spring(const HeldArm& arm, const SpringDamper& gains, double M2, double K) {
+  return growth_behind_spring(arm, gains, Eigen::MatrixXd::Constant(1, 1, M2),
+                              Eigen::MatrixXd::Constant(1, 1, K));
+}
+
 // m v' = -b v - K x_k, held: with a = b/m and E = exp(-a T) the poles leave the unit circle at
 // K = b (1 - E)/((1 - E)/a - T E).
 double stiffest_held(double m, double b, double T) {
@@ -21,9 +33,9 @@ TEST(SampledWall, IsStableUpToTheClosedForm) {
   for (const double m : {0.01, 0.1, 1.0}) {
     for (const double b : {0.25, 2.0, 6.0}) {
       for (const double T : {0.001, 0.0002}) {
-        const HeldTip tip{m, b, 0, T, 0};
+        const HeldArm tip = one_joint(m, b, 0, T, 0);
         const double K = stiffest_held(m, b, T);
-        EXPECT_NEAR(stable_up_to([&](double k) { return growth_on_device(tip, k); }), K, 1e-4 * K)
+        EXPECT_NEAR(stable_up_to([&](double k) { return on_device(tip, k); }), K, 1e-4 * K)
             << m << " " << b << " " << T;
       }
     }
@@ -33,21 +45,20 @@ TEST(SampledWall, IsStableUpToTheClosedForm) {
 // A heavy tip, whose force is late by T/2 and the delay: K = (b_d + b_h)/(T/2 + t_d).
 TEST(SampledWall, OfAHeavyTipIsItsDampingOverTheLag) {
   for (const int delay : {0, 1, 3, 10}) {
-    const HeldTip tip{3, 2, 0, 0.001, delay};
+    const HeldArm tip = one_joint(3, 2, 0, 0.001, delay);
     const double K = 2 / (0.0005 + 0.001 * delay);
-    EXPECT_NEAR(stable_up_to([&](double k) { return growth_on_device(tip, k); }), K, 0.02 * K)
-        << delay;
+    EXPECT_NEAR(stable_up_to([&](double k) { return on_device(tip, k); }), K, 0.02 * K) << delay;
   }
 }
 
 // Before a wall that does not give way the proxy stands still, and the spring is a wall on the
 // device. The proxy's own velocity changes its sign with every tick then, which counts as stable.
 TEST(SampledWall, BehindASpringBeforeARigidWallIsTheSpringAlone) {
-  const HeldTip tip{0.05, 1.5, 400, 0.001, 2};
+  const HeldArm tip = one_joint(0.05, 1.5, 400, 0.001, 2);
   for (const double k : {100.0, 1000.0, 3000.0}) {
-    const double alone = growth_on_device(tip, k);
+    const double alone = on_device(tip, k);
     EXPECT_EQ(alone > 1, k > 500) << "1.5/(T/2 + 2 T) is 600 N/m";
-    EXPECT_NEAR(growth_behind_spring(tip, {k, 0, 1}, 0.001, 1e13), std::max(alone, 1.0), 1e-6);
+    EXPECT_NEAR(behind_spring(tip, {k, 0, 1}, 0.001, 1e13), std::max(alone, 1.0), 1e-6);
   }
 }
 
@@ -59,15 +70,14 @@ TEST(SampledWall, BehindASpringIsStableInEveryHandWhereConditionThreeHolds) {
   int unstable = 0;
   for (const double hand : {1.0, 30.0, 1000.0, 30'000.0}) {
     for (const double M2 : {1e-6, 1e-3, 0.1}) {
-      const HeldTip tip{0.01, b_d, hand, T, 0};
+      const HeldArm tip = one_joint(0.01, b_d, hand, T, 0);
       EXPECT_TRUE(std::isinf(stable_up_to([&](double K) {
-        return growth_behind_spring(tip, edge, M2, K);
+        return behind_spring(tip, edge, M2, K);
       }))) << hand
            << " " << M2;
-      unstable += std::isinf(stable_up_to(
-                      [&](double K) { return growth_behind_spring(tip, beyond, M2, K); }))
-                      ? 0
-                      : 1;
+      unstable +=
+          std::isinf(stable_up_to([&](double K) { return behind_spring(tip, beyond, M2, K); })) ? 0
+                                                                                                : 1;
     }
   }
   EXPECT_GT(unstable, 0);
@@ -84,11 +94,35 @@ TEST(SampledWall, BehindADamperIsTheClosedForm) {
     const std::complex<double> root =
         std::sqrt(std::complex<double>((E - h) * (E - h) - 4 * (p * g - E * h)));
     const double largest = std::max(std::abs(E - h + root), std::abs(E - h - root)) / 2;
-    EXPECT_NEAR(growth_behind_spring({m, b_d, 0, T, 0}, {0, b_vc, 1}, 0.001, 1e13),
+    EXPECT_NEAR(behind_spring(one_joint(m, b_d, 0, T, 0), {0, b_vc, 1}, 0.001, 1e13),
                 std::max(largest, 1.0), 1e-6)
         << b_vc;
     EXPECT_EQ(largest > 1, b_vc > 50) << b_vc;
   }
+}
+
+// Joints that have nothing to do with each other grow as the worst of them does, also where they
+// are seen in other coordinates.
+TEST(SampledWall, OfSeveralJointsIsTheWorstOfThem) {
+  const SpringDamper gains{60, 0.01, 0.02};
+  const HeldArm joints[] = {one_joint(2e-4, 0.01, 5, 0.001, 2),
+                            one_joint(1e-3, 0.02, 20, 0.001, 2)};
+  const double walls[] = {30, 2}, M2[] = {1e-5, 2e-4};
+  Eigen::Matrix2d turn;
+  turn << 0.6, -0.8, 0.8, 0.6;
+  const auto both = [&](double one, double two) -> Eigen::MatrixXd {
+    return turn * Eigen::Vector2d(one, two).asDiagonal() * turn.transpose();
+  };
+  const HeldArm arm{both(2e-4, 1e-3), both(0.01, 0.02), both(5, 20), 0.001, 2};
+  double direct = 0, behind = 0;
+  for (int i = 0; i < 2; ++i) {
+    direct = std::max(direct, on_device(joints[i], walls[i]));
+    behind = std::max(behind, behind_spring(joints[i], gains, M2[i], walls[i]));
+  }
+  EXPECT_NE(direct, behind);
+  EXPECT_NEAR(growth_on_device(arm, both(walls[0], walls[1])), direct, 1e-9);
+  EXPECT_NEAR(growth_behind_spring(arm, gains, both(M2[0], M2[1]), both(walls[0], walls[1])),
+              behind, 1e-9);
 }
 
 TEST(SampledWall, NoneIsStableWhereTheTipIsNot) {
