@@ -7,7 +7,6 @@
 
 #include "app/desktop/experiments/sweep_controller.h"
 #include "app/sweep/sweep_draft.h"
-#include "core/base/field.h"
 
 namespace limpid {
 

@@ -539,8 +539,10 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
         "Made by another build of limpid (%s): a point that is run again may differ.",
         sweep.build.c_str());
   } else {
-    ImGui::TextColored(colour_vector(colours.muted),
-                       "A click runs that point again and plays it; F6 comes back here.");
+    ImGui::TextColored(
+        colour_vector(colours.muted),
+        "Dots mark what was computed. A click runs that point again and plays it; F6 "
+        "comes back here.");
   }
   ImGui::PopClipRect();
 }

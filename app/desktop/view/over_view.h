@@ -10,8 +10,8 @@
 #include "app/desktop/base/settings.h"
 #include "app/desktop/playback/playback.h"
 #include "app/desktop/scene/scene_loader.h"
-#include "app/stage/free_place.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/free_place.h"
 
 namespace limpid {
 

@@ -11,9 +11,9 @@
 #include "app/desktop/base/settings.h"
 #include "app/desktop/scene/picking.h"
 #include "app/desktop/scene/scene_editor.h"
-#include "app/stage/magnifier.h"
 #include "app/live/live_loop.h"
 #include "app/plot/plot_frame.h"
+#include "app/stage/magnifier.h"
 #include "app/stage/stage.h"
 #include "render/camera.h"
 

@@ -262,9 +262,9 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
   EXPECT_EQ(value("Ticks without a solution"), "3");
   EXPECT_EQ(value("Contact points left out"), "1");
   EXPECT_EQ(value("Ticks in which objects stood still"), "2");
-  for (const char* bad : {"Wall force rendered", "Damping removed", "Torque rendered",
-                          "Ticks without a solution", "Contact points left out",
-                          "Ticks in which objects stood still"}) {
+  for (const char* bad :
+       {"Wall force rendered", "Damping removed", "Torque rendered", "Ticks without a solution",
+        "Contact points left out", "Ticks in which objects stood still"}) {
     EXPECT_TRUE(broken(bad)) << bad;
   }
   EXPECT_THAT(hint("Damping removed"), HasSubstr("less of the device's damping is cancelled"));
@@ -342,8 +342,8 @@ TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
   p_.link_delay = 5;
   p_.tick = 0.002;
   draw();
-  EXPECT_TRUE(find("Link: 10 ms each way"));
-  click("Link: 10 ms each way");
+  EXPECT_TRUE(find("Link: 5 ticks, 10 ms each way"));
+  click("Link: 5 ticks, 10 ms each way");
   EXPECT_EQ(value("Through it"), info(p_.kind).through_link);
 }
 

@@ -1,5 +1,4 @@
 // The table of commands by itself, and every key against the help's list.
-#include "app/desktop/shell/command_keys.h"
 #include "app/desktop/shell/commands.h"
 
 #include <GLFW/glfw3.h>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/desktop/shell/command_keys.h"
 #include "core/tick/parameters.h"
 
 namespace limpid {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/desktop/base/first_steps.h"
+#include "app/desktop/shell/command_keys.h"
 #include "app/desktop/shell/state.h"
 #include "tests/app/desktop/shell/whole_window.h"
 
