@@ -102,11 +102,14 @@ void NewSweepDialog::begin(const SweepBasis& basis) {
     hands_.push_back({"recording " + file.stem().string(), file.string()});
   };
   if (!basis.recording.empty()) add_recording(basis.recording);
+  bool found = false;  // the hand of the scene's own name
   for (const std::string& name : shipped_names("hands")) {
     if (fs::path(name).extension() != ".csv") continue;
     const std::string stem = fs::path(name).stem().string();
-    if (basis.recording.empty() && (stem == "touch" || stem == fs::path(basis.scene).stem())) {
-      if (hand_ == 0 || stem != "touch") hand_ = hands_.size();
+    const bool of_scene = stem == fs::path(basis.scene).stem();
+    if (basis.recording.empty() && (of_scene || (stem == "touch" && !found))) {
+      hand_ = hands_.size();
+      found = of_scene;
     }
     hands_.push_back({"recorded hand: " + stem, name});
   }

@@ -86,6 +86,7 @@ void Frame::follow_led_panel(const Layout& at) {
 
 // Draws only the picture, banners and modal dialogs: nothing that tells couplings apart.
 void Frame::draw_blind() {
+  desktop_.led_panel = LedPanel::none;
   const FrameSize size = size_();
   const ScreenRect view{{0, 0}, {static_cast<float>(size.width), static_cast<float>(size.height)}};
   const auto part = [this](auto&& work) { guard(desktop_.notices, work); };

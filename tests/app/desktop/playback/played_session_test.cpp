@@ -38,12 +38,12 @@ class RunAgain : public testing::Test {
 
 TEST_F(RunAgain, UnderTheSameSettingsIsTheSame) {
   const Rerun again = run();
-  EXPECT_FALSE(again.end.diverged);
-  ASSERT_EQ(again.rows.size(), session_.rows.size());
+  EXPECT_FALSE(again.run.end.diverged);
+  ASSERT_EQ(again.run.rows.size(), session_.rows.size());
   const auto stride = static_cast<std::size_t>(session_.layout.stride());
   test::Rows rows(session_.layout);
   for (std::size_t k = 0; k < session_.size(); ++k) {
-    rows.add(std::span(again.rows).subspan(k * stride, stride));
+    rows.add(std::span(again.run.rows).subspan(k * stride, stride));
   }
   EXPECT_EQ(test::first_difference(rows, test::rows_of(session_)), -1);
   EXPECT_EQ(again.history.end(), session_.size());
@@ -55,14 +55,14 @@ TEST_F(RunAgain, ThatDivergesHasItsLastRowToTheEnd) {
   chosen_.k_vc = 1e4;
   chosen_.torque_limit = 1e4;
   const Rerun again = run();
-  ASSERT_TRUE(again.end.diverged);
-  ASSERT_LT(again.end.rows, session_.size());
-  ASSERT_EQ(again.rows.size(), session_.rows.size());
+  ASSERT_TRUE(again.run.end.diverged);
+  ASSERT_LT(again.run.end.rows, session_.size());
+  ASSERT_EQ(again.run.rows.size(), session_.rows.size());
   const auto stride = static_cast<std::size_t>(session_.layout.stride());
-  const auto row = [&](std::size_t k) { return std::span(again.rows).subspan(k * stride, stride); };
-  const std::size_t last = again.end.rows - 1;
+  const auto row = [&](std::size_t k) { return std::span(again.run.rows).subspan(k * stride, stride); };
+  const std::size_t last = again.run.end.rows - 1;
   EXPECT_EQ(session_.layout.in(row(last), Column::time)[0], 0.01 * static_cast<double>(last));
-  for (std::size_t k = again.end.rows; k < session_.size(); ++k) {
+  for (std::size_t k = again.run.end.rows; k < session_.size(); ++k) {
     for (std::size_t i = 0; i < stride; ++i) {
       ASSERT_TRUE(row(k)[i] == row(last)[i] || (std::isnan(row(k)[i]) && std::isnan(row(last)[i])));
     }
@@ -75,8 +75,8 @@ TEST_F(RunAgain, ThatDivergesHasItsLastRowToTheEnd) {
 TEST_F(RunAgain, ThatWasCancelledHasNoRows) {
   progress_.cancel = true;
   const Rerun again = run();
-  EXPECT_TRUE(again.end.stopped);
-  EXPECT_TRUE(again.rows.empty());
+  EXPECT_TRUE(again.run.end.stopped);
+  EXPECT_TRUE(again.run.rows.empty());
   EXPECT_EQ(again.history.channels(), TraceChannels(session_.layout).count());
 }
 
