@@ -73,10 +73,12 @@ class JudgedLaws {
     switch (kind) {
       case CouplingKind::direct: break;
       case CouplingKind::standard:
-        if (!p_.linked()) break;
-        return {std::nullopt, std::nullopt, "it is not reckoned through a link"};
       case CouplingKind::proposed:
-        return {std::nullopt, std::nullopt, "walls are not reckoned; see the least stable eta"};
+        if (p_.linked()) {
+          return {std::nullopt, std::nullopt, "it is not reckoned through a link"};
+        }
+        if (kind == CouplingKind::standard || p_.velocity == VelocitySource::raw) break;
+        return {std::nullopt, std::nullopt, "it is reckoned with raw velocities only"};
       default: return {std::nullopt, std::nullopt, "it is not linear, and no bound is known"};
     }
     SafeWalls found{kEvery, std::nullopt,
@@ -85,13 +87,19 @@ class JudgedLaws {
     const Eigen::MatrixXd JJ = at_.J.transpose() * at_.J;
     const Eigen::VectorXd lever = at_.J.transpose() * least_damped(at_.J, b_d);
     const Eigen::MatrixXd across = lever * lever.transpose(), M2 = p_.inertia_ratio * at_.M;
+    const FedForward forward{p_.eta, p_.alpha,
+                             p_.inertia_ratio / (p_.inertia_error + p_.inertia_ratio),
+                             p_.inertia_error * at_.M, b_d};
     for (const double hand : hands_) {
       const HeldArm held{at_.M + p_.hand_mass_at_tip * JJ,
                          Eigen::MatrixXd(b_d.asDiagonal()) + p_.hand_damping * JJ, hand * JJ,
                          p_.tick, ticks_of(tip_.delay, p_.tick)};
       const double wall = stable_up_to([&](double K) {
-        return kind == CouplingKind::direct ? growth_on_device(held, K * across)
-                                            : growth_behind_spring(held, p_, M2, K * across);
+        switch (kind) {
+          case CouplingKind::direct: return growth_on_device(held, K * across);
+          case CouplingKind::proposed: return growth_fed_forward(held, p_, forward, M2, K * across);
+          default: return growth_behind_spring(held, p_, M2, K * across);
+        }
       });
       if (wall < *found.up_to) {
         found.up_to = wall;

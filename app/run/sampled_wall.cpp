@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/math/eigen.h"
 #include "core/math/elementary.h"
@@ -86,6 +87,40 @@ double growth_behind_spring(const HeldArm& arm, const SpringDamper& g, const Mat
     const VectorXd moved = device.after(at.head(begin), torque);
     VectorXd next(begin + 4 * n);
     next << moved, x2 + T * vbar, 2 * vbar - v2, vbar, moved.head(n) - x1;
+    return next;
+  });
+}
+
+// State of the observer: its estimate, the velocity and the torques of the two ticks before.
+double growth_fed_forward(const HeldArm& arm, const SpringDamper& g, const FedForward& forward,
+                          const MatrixXd& M2, const MatrixXd& wall) {
+  const HeldDevice device(arm);
+  const Index n = device.n, begin = device.size();
+  const double T = arm.T, dampers = g.b_v + g.b_vc + g.k_vc * T / 2, eta = forward.eta;
+  const MatrixXd one = MatrixXd::Identity(n, n), onto_proxy = forward.phi / eta * wall;
+  const MatrixXd impedance = 2 / T * M2 + dampers * one + T / 2 * onto_proxy;
+  const MatrixXd answer = impedance.inverse();
+  // The observer's gain over a tick, 1 - E of core/coupling/force_observer.h.
+  constexpr double kPole = 1 - 1 / std::numbers::sqrt2;
+  const double a = T * forward.alpha;
+  const MatrixXd pole = forward.inertia + kPole * a * one, once = a * pole.inverse();
+  const MatrixXd gain = once - kPole * (1 - kPole) * once * once;
+  return growth(begin + 8 * n, [&](const VectorXd& at) {
+    const auto part = [&](Index i) -> VectorXd { return at.segment(begin + i * n, n); };
+    const VectorXd x1 = at.head(n), x2 = part(0), v2 = part(1), vbar2 = part(2), v1 = part(3) / T;
+    const VectorXd v_before = part(5);
+    const VectorXd hand = forward.inertia * (v1 - v_before) / T +
+                          0.5 * (forward.damping.cwiseProduct(v1 + v_before) - part(6) - part(7));
+    const VectorXd f1_hat = part(4) + gain * (hand - part(4));
+    const VectorXd vbar = answer * (2 / T * M2 * v2 + g.b_vc * v1 - g.k_vc * (x2 - x1) +
+                                    forward.phi / eta * f1_hat - onto_proxy * x2);
+    const VectorXd f2 = -wall * (x2 + T / 2 * vbar);
+    const VectorXd torque = -g.k_vc * (x1 - x2) - g.b_vc * (v1 - vbar2) +
+                            (1 - eta - forward.phi) / eta * f1_hat + (1 - forward.phi) / eta * f2;
+    const VectorXd moved = device.after(at.head(begin), torque);
+    VectorXd next(begin + 8 * n);
+    next << moved, x2 + T * vbar, 2 * vbar - v2, vbar, moved.head(n) - x1, f1_hat, v1, torque,
+        part(6);
     return next;
   });
 }

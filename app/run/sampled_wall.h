@@ -26,6 +26,18 @@ double growth_on_device(const HeldArm& arm, const Eigen::MatrixXd& wall);
 double growth_behind_spring(const HeldArm& arm, const SpringDamper& gains,
                             const Eigen::MatrixXd& M2, const Eigen::MatrixXd& wall);
 
+// Feedforward of (14)-(15): of the contact's torque, and of the hand's as the observer (16)-(18)
+// has it from raw velocities.
+struct FedForward {
+  double eta = 1, alpha = 0;  // [-], [N m s/rad]
+  double phi = 0;             // (M1 + M2)^-1 M2, where M2 is a part of M1 [-]
+  Eigen::MatrixXd inertia;    // M1, and damping b_d, as the observer believes them
+  Eigen::VectorXd damping;
+};
+// The same with feedforward.
+double growth_fed_forward(const HeldArm& arm, const SpringDamper& gains, const FedForward& forward,
+                          const Eigen::MatrixXd& M2, const Eigen::MatrixXd& wall);
+
 // Stiffest walls that were reckoned, and growth that round-off makes.
 inline constexpr double kStiffestReckoned = 1e6;  // [N/m]
 inline constexpr double kStillStable = 1 + 1e-9;

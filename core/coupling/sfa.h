@@ -2,7 +2,8 @@
 // Ryu (2020, T-IE 67, 809). The rule of the increment is rebuilt here: the paper's own is not
 // known.
 //
-// Walls begin soft, and a force o is added until they push as they should. With tau_e the walls'
+// Walls are soft, and a force o is added until they push as they should; with `sfa.extended` they
+// push in full until the hand first turns back or rests. With tau_e the walls'
 // torque, f its size, U what the walls store, B the device's damping b_d, and
 //     kappa = min(1, rho 2 U/((T/2 + delay) tau_e.B^-1 tau_e)),
 // so that kappa K of a wall K at the tip is at most rho b_n/(T/2 + delay), b_n the damping there:
@@ -45,8 +46,8 @@ struct SfaLaw {
     template <class P>
     static constexpr std::array<Field<P>, 3> settings() {
       return {
-          {{"sfa.soft", "softness rho", "Stiffness to begin with", &P::sfa_soft, "-", 0.05, 1, 0.05,
-            1, false, true,
+          {{"sfa.soft", "soft spring rho", "Stiffness to begin with", &P::sfa_soft, "-", 0.05, 1,
+            0.05, 1, false, true,
             "Augmentation: stiffness to begin with, as a part of b_d/(T/2 + delay), up to which "
             "every hand is stable."},
            {"sfa.step", "step sigma", "Part added at a time", &P::sfa_step, "-", 0.01, 1, 0.01, 1,

@@ -121,8 +121,8 @@ def said(work):
         return str(error)
 assert "did you mean device/position?" in said(lambda: row["device/positon"])
 assert "did you mean coupling.eta?" in said(lambda: loop.set({"coupling.etta": 1}))
-assert "is of the simulated hand" in said(lambda: limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", hand__stiffness=3))
-assert "joint 1 has 9" in said(lambda: limpid.DeviceLoop([9, 0.6, -1.1], arm="omni.urdf"))
+assert "is of the simulated hand" in said(lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", hand__stiffness=3))
+assert "joint 1 has 9" in said(lambda: limpid.DeviceLoop([9, -0.8, 1.5], arm="omni.urdf"))
 assert "effort 0" in said(lambda: limpid.Arm("a", [dict(name="j", effort=0, mass=1)]))
 assert max(abs(a - b) for a, b in zip(loop.proxy_tip, loop.tip)) < 1e-6
 print("said")
@@ -141,15 +141,15 @@ loop.set(eta=0.5)
 assert loop.get("coupling.eta") == 0.5 and loop.get("coupling.kind") == "standard"
 assert loop.energy.controller < 0
 
-device = limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", coupling="predictive", limits={"tip_force": 2})
+device = limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", coupling="predictive", limits={"tip_force": 2})
 assert not device.armed and device.force_share == 0 and "not armed" in device.force_text
-assert list(device.tick([0, 0.6, -1.1])) == [0, 0, 0]
+assert list(device.tick([0, -0.8, 1.5])) == [0, 0, 0]
 for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
               lambda: limpid.Loop(etta=1), lambda: loop.step((0, 0)), lambda: row["place"],
-              lambda: limpid.DeviceLoop([0, 0], arm="omni.urdf"), lambda: limpid.DeviceLoop([0, 0.6, -1.1]), lambda: loop.run([(0, 1, 2, 3)]),
+              lambda: limpid.DeviceLoop([0, 0], arm="omni.urdf"), lambda: limpid.DeviceLoop([0, -0.8, 1.5]), lambda: loop.run([(0, 1, 2, 3)]),
               lambda: loop.run([(0, 9, 9, 9), (1, 9, 9, 9)]), lambda: loop.set({"loop.tick": 0.002}),
-              lambda: limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", limits={"tip_force": 99}),
-              lambda: limpid.DeviceLoop([0, 0.6, -1.1], arm="omni.urdf", limits={"force": 1})):
+              lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", limits={"tip_force": 99}),
+              lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", limits={"force": 1})):
     try:
         wrong()
     except limpid.LimpidError as error:
@@ -157,7 +157,7 @@ for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
     else:
         raise AssertionError("refused nothing")
 assert "place" not in row and row.get("place", 0) == 0 and "device/position" in row
-simulated = limpid.DeviceLoop([0, 0.6, -1.1], motors="simulated")
+simulated = limpid.DeviceLoop([0, -0.8, 1.5], motors="simulated")
 for wrong in ("ab", [0, 0], None, [0, 0, "x"]):
     try:
         simulated.tick(wrong)

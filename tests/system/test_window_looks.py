@@ -12,8 +12,9 @@ class Looks(WindowTest):
 
     def choose(self, *items: str) -> None:
         """Chooses an item of the menu View, or of a menu inside of it."""
-        self.click_on("##MainMenuBar", "View" if "View" in self.state()["noted"].get("##MainMenuBar", {})
-                      else "Menu")
+        self.settled()
+        bar = self.wait("the menu bar", lambda s: "View" in s["noted"].get("##MainMenuBar", {}))
+        self.click(*bar["noted"]["##MainMenuBar"]["View"])
         for item in items:
             self.click_on("##Menu_00", item)
 

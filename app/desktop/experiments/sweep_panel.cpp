@@ -493,7 +493,8 @@ void swatch(ImU32 fill, const std::string& text, bool dashed, bool line) {
 void draw_legend(const SweepMap& map, const OpenedSweep& sweep) {
   const SweepTable& table = sweep.table;
   const std::uint64_t done = table.count();
-  const std::string count = fmt::format("{} of {} points, each at its dot", done, table.points());
+  const std::string count =
+      fmt::format("{} of {} points{}", done, table.points(), table.complete() ? "" : ", filling");
   ImGui::TextColored(colour_vector(current_palette().muted), "%s", count.c_str());
   if (const std::uint64_t failed = diverged_points(table); failed > 0) {
     ImGui::SameLine();

@@ -38,7 +38,7 @@ void run(limpid::DeviceLoop& loop, const Driver& driver, const std::atomic<bool>
 }  // namespace
 
 int main() {
-  const std::array<double, 3> start{0, 0.6, -1.1};
+  const std::array<double, 3> start{0, -0.8, 1.5};
   Driver driver;
   int readings = 0;
   double most = 0;

@@ -32,7 +32,7 @@ std::vector<Angles> made() {
   std::vector<Angles> rows;
   for (int k = 0; k < 3000; ++k) {
     const double s = std::sin(1e-3 * k);
-    rows.push_back({0, 0.6 + 0.5 * s * s, -1.1});
+    rows.push_back({0, -0.8 + 0.3 * s * s, 1.5});
   }
   return rows;
 }

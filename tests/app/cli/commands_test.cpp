@@ -147,7 +147,7 @@ TEST_F(Commands, RunSaysWhatDoesNothing) {
   EXPECT_EQ(run({"run", "--duration", "0.01", "--seed", "3", "--variation", "1"}).err, "");
   EXPECT_THAT(
       run({"run", "--duration", "0.01", "--coupling", "predictive", "--set", "link.delay=5"}).err,
-      HasSubstr("note: link.* does nothing here: the predictive law"));
+      HasSubstr("note: link.* does nothing here: the law"));
   EXPECT_EQ(run({"run", "--duration", "0.01", "--coupling", "tank", "--set", "link.delay=5"}).err,
             "");
 }

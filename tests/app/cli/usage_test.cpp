@@ -63,7 +63,7 @@ TEST_F(Usage, FitsIntoTheColumnsOfATerminal) {
   }
   const std::string help = done({"run", "--help"});
   const std::string keys = help.substr(help.find("Keys for --set"));
-  // A meaning has six spaces before it, a list of words that goes on below itself has more.
+  // A line of a meaning, not of a list of words that goes on below itself.
   const auto meaning = [](const std::string& line) {
     return line.starts_with("      ") && line[6] != ' ';
   };
