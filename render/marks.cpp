@@ -141,7 +141,7 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
 }
 
 void add_trails(const ViewState& state, LineBatch& lines) {
-  const float lift = state.theme == Theme::dark ? 0.45f : 0.0f;
+  const float lift = is_dark(state.theme) ? 0.45f : 0.0f;
   if (state.show_ghost) add_trail(state.device.trail, palette::kDevice, lines);
   add_trail(state.proxy.trail, lighter(palette::kProxy, lift), lines);
   if (state.rerun) add_trail(state.rerun->trail, palette::kRerun, lines);
@@ -160,7 +160,7 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
     lines.add(to_glm(state.hand_target), to_glm(state.device.tip), 2.5f,
               with_alpha(palette::kHand, 1), with_alpha(palette::kHand, 1));
   if (!state.show_error) return;
-  const bool dark = state.theme == Theme::dark;
+  const bool dark = is_dark(state.theme);
   const TipColors first{palette::kDevice, lighter(palette::kProxy, dark ? 0.25f : 0.0f)};
   for (std::size_t i = 0; i < state.beside.size(); ++i) {
     const OtherRun& run = state.beside[i];
@@ -175,7 +175,7 @@ void add_lines_on_top(const ViewState& state, LineBatch& lines) {
 void add_joints(const ArmDescription& arm, const ArmPose& pose, Theme theme, LineBatch& lines) {
   constexpr double kHalf = 0.022;  // half the length of a joint's axis [m]
   const auto colors = joint_colours(theme);
-  const glm::vec4 edge = theme == Theme::dark ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
+  const glm::vec4 edge = is_dark(theme) ? glm::vec4(0, 0, 0, 0.7) : glm::vec4(1, 1, 1, 0.8);
   for (std::size_t i = 0; i < std::min({arm.joints.size(), pose.links.size(), colors.size()});
        ++i) {
     const Vec3 at = pose.links[i].translation();
@@ -192,7 +192,7 @@ void add_grid(const Bounds& area, Theme theme, LineBatch& lines) {
   constexpr double kStep = 0.05;
   constexpr double kLift = 0.0003;  // over the floor, so that it is not half hidden by it [m]
   constexpr int kMost = 60;         // lines each way
-  const float ink = theme == Theme::dark ? 1.0f : 0.0f;
+  const float ink = is_dark(theme) ? 1.0f : 0.0f;
   const Vec3 middle = area.center(), half = 0.5 * area.sizes();
   const auto color = [&](const Vec3& p, bool strong) {
     const Vec3 off = (p - middle).cwiseAbs();

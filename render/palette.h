@@ -35,7 +35,7 @@ inline constexpr Rgb kRerun = from_hex(0xF0E442);    // yellow, as in the plots
 // or the background's, as its curves are.
 constexpr Rgb of_lane(const Rgb& color, std::size_t lane, Theme theme) {
   const float shade = kLaneShades[lane];
-  const bool light = (theme == Theme::dark) == (shade > 0);
+  const bool light = is_dark(theme) == (shade > 0);
   return mix(color, from_hex(light ? 0xDFE4EA : 0x1D2329), shade > 0 ? shade : -shade);
 }
 

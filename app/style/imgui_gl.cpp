@@ -22,6 +22,12 @@ void ImGuiGl::set_up(Theme theme, float scale, float density) {
   apply_theme(theme, scale);
 }
 
+void ImGuiGl::change(Theme theme, float scale, float density) {
+  set_up(theme, scale, density);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 void ImGuiGl::begin_frame() { ImGui_ImplOpenGL3_NewFrame(); }
 
 void ImGuiGl::render() {

@@ -17,6 +17,8 @@ class ImGuiGl {
 
   // `scale` 1 for ordinary screens; `density` pixels for each of ImGui's units.
   static void set_up(Theme theme, float scale, float density = 1);
+  // Changes that between two frames.
+  static void change(Theme theme, float scale, float density = 1);
   static void begin_frame();  // before ImGui::NewFrame()
   static void render();       // ends ImGui's frame and draws it over what is there
 };

@@ -68,6 +68,7 @@ struct Palette {
   Rgb frame;   // sliders, inputs, buttons
   Rgb frame_hovered;
   Rgb frame_active;
+  Rgb chosen;  // behind what is chosen in a list
   Rgb border;
   Rgb grid;
   Rgb axis;  // the zero line and ticks
@@ -76,6 +77,7 @@ struct Palette {
   Rgb accent;  // for what is switched on; no thing's own colour
   Rgb broken;
   Inks inks;
+  const char* LawColour::*laws = &LawColour::on_light;
   bool dark = false;
 };
 
@@ -86,6 +88,7 @@ inline constexpr Palette kDarkPalette{
     .frame = rgb(0x252a30),
     .frame_hovered = rgb(0x2f353d),
     .frame_active = rgb(0x3a424c),
+    .chosen = rgb(0x252a30),
     .border = rgb(0x2b3138),
     .grid = rgb(0x23282e),
     .axis = rgb(0x56606b),
@@ -96,6 +99,7 @@ inline constexpr Palette kDarkPalette{
     .inks = with_joints({rgb(0xe69f00), rgb(0x56b4e9), rgb(0x1fb98d), rgb(0xe8702a), rgb(0xd48ab2),
                          rgb(0xb4bcc6), rgb(0xf0e442)},
                         Theme::dark),
+    .laws = &LawColour::on_dark,
     .dark = true,
 };
 
@@ -106,6 +110,7 @@ inline constexpr Palette kLightPalette{
     .frame = rgb(0xe7eaee),
     .frame_hovered = rgb(0xdadfe5),
     .frame_active = rgb(0xcbd2da),
+    .chosen = rgb(0xe7eaee),
     .border = rgb(0xd3d8de),
     .grid = rgb(0xe4e7eb),
     .axis = rgb(0x98a1ab),
@@ -118,8 +123,36 @@ inline constexpr Palette kLightPalette{
                         Theme::light),
 };
 
+// High contrast: text has 7 to 1 at least on everything behind it, and inks differ in brightness.
+inline constexpr Palette kContrastPalette{
+    .backdrop = rgb(0x000000),
+    .panel = rgb(0x000000),
+    .raised = rgb(0x000000),
+    .frame = rgb(0x101010),
+    .frame_hovered = rgb(0x2a2a2a),
+    .frame_active = rgb(0x3d3d3d),
+    .chosen = rgb(0x595959),
+    .border = rgb(0xc0c0c0),
+    .grid = rgb(0x4a4a4a),
+    .axis = rgb(0xc0c0c0),
+    .text = rgb(0xffffff),
+    .muted = rgb(0xdcdcdc),
+    .accent = rgb(0xffff00),
+    .broken = rgb(0xff7a86),
+    .inks = with_joints({rgb(0xffb534), rgb(0x5dbbff), rgb(0x00f279), rgb(0xff814b), rgb(0xff46e0),
+                         rgb(0xe2e5e7), rgb(0xfffc9a)},
+                        Theme::contrast),
+    .laws = &LawColour::on_black,
+    .dark = true,
+};
+
 constexpr const Palette& palette(Theme theme) {
-  return theme == Theme::dark ? kDarkPalette : kLightPalette;
+  switch (theme) {
+    case Theme::light: return kLightPalette;
+    case Theme::contrast: return kContrastPalette;
+    case Theme::dark: break;
+  }
+  return kDarkPalette;
 }
 
 constexpr Rgb shaded(const Palette& palette, Rgb pure, float shade) {
@@ -135,7 +168,7 @@ constexpr Rgb ink(const Palette& palette, Ink which, float shade = 0) {
 constexpr Rgb law_ink(const Palette& palette, int law) {
   const auto i = static_cast<std::size_t>(law);
   if (law < 0 || i >= kLawColours.size()) return palette.muted;
-  return rgb(hex_colour(palette.dark ? kLawColours[i].on_dark : kLawColours[i].on_light));
+  return rgb(hex_colour(kLawColours[i].*palette.laws));
 }
 
 // Returns the contrast from 1 to 21 by WCAG 2.

@@ -39,6 +39,7 @@ void draw_track(const ImRect& track, const FieldInfo& info, double value, double
   };
   list.AddRectFilled({track.Min.x, middle - r}, {track.Max.x, middle + r},
                      colour(hovered ? p.frame_active : p.frame_hovered), r);
+  ImGui::RenderFrameBorder({track.Min.x, middle - r}, {track.Max.x, middle + r}, r);
   if (!std::isnan(usual)) {
     const float x = std::round(x_of(usual));
     list.AddRectFilled({x - 0.75f * scale, middle - 6 * scale},
@@ -174,6 +175,11 @@ void draw_choice(const ImRect& box, const char* text, bool chosen, bool hovered)
   const Rgb rgb = chosen ? p.panel : hovered ? p.text : p.muted;
   list.PushClipRect(box.Min, box.Max, true);
   list.AddText(at, colour(rgb), text);
+  // A theme with borders shows by more than a colour what is chosen.
+  const float line = 1.5f * current_scale() * ImGui::GetStyle().FrameBorderSize;
+  if (chosen) {
+    list.AddRectFilled({at.x, at.y + size.y - line}, {at.x + size.x, at.y + size.y}, colour(rgb));
+  }
   list.PopClipRect();
 }
 
@@ -186,6 +192,7 @@ bool choices(const FieldInfo& info, double& place) {
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y},
                                             colour(current_palette().frame),
                                             ImGui::GetStyle().FrameRounding);
+  ImGui::RenderFrameBorder(at, {at.x + size.x, at.y + size.y}, ImGui::GetStyle().FrameRounding);
   bool changed = false;
   for (int i = 0; i < count; ++i) {
     const char* word = info.words[static_cast<std::size_t>(i)];

@@ -41,7 +41,7 @@ void set_colours(const Palette& p, ImVec4* colours) {
   set(ImGuiCol_Button, p.frame);
   set(ImGuiCol_ButtonHovered, p.frame_hovered);
   set(ImGuiCol_ButtonActive, p.frame_active);
-  set(ImGuiCol_Header, p.frame);
+  set(ImGuiCol_Header, p.chosen);
   set(ImGuiCol_HeaderHovered, p.frame_hovered);
   set(ImGuiCol_HeaderActive, p.frame_active);
   set(ImGuiCol_Separator, p.border);
@@ -52,9 +52,9 @@ void set_colours(const Palette& p, ImVec4* colours) {
   set(ImGuiCol_ResizeGripActive, p.accent);
   set(ImGuiCol_Tab, p.panel);
   set(ImGuiCol_TabHovered, p.frame_hovered);
-  set(ImGuiCol_TabActive, p.frame);
+  set(ImGuiCol_TabActive, p.chosen);
   set(ImGuiCol_TabUnfocused, p.panel);
-  set(ImGuiCol_TabUnfocusedActive, p.frame);
+  set(ImGuiCol_TabUnfocusedActive, p.chosen);
   set(ImGuiCol_PlotLines, ink(p, Ink::neutral));
   set(ImGuiCol_PlotLinesHovered, p.text);
   set(ImGuiCol_PlotHistogram, ink(p, Ink::neutral));
@@ -141,15 +141,19 @@ void apply_theme(Theme theme, float scale) {
   style.WindowBorderSize = 1;
   style.ChildBorderSize = 1;
   style.PopupBorderSize = 1;
-  style.FrameBorderSize = 0;
-  style.TabBorderSize = 0;
+  style.FrameBorderSize = style.TabBorderSize = theme == Theme::contrast ? 1 : 0;
   set_colours(palette(theme), style.Colors);
+  if (theme == Theme::contrast) {
+    style.Colors[ImGuiCol_ScrollbarGrab] = style.Colors[ImGuiCol_Header];
+    style.DisabledAlpha = 0.75f;
+  }
   ImGui::GetStyle() = style;
 }
 
 Theme current_theme() {
   const ImVec4& background = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
-  return background.y < 0.5f ? Theme::dark : Theme::light;
+  if (background.y >= 0.5f) return Theme::light;
+  return background.y > 0 ? Theme::dark : Theme::contrast;
 }
 
 const Palette& current_palette() { return palette(current_theme()); }

@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostPlots = 24, kMostChannels = 32;
+constexpr std::array kThemes{"dark", "light", "contrast"};  // by Theme
 constexpr std::array kKinds{PlotKind::time, PlotKind::cross, PlotKind::spectrum};
 
 PlotChoice plot_of(const TomlTable& table) {
@@ -61,6 +62,7 @@ fs::path settings_file() { return user_config_dir() / "settings.toml"; }
 template <class S, class Visit>
 void each(S& s, Visit&& visit) {
   visit("ui_scale", s.ui_scale);
+  visit("text_size", s.text_size);
   visit("width", s.width);
   visit("height", s.height);
   visit("left", s.left);
@@ -148,7 +150,10 @@ Settings settings_of(const std::string& text, const fs::path& file, std::string&
         if (const auto name = node.value<std::string>()) s.recent.push_back(*name);
       }
     }
-    if (table["window"]["theme"].value_or(std::string("dark")) == "light") s.theme = Theme::light;
+    s.text_size = std::clamp(s.text_size, kTextSizes.front(), kTextSizes.back());
+    const auto theme = table["window"]["theme"].value_or(std::string());
+    const auto* named = std::ranges::find(kThemes, theme);
+    if (named != kThemes.end()) s.theme = static_cast<Theme>(named - kThemes.begin());
     for (std::size_t i = 0; i < kMostLanes; ++i) {
       read_parameters(text, table_name(i).c_str(), file.string(), s.lanes.parameters[i], complaint);
     }
@@ -172,7 +177,7 @@ toml::table table_of(const Settings& settings) {
   toml::array recent;
   for (const std::string& name : settings.recent) recent.push_back(name);
   window.insert("recent", recent);
-  window.insert("theme", settings.theme == Theme::light ? "light" : "dark");
+  window.insert("theme", kThemes[static_cast<std::size_t>(settings.theme)]);
   toml::table all;
   all.insert("window", window);
   all.insert("plot", plots_toml(settings.plot_choices));
@@ -307,5 +312,6 @@ std::string save_settings(const Settings& settings, const Settings& began) {
 
 fs::path sessions_dir() { return made(user_data_dir() / "sessions"); }
 fs::path scenes_dir() { return made(user_data_dir() / "scenes"); }
+fs::path sweeps_dir() { return made(user_data_dir() / "sweeps"); }
 
 }  // namespace limpid

@@ -49,9 +49,13 @@ struct BeforeBreak {
   std::size_t lane = kMainLane;  // the broken one
 };
 
+// Sizes of text and controls that can be chosen, in the usual one.
+inline constexpr std::array kTextSizes{1.0, 1.25, 1.5, 2.0};
+
 struct Settings {
   Theme theme = Theme::dark;
-  double ui_scale = 0;  // 0: the screen's scale
+  double ui_scale = 0;   // 0: the screen's scale
+  double text_size = 1;  // on top of that scale
   int width = 1440, height = 900;
   double left = 300, right = 290, plots = 250;  // sizes of the panels at scale 1 [px]
   bool show_left = true, show_right = true, show_plots = true;
@@ -90,8 +94,9 @@ Settings load_settings(std::string& complaint);
 // reason of a failure, or an empty text.
 std::string save_settings(const Settings& settings, const Settings& began);
 
-// Folders for recordings and scenes, below $XDG_DATA_HOME/limpid; made if need be.
+// Folders for recordings, scenes and sweeps, below $XDG_DATA_HOME/limpid; made if need be.
 std::filesystem::path sessions_dir();
 std::filesystem::path scenes_dir();
+std::filesystem::path sweeps_dir();
 
 }  // namespace limpid

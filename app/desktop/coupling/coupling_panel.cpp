@@ -94,18 +94,21 @@ void kind_buttons(Parameters& p) {
     if (!info(CouplingKind{i}).for_comparison) laws.push_back(CouplingKind{i});
   }
   const auto count = static_cast<float>(laws.size());
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  // Buttons are as wide as their words, with the rest of the width shared: so they fit into the
-  // narrowest panel.
-  float left = ImGui::GetContentRegionAvail().x - gap * (count - 1);
+  const float gap = ImGui::GetStyle().ItemSpacing.x, whole = ImGui::GetContentRegionAvail().x;
+  // Buttons are as wide as their words, with the rest of the width shared; two of them fit side by
+  // side into the narrowest panel.
+  float left = whole - gap * (count - 1);
   for (const CouplingKind kind : laws) left -= ImGui::CalcTextSize(info(kind).label).x;
+  const bool pairs = left < 0;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
-  for (const CouplingKind kind : laws) {
+  for (const CouplingKind& kind : laws) {
     const bool chosen = p.kind == kind;
     const Rgb law = law_ink(colours, static_cast<int>(kind));
-    if (kind != laws.front()) ImGui::SameLine();
+    const bool begins = kind == laws.front() || (pairs && &kind - laws.data() == 2);
+    if (!begins) ImGui::SameLine();
     if (chosen) push_chosen(law);
-    const ImVec2 size(ImGui::CalcTextSize(info(kind).label).x + left / count,
+    const float words = ImGui::CalcTextSize(info(kind).label).x;
+    const ImVec2 size(pairs ? (whole - gap) / 2 : words + left / count,
                       ImGui::GetFrameHeight() * 1.2f);
     if (ImGui::Button(info(kind).label, size)) p.kind = kind;
     if (chosen) ImGui::PopStyleColor(4);

@@ -57,10 +57,34 @@ void show_sweep(Desktop& d) {
       "No sweep is open. Drop a sweep's folder or its table.h5 here, or open it with Ctrl+O.");
 }
 
-void change_theme(Desktop& d) {
-  Theme& theme = d.settings.theme;
-  theme = theme == Theme::light ? Theme::dark : Theme::light;
-  apply_theme(theme, current_scale());
+template <Theme kTheme>
+void choose_theme(Desktop& d) {
+  d.settings.theme = kTheme;
+}
+
+template <Theme kTheme>
+bool has_theme(const Desktop& d) {
+  return d.settings.theme == kTheme;
+}
+
+template <std::size_t kSize>
+void choose_text_size(Desktop& d) {
+  d.settings.text_size = kTextSizes[kSize];
+}
+
+template <std::size_t kSize>
+bool has_text_size(const Desktop& d) {
+  return d.settings.text_size == kTextSizes[kSize];
+}
+
+void larger_text(Desktop& d) {
+  const auto* next = std::ranges::upper_bound(kTextSizes, d.settings.text_size);
+  if (next != kTextSizes.end()) d.settings.text_size = *next;
+}
+
+void smaller_text(Desktop& d) {
+  const auto* present = std::ranges::lower_bound(kTextSizes, d.settings.text_size);
+  if (present != kTextSizes.begin()) d.settings.text_size = *(present - 1);
 }
 
 void freeze_plots(Desktop& d) {
@@ -427,9 +451,24 @@ constexpr std::array kCommands{
         {.blind = true}),
     row("view.reset", "Reset camera", "View", "0, Home", "",
         [](Desktop& d) { d.shown.reset_view(); }, {.blind = true}),
-    row("view.light", "Light theme", "View", nullptr, nullptr, change_theme,
-        {.apart = true,
-         .checked = [](const Desktop& d) { return d.settings.theme == Theme::light; }}),
+    row("view.dark", "dark", "View/Theme", nullptr, nullptr, choose_theme<Theme::dark>,
+        {.checked = has_theme<Theme::dark>, .blind = true}),
+    row("view.light", "light", "View/Theme", nullptr, nullptr, choose_theme<Theme::light>,
+        {.checked = has_theme<Theme::light>, .blind = true}),
+    row("view.contrast", "high contrast", "View/Theme", nullptr, nullptr,
+        choose_theme<Theme::contrast>, {.checked = has_theme<Theme::contrast>, .blind = true}),
+    row("view.text.larger", "Larger", "View/Text size", "Ctrl++, Ctrl+=, Ctrl+Keypad +",
+        "larger text, smaller text, usual text", larger_text, {.blind = true}),
+    row("view.text.smaller", "Smaller", "View/Text size", "Ctrl+-, Ctrl+Keypad -", "", smaller_text,
+        {.blind = true}),
+    row("view.text.usual", "100 %", "View/Text size", "Ctrl+0", "", choose_text_size<0>,
+        {.apart = true, .checked = has_text_size<0>, .blind = true}),
+    row("view.text.large", "125 %", "View/Text size", nullptr, nullptr, choose_text_size<1>,
+        {.checked = has_text_size<1>, .blind = true}),
+    row("view.text.very_large", "150 %", "View/Text size", nullptr, nullptr, choose_text_size<2>,
+        {.checked = has_text_size<2>, .blind = true}),
+    row("view.text.largest", "200 %", "View/Text size", nullptr, nullptr, choose_text_size<3>,
+        {.checked = has_text_size<3>, .blind = true}),
     row("view.own_file_dialogs", "Limpid's own file dialogs", "View", nullptr, nullptr,
         show_or_hide<&Settings::own_file_dialogs>,
         {.checked = is_shown<&Settings::own_file_dialogs>}),
@@ -597,7 +636,6 @@ struct Key {
 
 // Returns the key of "Ctrl+Shift+S", by GLFW's numbers.
 Key key_of(std::string_view text) {
-  if (text == "?") return {kShift, GLFW_KEY_SLASH};
   Key all{};
   for (const auto& [name, modifier] : {std::pair(std::string_view("Ctrl+"), GLFW_MOD_CONTROL),
                                        {"Alt+", GLFW_MOD_ALT},
@@ -606,11 +644,16 @@ Key key_of(std::string_view text) {
     all.modifiers |= modifier;
     text.remove_prefix(name.size());
   }
-  static constexpr std::array<std::pair<std::string_view, int>, 10> kNamed{
+  // Signs that a US keyboard has with Shift.
+  if (text == "?") return {all.modifiers | kShift, GLFW_KEY_SLASH};
+  if (text == "+") return {all.modifiers | kShift, GLFW_KEY_EQUAL};
+  static constexpr std::array<std::pair<std::string_view, int>, 12> kNamed{
       {{"Space", GLFW_KEY_SPACE},
        {"Esc", GLFW_KEY_ESCAPE},
        {"Enter", GLFW_KEY_ENTER},
        {"Keypad Enter", GLFW_KEY_KP_ENTER},
+       {"Keypad +", GLFW_KEY_KP_ADD},
+       {"Keypad -", GLFW_KEY_KP_SUBTRACT},
        {"Tab", GLFW_KEY_TAB},
        {"Backspace", GLFW_KEY_BACKSPACE},
        {"Delete", GLFW_KEY_DELETE},

@@ -329,7 +329,7 @@ void draw_help(bool& open, const KeyLabels& labels) {
       }
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(shortcut.keys.c_str());
+      ImGui::TextWrapped("%s", shortcut.keys.c_str());
       ImGui::TableNextColumn();
       ImGui::TextWrapped("%s", shortcut.what.c_str());
     }

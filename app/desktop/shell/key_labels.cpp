@@ -22,6 +22,7 @@ bool is_us(int key) {
 
 // Returns the key with this label on a US keyboard; 0: none.
 int us_key(const std::string& name) {
+  if (name == "+") return GLFW_KEY_EQUAL;  // a US keyboard has it there, with Shift
   if (name.size() != 1) return 0;
   const int key = std::toupper(static_cast<unsigned char>(name[0]));
   return is_us(key) ? key : 0;

@@ -14,6 +14,7 @@
 #include "app/desktop/scene/object_signs.h"
 #include "app/desktop/shell/commands.h"
 #include "app/desktop/shell/status_line.h"
+#include "app/desktop/widgets/modal.h"
 #include "app/style/imgui_input.h"
 
 namespace limpid {
@@ -118,13 +119,22 @@ constexpr std::array kParts{
 };
 constexpr std::array kMenus{"File", "Edit", "View", "Session", "Scene", "Device", "Help"};
 
+// Begins a menu as ImGui does, and notes the place of its title while it is closed.
+bool begin_menu(const char* title) {
+  const bool open = ImGui::BeginMenu(title);
+  if (!open) note_place(title);
+  return open;
+}
+
 void draw_item(const Command& command, Desktop& d) {
   const std::string why = why_not(command, d);
   const Command::Label label =
       command.how.now != nullptr ? command.how.now(d) : Command::Label{command.text, nullptr};
   const std::string keys = label.keys != nullptr ? label.keys : key_text(command, *d.key_labels);
   const bool checked = command.how.checked != nullptr && command.how.checked(d);
-  if (ImGui::MenuItem(label.text, keys.c_str(), checked, why.empty())) run_or_say(command.id, d);
+  const bool chosen = ImGui::MenuItem(label.text, keys.c_str(), checked, why.empty());
+  note_place(command.text);
+  if (chosen) run_or_say(command.id, d);
   if (!why.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
     ImGui::SetTooltip("%s", why.c_str());
   }
@@ -148,7 +158,7 @@ void draw_menu(std::string_view menu, Desktop& d, FileMenus& files) {
     } else if (of != inner && of.starts_with(std::string(menu) + "/")) {
       inner = of;
       const std::string title(inner.substr(menu.size() + 1));
-      if (!ImGui::BeginMenu(title.c_str())) continue;
+      if (!begin_menu(title.c_str())) continue;
       draw_menu(inner, d, files);
       ImGui::EndMenu();
     }
@@ -163,7 +173,7 @@ std::optional<std::size_t> draw_menus(Desktop& d, FileMenus& files) {
   files.to_open.reset();
   std::optional<std::size_t> open;
   for (std::size_t i = 0; i < kMenus.size(); ++i) {
-    if (!ImGui::BeginMenu(kMenus[i])) continue;
+    if (!begin_menu(kMenus[i])) continue;
     open = i;
     draw_menu(kMenus[i], d, files);
     ImGui::EndMenu();

@@ -113,6 +113,7 @@ Window::Options Application::prepare_window() {
   return {.width = settings.width,
           .height = settings.height,
           .ui_scale = options_.ui_scale > 0 ? options_.ui_scale : settings.ui_scale,
+          .text_size = settings.text_size,
           .theme = settings.theme};
 }
 
@@ -200,6 +201,7 @@ void Application::turn() {
   bool asked_for = false;
   guard(notices, [&] { asked_for = remote_ && remote_->turn(); });
   bool drawing = window_.due() || asked_for;
+  window_.set_look(desktop_.settings.theme, desktop_.settings.text_size);
   if (drawing) {
     window_.begin_frame(desktop_.focus());
     desktop_.document.hold(ImGui::IsMouseDown(ImGuiMouseButton_Left) ||

@@ -234,6 +234,8 @@ json settings_of(Desktop& d) {
           {"hand_settings", {{"stiffness", p.hand_stiffness}, {"damping", p.hand_damping}}},
           {"edited", {{"kind", name(edited.kind)}, {"eta", edited.eta}}},
           {"overlaid", settings.overlaid},
+          {"theme", static_cast<int>(settings.theme)},
+          {"text_size", settings.text_size},
           {"your_turn", settings.your_turn},
           {"tried", settings.tried}};
 }

@@ -147,6 +147,10 @@ struct Window::Impl {
   std::vector<SavedPicture> saved;
   int x = 0, y = 0, width = 0, height = 0;  // before full screen
   float screen_scale = 1;
+  double ui_scale = 1;
+  float density = 1;
+  Theme theme = Theme::dark;
+  double text_size = 1;
 
   static Impl& of(GLFWwindow* window) {
     return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
@@ -245,8 +249,12 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->listen();
   float scale_x = 1, scale_y = 1;
   glfwGetWindowContentScale(impl_->glfw, &scale_x, &scale_y);
-  const double scale = options.ui_scale > 0 ? options.ui_scale : on_wayland() ? 1 : scale_x;
-  ImGuiGl::set_up(options.theme, static_cast<float>(scale), area.density);
+  impl_->ui_scale = options.ui_scale > 0 ? options.ui_scale : on_wayland() ? 1 : scale_x;
+  impl_->density = area.density;
+  impl_->theme = options.theme;
+  impl_->text_size = options.text_size;
+  ImGuiGl::set_up(options.theme, static_cast<float>(impl_->ui_scale * options.text_size),
+                  area.density);
 }
 
 Window::~Window() {
@@ -303,6 +311,14 @@ void Window::end_frame() {
   impl_->liveliness.drawn(SteadyClock::now());
   const std::chrono::duration<double> took = SteadyClock::now() - impl_->began;
   impl_->frame_time = took.count();
+}
+
+void Window::set_look(Theme theme, double text_size) {
+  Impl& w = *impl_;
+  if (theme == w.theme && text_size == w.text_size) return;
+  w.theme = theme;
+  w.text_size = text_size;
+  ImGuiGl::change(theme, static_cast<float>(w.ui_scale * text_size), w.density);
 }
 
 void Window::close() { glfwSetWindowShouldClose(impl_->glfw, GLFW_TRUE); }

@@ -54,6 +54,7 @@ class Window {
   struct Options {
     int width = 1440, height = 900;
     double ui_scale = 0;  // 0: the screen's scale
+    double text_size = 1;
     Theme theme = Theme::dark;
   };
 
@@ -77,6 +78,10 @@ class Window {
   void begin_frame(const Focus& focus);
   // Draws ImGui over the picture and shows the frame.
   void end_frame();
+
+  // Sets the theme, and the size of text and controls in that of the screen's scale, from the next
+  // frame on. To be called between two frames.
+  void set_look(Theme theme, double text_size);
 
   void close();
   void keep_open();  // after wait() returned false

@@ -127,19 +127,16 @@ void draw_hint(const std::string& task, const std::string& pad, const Settings& 
   }
   // The hint of how to pull the arm comes first.
   if (!task.empty() && done(settings, FirstStep::pull)) lines.insert(lines.begin(), task.c_str());
-  float size = face->FontSize * 1.15f;
-  for (const char* line : lines) {  // as large as the widest line allows
-    const float wide = face->CalcTextSizeA(size, 1e9f, 0, line).x;
-    size *= std::min(1.0f, (rect.width() - 2 * face->FontSize) / wide);
-  }
-  float line_y = rect.max.y - (0.7f + 1.5f * static_cast<float>(lines.size())) * size;
-  for (const char* line : lines) {
-    const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, 0, line);
-    const ImVec2 place((rect.min.x + rect.max.x - extent.x) / 2, line_y);
+  const float size = face->FontSize * 1.15f, wrap = rect.width() - 3 * face->FontSize;
+  // The lines stand above each other and above the tab that folds the plots.
+  float foot = rect.max.y - 20 * current_scale();
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    const ImVec2 extent = face->CalcTextSizeA(size, 1e9f, wrap, *line);
+    const ImVec2 place((rect.min.x + rect.max.x - extent.x) / 2, foot - extent.y);
     list.AddRectFilled({place.x - 8, place.y - 2}, {place.x + extent.x + 8, place.y + extent.y + 2},
                        colour(colours.backdrop, 0.72f), 4);
-    list.AddText(face, size, place, colour(colours.text), line);
-    line_y += 1.5f * size;
+    list.AddText(face, size, place, colour(colours.text), *line, nullptr, wrap);
+    foot -= extent.y + 0.5f * size;
   }
 }
 

@@ -54,6 +54,7 @@ void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* hel
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(rect.min, rect.max, colour(over ? colours.frame_active : colours.frame, 0.8f),
                      3 * current_scale());
+  ImGui::RenderFrameBorder(rect.min, rect.max, 3 * current_scale());
   const float size = 0.6f * ImGui::GetFontSize();
   ImGui::RenderArrow(
       &list, {(rect.min.x + rect.max.x - size) / 2, (rect.min.y + rect.max.y - size) / 2},
@@ -166,6 +167,7 @@ void progress_bar(double part, float width, std::string text) {
   };
   side(at.x, edge, colours.accent, colours.panel);
   side(edge, to.x, colours.frame, colours.text);
+  ImGui::RenderFrameBorder(at, to, ImGui::GetStyle().FrameRounding);
   ImGui::Dummy(size);
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/coupling/laws.h"
 
@@ -72,7 +73,8 @@ class PaletteOf : public testing::TestWithParam<Theme> {
  protected:
   const Palette& p = palette(GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(Themes, PaletteOf, testing::Values(Theme::dark, Theme::light));
+INSTANTIATE_TEST_SUITE_P(Themes, PaletteOf,
+                         testing::Values(Theme::dark, Theme::light, Theme::contrast));
 
 TEST_P(PaletteOf, HasAColourForEveryLaw) {
   ASSERT_GE(kLawColours.size(), kLaws);
@@ -122,6 +124,44 @@ TEST_P(PaletteOf, KnowsContrastsAsTheyAreComputed) {
   EXPECT_NEAR(contrast(rgb(0), rgb(0xffffff)), 21, 1e-9);
   EXPECT_NEAR(contrast(p.text, p.panel), ratio(p.text, p.panel), 1e-9);
   EXPECT_NEAR(contrast(p.panel, p.text), ratio(p.text, p.panel), 1e-9);
+}
+
+// WCAG 2 asks for 7 to 1 of text, and for 3 to 1 of the borders of controls.
+TEST(HighContrast, HasTextAtSevenToOneAndBordersOnAllThatIsBehindThem) {
+  const Palette& p = palette(Theme::contrast);
+  for (const Rgb back : {p.backdrop, p.panel, p.raised, p.frame, p.frame_hovered, p.frame_active}) {
+    EXPECT_GE(ratio(p.text, back), 7);
+    EXPECT_GE(ratio(p.muted, back), 7);
+  }
+  EXPECT_GE(ratio(p.text, p.chosen), 7);
+  EXPECT_GE(ratio(p.panel, p.accent), 7) << "the word of what is chosen";
+  for (const Rgb back : {p.panel, p.raised, p.frame}) {
+    EXPECT_GE(ratio(p.broken, back), 7);
+    EXPECT_GE(ratio(p.border, back), 3);
+  }
+  EXPECT_GE(ratio(p.chosen, p.panel), 2.99);
+}
+
+// Curves of things, and of laws, differ in brightness by a seventh at least, and their names at
+// their ends are read.
+TEST(HighContrast, TellsInksApartWithoutColour) {
+  const Palette& p = palette(Theme::contrast);
+  std::vector<Rgb> things, laws;
+  for (int i = 0; i < static_cast<int>(Ink::joint_1); ++i) {
+    things.push_back(ink(p, static_cast<Ink>(i)));
+  }
+  for (int law = 0; law < kLaws; ++law) {
+    const Rgb rgb = law_ink(p, law);
+    if (std::ranges::find(laws, rgb) == laws.end()) laws.push_back(rgb);
+  }
+  ASSERT_EQ(laws.size(), 5u);
+  for (auto* inks : {&things, &laws}) {
+    std::ranges::sort(*inks, {}, luminance);
+    EXPECT_GE(ratio(inks->front(), p.panel), 7);
+    for (std::size_t i = 1; i < inks->size(); ++i) {
+      EXPECT_GE(ratio((*inks)[i - 1], (*inks)[i]), 1.14) << i;
+    }
+  }
 }
 
 TEST(LawColours, AreReadAsTheyAreWritten) {

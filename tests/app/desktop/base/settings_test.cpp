@@ -74,7 +74,8 @@ TEST_F(SettingsFile, KeepsTheFilesOpenedLastTheNewestFirstAndEachOnce) {
 
 TEST_F(SettingsFile, GivesEverythingBack) {
   Settings s;
-  s.theme = Theme::light;
+  s.theme = Theme::contrast;
+  s.text_size = 1.5;
   s.ui_scale = 1.75;
   s.width = 1999;
   s.height = 777;
@@ -101,6 +102,7 @@ TEST_F(SettingsFile, GivesEverythingBack) {
   const Settings again = load();
   EXPECT_EQ(complaint_, "");
   EXPECT_EQ(again.theme, s.theme);
+  EXPECT_EQ(again.text_size, s.text_size);
   EXPECT_EQ(again.ui_scale, s.ui_scale);
   EXPECT_EQ(again.width, s.width);
   EXPECT_EQ(again.height, s.height);
