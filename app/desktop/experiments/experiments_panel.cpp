@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "app/desktop/base/settings.h"
 #include "app/desktop/widgets/modal.h"
@@ -16,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kFigure = "the figure";
+
 fs::path experiments_dir() { return sessions_dir().parent_path() / "experiments"; }
 
 std::vector<fs::path> sessions_of(const Experiment& experiment) {
@@ -26,6 +29,36 @@ std::vector<fs::path> sessions_of(const Experiment& experiment) {
   }
   std::ranges::sort(files);
   return files;
+}
+
+// Draws each check in words, its value with what it was judged by, and its verdict.
+void draw_checks(const std::vector<Check>& checks) {
+  const Palette& colours = current_palette();
+  if (!ImGui::BeginTable("checks", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH)) {
+    return;
+  }
+  ImGui::TableSetupColumn("check", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("verdict", ImGuiTableColumnFlags_WidthFixed,
+                          ImGui::CalcTextSize("measured").x);
+  for (const Check& check : checks) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextWrapped("%s", check.what.c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
+    ImGui::TextWrapped("%.4g, %s %.4g", check.value, check.least ? "at least" : "at most",
+                       check.bound);
+    for (const std::string& words :
+         {check.against ? check.against->conditions : "", check.unjudged}) {
+      if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());
+    }
+    ImGui::PopStyleColor();
+    ImGui::TableNextColumn();
+    ImGui::TextColored(colour_vector(check.failed() ? colours.broken : colours.text), "%s",
+                       !check.unjudged.empty() ? "measured"
+                       : check.passed          ? "passed"
+                                               : "failed");
+  }
+  ImGui::EndTable();
 }
 
 }  // namespace
@@ -94,13 +127,16 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   fs::path chosen;
   // At the window's right edge it leaves the arm, its plots and the pressed button in sight.
   const ImVec2 room = ImGui::GetMainViewport()->Size;
-  const float left = std::min(0.42f * room.x, room.x - 44 * ImGui::GetFontSize());
-  ImGui::SetNextWindowPos({std::max(0.0f, left), view.min.y}, ImGuiCond_Appearing);
-  ImGui::SetNextWindowSize({room.x - std::max(0.0f, left), 0.84f * room.y}, ImGuiCond_Appearing);
+  const float em = ImGui::GetFontSize();
+  const float left = std::max(0.0f, std::min(0.42f * room.x, room.x - 46 * em));
+  const float high = std::min(std::max(0.84f * room.y, 34 * em), room.y - view.min.y);
+  ImGui::SetNextWindowPos({left, view.min.y}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize({room.x - left, high}, ImGuiCond_Appearing);
   if (begin_dialog("Experiments", open, ImGuiWindowFlags_None)) {
+    const float list = std::min(22 * em, 0.5f * ImGui::GetContentRegionAvail().x);
     ImGui::BeginGroup();
     const float buttons = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().ItemSpacing.y;
-    ImGui::BeginChild("list", {19 * ImGui::GetFontSize(), -buttons});
+    ImGui::BeginChild("list", {list, -buttons});
     draw_list();
     ImGui::EndChild();
     draw_buttons();
@@ -114,14 +150,12 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
       chosen = draw_verdict(found->second);
     } else {
       ImGui::TextWrapped(
-          "The paper's experiments, each run by the ordinary loop with recorded and seeded hands. "
-          "Figures, tables, verdicts and every trial are kept in %s.",
+          "The paper's experiments, then those of the predictive law and of things that move. Each "
+          "is run by the ordinary loop with recorded and seeded hands. Figures, tables, verdicts "
+          "and every trial are kept in %s.",
           experiments_dir().c_str());
       ImGui::Spacing();
-      for (const Experiment& experiment : experiments()) {
-        ImGui::Bullet();
-        ImGui::TextWrapped("%s: %s", experiment.name, experiment.about);
-      }
+      ImGui::TextWrapped("Run one at the left: its figure and its checks are shown here.");
     }
     ImGui::EndChild();
   }
@@ -129,10 +163,12 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
   return chosen;
 }
 
-// Draws the state of an experiment at the end of its row.
+// Draws the name of the command and the state of an experiment, below its words.
 void ExperimentsPanel::draw_state(const Experiment& experiment) {
   const Palette& colours = current_palette();
+  ImGui::TextColored(colour_vector(colours.muted), "%s", experiment.name);
   if (running_.busy() && current_ == &experiment) {
+    ImGui::SameLine();
     const double elapsed = ImGui::GetTime() - began_;
     const double part = running_.part();
     progress_bar(part, 0,
@@ -142,17 +178,34 @@ void ExperimentsPanel::draw_state(const Experiment& experiment) {
   const auto found = verdicts_.find(experiment.name);
   if (found == verdicts_.end()) return;
   const bool passed = found->second.outcome.passed();
-  ImGui::TextColored(colour_vector(passed ? colours.muted : colours.broken), "%s",
+  ImGui::SameLine();
+  ImGui::TextColored(colour_vector(passed ? colours.text : colours.broken), "%s",
                      passed ? "passed" : "failed");
 }
 
-// Each column keeps its width, so that nothing moves when an experiment starts or ends.
+// Draws an experiment's words as an item that can be chosen, over as many lines as they take.
+void ExperimentsPanel::draw_words(const Experiment& experiment) {
+  std::string words = experiment.about;
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str(), nullptr, false, width);
+  const ImVec2 at = ImGui::GetCursorPos();
+  if (ImGui::Selectable("##words", shown_ == &experiment, 0, {width, size.y})) {
+    shown_ = &experiment;
+    chosen_ = true;
+  }
+  note_place(experiment.name);
+  const ImVec2 below = ImGui::GetCursorPos();
+  ImGui::SetCursorPos(at);
+  ImGui::TextWrapped("%s", words.c_str());
+  ImGui::SetCursorPos(below);
+}
+
 void ExperimentsPanel::draw_list() {
   const float em = ImGui::GetFontSize();
-  if (ImGui::BeginTable("experiments", 3)) {
+  if (ImGui::BeginTable("experiments", 2)) {
     ImGui::TableSetupColumn("run", ImGuiTableColumnFlags_WidthFixed, 4 * em);
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
-    ImGui::TableSetupColumn("state", ImGuiTableColumnFlags_WidthFixed, 5.5f * em);
+    ImGui::TableSetupColumn("words", ImGuiTableColumnFlags_WidthStretch);
     for (const Experiment& experiment : experiments()) {
       ImGui::PushID(experiment.name);
       ImGui::TableNextColumn();
@@ -162,15 +215,10 @@ void ExperimentsPanel::draw_list() {
       if (ImGui::Button(runs ? "runs" : waits ? "waits" : "Run", {-1, 0})) {
         queue_.push_back(&experiment);
       }
+      note_place(("Run " + std::string(experiment.name)).c_str());
       ImGui::EndDisabled();
       ImGui::TableNextColumn();
-      ImGui::AlignTextToFramePadding();
-      if (ImGui::Selectable(experiment.name, shown_ == &experiment)) {
-        shown_ = &experiment;
-        chosen_ = true;
-      }
-      tooltip(experiment.about);
-      ImGui::TableNextColumn();
+      draw_words(experiment);
       draw_state(experiment);
       ImGui::PopID();
     }
@@ -199,53 +247,43 @@ void ExperimentsPanel::show_figure(Verdict& verdict) {
   if (verdict.shown_in == theme) return;
   verdict.shown_in = theme;
   try {
-    verdict.figure.emplace(
-        verdict.file, theme == Theme::dark ? std::optional(current_palette().panel) : std::nullopt);
+    verdict.figure.emplace(verdict.file,
+                           is_dark(theme) ? std::optional(current_palette().panel) : std::nullopt);
   } catch (const std::exception& e) {
     verdict.figure.reset();
     notices_.say(e.what(), true);
   }
 }
 
-fs::path ExperimentsPanel::draw_verdict(Verdict& verdict) {
-  const Palette& colours = palette(current_theme());
-  show_figure(verdict);
-  if (verdict.figure) {
-    const float width = std::min(ImGui::GetContentRegionAvail().x, verdict.figure->width());
-    ImGui::Image(verdict.figure->id(),
-                 {width, width * verdict.figure->height() / verdict.figure->width()});
+// Draws the figure as wide as the panel; a click shows it as large as the window.
+void ExperimentsPanel::draw_figure(const PictureTexture& figure) {
+  const float whole = ImGui::GetContentRegionAvail().x, width = std::min(whole, figure.width());
+  ImGui::Image(figure.id(), {width, width * figure.height() / figure.width()});
+  note_place(kFigure);
+  if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+  tooltip("A click shows the figure as large as the window.");
+  if (ImGui::IsItemClicked()) ImGui::OpenPopup(kFigure);
+  const ImGuiViewport& window = *ImGui::GetMainViewport();
+  const ImVec2 most{0.96f * window.WorkSize.x, 0.96f * window.WorkSize.y};
+  ImGui::SetNextWindowPos(window.GetWorkCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+  if (!ImGui::BeginPopup(kFigure, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
+    return;
   }
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float line = ImGui::GetFrameHeight() + style.ItemSpacing.y;
+  const float scale = std::min((most.x - 2 * style.WindowPadding.x) / figure.width(),
+                               (most.y - 2 * style.WindowPadding.y - line) / figure.height());
+  ImGui::Image(figure.id(), {scale * figure.width(), scale * figure.height()});
+  if (noted_button("Close (Esc)")) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+}
+
+fs::path ExperimentsPanel::draw_verdict(Verdict& verdict) {
+  show_figure(verdict);
+  if (verdict.figure) draw_figure(*verdict.figure);
   ImGui::TextWrapped("%s", verdict.outcome.figure.caption.c_str());
   ImGui::Spacing();
-  if (ImGui::BeginTable("checks", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH)) {
-    ImGui::TableSetupColumn("check", ImGuiTableColumnFlags_WidthStretch);
-    for (const char* name : {"value", "bound", ""}) {
-      ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed, 6 * ImGui::GetFontSize());
-    }
-    ImGui::TableHeadersRow();
-    for (const Check& check : verdict.outcome.checks) {
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextWrapped("%s", check.what.c_str());
-      for (const std::string& words :
-           {check.against ? check.against->conditions : "", check.unjudged}) {
-        if (words.empty()) continue;
-        ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(colours.muted));
-        ImGui::TextWrapped("%s", words.c_str());
-        ImGui::PopStyleColor();
-      }
-      ImGui::TableNextColumn();
-      ImGui::Text("%.4g", check.value);
-      ImGui::TableNextColumn();
-      ImGui::Text("%s %.4g", check.least ? "\xE2\x89\xA5" : "\xE2\x89\xA4", check.bound);
-      ImGui::TableNextColumn();
-      ImGui::TextColored(colour_vector(check.failed() ? colours.broken : colours.muted), "%s",
-                         !check.unjudged.empty() ? "measured"
-                         : check.passed          ? "passed"
-                                                 : "failed");
-    }
-    ImGui::EndTable();
-  }
+  draw_checks(verdict.outcome.checks);
   fs::path chosen;
   if (verdict.trials.empty()) return chosen;
   heading("Trials, to open in playback");

@@ -41,6 +41,8 @@ class ExperimentsPanel {
   void draw_list();
   void draw_buttons();
   void draw_state(const Experiment& experiment);
+  void draw_words(const Experiment& experiment);
+  static void draw_figure(const PictureTexture& figure);
   void show_figure(Verdict& verdict);
   std::filesystem::path draw_verdict(Verdict& verdict);
 
