@@ -40,11 +40,8 @@ int open_point(const SweepPlan& plan, std::uint64_t index, const std::filesystem
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
 
 constexpr unsigned kMostThreads = 1024;
-constexpr Seconds kBetweenTables{2};
 constexpr std::chrono::milliseconds kBetweenLooks{50};
 constexpr int kLooksATurn = 40;  // waits between two questions to Slurm's queue
 
@@ -82,26 +79,6 @@ SweepShare share_of(const SweepOptions& options) {
   return share;
 }
 
-// Writes the table now and then during the work, so that it can be read at any moment.
-class Bookkeeper {
- public:
-  explicit Bookkeeper(SweepBook& book) : book_(book) { wait(kBetweenTables); }
-
-  void write_if_time() {
-    if (Clock::now() < next_) return;
-    const auto began = Clock::now();
-    book_.write();
-    wait(std::max<Seconds>(kBetweenTables, 20 * (Clock::now() - began)));
-  }
-
- private:
-  void wait(Seconds time) {
-    next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
-  }
-  SweepBook& book_;
-  Clock::time_point next_;
-};
-
 // A call of the command.
 class Sweeping {
  public:
@@ -134,7 +111,7 @@ class Sweeping {
 
   // Works until done; false if stopped.
   bool work(bool alone) {
-    Bookkeeper keeper(book_);
+    TimedTable keeper(book_);
     std::atomic<std::uint64_t> done{0};
     const TakeBlock take = [&](std::uint64_t block, const auto& values) {
       book_.take(block, values);
@@ -153,7 +130,7 @@ class Sweeping {
 
   int on_slurm() {
     SlurmArray array(plan_, folder_, options_.array);
-    Bookkeeper keeper(book_);
+    TimedTable keeper(book_);
     {
       Progress progress(words(static_cast<double>(plan_.points())));
       while (!interrupted) {

@@ -16,8 +16,9 @@ namespace limpid {
 class RunMeter;
 
 struct MeasureInfo {
-  const char* name;
-  const char* unit;  // "-" for none; "yes/no" is 1 or 0
+  const char* name;   // in plans and tables
+  const char* words;  // in the window
+  const char* unit;   // "-" for none; "yes/no" is 1 or 0
   const char* what;
   double (*value)(const RunMeter&);
   bool felt = false;  // needs the arm's inertia and tip
@@ -27,6 +28,8 @@ struct MeasureInfo {
 
 std::span<const MeasureInfo> measure_table();
 const MeasureInfo* find_measure(std::string_view name);
+// Returns a column's name in plain words: a measure's, or what a boundary finds.
+std::string words_of_measure(std::string_view name);
 
 // Energies up to this one count as zero [J].
 inline constexpr double kNoEnergy = 1e-6;

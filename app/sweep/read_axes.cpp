@@ -30,18 +30,11 @@ constexpr Range kAnything{-1e300, 1e300};
 
 // Keys that name neither a parameter nor a file.
 using Kind = FieldInfo::Kind;
-constexpr FieldInfo kOwnKeys[] = {{{0, 1e9, true, "N/m"}, kStiffnessKey},
-                                  {{1, kMaxDof}, kArmJointsKey, "", "", "", Kind::whole},
-                                  {{1e-3, 1e3, false, "kg"}, kArmMassKey},
-                                  {{0, 1e6}, kArmSeedKey, "", "", "", Kind::whole}};
-
-// The field of a key, of whatever it is; null if there is none.
-const FieldInfo* field_of(const std::string& key) {
-  if (const ParameterInfo* parameter = find_parameter(key)) return parameter;
-  if (const FieldInfo* own = find_field(kOwnKeys, key)) return own;
-  const auto of_body = body_axis(key);
-  return of_body && of_body->property ? of_body->property->field : nullptr;
-}
+constexpr FieldInfo kOwnKeys[] = {
+    {{0, 1e9, true, "N/m"}, kStiffnessKey, "", "Stiffness of the scene's surfaces"},
+    {{1, kMaxDof}, kArmJointsKey, "", "", "", Kind::whole},
+    {{1e-3, 1e3, false, "kg"}, kArmMassKey},
+    {{0, 1e6}, kArmSeedKey, "", "", "", Kind::whole}};
 
 constexpr const char* kScales[] = {"linear", "log"};
 
@@ -83,7 +76,7 @@ void read_cases(const TomlTable& table, const Parameters& base, SweepAxis& axis)
 
 // Returns x. Refuses numbers that the axis' parameter does not allow.
 double allowed_number(const TomlTable& table, const char* key, const SweepAxis& axis, double x) {
-  const FieldInfo& field = *field_of(axis.key);
+  const FieldInfo& field = *axis_field(axis.key);
   const bool whole = field.kind == Kind::whole;
   if (field.holds(x) && !(whole && x != std::floor(x))) return x;
   table.refuse(key,
@@ -163,6 +156,11 @@ void read_numbers(const TomlTable& table, ReadAxis& read) {
   }
 }
 
+// Returns the name of an axis to which the plan gives none.
+std::string usual_name(const std::string& key) {
+  return key == kStiffnessKey ? "wall" : key.substr(key.rfind('.') + 1);
+}
+
 // Refuses names unfit for columns and figures.
 void check_name(const TomlTable& table, const std::string& name) {
   const auto plain = [](char c) {
@@ -173,6 +171,19 @@ void check_name(const TomlTable& table, const std::string& name) {
 }
 
 }  // namespace
+
+const FieldInfo* axis_field(const std::string& key) {
+  if (const ParameterInfo* parameter = find_parameter(key)) return parameter;
+  if (const FieldInfo* own = find_field(kOwnKeys, key)) return own;
+  const auto of_body = body_axis(key);
+  return of_body && of_body->property ? of_body->property->field : nullptr;
+}
+
+std::string words_of_axis(const SweepAxis& axis) {
+  const FieldInfo* field = axis_field(axis.key);
+  const bool named = axis.name != usual_name(axis.key);
+  return field == nullptr || named || field->caption[0] == '\0' ? axis.name : field->caption;
+}
 
 UnitSamples random_samples(std::size_t dimensions, std::size_t count, std::uint64_t seed) {
   Twister random(seed);
@@ -233,9 +244,8 @@ ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
     read_cases(table, base, axis);
   } else {
     const std::string key = table.need(table.text("key"), "key");
-    const std::string last = key == kStiffnessKey ? "wall" : key.substr(key.rfind('.') + 1);
-    axis.name = table.text("name").value_or(last);
-    const FieldInfo* field = field_of(key);
+    axis.name = table.text("name").value_or(usual_name(key));
+    const FieldInfo* field = axis_field(key);
     if (key == "device") {
       read_files(table, &SweepWorld::device, axis);
     } else if (key == "scene") {
@@ -271,7 +281,7 @@ void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t se
     const UnitSamples drawn = draw(these.size(), samples, seed);
     for (std::size_t d = 0; d < these.size(); ++d) {
       SweepAxis& axis = these[d]->axis;
-      const FieldInfo* field = field_of(axis.key);
+      const FieldInfo* field = axis_field(axis.key);
       const bool whole = field != nullptr && field->kind == Kind::whole;
       for (const double part : drawn[d]) {
         const double x = scaled(these[d]->range, part, axis.logarithmic);

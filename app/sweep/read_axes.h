@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "app/sweep/sweep_plan.h"
@@ -28,6 +29,14 @@ struct ReadAxis {
   SweepAxis axis;
   AxisRange range;  // of a sampled axis
 };
+// Returns the field of an axis' key: a parameter's, a body's, the scene's or the random arm's; null
+// if no axis has that key.
+const FieldInfo* axis_field(const std::string& key);
+
+// Returns the axis' name in plain words: the caption of what its key sets, unless the plan has a
+// name of its own for it.
+std::string words_of_axis(const SweepAxis& axis);
+
 // Reads [[axis]]; sampled axes get their values from sample(). Errors: FileError.
 ReadAxis read_axis(const TomlTable& table, const Parameters& base);
 

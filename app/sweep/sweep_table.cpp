@@ -226,6 +226,17 @@ std::uint64_t SweepTable::count() const {
   return static_cast<std::uint64_t>(std::ranges::count(done, 1));
 }
 
+std::uint64_t diverged_points(const SweepTable& table) {
+  const auto column = std::ranges::find(table.columns, "diverged", &SweepColumn::name);
+  if (column == table.columns.end()) return 0;
+  std::uint64_t count = 0;
+  for (std::uint64_t point = 0; point < table.points(); ++point) {
+    const double value = table.at(point, static_cast<std::size_t>(column - table.columns.begin()));
+    if (table.done[point] == 1 && value == 1) ++count;
+  }
+  return count;
+}
+
 void SweepTable::take(std::uint64_t first, const std::vector<double>& found) {
   std::ranges::copy(found, values.begin() + static_cast<std::ptrdiff_t>(first * columns.size()));
   const auto from = done.begin() + static_cast<std::ptrdiff_t>(first);

@@ -56,6 +56,9 @@ struct SweepTable {
   void take(std::uint64_t first, const std::vector<double>& found);
 };
 
+// Returns the number of points whose runs diverged; 0 if that is not measured.
+std::uint64_t diverged_points(const SweepTable& table);
+
 // Writes the table; the same plan and points done give the same bytes, whoever writes it.
 //   /axis/NAME     points, float64: attributes unit, key, spread, scale, words (of 0, 1, ...)
 //   /measure/NAME  points, float64: attributes unit, what

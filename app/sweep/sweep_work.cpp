@@ -214,6 +214,18 @@ std::uint64_t SweepBook::gather() {
   return found;
 }
 
+void TimedTable::write_if_time() {
+  const auto began = Clock::now();
+  if (began < next_) return;
+  book_.write();
+  wait(Clock::now() - began);
+}
+
+void TimedTable::wait(Clock::duration writing) {
+  constexpr Clock::duration kBetweenTables = std::chrono::seconds(2);
+  next_ = Clock::now() + std::max(kBetweenTables, 20 * writing);
+}
+
 void SweepBook::write() const {
   write_table(plan_, table_, folder_.table());
   if (csv_) write_table_csv(plan_, table_, folder_.path() / "table.csv");

@@ -1,6 +1,7 @@
 // A sweep's folder: blocks of points as files, each complete or absent; and the work on them.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -82,6 +83,20 @@ class SweepBook {
   bool csv_;
   SweepTable table_;
   std::vector<bool> taken_;  // of each block
+};
+
+// Writes the table now and then during the work, so that it can be read at any moment.
+class TimedTable {
+ public:
+  explicit TimedTable(const SweepBook& book) : book_(book) { wait({}); }
+  void write_if_time();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void wait(Clock::duration writing);  // `writing`: how long the last time took
+
+  const SweepBook& book_;
+  Clock::time_point next_;
 };
 
 }  // namespace limpid

@@ -47,6 +47,12 @@ class EachDialog(WindowTest):
             self.wait("playback", lambda s: s["playing"] and s["dialog"] == "")
         self.key("v")
 
+    def open_new_sweep(self) -> None:
+        self.key("F6")
+        self.wait("the map", lambda s: s["dialog"] == "sweep" and s["sweep"]["drawn"])
+        window = next(name for name in self.settled()["noted"] if name.startswith("Sweep"))
+        self.click_on(window, "New sweep...")
+
     def drop(self, file: Path) -> None:
         drop(self.environment["DISPLAY"], int(self.window), [file])
 
@@ -55,7 +61,7 @@ class EachDialog(WindowTest):
                 "open session": "ctrl+o", "open scene": "ctrl+shift+o", "add model": "ctrl+m", "save scene": "ctrl+shift+s",
                 "layouts": "ctrl+l", "mark": "t", "export": "ctrl+e", "presets": "ctrl+p", "identify": "F7", "question": "ctrl+q"}
         ways = {"arm tip": lambda: self.drop(self.arms), "video": self.open_video,
-                "expand xacro": lambda: self.drop(self.xacro)}
+                "expand xacro": lambda: self.drop(self.xacro), "new sweep": self.open_new_sweep}
         ways[dialog]() if dialog in ways else self.key(keys[dialog])
         self.wait(dialog, lambda s: s["dialog"] == dialog and s["closing"])
         self.settled()

@@ -173,7 +173,7 @@ class Tables(SweepWindow):
         self.key("Escape")
         self.wait("no dialog", lambda s: s["dialog"] == "")
         self.key("F6")
-        self.wait_for_notice("No sweep is open.")
+        self.wait("the dialog for a new one", lambda s: s["dialog"] == "new sweep")
 
     def test_of_another_build_points_are_compared(self) -> None:
         with h5py.File(self.table(), "a") as table:
@@ -198,6 +198,77 @@ class Tables(SweepWindow):
         self.xdotool("click", "1")
         self.wait_for_notice("cannot be run again: files that the plan names have changed since")
         self.assertFalse(self.state()["playing"])
+
+
+class NewSweep(WindowTest):
+    """A sweep from the first click to its map, without a file or a command."""
+
+    def folder(self) -> Path:
+        folders = list((self.home / "data/limpid/sweeps").iterdir())
+        self.assertEqual(len(folders), 1)
+        return folders[0]
+
+    def replace(self, label: str, text: str) -> None:
+        """Types into a field in place of what it holds."""
+        self.click_on("New sweep", label, times=2)
+        self.wait(f"typing in {label}", lambda s: s["typing"])
+        self.key("ctrl+a")
+        self.type(text)
+        self.key("Tab")
+
+    def open(self) -> None:
+        self.key("F6")
+        self.wait("the dialog", lambda s: s["dialog"] == "new sweep")
+
+    def on_the_map(self, label: str) -> None:
+        """Clicks a button below the map."""
+        name = next(name for name in self.settled()["noted"] if name.startswith("Sweep"))
+        self.click_on(name, label)
+
+    def test_it_is_started_watched_stopped_and_gone_on_with(self) -> None:
+        self.open()
+        self.replace("first from", "0.2")
+        self.replace("first to", "2")
+        self.replace("first count", "200")
+        self.click_on("New sweep", "Start (Enter)")
+        state = self.wait("its map", lambda s: s["dialog"] == "sweep" and s["sweeping"]
+                          and s["sweep"] and s["sweep"]["drawn"], 60)
+        self.assertEqual((state["sweep"]["points"], state["sweep"]["x"]), (200, "eta"))
+        self.wait("some points", lambda s: s["sweeping"] and s["sweeping"]["done"] > 2, 120)
+        ticks = self.state()["ticks"]
+        self.wait("the loop to go on meanwhile", lambda s: s["ticks"] > ticks + 300)
+        self.key("Escape")
+        self.wait("a banner", lambda s: any("The sweep goes on: " in b["text"] for b in s["banners"]))
+        self.key("F6")
+        self.wait("the map", lambda s: s["dialog"] == "sweep" and "map" in s["sweep"])
+        self.on_the_map("Stop")
+        self.wait_for_notice("The sweep was stopped at ")
+        before = {block.name: block.read_bytes() for block in (self.folder() / "blocks").iterdir()}
+        self.assertTrue(2 < len(before) < 200)
+        self.wait("all of them in the table", lambda s: s["sweep"]["done"] == len(before))
+        self.on_the_map("Go on")
+        self.wait("all of it", lambda s: s["sweep"]["done"] == 200 and not s["sweeping"], 300)
+        self.wait_for_notice("The sweep is complete: 200 points in ")
+        for name, block in before.items():
+            self.assertEqual((self.folder() / "blocks" / name).read_bytes(), block, "nothing is made twice")
+        # The command makes the same table of the same plan.
+        other = self.home / "other"
+        subprocess.run([LIMPID, "sweep", self.folder() / "plan.toml", "--out", other], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with h5py.File(self.folder() / "table.h5") as a, h5py.File(other / "table.h5") as b:
+            eta = a["axis/eta"][...]
+            np.testing.assert_allclose(eta, np.geomspace(0.2, 2, 200), rtol=1e-12)
+            for name in ("measure/energy_highest", "measure/diverged", "done"):
+                self.assertTrue(np.array_equal(a[name][...], b[name][...]), name)
+
+    def test_what_cannot_be_swept_says_why_and_starts_nothing(self) -> None:
+        self.open()
+        self.replace("first to", "0.01")  # less than where it begins
+        self.click_on("New sweep", "Start (Enter)")
+        self.assertEqual(self.settled()["dialog"], "new sweep")
+        self.assertEqual(list((self.home / "data/limpid/sweeps").glob("*")), [])
+        self.key("Escape")
+        self.wait("no dialog", lambda s: s["dialog"] == "")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,16 @@
 #include "app/desktop/experiments/sweep_controller.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <ctime>
+
+#include "app/base/folders.h"
 #include "app/desktop/base/settings.h"
 #include "app/sweep/record_point.h"
 #include "app/sweep/sweep_map.h"
+#include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {
@@ -56,12 +61,13 @@ std::vector<Fact> measured_of(const OpenedSweep& sweep, std::optional<double> at
   };
   if (at) {
     const MeasureInfo& measure = *sweep.plan->boundary->condition.measure;
-    return {fact(measure.name, measure.unit, measure.yes_no(), again.front())};
+    return {fact(measure.words, measure.unit, measure.yes_no(), again.front())};
   }
   std::vector<Fact> facts;
   for (std::size_t i = 0; i < std::min(again.size(), sweep.table.columns.size()); ++i) {
     const SweepColumn& column = sweep.table.columns[i];
-    facts.push_back(fact(column.name, column.unit, column.unit == "yes/no", again[i]));
+    facts.push_back(
+        fact(words_of_measure(column.name), column.unit, column.unit == "yes/no", again[i]));
   }
   return facts;
 }
@@ -88,7 +94,7 @@ void compare(const OpenedSweep& sweep, std::uint64_t point, std::optional<double
     const std::string value = measure.yes_no() ? (again.front() == 1 ? "yes" : "no")
                                                : fmt::format("{:.6g}", again.front());
     loaded.said = fmt::format("{}, {} {:.4g}; {}: {}.", name, plan.boundary->axis.name, *at,
-                              measure.name, value);
+                              measure.words, value);
     return;
   }
   if (!sweep.table.done[point]) {
@@ -162,8 +168,50 @@ void SweepController::follow_map() {
   });
 }
 
+void SweepController::start(const SweepDraft& draft) {
+  const fs::path folder =
+      sweeps_dir() / fmt::format("{}-{:%Y%m%d-%H%M%S}", as_file_name(short_name(draft)),
+                                 fmt::localtime(std::time(nullptr)));
+  std::error_code none;
+  fs::create_directories(folder, none);
+  const std::string text = plan_text(draft);
+  write_atomically(folder / "plan.toml",
+                   {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+  work(folder);
+}
+
+bool SweepController::may_go_on() const {
+  if (!sweep_ || runner_.busy() || sweep_->table.complete()) return false;
+  std::error_code none;
+  const fs::path folder = sweep_->file.parent_path();
+  return fs::equivalent(folder.parent_path(), sweeps_dir(), none) && sweep_->why_no_run.empty() &&
+         sweep_->build == hex(build_digest());
+}
+
+void SweepController::go_on() { work(sweep_->file.parent_path()); }
+
+void SweepController::work(const fs::path& folder) {
+  why_not_started_.clear();
+  runner_.start(folder);
+}
+
+// Opens the table of a sweep that was started, and says how its work ended.
+void SweepController::follow_runner() {
+  try {
+    if (const auto table = runner_.take_table()) {
+      std::error_code none;
+      if (!sweep_ || !fs::equivalent(sweep_->file, *table, none)) open(*table);
+    }
+    if (const auto said = runner_.take()) notices_.say(*said);
+  } catch (const std::exception& e) {
+    why_not_started_ = e.what();
+    notices_.say(why_not_started_, true);
+  }
+}
+
 bool SweepController::update() {
   bool fresh = false;
+  follow_runner();
   try {
     if (looking_.busy()) {
       fresh = take_look();

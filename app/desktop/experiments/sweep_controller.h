@@ -4,8 +4,10 @@
 
 #include <optional>
 
+#include "app/desktop/experiments/sweep_runner.h"
 #include "app/desktop/playback/playback.h"
 #include "app/plot/plot_frame.h"
+#include "app/sweep/sweep_draft.h"
 #include "app/sweep/sweep_map.h"
 
 namespace limpid {
@@ -24,6 +26,16 @@ class SweepController {
   const SweepMap* map() const { return map_ ? &*map_ : nullptr; }
   const MapChoice& choice() const { return choice_; }  // precondition: sweep()
   void choose(const MapChoice& choice);
+
+  // Starts a sweep beside the window in a new folder of the user's; its table is opened once it is
+  // there. Precondition: !runner().busy().
+  void start(const SweepDraft& draft);
+  // Tells whether the sweep shown was stopped in this window, or an earlier one; goes on with it.
+  bool may_go_on() const;
+  void go_on();
+  void stop() { runner_.stop(); }
+  const SweepRunner& runner() const { return runner_; }
+  const std::string& why_not_started() const { return why_not_started_; }  // empty: it was
 
   // Runs a point (of a boundary with its axis at `at`) beside the window, then plays it. Shows
   // notices on failure and on whether the results are as in the table.
@@ -57,6 +69,8 @@ class SweepController {
   void look(const std::filesystem::path& file, bool anew);
   bool take_look();
   void follow_map();
+  void follow_runner();
+  void work(const std::filesystem::path& folder);
 
   Notices& notices_;
   std::filesystem::path asked_;  // file of the table that is being loaded
@@ -70,6 +84,8 @@ class SweepController {
   std::uint64_t revision_ = 0;
   Task<Look> looking_;
   Task<Made> mapping_;
+  std::string why_not_started_;
+  SweepRunner runner_;
 };
 
 }  // namespace limpid

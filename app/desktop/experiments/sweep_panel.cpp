@@ -13,6 +13,7 @@
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
+#include "app/sweep/read_axes.h"
 #include "app/sweep/sweep_map.h"
 
 namespace limpid {
@@ -30,7 +31,8 @@ ImU32 map_colour(const SweepMap& map, double value);
 Rgb map_line_colour(std::size_t line);
 
 constexpr float kScaleWidth = 74, kBarWidth = 14;  // at scale 1 [px]
-constexpr float kReach = 14;  // largest distance of the mouse from a dot [px at scale 1]
+constexpr float kReach = 14;        // largest distance of the mouse from a dot [px at scale 1]
+constexpr float kLeastMarked = 12;  // smallest side of a cell whose point is marked [px at scale 1]
 constexpr int kScaleSteps = 32;
 
 // Axis of the chart, its numbers divided by a power of ten that keeps them short.
@@ -53,9 +55,9 @@ Side side_of(std::pair<double, double> range, bool logarithmic, const std::strin
 
 Side side_of(const SweepAxis& axis, std::pair<double, double> range) {
   if (axis.words.empty()) {
-    return side_of(range, axis.logarithmic, label_of(axis.name, axis.unit));
+    return side_of(range, axis.logarithmic, label_of(words_of_axis(axis), axis.unit));
   }
-  Side side{{range.first, range.second}, axis.name, 1};
+  Side side{{range.first, range.second}, words_of_axis(axis), 1};
   for (std::size_t i = 0; i < axis.values.size(); ++i) {
     side.axis.words.emplace_back(static_cast<double>(i), value_text(axis, i));
   }
@@ -73,7 +75,10 @@ class MapPainter {
         chart_(y_.label + " over " + x_.label, x_.axis, y_.axis, height) {}
 
   MapMouse draw() {
-    if (map_.kind == SweepMap::Kind::cells) draw_cells();
+    if (map_.kind == SweepMap::Kind::cells) {
+      draw_cells();
+      draw_marks();
+    }
     for (std::size_t i = 0; i < map_.lines.size(); ++i) draw_line(i);
     if (map_.kind == SweepMap::Kind::dots) draw_dots();
     if (map_.kind == SweepMap::Kind::curve) draw_curve();
@@ -86,7 +91,7 @@ class MapPainter {
     if (plan_.boundary && map_.choice.column < 2) {
       return side_of(plan_.boundary->axis, map_.y_range);
     }
-    return side_of(map_.y_range, false, label_of(column_.name, column_.unit));
+    return side_of(map_.y_range, false, label_of(words_of_measure(column_.name), column_.unit));
   }
 
   ImVec2 place(double x, double y) const { return chart_.place({x / x_.unit, y / y_.unit}); }
@@ -114,6 +119,21 @@ class MapPainter {
         }
         if (there) draw.AddRectFilled({left, heights[to]}, {right, heights[from]}, colour);
       }
+    }
+  }
+
+  // Marks where the points of cells were computed, unless these are too small.
+  void draw_marks() const {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float scale = current_scale();
+    for (const MapSpot& spot : map_.spots) {
+      const ImVec2 low = place(spot.cell.x_low, spot.cell.y_low);
+      const ImVec2 high = place(spot.cell.x_high, spot.cell.y_high);
+      if (std::min(high.x - low.x, low.y - high.y) < kLeastMarked * scale) return;
+      if (!spot.there()) continue;
+      const ImVec2 at = place(spot.x, spot.y);
+      draw.AddCircleFilled(at, 2.6f * scale, IM_COL32(255, 255, 255, 200), 12);
+      draw.AddCircleFilled(at, 1.6f * scale, IM_COL32(0, 0, 0, 255), 12);
     }
   }
 
@@ -266,7 +286,7 @@ void draw_scale(const SweepMap& map, const SweepColumn& column, ScreenRect room,
     draw.AddRectFilled({room.min.x, edge(i + 1)}, {room.max.x, edge(i)},
                        colour(scale_colour((i + 0.5) / kScaleSteps)));
   }
-  std::string label = label_of(column.name, column.unit);
+  std::string label = label_of(words_of_measure(column.name), column.unit);
   const int at_most = std::max(2, static_cast<int>(room.height() / (3 * line)));
   for (const ScaleMark& mark : scale_marks(map, at_most, label)) {
     draw_text(draw, Face::small,
@@ -348,10 +368,11 @@ void label(const char* text) {
 void draw_choosers(const OpenedSweep& sweep, MapChoice& choice) {
   const SweepPlan& plan = *sweep.plan;
   const float width = kChoice * ImGui::GetFontSize();
-  const auto axis_name = [&](std::size_t a) { return plan.axes[a].name; };
+  const auto axis_name = [&](std::size_t a) { return words_of_axis(plan.axes[a]); };
   ImGui::SetNextItemWidth(width);
-  choice.column = choose("##measure", choice.column, sweep.table.columns.size(),
-                         [&](std::size_t c) { return sweep.table.columns[c].name; });
+  choice.column =
+      choose("##measure", choice.column, sweep.table.columns.size(),
+             [&](std::size_t c) { return words_of_measure(sweep.table.columns[c].name); });
   tooltip(sweep.table.columns[choice.column].what.c_str());
   ImGui::SameLine();
   label("over");
@@ -378,7 +399,8 @@ void draw_places(const SweepPlan& plan, MapChoice& choice) {
     const SweepAxis& axis = plan.axes[a];
     if (a == choice.x || a == choice.y || axis.spread != Spread::grid) continue;
     if (axis.values.size() < 2) continue;
-    const std::string name = axis.words.empty() ? label_of(axis.name, axis.unit) : axis.name;
+    const std::string words = words_of_axis(axis);
+    const std::string name = axis.words.empty() ? label_of(words, axis.unit) : words;
     const float width = (axis.words.empty() ? kSlider : kChoice) * em;
     const float all = ImGui::CalcTextSize(name.c_str()).x + width + (1 + kNumber) * em;
     if (!first) flow(all);
@@ -424,11 +446,12 @@ void draw_measured(const OpenedSweep& sweep, const SweepMap& map, const MapSpot&
   if (spot.count > 1 || !table.done[spot.point]) {
     const SweepColumn& column = table.columns[map.choice.column];
     const std::string unit = column.unit == "-" || column.unit == "yes/no" ? "" : " " + column.unit;
-    return value_row(column.name,
+    return value_row(words_of_measure(column.name),
                      fmt::format("{:.6g}{}, the mean of {}", spot.cell.value, unit, spot.count));
   }
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    value_row(table.columns[c].name, number_text(table.columns[c], table.at(spot.point, c)));
+    value_row(words_of_measure(table.columns[c].name),
+              number_text(table.columns[c], table.at(spot.point, c)));
   }
 }
 
@@ -442,12 +465,12 @@ void draw_values(const OpenedSweep& sweep, const SweepMap& map, const MapMouse& 
     for (std::size_t a = 0; a < plan.axes.size(); ++a) {
       const SweepAxis& axis = plan.axes[a];
       const bool plain = axis.unit == "-" || !axis.words.empty();
-      value_row(axis.name,
+      value_row(words_of_axis(axis),
                 value_text(axis, point.place[a]) + (plain ? std::string() : " " + axis.unit));
     }
     draw_measured(sweep, map, *mouse.spot);
     if (plan.boundary && map.choice.column < 2) {
-      value_row("here, " + plan.boundary->axis.name, fmt::format("{:.4g}", mouse.y));
+      value_row("here, " + words_of_axis(plan.boundary->axis), fmt::format("{:.4g}", mouse.y));
     }
     ImGui::EndTable();
   }
@@ -481,10 +504,15 @@ void draw_legend(const SweepMap& map, const OpenedSweep& sweep) {
   const std::string count =
       fmt::format("{} of {} points{}", done, table.points(), table.complete() ? "" : ", filling");
   ImGui::TextColored(colour_vector(current_palette().muted), "%s", count.c_str());
+  if (const std::uint64_t failed = diverged_points(table); failed > 0) {
+    ImGui::SameLine();
+    ImGui::TextColored(colour_vector(current_palette().broken), "%s",
+                       fmt::format("{} diverged", failed).c_str());
+  }
   const SweepColumn& column = table.columns[map.choice.column];
   if (map.yes_no && map.kind != SweepMap::Kind::curve) {
-    swatch(map_colour(map, 1), column.name, false, false);
-    swatch(map_colour(map, 0), "not " + column.name, false, false);
+    swatch(map_colour(map, 1), words_of_measure(column.name) + ": yes", false, false);
+    swatch(map_colour(map, 0), "no", false, false);
   }
   for (std::size_t i = 0; i < map.lines.size(); ++i) {
     swatch(colour(map_line_colour(i)), map.lines[i].label,
@@ -520,10 +548,37 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
         "Made by another build of limpid (%s): a point that is run again may differ.",
         sweep.build.c_str());
   } else {
-    ImGui::TextColored(colour_vector(colours.muted),
-                       "A click runs that point again and plays it; F6 comes back here.");
+    ImGui::TextColored(
+        colour_vector(colours.muted),
+        "Dots mark what was computed. A click runs that point again and plays it; F6 "
+        "comes back here.");
   }
   ImGui::PopClipRect();
+}
+
+// Draws the work on the sweep that is shown, or on another one, with what can be done about it.
+// Returns whether another sweep is asked for.
+bool draw_work(SweepController& controller) {
+  const SweepRunner& runner = controller.runner();
+  if (runner.busy()) {
+    const auto points = static_cast<double>(std::max<std::uint64_t>(runner.points(), 1));
+    progress_bar(static_cast<double>(runner.done()) / points, 22 * ImGui::GetFontSize(),
+                 runner.under_way());
+    ImGui::SameLine();
+    ImGui::BeginDisabled(runner.stopping());
+    if (noted_button("Stop")) controller.stop();
+    ImGui::EndDisabled();
+  } else if (controller.may_go_on()) {
+    if (noted_button("Go on")) controller.go_on();
+    tooltip("Makes the points that are not there yet.");
+  }
+  if (runner.busy() || controller.may_go_on()) ImGui::SameLine();
+  const bool anew = noted_button("New sweep...");
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextColored(colour_vector(current_palette().muted), "%s",
+                     controller.sweep()->file.parent_path().c_str());
+  return anew;
 }
 
 MapRequest draw_contents(SweepController& controller, Playback& playback, bool& open) {
@@ -534,23 +589,24 @@ MapRequest draw_contents(SweepController& controller, Playback& playback, bool& 
   controller.choose(choice);
   const SweepMap* map = controller.map();
   if (map == nullptr) return {};
-  const float below = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing() +
-                      ImGui::GetStyle().ItemSpacing.y;
+  const float below = ImGui::GetTextLineHeightWithSpacing() +
+                      2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
   ImVec2 size = ImGui::GetContentRegionAvail();
   size.y = std::max(size.y - below, kLeastMap * current_scale());
   const MapMouse mouse = draw_sweep_map(*map, sweep, size);
   controller.on_screen = {mouse.inside, {}};
   draw_legend(*map, sweep);
+  if (draw_work(controller)) return {.anew = true};
   draw_state(sweep, playback, open);
   if (mouse.spot == nullptr) return {};
   controller.on_screen->pointed_at = mouse.spot->point;
   draw_values(sweep, *map, mouse);
   if (!mouse.clicked || playback.loading()) return {};
-  if (!sweep.plan->boundary) return {mouse.spot->point, {}};
-  if (map->choice.column < 2) return {mouse.spot->point, mouse.y};
+  if (!sweep.plan->boundary) return {.point = mouse.spot->point};
+  if (map->choice.column < 2) return {.point = mouse.spot->point, .at = mouse.y};
   const double found = sweep.table.at(mouse.spot->point, 0);
-  return {mouse.spot->point,
-          std::isfinite(found) ? found : sweep.plan->boundary->axis.values.front()};
+  return {.point = mouse.spot->point,
+          .at = std::isfinite(found) ? found : sweep.plan->boundary->axis.values.front()};
 }
 
 }  // namespace
@@ -571,6 +627,8 @@ MapRequest draw_sweep_panel(SweepController& controller, Playback& playback, boo
       wish = draw_contents(controller, playback, open);
     } else {
       ImGui::TextUnformatted(controller.loading() ? "loading the table ..." : "No sweep is open.");
+      wish.anew = noted_button("New sweep...");
+      ImGui::SameLine();
       close_button(kClose, open);
     }
   }

@@ -8,13 +8,13 @@
 
 namespace limpid {
 
-// Point to be played.
+// Point to be played, or the wish for another sweep.
 struct MapRequest {
-  std::optional<std::uint64_t> point;
-  std::optional<double> at;  // value on the boundary's axis
+  std::optional<std::uint64_t> point = {};
+  std::optional<double> at = {};  // value on the boundary's axis
+  bool anew = false;
 };
-// Draws the map while `open`, which closing it clears. Returns the point to be played, if one was
-// clicked.
+// Draws the map while `open`, which closing it clears. Returns what was clicked.
 MapRequest draw_sweep_panel(SweepController& controller, Playback& playback, bool& open);
 
 }  // namespace limpid

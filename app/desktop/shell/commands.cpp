@@ -52,9 +52,8 @@ void show_or_close(Desktop& d, const char* dialog) {
 }
 
 void show_sweep(Desktop& d) {
-  if (d.sweep.sweep() != nullptr || d.sweep.loading()) return show_or_close(d, "sweep");
-  d.notices.say(
-      "No sweep is open. Drop a sweep's folder or its table.h5 here, or open it with Ctrl+O.");
+  const bool there = d.sweep.sweep() != nullptr || d.sweep.loading();
+  show_or_close(d, there ? "sweep" : "new sweep");
 }
 
 template <Theme kTheme>
@@ -549,9 +548,11 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.playback.close(); },
         {.reach = Reach::playback, .why_not = no_recording}),
     row("experiments.show", "Experiments of the paper...", "Session", "F5",
-        "the paper's experiments; the map of the sweep that is open",
+        "the paper's experiments; the map of the sweep, or a new one",
         [](Desktop& d) { show_or_close(d, "experiments"); }, {.apart = true}),
     row("sweep.show", "Map of the sweep", "Session", "F6", "", show_sweep),
+    row("sweep.begin", "New sweep...", "Session", nullptr, nullptr,
+        [](Desktop& d) { d.dialog.open("new sweep"); }),
     row("scene.gallery", "Gallery...", "Scene", "Ctrl+G", "gallery of scenes",
         [](Desktop& d) { d.dialog.open("gallery"); }),
     row("scene.select_next", "Select the next object", nullptr, "Tab",

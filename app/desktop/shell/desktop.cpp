@@ -437,6 +437,11 @@ std::vector<Banner> Desktop::banners() const {
                    .text = "Experiments go on: " + experiments_under_way + ".",
                    .buttons = {{"Show (F5)", "experiments.show"}}});
   }
+  if (sweep.runner().busy()) {
+    all.push_back({.id = "banner of the sweep's work",
+                   .text = "The sweep goes on: " + sweep.runner().under_way() + ".",
+                   .buttons = {{"Show (F6)", "sweep.show"}}});
+  }
   if (kept.any()) {
     all.push_back({.id = "banner of what was kept",
                    .text = fmt::format("Limpid was ended while a scene had unsaved changes. They "

@@ -14,6 +14,7 @@
 #include "app/desktop/base/window_layout.h"
 #include "app/desktop/device/identify_dialog.h"
 #include "app/desktop/experiments/experiments_panel.h"
+#include "app/desktop/experiments/new_sweep.h"
 #include "app/desktop/experiments/sweep_panel.h"
 #include "app/desktop/playback/mark_dialog.h"
 #include "app/desktop/playback/session_dialog.h"
@@ -72,6 +73,31 @@ DrawDialog sweep_map(Desktop& d) {
   return [&d](bool& open, ScreenRect) {
     const MapRequest request = draw_sweep_panel(d.sweep, d.playback, open);
     if (request.point) d.sweep.play(*request.point, request.at, d.playback);
+    if (request.anew) d.dialog.open("new sweep");
+  };
+}
+
+SweepBasis sweep_basis(Desktop& d) {
+  return {.device = d.settings.device,
+          .scene = d.document.file(),
+          .why_not_scene = d.document.editor().dirty() || d.document.file().empty()
+                               ? "The scene has changes that are not saved, and a sweep takes it "
+                                 "from its file. Save it first (Ctrl+S)."
+                               : "",
+          .recording = d.playback.on() ? d.playback.shown()->file() : fs::path(),
+          .parameters = d.tuning.edited()};
+}
+
+DrawDialog new_sweep(Desktop& d) {
+  return [&d, dialog = std::make_shared<NewSweepDialog>(), started = false](bool& open,
+                                                                            ScreenRect) mutable {
+    dialog->draw(open, sweep_basis(d), d.sweep);
+    // The map comes a frame after the dialog, whose end gives the focus to what was below it.
+    if (std::exchange(started, false)) d.dialog.open("sweep");
+    if (open && d.sweep.loading()) {
+      started = true;
+      open = false;
+    }
   };
 }
 
@@ -291,6 +317,7 @@ constexpr std::array kDialogs{
     DialogKind{"about", kViews, about},
     DialogKind{"experiments", kViews, experiments},
     DialogKind{"sweep", kViews, sweep_map},
+    DialogKind{"new sweep", kModal, new_sweep},
     DialogKind{"plot", DialogKind::Keys::typed, plot_chooser},
     DialogKind{"open session", kModal, sessions},
     DialogKind{"find session", kModal, find_session},

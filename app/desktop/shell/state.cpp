@@ -84,6 +84,13 @@ json state_of(const SweepController& controller) {
   return state;
 }
 
+// Returns the state of the work on a sweep; null without any.
+json sweeping(const SweepRunner& runner) {
+  if (!runner.busy()) return nullptr;
+  return {
+      {"folder", runner.folder().string()}, {"done", runner.done()}, {"points", runner.points()}};
+}
+
 json place(const ImVec2& at) { return {at.x, at.y}; }
 
 // Returns the places of what may be clicked, by windows of ImGui and labels [px].
@@ -274,6 +281,7 @@ json parts_of(Desktop& d) {
           {"notes", notes_of(stage)},
           {"shown", {stage.group.start(), stage.group.stop()}},
           {"sweep", state_of(d.sweep)},
+          {"sweeping", sweeping(d.sweep.runner())},
           {"identify", state_of(d.identify, d.live.loop().device_plugged())},
           {"device_panel", state_of(d.devices)},
           {"banners", banners_of(d)},

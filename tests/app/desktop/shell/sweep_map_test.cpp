@@ -76,8 +76,9 @@ TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
   open(test::sweep_plan(dir, kMapPlan));
   EXPECT_EQ(desktop->dialog.name(), "sweep");
   const std::string shown = words();
-  for (const char* text : {"Sweep: Grips", "human_rms", "over", "and", "kind", "standard",
-                           "eta [-] over stiffness [N/m]", "18 of 18 points", "human_rms [N m]"}) {
+  for (const char* text : {"Sweep: Grips", "hand torque, rms", "over", "and", "Coupling",
+                           "standard", "Impedance scaling \xCE\xB7 [-] over Grip stiffness [N/m]",
+                           "18 of 18 points", "hand torque, rms [N m]"}) {
     EXPECT_THAT(shown, HasSubstr(text));
   }
   EXPECT_THAT(shown, HasSubstr(theory_label("pr")));
@@ -95,8 +96,9 @@ TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
     const std::uint64_t number = point_of_cell(x, y);
     EXPECT_EQ(desktop->sweep.on_screen->pointed_at, number);
     EXPECT_EQ(pointed(),
-              fmt::format("point\n{}\nkind\nstandard\nstiffness\n{} N/m\neta\n{:.4g}\n"
-                          "human_rms\n{} N m\nstable\n{}\n",
+              fmt::format("point\n{}\nCoupling\nstandard\nGrip stiffness\n{} N/m\nImpedance "
+                          "scaling \xCE\xB7\n{:.4g}\n"
+                          "hand torque, rms\n{} N m\ncomes to rest\n{}\n",
                           number, x == 0 ? "100" : "1000", 0.4 + 0.3 * y, in_table(number, 0),
                           in_table(number, 1) == "1" ? "yes" : "no"));
   }
@@ -115,7 +117,8 @@ TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
   EXPECT_EQ(desktop->dialog.name(), "");
   EXPECT_TRUE(fs::exists(folder() / "points/1.h5"));
   frames(4);
-  EXPECT_THAT(sentences(), HasSubstr("kind standard, stiffness 1000 N/m, eta 0.7: human_rms "));
+  EXPECT_THAT(sentences(),
+              HasSubstr("kind standard, stiffness 1000 N/m, eta 0.7: hand torque, rms "));
   click("Back to map (F6)");
   EXPECT_EQ(desktop->dialog.name(), "sweep");
 }
@@ -130,16 +133,18 @@ TEST_F(MapOfASweep, ShowsWhatIsChosen) {
   };
   choose("standard", "predictive");
   point_at(cell(0, 2, 0, 3));
-  EXPECT_THAT(pointed(), HasSubstr("point\n15\nkind\npredictive\nstiffness\n100 N/m\neta\n0.4\n"));
-  choose("stiffness", "eta");
-  EXPECT_THAT(words(), HasSubstr("stiffness [N/m] over eta [-]"));
+  EXPECT_THAT(pointed(), HasSubstr("point\n15\nCoupling\npredictive\nGrip stiffness\n100 "
+                                   "N/m\nImpedance scaling \xCE\xB7\n0.4\n"));
+  choose("Grip stiffness", "Impedance scaling \xCE\xB7");
+  EXPECT_THAT(words(), HasSubstr("Grip stiffness [N/m] over Impedance scaling \xCE\xB7 [-]"));
   point_at(cell(2, 3, 1, 2));
-  EXPECT_THAT(pointed(), HasSubstr("point\n14\nkind\npredictive\nstiffness\n1000 N/m\neta\n1\n"));
-  choose("human_rms", "stable");
-  EXPECT_THAT(words(), HasSubstr("not stable"));
-  EXPECT_THAT(words(), Not(HasSubstr("human_rms [N m]"))) << "a yes or no has no scale";
-  choose("stiffness", "kind");
-  EXPECT_THAT(words(), HasSubstr("kind over eta [-]"));
+  EXPECT_THAT(pointed(), HasSubstr("point\n14\nCoupling\npredictive\nGrip stiffness\n1000 "
+                                   "N/m\nImpedance scaling \xCE\xB7\n1\n"));
+  choose("hand torque, rms", "comes to rest");
+  EXPECT_THAT(words(), HasSubstr("comes to rest: yes"));
+  EXPECT_THAT(words(), Not(HasSubstr("hand torque, rms [N m]"))) << "a yes or no has no scale";
+  choose("Grip stiffness", "Coupling");
+  EXPECT_THAT(words(), HasSubstr("Coupling over Impedance scaling \xCE\xB7 [-]"));
   EXPECT_EQ(desktop->sweep.choice().y, 0u);
 }
 
@@ -150,10 +155,10 @@ TEST_F(MapOfASweep, FollowsATableThatFills) {
   point_at(cell(0, 2, 2, 3));
   EXPECT_THAT(pointed(), HasSubstr("point\n5\n"));
   EXPECT_THAT(pointed(), HasSubstr("not there yet"));
-  EXPECT_THAT(pointed(), Not(HasSubstr("human_rms")));
+  EXPECT_THAT(pointed(), Not(HasSubstr("hand torque, rms\n")));
   test::swept(plan, folder());
   EXPECT_TRUE(until([&] { return find("18 of 18 points").has_value(); }));
-  const std::string measured = "human_rms\n" + in_table(5, 0);
+  const std::string measured = "hand torque, rms\n" + in_table(5, 0);
   EXPECT_TRUE(until([&] { return pointed().find(measured) != std::string::npos; })) << pointed();
 }
 
@@ -167,12 +172,14 @@ measure = ["human_rms"]
 axis = [{ key = "coupling.eta", from = 0.4, to = 1, count = 3 }]
 )"));
   EXPECT_EQ(desktop->sweep.map()->kind, SweepMap::Kind::curve);
-  EXPECT_THAT(words(), testing::ContainsRegex("human_rms .N m.[^\n]* over eta .-.\n"));
+  EXPECT_THAT(words(), testing::ContainsRegex(
+                           "hand torque, rms .N m.[^\n]* over Impedance scaling .* .-.\n"));
   const ScreenRect map = desktop->sweep.on_screen->rect;
   point_at({map.max.x - 5, map.min.y + 5});
-  EXPECT_EQ(pointed(), "point\n2\neta\n1\nhuman_rms\n" + in_table(2, 0) + " N m\n");
+  EXPECT_EQ(pointed(), "point\n2\nImpedance scaling \xCE\xB7\n1\nhand torque, rms\n" +
+                           in_table(2, 0) + " N m\n");
   point_at({map.min.x + 5, map.max.y - 5});
-  EXPECT_THAT(pointed(), HasSubstr("point\n0\neta\n0.4\n"));
+  EXPECT_THAT(pointed(), HasSubstr("point\n0\nImpedance scaling \xCE\xB7\n0.4\n"));
 }
 
 // A boundary's point is played where the mouse is on its axis.
@@ -192,7 +199,7 @@ axis = { key = "coupling.eta", from = 0.2, to = 1, count = 3 }
   const auto [low, high] = desktop->sweep.map()->y_range;
   const double at = 0.25 * low + 0.75 * high;
   click(ImVec2{map.min.x + 5, std::round(map.max.y - 0.75f * map.height())});
-  EXPECT_THAT(pointed(), HasSubstr("point\n0\nstiffness\n300 N/m\n"));
+  EXPECT_THAT(pointed(), HasSubstr("point\n0\nGrip stiffness\n300 N/m\n"));
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   ASSERT_TRUE(said("Point 0: stiffness 300 N/m, eta "));
   const auto facts = desktop->playback.shown()->facts();

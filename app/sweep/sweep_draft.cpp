@@ -1,0 +1,76 @@
+#include "app/sweep/sweep_draft.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace limpid {
+namespace {
+
+toml::array texts_of(const std::vector<std::string>& texts) {
+  toml::array array;
+  for (const std::string& text : texts) array.push_back(text);
+  return array;
+}
+
+toml::array settings_of(const SweepDraft& draft) {
+  toml::array settings;
+  for (const ParameterInfo& info : parameter_table()) {
+    const std::string value = parameter_text(draft.parameters, info);
+    if (value.empty() || value == parameter_text(Parameters{}, info)) continue;
+    if (std::ranges::find(draft.axes, std::string(info.key), &DraftAxis::key) != draft.axes.end())
+      continue;
+    settings.push_back(fmt::format("{} = {}", info.key, value));
+  }
+  return settings;
+}
+
+toml::table table_of(const DraftAxis& axis) {
+  toml::table table{{"key", axis.key}};
+  if (!axis.words.empty()) {
+    table.insert("values", texts_of(axis.words));
+    return table;
+  }
+  table.insert("from", axis.from);
+  table.insert("to", axis.to);
+  table.insert("count", static_cast<std::int64_t>(axis.count));
+  if (axis.logarithmic) table.insert("scale", "log");
+  return table;
+}
+
+}  // namespace
+
+std::string short_name(const SweepDraft& draft) {
+  std::string name = draft.measures.empty() ? "sweep" : draft.measures.front();
+  for (const DraftAxis& axis : draft.axes) {
+    name += (&axis == draft.axes.data() ? " over " : " and ") +
+            axis.key.substr(axis.key.rfind('.') + 1);
+  }
+  return name;
+}
+
+std::string plan_text(const SweepDraft& draft) {
+  toml::table plan{{"title", draft.title}};
+  if (!draft.device.empty()) plan.insert("device", draft.device);
+  if (draft.hand.empty()) {
+    plan.insert("hand", toml::table{{"tap", draft.tap}});
+  } else {
+    plan.insert("hand", draft.hand);
+    if (!draft.scene.empty()) plan.insert("scene", draft.scene);
+  }
+  if (draft.seconds > 0) plan.insert("seconds", draft.seconds);
+  if (toml::array settings = settings_of(draft); !settings.empty()) {
+    plan.insert("set", std::move(settings));
+  }
+  plan.insert("measure", texts_of(draft.measures));
+  toml::array axes;
+  for (const DraftAxis& axis : draft.axes) axes.push_back(table_of(axis));
+  plan.insert("axis", std::move(axes));
+  std::ostringstream text;
+  text << plan << '\n';
+  return text.str();
+}
+
+}  // namespace limpid
