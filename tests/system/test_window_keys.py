@@ -205,7 +205,8 @@ class WhatGoesWrong(WindowTest):
         sessions.unlink()
         sessions.mkdir()
         self.key("F12")
-        self.wait_for_notice("Saved")
+        self.wait("a banner", lambda s: any(".png is in " in b["text"] for b in s["banners"]))
+        self.assertEqual(self.notices().count(".png"), 1, "the failure's alone")
         self.assertEqual(len(list(sessions.glob("*.png"))), 1)
 
     def test_termination_keeps_the_recording_and_unsaved_changes(self) -> None:

@@ -251,8 +251,7 @@ void Application::say_what_was_saved() {
   if (remote_) remote_->saved(window_.saved());
   for (const SavedPicture& picture : window_.saved()) {
     if (picture.error.empty()) {
-      desktop_.notices.say("Saved " + picture.file.string());
-      desktop_.exporter.wrote(picture.file);
+      desktop_.exporter.wrote(picture.file);  // a banner says so
     } else {
       desktop_.notices.say(
           picture.error + ". See to it that the folder is there and can be written to.", true);
