@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "app/style/ticks.h"
 
@@ -34,6 +37,26 @@ Place place_of(const ImRect& item, const ImRect& panel, ImVec2 window) {
 }
 
 }  // namespace
+
+std::string shortened(const std::string& text, float room, const ImFont* in) {
+  const auto fits = [&](const std::string& words) {
+    return in->CalcTextSizeA(in->FontSize, FLT_MAX, 0, words.c_str()).x <= room;
+  };
+  if (fits(text)) return text;
+  std::vector<std::size_t> letters;  // where each begins
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) letters.push_back(i);
+  }
+  std::string found = "\xE2\x80\xA6";
+  for (std::size_t kept = 1; kept < letters.size(); ++kept) {
+    const std::size_t before = kept - kept / 2, after = kept / 2;
+    const std::size_t tail = after == 0 ? text.size() : letters[letters.size() - after];
+    std::string longer = text.substr(0, letters[before]) + "\xE2\x80\xA6" + text.substr(tail);
+    if (!fits(longer)) break;
+    found = std::move(longer);
+  }
+  return found;
+}
 
 void begin_tooltip(ImVec2 from, ImVec2 to) {
   const ImGuiWindow* window = ImGui::GetCurrentWindow();

@@ -26,6 +26,10 @@ bool of_paper(const FieldInfo& info);
 // Returns the text of a plot's mark where the parameter has changed: "η 0.909".
 std::string mark_text(const ParameterInfo& info, const Parameters& p);
 
+// Returns a text that is `room` wide at most in a font [px]: of a longer one the middle is left
+// out.
+std::string shortened(const std::string& text, float room, const ImFont* in);
+
 // Writes an energy with three digits, in J or mJ: "−64.2 mJ", "5.76 J".
 std::string energy_text(double joules);
 

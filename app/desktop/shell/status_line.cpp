@@ -13,6 +13,8 @@
 namespace limpid {
 namespace {
 
+constexpr float kLongestName = 14;  // of the recording that is played [em]
+
 struct StatusPart {
   std::string text;
   Rgb ink;
@@ -43,7 +45,10 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   const bool stopped = !status.running;
   std::vector<StatusPart> parts;
   const auto& [played, pace, led] = going;
-  if (!played.empty()) parts.push_back({"playing " + played, colours.text, played});
+  if (!played.empty()) {
+    const float room = kLongestName * ImGui::GetFontSize();
+    parts.push_back({"playing " + shortened(played, room, ImGui::GetFont()), colours.text, played});
+  }
   // The recording's button is in the bar below only while the loop is shown.
   if (!played.empty() && loop.recording()) {
     parts.push_back({"recording [R]", colours.broken, "The loop is recorded meanwhile; R ends it"});

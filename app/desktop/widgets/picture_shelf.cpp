@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/style/theme.h"
+#include "app/style/words.h"
 #include "render/gl/image_texture.h"
 
 namespace limpid {
@@ -77,6 +78,7 @@ float picture_item_width(const PictureItem& item) {
 bool picture_item(const PictureItem& item, float width, bool marked) {
   const float em = ImGui::GetFontSize(), gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float right = at.x + ImGui::GetContentRegionAvail().x;
   const float height = std::round(kHeight * em), across = picture_width();
   ImGui::PushID(item.name.c_str());
   ImGui::PushID(item.about.c_str());
@@ -95,11 +97,12 @@ bool picture_item(const PictureItem& item, float width, bool marked) {
     list.AddRectFilled(at, end, colour(colours.frame, 0.6f), 3);
   }
   const float left = end.x + gap;
+  const float room = (width > 0 ? at.x + width : right) - left;
   list.AddText({left, at.y + 0.1f * em}, colour(item.there ? colours.text : colours.muted),
-               item.name.c_str());
+               shortened(item.name, room, ImGui::GetFont()).c_str());
   ImFont* small = font(Face::small);
   list.AddText(small, small->FontSize, {left, at.y + 1.45f * em}, colour(colours.muted),
-               item.about.c_str());
+               shortened(item.about, room, small).c_str());
   return chosen;
 }
 

@@ -102,10 +102,17 @@ void read_out(const char* label, const std::string& value, const std::string& br
   const bool on_label = ImGui::IsItemHovered();
   const ImVec2 label_from = ImGui::GetItemRectMin();
   const float width = ImGui::CalcTextSize(value.c_str()).x;
-  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width);
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
+  // A value without room beside its label stands below it.
+  if (end + ImGui::GetStyle().ItemSpacing.x + width <= right) {
+    ImGui::SameLine(right - width);
+  } else {
+    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right - width));
+  }
   ImGui::PushStyleColor(ImGuiCol_Text,
                         colour_vector(broken.empty() ? colours.text : colours.broken));
-  ImGui::TextUnformatted(value.c_str());
+  ImGui::TextWrapped("%s", value.c_str());
   ImGui::PopStyleColor();
   if (!on_label && !ImGui::IsItemHovered()) return;
   const char* text = broken.empty() ? help : broken.c_str();
