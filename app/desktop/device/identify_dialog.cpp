@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/base/open_elsewhere.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -120,6 +121,7 @@ bool draw_found(IdentifyController& controller) {
   ImGui::TextWrapped("%s", device_text(done.identification).c_str());
   draw_drift(done.drift);
   muted("Report: " + (done.report / "report.html").string());
+  if (ImGui::Button("Open the report")) open_elsewhere(done.report / "report.html");
   if (!done.no_pictures.empty()) muted("Without pictures: " + done.no_pictures);
   ImGui::Spacing();
   if (controller.simulated()) {

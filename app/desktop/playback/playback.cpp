@@ -88,8 +88,9 @@ void Playback::recover_leftovers(const fs::path& folder) {
     if (!entry.path().string().ends_with(".h5.part")) continue;
     try {
       const Recovered recovered = recover_session(entry.path(), false);
-      notices_.say(fmt::format("Recovered {} ({} ticks) from a recording that was cut off.",
-                               recovered.file.filename().string(), recovered.rows));
+      notices_.say(
+          fmt::format("Recovered {} ({} ticks) from a recording that was cut off. P plays it.",
+                      recovered.file.filename().string(), recovered.rows));
       last_ = recovered.file;
     } catch (const std::exception& e) {
       notices_.say(e.what(), true);

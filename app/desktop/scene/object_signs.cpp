@@ -177,7 +177,7 @@ std::vector<NewObject> new_objects() {
         .shape = JointStop{.angle = 0.6},
         .material = {JointStop::kUsualStiffness}}},
       {"Ball that moves", moving("ball", Sphere{.radius = 0.02}, 0.02), true},
-      {"Block that moves", moving("die", Box{.size = Vec3::Constant(0.03)}, 0.05)},
+      {"Block that moves", moving("block", Box{.size = Vec3::Constant(0.03)}, 0.05)},
       {"Cylinder that moves", moving("roller", Cylinder{.radius = 0.015, .length = 0.03}, 0.02)},
       {"Capsule that moves", moving("pill", Capsule{.radius = 0.01, .length = 0.03}, 0.01)}};
 }
