@@ -144,6 +144,8 @@ void apply_theme(Theme theme, float scale) {
   style.FrameBorderSize = style.TabBorderSize = theme == Theme::contrast ? 1 : 0;
   set_colours(palette(theme), style.Colors);
   if (theme == Theme::contrast) {
+    // Numbers of ImGui's own sliders stand on their knobs.
+    style.Colors[ImGuiCol_SliderGrab] = style.Colors[ImGuiCol_Header];
     style.Colors[ImGuiCol_ScrollbarGrab] = style.Colors[ImGuiCol_Header];
     style.DisabledAlpha = 0.75f;
   }

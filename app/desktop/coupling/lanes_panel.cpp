@@ -15,6 +15,8 @@
 namespace limpid {
 namespace {
 
+constexpr float kRatios = 16;  // least width of a panel that has them [em]
+
 void choose(const RunNames& names, std::size_t& edited) {
   const std::size_t runs = names.names.size();
   const float between = ImGui::GetStyle().ItemSpacing.x * static_cast<float>(runs - 1);
@@ -71,7 +73,9 @@ void draw_lanes(const Stage& stage, LaneRows rows, std::size_t* edited, bool& ov
                               Line{"|f1| N m", Channel::human, 1, 1e-3},
                               Line{"|f2| N m", Channel::contact, 1, 1e-3},
                               Line{"E_c mJ", Channel::energy_total, 1e3, 0.01}};
-  const bool ratios = rows.size() == 2;  // of more runs there is no room for them
+  // Ratios have no room beside more runs, and none in a narrow panel.
+  const bool ratios =
+      rows.size() == 2 && ImGui::GetContentRegionAvail().x > kRatios * ImGui::GetFontSize();
   std::vector<const char*> widest(rows.size(),
                                   "\xE2\x88\x92"
                                   "8888.8");
@@ -102,11 +106,11 @@ void draw_lanes(const Stage& stage, LaneRows rows, std::size_t* edited, bool& ov
       "Further runs in other shades over the first one, instead of pictures beside it (Shift+B).");
   if (edited != nullptr) {
     if (rows.size() < kMostLanes) {
-      ImGui::SameLine();
+      flow("+ run");
       if (ImGui::SmallButton("+ run")) act("session.add_run");
       tooltip("One more coupling on the same hand (Ctrl+B).");
     }
-    ImGui::SameLine();
+    flow("- run");
     if (ImGui::SmallButton("\xE2\x88\x92 run")) act("session.drop_run");
     tooltip("Ends the last of these runs (Ctrl+Shift+B).");
   }

@@ -337,14 +337,6 @@ constexpr float kNumber = 4;   // width of the number beside a slider [em]
 constexpr const char* kClose = "Close (Esc)";
 constexpr float kLeastMap = 120;  // least height of the map [px at scale 1]
 
-// Goes on beside the last item, or below it if there is no room for `width` more.
-void flow(float width) {
-  const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
-  if (end + ImGui::GetStyle().ItemSpacing.x + width < ImGui::GetWindowContentRegionMax().x) {
-    ImGui::SameLine();
-  }
-}
-
 // Draws a list of names; returns the index chosen.
 template <class Name>
 std::size_t choose(const char* id, std::size_t chosen, std::size_t count, const Name& name) {

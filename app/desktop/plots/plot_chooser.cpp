@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -115,7 +116,7 @@ void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) 
   ImGui::InputTextWithHint("##title", hint.c_str(), &choice.title);
   ImGui::PopItemWidth();
   for (const Kind& kind : kKinds) {
-    if (&kind != kKinds.data()) ImGui::SameLine();
+    if (&kind != kKinds.data()) flow(kind.label);
     if (ImGui::RadioButton(kind.label, choice.kind == kind.kind)) choice.kind = kind.kind;
     tooltip(kind.help);
   }

@@ -122,6 +122,15 @@ void read_out(const char* label, const std::string& value, const std::string& br
   end_tooltip();
 }
 
+void flow(float width) {
+  const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x;
+  if (end + ImGui::GetStyle().ItemSpacing.x + width < ImGui::GetWindowContentRegionMax().x) {
+    ImGui::SameLine();
+  }
+}
+
+void flow(const char* words) { flow(ImGui::CalcTextSize(words).x + 2 * ImGui::GetFontSize()); }
+
 void underline_button(Rgb rgb) {
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const float high = std::round(3 * current_scale());

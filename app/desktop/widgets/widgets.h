@@ -26,6 +26,10 @@ void heading(const char* text);
 // Draws a label in the muted colour and a value; red with `broken` as tooltip unless that is empty.
 void read_out(const char* label, const std::string& value, const std::string& broken = {},
               const char* help = nullptr);
+// Goes on beside the last item, or below it if there is no room for `width` more [px]; the second
+// for a button, or whatever has a box before its words.
+void flow(float width);
+void flow(const char* words);
 // Draws an edge of this colour at the foot of the last button.
 void underline_button(Rgb rgb);
 // Draws a bar filled to `part`, 0 to 1, with a text on it, by default the part. `width` [px]; 0:

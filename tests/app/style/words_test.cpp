@@ -23,6 +23,30 @@ TEST(WordsOfSliders, SayOfEveryLawsSlidersWhatTheyAreBeforeTheSymbol) {
   EXPECT_STREQ(find_parameter("coupling.eta")->caption, "Impedance scaling \xCE\xB7");
 }
 
+// ImGui's own font has 7 px a letter.
+TEST(ShortenedNames, KeepBeginningAndEndWithinTheirRoom) {
+  ImGui::CreateContext();
+  unsigned char* pixels = nullptr;
+  int wide = 0, high = 0;
+  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  fonts.AddFontDefault();
+  fonts.GetTexDataAsAlpha8(&pixels, &wide, &high);
+  const ImFont& font = *fonts.Fonts[0];
+  const std::string name = "a-recording-with-a-very-long-name-20261126.h5";
+  EXPECT_EQ(shortened(name, 7 * static_cast<float>(name.size()), &font), name);
+  for (const float room : {70.0f, 140.0f, 200.0f}) {
+    const std::string shorter = shortened(name, room, &font);
+    const std::size_t gap = shorter.find("\xE2\x80\xA6");
+    ASSERT_NE(gap, std::string::npos);
+    EXPECT_LE(font.CalcTextSizeA(font.FontSize, 1e9f, 0, shorter.c_str()).x, room);
+    EXPECT_TRUE(name.starts_with(shorter.substr(0, gap))) << shorter;
+    EXPECT_TRUE(name.ends_with(shorter.substr(gap + 3))) << shorter;
+    EXPECT_GT(shorter.size(), room / 7 - 2 + 2) << "no more is left out than has to be";
+  }
+  EXPECT_EQ(shortened("\xC3\xA4\xC3\xB6\xC3\xBC", 1, &font), "\xE2\x80\xA6") << "no letter is cut";
+  ImGui::DestroyContext();
+}
+
 TEST(WordsOfSliders, MarkAChangeAsTheSliderReads) {
   Parameters p;
   p.eta = 1 / 1.1;
