@@ -74,6 +74,17 @@ void lead_menus_by_keys(bool lead) {
   ui.NavDisableMouseHover = false;
 }
 
+void lead_window_by_keys() {
+  ImGuiContext& ui = *ImGui::GetCurrentContext();
+  if (!ui.OpenPopupStack.empty()) return;
+  ImGuiWindow* window = ImGui::GetCurrentWindow();
+  if (ui.NavWindow == nullptr || ui.NavWindow->RootWindow != window->RootWindow || ui.NavId == 0) {
+    ImGui::FocusWindow(window);
+    ImGui::NavInitWindow(window, true);
+  }
+  show_chosen_item();
+}
+
 void show_chosen_item() { ImGui::GetCurrentContext()->NavDisableHighlight = false; }
 
 int menus_open() { return ImGui::GetCurrentContext()->OpenPopupStack.Size; }

@@ -16,6 +16,8 @@ void show_mouse_button(int button, bool down);
 
 // Lets arrows and the space bar go through what ImGui has open, as through a menu, or not.
 void lead_menus_by_keys(bool lead);
+// Lets them go through the present window, unless they do so already, or are in a list of it.
+void lead_window_by_keys();
 // Shows which item keys have chosen, if called in a frame before the item is drawn; ImGui hides it
 // now and then.
 void show_chosen_item();

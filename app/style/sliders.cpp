@@ -205,6 +205,7 @@ bool choices(const FieldInfo& info, double& place) {
     }
     const ImRect box({at.x + left, at.y}, {at.x + right, at.y + size.y});
     draw_choice(box, word, place == i, ImGui::IsItemHovered());
+    ImGui::RenderNavHighlight(box, ImGui::GetItemID());
   }
   return changed;
 }
@@ -264,7 +265,9 @@ bool number_slider(const FieldInfo& info, double& value, double usual, bool brok
 
   const bool hovered = ImGui::IsItemHovered();
   const ImGuiIO& io = ImGui::GetIO();
-  const bool type = hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]);
+  const bool by_keys = ImGui::GetCurrentContext()->NavActivateId == id;
+  const bool type =
+      by_keys || (hovered && ((io.MouseClicked[0] && io.KeyCtrl) || io.MouseDoubleClicked[0]));
   const float r = 6 * scale;
   const ImRect track({box.Min.x + r, box.Min.y + text + 2 * scale}, {box.Max.x - r, box.Max.y});
   bool changed = false;
@@ -290,6 +293,7 @@ bool number_slider(const FieldInfo& info, double& value, double usual, bool brok
   draw_caption(box, info, value, broken);
   draw_track(track, info, value, usual, broken, over, from_track);
   if (broken) draw_broken_frame(box.Min, box.Max);
+  ImGui::RenderNavHighlight(box, id);
   return changed;
 }
 

@@ -150,6 +150,49 @@ class Menus(WindowTest):
             self.key(key)
 
 
+class Panels(WindowTest):
+    NONE, LEFT, RIGHT = 0, 1, 2
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.settled()
+            self.key(key)
+
+    def test_are_led_by_keys_from_one_to_the_next(self) -> None:
+        for panel in (self.LEFT, self.RIGHT, self.NONE):
+            self.press("ctrl+Tab")
+            self.wait(f"panel {panel}", lambda s: s["panel"] == panel)
+        self.press("F3", "ctrl+Tab", "ctrl+Tab")
+        self.wait("no panel, as the right one is hidden", lambda s: s["panel"] == self.NONE)
+
+    def test_choose_a_law_and_take_a_number(self) -> None:
+        self.press("ctrl+Tab", "Right", "Return")
+        self.wait("the second law", lambda s: s["edited"]["kind"] == "proposed")
+        self.press("c")
+        self.assertEqual(self.settled()["edited"]["kind"], "proposed", "no other key acts")
+        self.press("Tab", "Tab", "Return")
+        self.wait("typing over a slider", lambda s: s["typing"])
+        self.type("0.5")
+        self.press("Return")
+        self.wait("the number", lambda s: s["eta"] == 0.5 and not s["typing"])
+        self.assertEqual(self.settled()["panel"], self.LEFT, "it goes on from there")
+
+    def test_leave_the_force_to_its_keys(self) -> None:
+        self.press("ctrl+Tab")
+        self.wait("the panel", lambda s: s["panel"] == self.LEFT)
+        self.assertTrue(self.settled()["force"])
+        self.press("space")
+        self.wait("the space bar to cut the force", lambda s: not s["force"])
+        self.assertEqual(self.settled()["edited"]["kind"], "standard", "and to take nothing")
+        self.press("Escape")
+        self.wait("the view", lambda s: s["panel"] == self.NONE)
+        self.press("f")
+        self.wait("force", lambda s: s["force"])
+        self.press("ctrl+Tab", "Escape")
+        self.wait("the view", lambda s: s["panel"] == self.NONE)
+        self.assertTrue(self.settled()["force"], "Esc leaves the panel, and no more")
+
+
 class Leaving(WindowTest):
     def test_while_something_is_recorded_is_asked_about(self) -> None:
         self.key("r")

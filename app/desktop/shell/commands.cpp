@@ -91,6 +91,14 @@ void freeze_plots(Desktop& d) {
   group.set_following(!group.following());
 }
 
+// Goes on to the next panel, and behind the last one back to the view; Frame passes over those that
+// are not shown.
+void lead_panel(Desktop& d) {
+  const auto next = static_cast<int>(d.led_panel) + 1;
+  d.led_panel =
+      next > static_cast<int>(LedPanel::right) ? LedPanel::none : static_cast<LedPanel>(next);
+}
+
 std::string picture_name() {
   return fmt::format("limpid-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr)));
 }
@@ -485,6 +493,9 @@ constexpr std::array kCommands{
         {.checked = [](const Desktop& d) { return d.settings.picture_quality == "low"; }}),
     row("window.menu", "Menus", nullptr, "F10", "the menus: arrows, Enter, Esc",
         [](Desktop& d) { d.asked.menu = true; }),
+    row("window.panels", "Keys in the panels", nullptr, "Ctrl+Tab",
+        "the panels: arrows, Enter, Esc; again: the next panel", lead_panel,
+        {.reach = Reach::panel}),
     row("window.full_screen", "Full screen", "View", "F11", "full screen",
         [](Desktop& d) { d.asked.toggle_full_screen = true; },
         {.checked = [](const Desktop& d) { return d.full_screen; }, .blind = true}),
@@ -697,6 +708,9 @@ bool reaches(const Command& command, KeyOwner owner) {
     case Reach::playback: return owner == KeyOwner::playback;
     case Reach::selection: return owner == KeyOwner::selection || owner == KeyOwner::transform;
     case Reach::transform: return owner == KeyOwner::transform;
+    case Reach::panel:
+      return owner == KeyOwner::panel || owner == KeyOwner::view || owner == KeyOwner::playback ||
+             owner == KeyOwner::selection;
     case Reach::question: return owner == KeyOwner::question;
     case Reach::all_but_text: return owner != KeyOwner::text;
     case Reach::all: return true;

@@ -21,6 +21,7 @@ enum class Reach : std::uint8_t {
   playback,      // while a recording is shown
   selection,     // while an object of the scene is selected
   transform,     // while the selected object follows the mouse
+  panel,         // as view, and while keys lead through a panel
   question,      // in the question about unsaved changes
   all_but_text,  // always, with any modifiers, but not while the user types
   all,           // always, with any modifiers

@@ -338,6 +338,7 @@ Focus Desktop::focus() const {
           .dialog = dialog.name(),
           .asked = question.number(),
           .modal = dialog.modal(),
+          .panel = led_panel != LedPanel::none,
           .playback = playback.on(),
           .selection = document.editor().selected().has_value(),
           .transform = transform.follows()};
@@ -394,6 +395,8 @@ bool Desktop::close_one() {
     ImGui::ClosePopupToLevel(level, true);
   } else if (now.question) {
     document.stay();
+  } else if (owner_of(now) == KeyOwner::panel) {
+    led_panel = LedPanel::none;
   } else if (owner_of(now) == KeyOwner::transform) {
     transform.give_up(document);
   } else if (playback.loading_part() > 0 && playback.loading()) {

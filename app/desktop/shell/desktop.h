@@ -2,6 +2,7 @@
 // commands work on the parts themselves.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -97,6 +98,9 @@ struct WindowRequests {
   std::filesystem::path picture;  // file for a picture of the window; empty: none
 };
 
+// Panel that keys lead through, as through a menu.
+enum class LedPanel : std::uint8_t { none, left, right };
+
 class Desktop {
  public:
   Desktop(Settings first, const AskForPriority& ask);
@@ -133,6 +137,7 @@ class Desktop {
   std::string experiments_under_way;
   // State of the system's window: its size on the screen, the work of its last frame without
   // waiting [s], and the labels of its keyboard.
+  LedPanel led_panel = LedPanel::none;
   bool full_screen = false;
   double frame_time = 0;
   const KeyLabels* key_labels = &kUsKeyboard;

@@ -28,6 +28,7 @@ KeyOwner owner_of(const Focus& focus) {
   if (focus.popup) return KeyOwner::popup;
   if (focus.question) return KeyOwner::question;
   if (focus.modal) return KeyOwner::dialog;
+  if (focus.panel) return KeyOwner::panel;
   if (focus.playback) return KeyOwner::playback;
   if (focus.transform) return KeyOwner::transform;
   return focus.selection ? KeyOwner::selection : KeyOwner::view;

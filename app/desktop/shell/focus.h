@@ -20,6 +20,7 @@ struct Focus {
   std::string_view dialog{};  // the one that is open; empty: none
   std::size_t asked = 0;      // number of a program's question in it
   bool modal = false;         // the dialog asks something: nothing behind it acts
+  bool panel = false;         // keys lead through a panel
   bool playback = false;
   bool selection = false;  // an object of the scene is selected
   bool transform = false;  // the selected object follows the mouse
@@ -33,6 +34,7 @@ enum class KeyOwner : std::uint8_t {
   selection,
   transform,
   dialog,
+  panel,
   popup,
   question,
   text

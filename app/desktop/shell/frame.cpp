@@ -35,11 +35,12 @@ void Frame::draw() {
   if (desktop_.blind) return draw_blind();
   part([&] { draw_menu_bar(desktop_, files_); });
   const Layout at = lay_out();
+  follow_led_panel(at);
   part([&] { draw_view(at.view); });
   if (at.show_left) part([&] { draw_coupling(at.left); });
   if (at.show_right) {
     part([&] {
-      begin_panel(kSidePanel, at.right);
+      begin_panel(kSidePanel, at.right, desktop_.led_panel == LedPanel::right);
       sections_.draw(act_);
       ImGui::End();
     });
@@ -74,8 +75,19 @@ void Frame::draw() {
   draw_notices(desktop_.notices, at.view, below_banners_);
 }
 
+// Ends the lead of the keys with a click, a dialog, or the panel's end. Passes over panels that are
+// not shown.
+void Frame::follow_led_panel(const Layout& at) {
+  LedPanel& led = desktop_.led_panel;
+  if (led == LedPanel::left && !at.show_left) led = LedPanel::right;
+  if (led == LedPanel::right && !at.show_right) led = LedPanel::none;
+  const bool clicked = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1);
+  if (clicked || desktop_.dialog.kind() != nullptr) led = LedPanel::none;
+}
+
 // Draws only the picture, banners and modal dialogs: nothing that tells couplings apart.
 void Frame::draw_blind() {
+  desktop_.led_panel = LedPanel::none;
   const FrameSize size = size_();
   const ScreenRect view{{0, 0}, {static_cast<float>(size.width), static_cast<float>(size.height)}};
   const auto part = [this](auto&& work) { guard(desktop_.notices, work); };
@@ -225,7 +237,7 @@ void Frame::draw_coupling(ScreenRect rect) {
                               .arm = shown.arm(),
                               .real = desktop_.live.loop().device_in_place(),
                               .broken = passivity_broken(desktop_.settings)};
-  begin_panel("coupling", rect);
+  begin_panel("coupling", rect, desktop_.led_panel == LedPanel::left);
   if (rows.size() > 1) {
     LaneSettings& lanes = desktop_.settings.lanes;
     draw_lanes(shown, rows, desktop_.playback.on() ? nullptr : &lanes.edited,

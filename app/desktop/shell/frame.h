@@ -41,6 +41,7 @@ class Frame {
  private:
   void draw_blind();
   Layout lay_out();
+  void follow_led_panel(const Layout& at);
   ViewScene view_scene();
   ScreenRect signs_box(ScreenRect view);
   void draw_view(ScreenRect rect);

@@ -44,7 +44,7 @@ void KeyInput::character(unsigned character) {
 
 void KeyInput::deal(const Focus& focus) {
   held_.set_focus(focus);
-  in_menu_ = focus.popup && !focus.text;
+  in_menu_ = (focus.popup || owner_of(focus) == KeyOwner::panel) && !focus.text;
   lead_menus_by_keys(in_menu_);
   Taken taken = Taken::nothing;
   int last = GLFW_KEY_UNKNOWN;  // key that a character comes from
@@ -67,9 +67,15 @@ void KeyInput::deal(const Focus& focus) {
 
 // Returns ImGui's code of a key; 0: none. In a menu ImGui takes an item by the space bar and closes
 // it by Esc. Here the space bar cuts the force and Esc is a command, so that Enter takes the item.
+// Tab goes to the next item, as it does elsewhere.
 int KeyInput::seen_as(int key) const {
   if (!in_menu_) return key;
   if (key == GLFW_KEY_SPACE || key == GLFW_KEY_ESCAPE) return 0;
+  if (key == GLFW_KEY_TAB) {
+    const bool back = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
+    const bool other = down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL);
+    return other ? 0 : back ? GLFW_KEY_UP : GLFW_KEY_DOWN;
+  }
   return key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER ? GLFW_KEY_SPACE : key;
 }
 

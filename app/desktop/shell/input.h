@@ -70,7 +70,7 @@ class KeyInput {
   std::deque<Event> events_;
   HeldKeys held_;
   std::bitset<HeldKeys::kKeys> down_, shown_;  // present keys; as ImGui knows them
-  bool in_menu_ = false;
+  bool in_menu_ = false;                       // or in a panel that keys lead through
   std::vector<KeyPress> pressed_;
   long taken_ = 0;
 };

@@ -265,6 +265,7 @@ json busy_with(Desktop& d) {
           {"dialog", focus.question ? "question" : focus.dialog},
           {"typing", focus.text},
           {"popup", focus.popup},
+          {"panel", static_cast<int>(d.led_panel)},
           {"notices", notices},
           {"told", told(d)},
           {"filming", d.playback.video().busy()},

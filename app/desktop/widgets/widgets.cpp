@@ -64,7 +64,7 @@ void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* hel
   ImGui::PopStyleVar(3);
 }
 
-void begin_panel(const char* name, ScreenRect rect) {
+void begin_panel(const char* name, ScreenRect rect, bool led) {
   // The backdrop shows behind the panel's round corners.
   ImGui::GetBackgroundDrawList()->AddRectFilled(rect.min, rect.max,
                                                 colour(current_palette().backdrop));
@@ -73,7 +73,8 @@ void begin_panel(const char* name, ScreenRect rect) {
   ImGui::Begin(name, nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs);
+                   ImGuiWindowFlags_NoSavedSettings | (led ? 0 : ImGuiWindowFlags_NoNavInputs));
+  if (led) lead_window_by_keys();
 }
 
 bool section(const char* name, bool open_at_first) {

@@ -17,8 +17,8 @@ void splitter(const char* name, ScreenRect rect, bool vertical, double direction
 // Draws a small tab at the view's edge that folds a panel away, or brings it back.
 void fold_tab(const char* name, ScreenRect rect, ImGuiDir arrow, const char* help, bool& wanted);
 
-// Begins a panel's frame without a title bar; pairs with ImGui::End().
-void begin_panel(const char* name, ScreenRect rect);
+// Begins a panel's frame without a title bar; pairs with ImGui::End(). `led`: keys lead through it.
+void begin_panel(const char* name, ScreenRect rect, bool led = false);
 // Begins a part of a panel that folds; returns whether it is open.
 bool section(const char* name, bool open_at_first);
 // Draws a small heading inside a panel.

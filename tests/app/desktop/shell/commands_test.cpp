@@ -21,8 +21,8 @@ namespace {
 
 constexpr int kShift = GLFW_MOD_SHIFT, kControl = GLFW_MOD_CONTROL;
 constexpr KeyOwner kOwners[] = {KeyOwner::view,      KeyOwner::playback, KeyOwner::selection,
-                                KeyOwner::transform, KeyOwner::dialog,   KeyOwner::popup,
-                                KeyOwner::question,  KeyOwner::text};
+                                KeyOwner::transform, KeyOwner::dialog,   KeyOwner::panel,
+                                KeyOwner::popup,     KeyOwner::question, KeyOwner::text};
 
 struct Case {
   const char* help;  // keys as written in the list of shortcuts
@@ -100,6 +100,7 @@ const Case kCases[] = {
     {"Ctrl+-", GLFW_KEY_MINUS, kControl, "view.text.smaller", "view.text.smaller"},
     {"Ctrl+Keypad -", GLFW_KEY_KP_SUBTRACT, kControl, "view.text.smaller", "view.text.smaller"},
     {"Ctrl+0", GLFW_KEY_0, kControl, "view.text.usual", "view.text.usual"},
+    {"Ctrl+Tab", GLFW_KEY_TAB, kControl, "window.panels", "window.panels"},
     {"F11", GLFW_KEY_F11, 0, "window.full_screen", "window.full_screen"},
     {"F12", GLFW_KEY_F12, 0, "window.save_picture", "window.save_picture"},
     {"Ctrl+E", GLFW_KEY_E, kControl, "export.begin", "export.begin"},
@@ -215,6 +216,16 @@ TEST(Keys, NoneActsThroughATextFieldADialogOrAMenu) {
       for (int modifiers = 0; modifiers < 16; ++modifiers) {
         EXPECT_EQ(id_of(owner, key, modifiers, false), "") << key;
       }
+    }
+  }
+}
+
+TEST(Keys, OfAPanelGoOnToTheNextOneAndRunNothingElse) {
+  for (int key = GLFW_KEY_SPACE + 1; key <= GLFW_KEY_LAST; ++key) {
+    if (key == GLFW_KEY_ESCAPE) continue;
+    for (int modifiers = 0; modifiers < 16; ++modifiers) {
+      const bool on = key == GLFW_KEY_TAB && modifiers == kControl;
+      EXPECT_EQ(id_of(KeyOwner::panel, key, modifiers, false), on ? "window.panels" : "") << key;
     }
   }
 }

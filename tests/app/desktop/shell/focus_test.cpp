@@ -19,6 +19,8 @@ TEST(Focus, TextComesBeforeMenusQuestionsDialogsPlaybackAndWhatIsSelected) {
   EXPECT_EQ(owner_of(focus), KeyOwner::transform);
   focus.playback = true;
   EXPECT_EQ(owner_of(focus), KeyOwner::playback);
+  focus.panel = true;
+  EXPECT_EQ(owner_of(focus), KeyOwner::panel);
   focus.dialog = "add model";
   focus.modal = true;
   EXPECT_EQ(owner_of(focus), KeyOwner::dialog);
