@@ -187,9 +187,9 @@ void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
 
 // Draws a delay between device and proxy, as if the world were far away.
 void draw_link(Parameters& p) {
-  const std::string set =
-      p.linked() ? fmt::format("Link: {:.4g} ms each way###link", 1e3 * p.tick * p.link_delay)
-                 : "Link###link";
+  const std::string set = p.linked() ? fmt::format("Link: {} ticks, {:.4g} ms each way###link",
+                                                   p.link_delay, 1e3 * p.tick * p.link_delay)
+                                     : "Link###link";
   if (!section(set.c_str(), false)) return;
   if (!info(p.kind).knows_link()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));

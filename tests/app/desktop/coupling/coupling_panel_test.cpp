@@ -298,8 +298,8 @@ TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
   p_.link_delay = 5;
   p_.tick = 0.002;
   draw();
-  EXPECT_TRUE(find("Link: 10 ms each way"));
-  click("Link: 10 ms each way");
+  EXPECT_TRUE(find("Link: 5 ticks, 10 ms each way"));
+  click("Link: 5 ticks, 10 ms each way");
   EXPECT_EQ(value("Through it"), info(p_.kind).through_link);
 }
 
