@@ -151,12 +151,16 @@ const char* name(const Capsule&) { return "capsule"; }
 const char* name(const Mesh&) { return "mesh"; }
 const char* name(const JointStop&) { return "joint stop"; }
 
+// Colour of a new object that is fixed, so that it is seen on a table.
+const Vec3 kFixed(0.45, 0.55, 0.68);
+
 // Returns a body that moves, of wood as a rule; hard enough to be pushed.
 Object moving(const char* name, Shape shape, double mass) {
   return {.name = name,
           .shape = std::move(shape),
           .material = {.stiffness = 2000, .friction_static = 0.4, .friction_kinetic = 0.3},
-          .body = Body{.mass = mass}};
+          .body = Body{.mass = mass},
+          .color = Vec3(0.80, 0.60, 0.38)};
 }
 
 }  // namespace
@@ -167,10 +171,12 @@ const char* shape_name(const Shape& shape) {
 
 std::vector<NewObject> new_objects() {
   return {
-      {"Ball", {.name = "ball", .shape = Sphere{.radius = 0.02}}},
-      {"Block", {.name = "block", .shape = Box{.size = Vec3::Constant(0.04)}}},
-      {"Cylinder", {.name = "cylinder", .shape = Cylinder{.radius = 0.02, .length = 0.04}}},
-      {"Capsule", {.name = "capsule", .shape = Capsule{.radius = 0.01, .length = 0.04}}},
+      {"Ball", {.name = "ball", .shape = Sphere{.radius = 0.02}, .color = kFixed}},
+      {"Block", {.name = "block", .shape = Box{.size = Vec3::Constant(0.04)}, .color = kFixed}},
+      {"Cylinder",
+       {.name = "cylinder", .shape = Cylinder{.radius = 0.02, .length = 0.04}, .color = kFixed}},
+      {"Capsule",
+       {.name = "capsule", .shape = Capsule{.radius = 0.01, .length = 0.04}, .color = kFixed}},
       {"Plane", {.name = "plane", .shape = Plane{}}},
       {"Joint stop",
        {.name = "stop",
