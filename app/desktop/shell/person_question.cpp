@@ -15,6 +15,7 @@ namespace limpid {
 namespace {
 
 constexpr double kStays = 0.3;  // time that it stays after an answer [s]
+constexpr float kLargeText = 1.3f;
 // Titles of both windows; ImGui knows them as the same window by the text behind ###.
 constexpr const char* kModalTitle = "A question###question";
 constexpr const char* kMessageTitle = "A message###question";
@@ -72,9 +73,9 @@ std::optional<std::size_t> PersonQuestion::chosen() const {
   return enter ? std::optional<std::size_t>(0) : std::nullopt;
 }
 
-// Begins its window. Cross and Esc are no answer: the program opens it again.
+// Begins its window. It has no cross, and Esc is no answer: the program opens it again.
 bool PersonQuestion::begin(bool& open, ScreenRect view) const {
-  if (!how_.beside) return begin_modal(title(), open, {0, 0});
+  if (!how_.beside) return begin_modal(title(), open, {0, 0}, false);
   // An earlier modal question has to be closed by ImGui, too.
   bool before = false;
   begin_modal(kModalTitle, before, {0, 0});
@@ -139,9 +140,11 @@ void PersonQuestion::draw(bool& open, ScreenRect view) {
   if (!asks_ && !stays) open = false;
   if (!begin(open, view)) return;
   std::optional<std::size_t> choice = chosen();
-  ImGui::PushTextWrapPos(34 * ImGui::GetFontSize());
+  ImGui::SetWindowFontScale(kLargeText);  // a participant may sit far from the screen
+  ImGui::PushTextWrapPos(26 * ImGui::GetFontSize());
   ImGui::TextUnformatted(text_.c_str());
   ImGui::PopTextWrapPos();
+  ImGui::SetWindowFontScale(1);
   draw_time();
   if (!choices_.empty()) ImGui::Spacing();
   if (const auto clicked = draw_choices(view.width() - 3 * ImGui::GetFontSize())) choice = clicked;

@@ -49,14 +49,14 @@ Notes& notes() {
 
 }  // namespace
 
-bool begin_modal(const char* title, bool& open, const ImVec2& size) {
+bool begin_modal(const char* title, bool& open, const ImVec2& size, bool cross) {
   if (open && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize(size);
   const ImGuiWindowFlags fit = size.y == 0 ? ImGuiWindowFlags_AlwaysAutoResize : 0;
   bool wanted = true;
   const bool drawn =
-      ImGui::BeginPopupModal(title, &wanted,
+      ImGui::BeginPopupModal(title, cross ? &wanted : nullptr,
                              ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | fit);
   if (!wanted) open = false;  // closed by its cross, and ImGui has done so

@@ -37,8 +37,8 @@ void guarded(Complain&& complain, Work&& work) {
 
 // Begins a modal dialog: all behind it is dimmed and waits. To be called in every frame, outside of
 // other windows. Returns true while the dialog is to be drawn; then pairs with ImGui::EndPopup().
-// Its cross clears `open`. `size` [px]; 0: as the content needs.
-bool begin_modal(const char* title, bool& open, const ImVec2& size);
+// Its cross clears `open`. `size` [px]; 0: as the content needs. `cross`: whether it has one.
+bool begin_modal(const char* title, bool& open, const ImVec2& size, bool cross = true);
 
 // Begins a window beside the others; pairs with ImGui::End() in any case. Its cross clears `open`.
 bool begin_dialog(const char* title, bool& open, ImGuiWindowFlags flags);
