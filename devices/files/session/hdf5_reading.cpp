@@ -112,6 +112,25 @@ bool whole(std::string_view heap) {
   return true;
 }
 
+// Returns how much there is of a file that is shorter than it says; empty if it is not. The
+// superblock has the length of the whole at a place of its own in each version.
+std::string cut_off(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 52> head{};
+  if (!in.read(head.data(), head.size())) return {};
+  std::uint64_t promised = 0;
+  std::memcpy(&promised,
+              head.data() + (head[8] == 0   ? 40
+                             : head[8] == 1 ? 44
+                                            : 28),
+              sizeof promised);
+  std::error_code none;
+  const std::uint64_t there = std::filesystem::file_size(file, none);
+  if (none || there >= promised) return {};
+  return fmt::format("it ends after {:.3g} MB of {:.3g}; was it copied to its end?",
+                     1e-6 * static_cast<double>(there), 1e-6 * static_cast<double>(promised));
+}
+
 void check_heap(std::ifstream& in, std::uint64_t at, std::uint64_t file_size,
                 const std::filesystem::path& file) {
   const std::string header = bytes_at(in, at, kHeader);
@@ -119,7 +138,9 @@ void check_heap(std::ifstream& in, std::uint64_t at, std::uint64_t file_size,
     const auto size = number_at<std::uint64_t>(header, 8);
     if (size >= kHeader && size <= file_size - at && whole(bytes_at(in, at, size))) return;
   }
-  throw FileError(fmt::format("{}: damaged (text at byte {})", file.string(), at));
+  const std::string cut = cut_off(file);
+  throw FileError(fmt::format("{}: damaged ({})", file.string(),
+                              cut.empty() ? fmt::format("text at byte {}", at) : cut));
 }
 
 namespace fs = std::filesystem;
@@ -211,6 +232,11 @@ std::string last_error() {
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, &collect, &reasons);
   if (!reasons.system.empty()) return reasons.system;
   return reasons.innermost.empty() ? "HDF5 gives no reason" : reasons.innermost;
+}
+
+std::string why_not_opened(const fs::path& file) {
+  const std::string cut = cut_off(file);
+  return cut.empty() ? last_error() : cut;
 }
 
 void check(bool ok, const std::filesystem::path& file, const char* what) {
@@ -355,7 +381,9 @@ void check_before_opening(const fs::path& file) {
 File open_to_read(const fs::path& file) {
   check_before_opening(file);
   File opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  check(static_cast<bool>(opened), file, "cannot open");
+  if (!opened) {
+    throw FileError(fmt::format("{}: cannot open: {}", file.string(), why_not_opened(file)));
+  }
   return opened;
 }
 

@@ -73,6 +73,9 @@ class Quiet {
 // if there is one, else that of HDF5's innermost function.
 std::string last_error();
 
+// The same of opening a file, or that it is shorter than it says.
+std::string why_not_opened(const std::filesystem::path& file);
+
 // Throws FileError "FILE: WHAT: reason" unless `ok`.
 void check(bool ok, const std::filesystem::path& file, const char* what);
 

@@ -84,7 +84,7 @@ hdf5::File open(const fs::path& file) {
   }
   hdf5::File opened = open_as(file, H5F_ACC_RDONLY);
   if (opened) return opened;
-  const std::string reason = hdf5::last_error();
+  const std::string reason = hdf5::why_not_opened(file);
   if (open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ)) {
     refuse(file, "was never closed; rename it to end in .part and use `limpid recover`");
   }

@@ -40,6 +40,16 @@ TEST(DamagedSession, IsRefusedWhereverItIsCut) {
   }
 }
 
+TEST(DamagedSession, ThatWasCopiedInPartSaysHowMuchOfItIsThere) {
+  const test::TempDir dir;
+  test::write_sample(dir / "a.h5", 5000);
+  const std::string whole = test::file_bytes(dir / "a.h5");
+  ASSERT_GT(whole.size(), 200'000u);
+  test::write_file(dir / "cut.h5", whole.substr(0, 100'000));
+  EXPECT_THAT(refusal([&] { read_session(dir / "cut.h5"); }),
+              AllOf(HasSubstr("ends after 0.1 MB of "), HasSubstr("copied to its end")));
+}
+
 TEST(DamagedSession, NeverCrashesTheReader) {
   const test::TempDir dir;
   test::write_sample(dir / "a.h5", 700);
