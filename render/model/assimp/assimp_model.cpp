@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <string_view>
 
 #include "render/model/assimp/assimp_files.h"
 #include "render/model/model_building.h"
@@ -93,6 +94,12 @@ void keep_importer(Assimp::Importer& importer, const ModelKind& kind) {
 std::string in_words(const std::string& why) {
   for (const char* said : {"No meshes remaining", "invalid primitive type", "no facets"})
     if (why.find(said) != why.npos) return kNoTriangles;
+  constexpr std::string_view kNoNumber = "Cannot parse string \"";
+  if (const std::size_t at = why.find(kNoNumber); at != why.npos) {
+    const std::string found = why.substr(at + kNoNumber.size());
+    return "a number is expected, and there is \"" +
+           found.substr(0, found.find_first_of("?\n\r\"")) + "\"";
+  }
   return why.empty() ? "is not valid" : why;
 }
 

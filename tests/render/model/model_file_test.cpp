@@ -273,6 +273,10 @@ TEST(ModelFile, NeedsNoOtherFileOfOneThatStandsAlone) {
 TEST(ModelFile, SaysWhatCannotBeRead) {
   EXPECT_NE(refusal({1}, "a.step").find("allowed are .glb, .gltf, .stl"), std::string::npos);
   EXPECT_EQ(refusal({}, "a.stl"), "a.stl: is empty");
+  EXPECT_EQ(refusal(bytes_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex a b c\nendloop\n"
+                             "endfacet\nendsolid\n"),
+                    "a.stl"),
+            "a.stl: a number is expected, and there is \"a b c\"");
   EXPECT_NE(refusal(bytes_of("v 0 0 0\nv 1 0 0\nl 1 2\n"), "a.obj").find("no triangles"),
             std::string::npos);
 }
