@@ -59,7 +59,9 @@ TEST_F(RunAgain, ThatDivergesHasItsLastRowToTheEnd) {
   ASSERT_LT(again.run.end.rows, session_.size());
   ASSERT_EQ(again.run.rows.size(), session_.rows.size());
   const auto stride = static_cast<std::size_t>(session_.layout.stride());
-  const auto row = [&](std::size_t k) { return std::span(again.run.rows).subspan(k * stride, stride); };
+  const auto row = [&](std::size_t k) {
+    return std::span(again.run.rows).subspan(k * stride, stride);
+  };
   const std::size_t last = again.run.end.rows - 1;
   EXPECT_EQ(session_.layout.in(row(last), Column::time)[0], 0.01 * static_cast<double>(last));
   for (std::size_t k = again.run.end.rows; k < session_.size(); ++k) {
