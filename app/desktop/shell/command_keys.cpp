@@ -18,7 +18,9 @@ struct Hint {
   const char *with, *what;
 };
 constexpr std::array kBefore{
-    Hint{"left drag at the tip", "pull the arm; wheel meanwhile: nearer and farther"},
+    Hint{"left drag at the tip",
+         "pull the arm, as deep as what the mouse comes to; wheel meanwhile: nearer and farther; "
+         "Shift keeps the depth"},
     Hint{"Ctrl+left drag", "pull what moves, without the arm; wheel meanwhile: nearer and farther"},
     Hint{"left drag elsewhere, right drag", "turn the camera"},
     Hint{"middle drag, Shift+right drag", "move the camera"},

@@ -502,9 +502,13 @@ std::optional<Aim> ViewPanel::aim_near(const ViewScene& scene, const Camera& cam
 }
 
 // Takes the depth of an object when the mouse comes to it, once: what is pushed away is not
-// followed.
+// followed. With Shift the depth stays.
 void ViewPanel::aim_at(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) {
   // Something behind the tip is not dragged onto before the mouse has moved.
+  if (ImGui::GetIO().KeyShift) {
+    to_depth_ = 0;
+    return;
+  }
   const double still = kLeastDrag * static_cast<double>(current_scale());
   if (began_at_ && (pixel - *began_at_).norm() < still) return;
   began_at_.reset();

@@ -172,6 +172,19 @@ TEST_F(AView, DragsTheHandOntoWhatTheMouseComesTo) {
   press(0, false);
 }
 
+TEST_F(AView, KeepsTheDepthWithShift) {
+  draw();
+  const Vec3 middle = tip() - 0.04 * camera_.forward() - 0.1 * camera_.right();
+  objects_.add({.name = "block", .pose = pose_at(middle), .shape = Sphere{0.008}});
+  point(seen(tip()));
+  press(0, true);
+  show_modifiers(false, true, false);
+  for (int i = 0; i < 60; ++i) point(seen(middle));
+  EXPECT_NEAR((controls_.goal - tip()).dot(camera_.forward()), 0, 1e-6);
+  show_modifiers(false, false, false);
+  press(0, false);
+}
+
 TEST_F(AView, DoesNotJumpToWhatIsBehindTheTipAtFirst) {
   draw();
   objects_.add(
