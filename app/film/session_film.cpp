@@ -149,8 +149,8 @@ class Shown {
     History history({.channels = TraceChannels(session.layout).count() * lanes,
                      .seconds = shown + 1,
                      .tick = session.info.tick});
-    return {std::move(world.arm), std::move(world.document), std::move(world.models),
-            std::move(history), shown};
+    return {std::move(world.arm), std::move(world.document), world.models, std::move(history),
+            shown};
   }
   std::size_t index(double time) const {
     const auto k = static_cast<std::size_t>(time / session_.info.tick + 1e-6);
@@ -333,7 +333,7 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
   }
 }
 
-void FilmFrame::draw_legend(const ScreenRect& rect, PictureLegend legend) const {
+void FilmFrame::draw_legend(const ScreenRect& rect, const PictureLegend& legend) const {
   const float em = font(Face::small)->FontSize;
   if (rect.height() < 10 * em) return;
   draw_picture_legend(*ImGui::GetBackgroundDrawList(), rect.min, rect.max, legend);

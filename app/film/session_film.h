@@ -65,7 +65,7 @@ class FilmFrame {
   Places lay_out() const;
   void draw_picture(const ScreenRect& rect, Stage& stage, const ViewState& view,
                     const Camera& camera, std::span<const ViewState> beside);
-  void draw_legend(const ScreenRect& rect, PictureLegend legend) const;
+  void draw_legend(const ScreenRect& rect, const PictureLegend& legend) const;
   void draw_caption(const ScreenRect& rect, const FilmCaption& caption) const;
   void draw_plots(const ScreenRect& rect, Stage& stage) const;
 

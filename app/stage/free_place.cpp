@@ -25,7 +25,9 @@ std::optional<ScreenRect> FreePlace::choose(std::span<const ScreenRect> places,
                                             const Crowd& crowd) {
   struct Cost {
     float kept, better;
-    auto operator<=>(const Cost&) const = default;
+    bool below(const Cost& other) const {
+      return kept != other.kept ? kept < other.kept : better < other.better;
+    }
   };
   const auto cost = [&](std::size_t i) {
     return Cost{covered_area(places[i], crowd.kept_free),
@@ -34,7 +36,7 @@ std::optional<ScreenRect> FreePlace::choose(std::span<const ScreenRect> places,
   if (places.empty()) return std::nullopt;
   std::size_t best = 0;
   for (std::size_t i = 1; i < places.size(); ++i) {
-    if (cost(i) < cost(best)) best = i;
+    if (cost(i).below(cost(best))) best = i;
   }
   if (last_ && *last_ < places.size()) {
     const ScreenRect& now = places[*last_];

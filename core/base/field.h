@@ -257,7 +257,7 @@ template <class Table, class Owner>
             using T = std::remove_reference_t<decltype(x)>;
             if (!field.of(owner)) {
               x = usual.*member;
-            } else if constexpr (std::is_same_v<T, double>) {
+            } else if constexpr (std::is_same_v<T, double>) {  // NOLINT(bugprone-branch-clone)
               x = field.hold(x, usual.*member);
             } else if constexpr (std::is_same_v<T, Vec3>) {
               for (int i = 0; i < 3; ++i) x[i] = field.hold(x[i], (usual.*member)[i]);

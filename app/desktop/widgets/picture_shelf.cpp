@@ -43,7 +43,9 @@ PictureTexture& PictureTexture::operator=(PictureTexture&& other) noexcept {
 }
 
 ImTextureID PictureTexture::id() const {
-  return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture_));
+  // ImGui's type for it is a pointer.
+  return reinterpret_cast<ImTextureID>(  // NOLINT(performance-no-int-to-ptr)
+      static_cast<std::intptr_t>(texture_));
 }
 
 namespace {
