@@ -163,7 +163,7 @@ const Palette& current_palette() { return palette(current_theme()); }
 float current_scale() { return ImGui::GetFontSize() / kTextSize; }
 
 ImU32 colour(Rgb rgb, float alpha) {
-  return IM_COL32(rgb.r, rgb.g, rgb.b, static_cast<int>(alpha * 255 + 0.5f));
+  return IM_COL32(rgb.r, rgb.g, rgb.b, static_cast<int>(std::lround(alpha * 255)));
 }
 
 ImVec4 colour_vector(Rgb rgb, float alpha) {

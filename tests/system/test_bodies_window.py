@@ -22,6 +22,7 @@ class Bodies(WindowTest):
         self.words = [str(ASSETS / "scenes" / f"{scene}.toml")]
         self.start()
         self.at = np.array(self.hold_tip())
+        self.xdotool("keydown", "shift")  # only the wheel sets the depth
         here = self.target()
         ways = []
         for step in np.eye(2) * 25:
@@ -51,7 +52,6 @@ class Bodies(WindowTest):
 
     def lead(self, to: tuple[float, float, float], seconds: float) -> None:
         """Leads the hand to a place by drags and wheel; a second pass corrects for perspective."""
-        self.xdotool("keydown", "shift")  # only the wheel sets the depth
         for took in (seconds, 0.2):
             right, down, notches = np.linalg.solve(self.ways, np.array(to) - self.target())
             begin, steps = self.at.copy(), max(2, round(took / 0.04))
@@ -63,10 +63,10 @@ class Bodies(WindowTest):
                     turned += 1
                 time.sleep(0.04)
             self.settled()
-        self.xdotool("keyup", "shift")
 
     def let_go(self) -> None:
         self.xdotool("mouseup", "1")
+        self.xdotool("keyup", "shift")
 
     def places(self) -> dict[str, np.ndarray]:
         """Places of the objects in the window [px]."""
