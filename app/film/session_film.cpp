@@ -57,19 +57,6 @@ double longest_stretch(const std::vector<StoryStep>& steps, const FilmCut& cut) 
   return longest <= kWhole ? longest : kPart;
 }
 
-// Returns where the tips are: the lens keeps away from them.
-Crowd tips_in(const ViewState& view, const Camera& camera, ScreenRect rect) {
-  Crowd crowd;
-  const float around = 2.2f * font(Face::small)->FontSize;
-  for (const ArmPose* arm : {&view.device, &view.proxy}) {
-    const auto pixel = arm->links.empty() ? std::nullopt : camera.project(arm->tip);
-    if (!pixel) continue;
-    const ImVec2 at = in_window(rect, *pixel);
-    crowd.kept_free.push_back({{at.x - around, at.y - around}, {at.x + around, at.y + around}});
-  }
-  return crowd;
-}
-
 // A session on its stage, played from one time to the next.
 class Shown {
  public:
@@ -313,8 +300,9 @@ void FilmFrame::draw_picture(const ScreenRect& rect, Stage& stage, const ViewSta
     shown.resize(rect.width(), rect.height());
     list.PushClipRect(rect.min, rect.max);
     if (look_.lens) {
-      const LensPlace place{rect, 1, look_.height, 0};
-      magnifier_.draw(stage.picture, view, shown, place, tips_in(view, shown, rect));
+      Crowd crowd;
+      keep_acted_on_free(view, shown, rect, crowd);
+      magnifier_.draw(stage.picture, view, shown, {rect, 1, look_.height, 0}, crowd);
       magnifier_.draw_frame(view, shown, list);
     }
     if (!view.beside.empty()) draw_gap(view, shown, {rect}, list, stage.names());

@@ -13,6 +13,7 @@ RerunRows run_once_more(const Session& session, const std::string& where, const 
   RunPlan plan = replay(session, where, chosen);
   plan.beside.clear();
   RerunRows again;
+  again.arm = plan.arm;
   again.rows.reserve(session.rows.size());
   std::uint64_t count = 0;
   ForgetBehind forget;

@@ -13,6 +13,7 @@ namespace limpid {
 
 // Rows of a re-run.
 struct RerunRows {
+  ArmDescription arm;
   LargeVector<double> rows;  // as many as the session's; none if it was stopped
   RunEnd end;                // after a divergence the last row is repeated
   std::string name;          // "re-run: predictive", by what was changed

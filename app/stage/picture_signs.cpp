@@ -97,6 +97,22 @@ void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, I
   }
 }
 
+void keep_acted_on_free(const ViewState& view, const Camera& camera, ScreenRect picture,
+                        Crowd& crowd) {
+  const float around = 2.2f * font(Face::small)->FontSize;
+  const auto keep = [&](const Vec3& point) {
+    const auto pixel = point.allFinite() ? camera.project(point) : std::nullopt;
+    if (!pixel) return;
+    const ImVec2 at = in_window(picture, *pixel);
+    crowd.kept_free.push_back({{at.x - around, at.y - around}, {at.x + around, at.y + around}});
+  };
+  for (const ArmPose* arm : {&view.device, &view.proxy}) {
+    if (!arm->links.empty()) keep(arm->tip);
+  }
+  if (!view.pull) return;
+  for (const Vec3& end : *view.pull) keep(end);
+}
+
 void draw_pull(const ViewState& view, double force, const Camera& camera, ScreenRect picture,
                ImDrawList& list) {
   if (!view.pull) return;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/plot/plot_frame.h"
+#include "app/stage/free_place.h"
 #include "app/stage/plot_choice.h"
 #include "render/camera.h"
 #include "render/view_state.h"
@@ -26,6 +27,10 @@ struct GapPlace {
 // Draws the gap at the two tips. Runs in one picture have a number each, with its run's name.
 void draw_gap(const ViewState& view, const Camera& camera, const GapPlace& at, ImDrawList& list,
               const RunNames& names = {});
+// Keeps tips and what is pulled free of lens and cards, in the picture of this state.
+void keep_acted_on_free(const ViewState& view, const Camera& camera, ScreenRect picture,
+                        Crowd& crowd);
+
 // Draws a line from the body that is pulled to the point it is pulled to, with the pull's force
 // [N].
 void draw_pull(const ViewState& view, double force, const Camera& camera, ScreenRect picture,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/coupling/walls.h"
 #include "core/dynamics/arm.h"
 #include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
@@ -13,6 +14,20 @@
 #include "tests/support/rows.h"
 
 namespace limpid::test {
+
+// Mass and damping that a press along `out` meets at the built-in arm's tip.
+inline TipAlong met_by_press(const Vec3& tip, const Vec3& out) {
+  const ArmDescription description = omni();
+  const Arm<3> arm(description);
+  Arm<3>::Frames frames;
+  const Vec<3> x = rest_at(description, tip).x1;
+  arm.frames(x, frames);
+  Mat<3> M;
+  arm.inertia(frames, M);
+  Jacobian<3> J;
+  arm.point_jacobian(frames, 2, arm.tip(frames), J);
+  return tip_along(J, M, Eigen::Vector3d::Constant(0.012), out);
+}
 
 // A run under the law of `p`.
 struct Tapping {

@@ -552,6 +552,7 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
 // Returns whether another sweep is asked for.
 bool draw_work(SweepController& controller) {
   const SweepRunner& runner = controller.runner();
+  const bool waits = controller.may_go_on();  // asks for files
   if (runner.busy()) {
     const auto points = static_cast<double>(std::max<std::uint64_t>(runner.points(), 1));
     progress_bar(static_cast<double>(runner.done()) / points, 22 * ImGui::GetFontSize(),
@@ -560,11 +561,11 @@ bool draw_work(SweepController& controller) {
     ImGui::BeginDisabled(runner.stopping());
     if (noted_button("Stop")) controller.stop();
     ImGui::EndDisabled();
-  } else if (controller.may_go_on()) {
+  } else if (waits) {
     if (noted_button("Go on")) controller.go_on();
     tooltip("Makes the points that are not there yet.");
   }
-  if (runner.busy() || controller.may_go_on()) ImGui::SameLine();
+  if (runner.busy() || waits) ImGui::SameLine();
   const bool anew = noted_button("New sweep...");
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();

@@ -111,10 +111,9 @@ Rerun run_again(const Session& session, const std::string& where, const Paramete
                 TaskProgress& progress) {
   RerunRows again = run_once_more(session, where, chosen, progress.cancel,
                                   [&](double part) { progress.part = part; });
-  const ArmDescription arm = replay(session, where, chosen).arm;
   const std::span<const double> rows(again.rows);
   const LaneRows beside = again.rows.empty() ? LaneRows() : LaneRows(&rows, 1);
-  History history = history_of(session, where, arm, beside, {});
+  History history = history_of(session, where, again.arm, beside, {});
   return {std::move(again), std::move(history), changed_settings(session, where, chosen)};
 }
 

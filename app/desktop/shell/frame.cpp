@@ -142,12 +142,14 @@ ViewScene Frame::view_scene() {
     };
   }
   if (!scene.recorded) {
-    const auto bodies = [this] { return bodies_of(desktop_.shown.stage(), desktop_.shown.row()); };
-    scene.aim = [this, bodies](const Ray& ray) {
-      return aim_along(ray, desktop_.document.scene(), bodies());
+    // A drag asks for many rays in a frame.
+    scene.aim = [this, bodies = std::optional<std::vector<Pose>>()](const Ray& ray) mutable {
+      if (!bodies) bodies = bodies_of(desktop_.shown.stage(), desktop_.shown.row());
+      return aim_along(ray, desktop_.document.scene(), *bodies);
     };
-    scene.drop = [this, bodies](const Vec3& point) {
-      return drop_below(point, desktop_.document.scene(), bodies());
+    scene.drop = [this](const Vec3& point) {
+      return drop_below(point, desktop_.document.scene(),
+                        bodies_of(desktop_.shown.stage(), desktop_.shown.row()));
     };
   }
   scene.asked = desktop_.dialog.name() == "ask";

@@ -134,9 +134,8 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
 }
 
 // Returns the place of a body in the picture: of the ball around its bounds.
-std::optional<ScreenRect> seen_place(const Object& object, const Model* model, const Camera& camera,
-                                     ScreenRect rect) {
-  const Bounds box = bounds_of(object, model);
+std::optional<ScreenRect> seen_place(const Object& object, const Camera& camera, ScreenRect rect) {
+  const Bounds box = bounds_of(object, nullptr);
   if (box.isEmpty()) return std::nullopt;
   const auto pixel = camera.project(box.center());
   if (!pixel) return std::nullopt;
@@ -220,7 +219,11 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
                  pixels(part.width()), pixels(part.height()), SceneView::sheet_of(run));
   };
   const ViewState view = state_of(scene, settings);
-  see_crowd(scene, view, camera, settings, rect);
+  std::vector<ViewState> beside;  // in pictures of their own
+  for (std::size_t run = 1; run < scene.pictures(); ++run) {
+    beside.push_back(state_beside(scene, run, settings));
+  }
+  see_crowd(scene, view, beside, camera, rect);
   paint(view, *drawn_, kMainLane);
   if (settings.show_lens && !scene.split()) {
     Crowd crowd = around_;
@@ -235,7 +238,7 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
   float below_names = 0;
   for (std::size_t run = 1; run < scene.pictures(); ++run) {
     const ScreenRect part = part_of(rect, run, scene.pictures());
-    const ViewState other = state_beside(scene, run, settings);
+    const ViewState& other = beside[run - 1];
     paint(other, part, run);
     list.PushClipRect(part.min, part.max);
     if (!scene.blind) draw_gap(other, camera, {part}, list);
@@ -256,30 +259,18 @@ void ViewPanel::draw_pictures(const ViewScene& scene, const Camera& camera,
 }
 
 // Notes where tips are and what is acted on, in all pictures.
-void ViewPanel::see_crowd(const ViewScene& scene, const ViewState& view, const Camera& camera,
-                          const Settings& settings, ScreenRect rect) {
+void ViewPanel::see_crowd(const ViewScene& scene, const ViewState& view,
+                          std::span<const ViewState> beside, const Camera& camera,
+                          ScreenRect rect) {
   crowd_ = {};
-  const float around = 2.2f * font(Face::small)->FontSize;
-  const auto keep = [&](const Vec3& point, ScreenRect part) {
-    const auto pixel = point.allFinite() ? camera.project(point) : std::nullopt;
-    if (!pixel) return;
-    const ImVec2 at = in_window(part, *pixel);
-    crowd_.kept_free.push_back({{at.x - around, at.y - around}, {at.x + around, at.y + around}});
-  };
-  const auto see = [&](const ViewState& state, ScreenRect part) {
-    if (!state.device.links.empty()) keep(state.device.tip, part);
-    if (!state.proxy.links.empty()) keep(state.proxy.tip, part);
-    if (!state.pull) return;
-    for (const Vec3& end : *state.pull) keep(end, part);
-  };
-  const std::size_t pictures = scene.pictures();
-  see(view, part_of(rect, 0, pictures));
+  const std::size_t pictures = 1 + beside.size();
+  keep_acted_on_free(view, camera, part_of(rect, 0, pictures), crowd_);
   for (std::size_t run = 1; run < pictures; ++run) {
-    see(state_beside(scene, run, settings), part_of(rect, run, pictures));
+    keep_acted_on_free(beside[run - 1], camera, part_of(rect, run, pictures), crowd_);
   }
   const ScreenRect first = part_of(rect, 0, pictures);
   if (scene.selected) {
-    if (const auto place = seen_place(*scene.selected, nullptr, camera, first)) {
+    if (const auto place = seen_place(*scene.selected, camera, first)) {
       crowd_.kept_free.push_back(*place);
     }
   }
@@ -287,7 +278,7 @@ void ViewPanel::see_crowd(const ViewScene& scene, const ViewState& view, const C
   for (std::size_t i = 0; i < document.scene.objects.size(); ++i) {
     if (!document.scene.objects[i].body) continue;
     const Object now = placed_now(document.scene, i, view.bodies);
-    if (const auto place = seen_place(now, nullptr, camera, first)) {
+    if (const auto place = seen_place(now, camera, first)) {
       crowd_.better_free.push_back(*place);
     }
   }

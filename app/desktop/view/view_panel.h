@@ -74,8 +74,8 @@ class ViewPanel {
   const Crowd& crowd() const { return crowd_; }
 
  private:
-  void see_crowd(const ViewScene& scene, const ViewState& view, const Camera& camera,
-                 const Settings& settings, ScreenRect rect);
+  void see_crowd(const ViewScene& scene, const ViewState& view, std::span<const ViewState> beside,
+                 const Camera& camera, ScreenRect rect);
   void draw_hints(const ViewScene& scene, const Settings& settings, ScreenRect rect,
                   ImDrawList& list);
   void draw_signs(const ViewScene& scene, const ViewState& view, const Camera& camera,

@@ -11,6 +11,7 @@
 #include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
 #include "tests/support/rows.h"
+#include "tests/support/tapping.h"
 
 namespace limpid {
 namespace {
@@ -59,16 +60,7 @@ double depth_in(const Rows& rows, std::size_t k) {
 
 // Stiffness of the soft spring at the tip: rho b_n/(T/2 + delay).
 double soft_spring(const Parameters& p) {
-  const ArmDescription description = test::omni();
-  const Arm<3> arm(description);
-  Arm<3>::Frames frames;
-  const Vec<3> x = rest_at(description, kSoftWallAt).x1;
-  arm.frames(x, frames);
-  Mat<3> M;
-  arm.inertia(frames, M);
-  Jacobian<3> J;
-  arm.point_jacobian(frames, 2, arm.tip(frames), J);
-  const TipAlong tip = tip_along(J, M, Eigen::Vector3d::Constant(0.012), Vec3::UnitZ());
+  const TipAlong tip = test::met_by_press(kSoftWallAt, Vec3::UnitZ());
   return p.sfa_soft * tip.damping / (p.tick / 2 + p.delay * p.tick);
 }
 

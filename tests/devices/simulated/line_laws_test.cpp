@@ -11,6 +11,7 @@
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
+#include "tests/support/tapping.h"
 
 namespace limpid {
 namespace {
@@ -66,19 +67,6 @@ FarPress press_far(const Parameters& p, const Vec3& out, double K, double depth,
   return pressed;
 }
 
-TipAlong tip_along_normal(const Vec3& out) {
-  const ArmDescription description = test::omni();
-  const Arm<3> arm(description);
-  Arm<3>::Frames frames;
-  const Vec<3> x = rest_at(description, kFarWallAt).x1;
-  arm.frames(x, frames);
-  Mat<3> M;
-  arm.inertia(frames, M);
-  Jacobian<3> J;
-  arm.point_jacobian(frames, 2, arm.tip(frames), J);
-  return tip_along(J, M, Eigen::Vector3d::Constant(0.012), out);
-}
-
 TEST(Waves, GiveNothingThroughAnyLink) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     Random random(seed);
@@ -105,7 +93,7 @@ TEST(Waves, GiveNothingThroughAnyLink) {
 // 1/(1/K + 1/k_vc + (t_l + T/2)/b): spring, line and wall in a row.
 TEST(Waves, AreAsSoftAsSpringAndLineInARow) {
   const Vec3 out = Vec3::UnitZ();
-  const TipAlong tip = tip_along_normal(out);
+  const TipAlong tip = test::met_by_press(kFarWallAt, out);
   for (const int delay : {0, 5, 20}) {
     Parameters p = through(CouplingKind::wave, delay);
     p.hand_damping = 4;
