@@ -89,11 +89,11 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
     if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
     tooltip(
         "assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
-    ImGui::SameLine();
+    flow(kOpenArmButton);
     const NamedArm open = devices.open_arm();
     if (noted_button(kOpenArmButton)) devices.say_arm(open);
     tooltip(open.file.c_str());
-    ImGui::SameLine();
+    flow(kArmOfFileButton);
     file = noted_button(kArmOfFileButton);
   } else if (hub.may_say_arm()) {
     if (ImGui::SmallButton("Another arm...")) devices.say_arm({});

@@ -159,9 +159,7 @@ void NewSweepDialog::draw_values(Axis& axis, const char* id) {
   if (!axis.field->words.empty()) {
     for (std::size_t i = 0; i < axis.field->words.size(); ++i) {
       bool on = axis.wanted[i] != 0;
-      const float needed = 3 * em + ImGui::CalcTextSize(axis.field->words[i]).x;
-      if (i > 0) ImGui::SameLine();
-      if (i > 0 && ImGui::GetContentRegionAvail().x < needed) ImGui::NewLine();
+      if (i > 0) flow(axis.field->words[i]);
       if (ImGui::Checkbox(axis.field->words[i], &on)) axis.wanted[i] = on ? 1 : 0;
     }
     return ImGui::PopID();
@@ -179,9 +177,8 @@ void NewSweepDialog::draw_values(Axis& axis, const char* id) {
   number("from", axis.draft.from);
   number("to", axis.draft.to);
   ImGui::TextUnformatted(axis.field->has_unit() ? axis.field->unit : "");
-  ImGui::SameLine();
   auto count = static_cast<int>(axis.draft.count);
-  if (ImGui::GetContentRegionAvail().x < 8 * em) ImGui::NewLine();
+  flow(8 * em);
   ImGui::TextUnformatted("in");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(3 * em);
