@@ -52,8 +52,8 @@ void print(const std::string& name, const Outcome& outcome) {
   fmt::print("{}: {}\n", name, outcome.passed() ? "passed" : "FAILED");
   for (const Check& c : outcome.checks) {
     const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
-    fmt::print("  {}  {}: {:.4g}, {} {:.4g}", verdict, c.what, c.value,
-               c.least ? "at least" : "at most", c.bound);
+    fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
+    if (c.unjudged.empty()) fmt::print(", {} {:.4g}", relation(c), c.bound);
     if (c.against && c.against->expected) {
       fmt::print("; {:.6g} {} for {:.6g}", c.against->measured, c.against->unit,
                  *c.against->expected);

@@ -43,6 +43,7 @@ Outcome friction(TrialRunner& lab);
 Outcome delay(TrialRunner& lab);
 Outcome link(TrialRunner& lab);
 Outcome walls(TrialRunner& lab);
+Outcome robust(TrialRunner& lab);
 Outcome mass(TrialRunner& lab);
 Outcome click(TrialRunner& lab);
 Outcome drop(TrialRunner& lab);
@@ -107,6 +108,8 @@ constexpr std::array kExperiments{
                delay},
     Experiment{"link", "teleoperation: the stiffest wall through a delay, under each law", link},
     Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls},
+    Experiment{"robust", "promises on a device that is unlike its model: until where each holds",
+               robust},
     Experiment{"mass", "the mass felt of a body that is held, and the least that can be held",
                mass},
     Experiment{"click", "a button: its force felt over its travel", click},

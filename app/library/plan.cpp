@@ -61,10 +61,15 @@ Parameters chosen(const LoopOptions& options, Parameters base) {
   return base;
 }
 
-// Refuses a setting of the simulated hand where a person's hand is.
-void refuse_hand(std::string_view key, bool device) {
-  if (!device || !key.starts_with("hand.")) return;
-  throw FieldError(fmt::format("{}: is of the simulated hand, which a DeviceLoop has not", key));
+// Refuses settings of the simulated hand and arm where a person's hand and a device are.
+void refuse_simulated(std::string_view key, bool device) {
+  if (!device) return;
+  const char* whose = key.starts_with("hand.")    ? "hand"
+                      : key.starts_with("plant.") ? "arm"
+                                                  : nullptr;
+  if (whose == nullptr) return;
+  throw FieldError(
+      fmt::format("{}: is of the simulated {}, which a DeviceLoop has not", key, whose));
 }
 
 void refuse_fixed(const ParameterInfo& info) {
@@ -75,7 +80,7 @@ void refuse_fixed(const ParameterInfo& info) {
 }  // namespace
 
 LibraryPlan read_plan(const LoopOptions& options, bool device) {
-  for (const std::string& setting : options.settings) refuse_hand(setting, device);
+  for (const std::string& setting : options.settings) refuse_simulated(setting, device);
   LibraryPlan all;
   RunPlan& plan = all.plan;
   plan.arm = read_arm(options);
@@ -151,7 +156,7 @@ const ParameterInfo& setting_named(std::string_view key) {
 }
 
 void set_live(Parameters& p, const std::string& key_value, bool device) {
-  refuse_hand(key_value, device);
+  refuse_simulated(key_value, device);
   Parameters changed = p;
   apply_setting(changed, key_value);
   for (const ParameterInfo& info : parameter_table()) {
@@ -161,7 +166,7 @@ void set_live(Parameters& p, const std::string& key_value, bool device) {
 }
 
 void set_live(Parameters& p, std::string_view key, double value, bool device) {
-  refuse_hand(key, device);
+  refuse_simulated(key, device);
   const ParameterInfo& info = setting_named(key);
   refuse_fixed(info);
   if (info.kind == FieldInfo::Kind::flag) return set_value(info, p, value != 0);

@@ -32,6 +32,7 @@ inline Parameters as_taken(Parameters p, const RealDevice& device) noexcept {
   p.friction = kFromArm;
   p.device_delay = 0;
   p.encoder_step = std::max(p.encoder_step, device.encoder_step);
+  static_cast<PlantSettings&>(p) = {};
   return p;
 }
 

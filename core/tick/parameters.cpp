@@ -9,8 +9,9 @@ namespace {
 using P = Parameters;
 
 constexpr auto kController = ControllerSettings::settings<P>();
-constexpr auto kTable = joined(kController, LoopSettings::settings<P>(),
-                               HandSettings::settings<P>(), DeviceSettings::settings<P>());
+constexpr auto kTable =
+    joined(kController, LoopSettings::settings<P>(), HandSettings::settings<P>(),
+           DeviceSettings::settings<P>(), PlantSettings::settings<P>());
 
 }  // namespace
 

@@ -154,7 +154,52 @@ struct DeviceSettings {
   }
 };
 
-struct Parameters : ControllerSettings, LoopSettings, HandSettings, DeviceSettings {
+// What a real device has and no law knows of, for the virtual arm; none of it by default. What each
+// does: devices/simulated/plant.h.
+struct PlantSettings {
+  double torque_scale = 1;      // torque that the motors give over what they are told [-]
+  double current_loop = 0;      // bandwidth of the motors' current loop [Hz]; 0: at once
+  double resonance = 0;         // of each motor on its transmission, joint held [Hz]; 0: rigid
+  double cogging = 0;           // amplitude, every joint [N m]
+  double unknown_friction = 0;  // Coulomb, every joint, besides device.friction [N m]
+  double eccentricity = 0;      // amplitude of the encoders' error [rad]
+  double zero_error = 0;        // of every encoder [rad]
+
+  template <class P>
+  static constexpr std::array<Field<P>, 7> settings() {
+    return {
+        {{"plant.torque_scale", "torque scale", "Scale of the motors' torque", &P::torque_scale,
+          "-", 0.1, 10, 0.5, 2, true, true,
+          "Torque that the virtual arm's motors give over what they are told. No law knows it, nor "
+          "any other plant setting."},
+         {"plant.current_loop", "current loop", "Bandwidth of the current loop", &P::current_loop,
+          "Hz", 0, 1e4, 0, 1000, false, true,
+          "The motors' torque follows the command as a first-order lag of this bandwidth; 0: at "
+          "once. Amplifiers have 200 to 2000 Hz."},
+         {"plant.resonance", "resonance", "Resonance of the transmission", &P::resonance, "Hz", 0,
+          1000, 0, 300, false, true,
+          "Each motor, with its encoder, drives its joint through a spring; this is its frequency "
+          "while the joint is held. 0: a rigid transmission. A part of the arm's inertia counts "
+          "as "
+          "the motors'."},
+         {"plant.cogging", "cogging", "Cogging torque", &P::cogging, "N m", 0, 10, 0, 0.02, false,
+          true, "Amplitude of the motors' cogging torque, 60 periods a turn of the joint."},
+         {"plant.friction", "unknown friction", "Friction that no law knows", &P::unknown_friction,
+          "N m", 0, 100, 0, 0.05, false, true,
+          "Coulomb friction of every joint besides device.friction."},
+         {"plant.eccentricity", "eccentricity", "Eccentricity of the encoders", &P::eccentricity,
+          "rad", 0, 0.05, 0, 0.01, false, true,
+          "Amplitude of an error of every encoder that repeats ten times a turn of the joint, as "
+          "that of an eccentric disc on a motor geared by ten does."},
+         {"plant.zero", "zero", "Error of the encoders' zero", &P::zero_error, "rad", -0.5, 0.5,
+          -0.1, 0.1, false, true,
+          "Every encoder reads so much too much, as after a wrong calibration. Moved while the "
+          "loop "
+          "runs it is an encoder that slips."}}};
+  }
+};
+
+struct Parameters : ControllerSettings, LoopSettings, HandSettings, DeviceSettings, PlantSettings {
   friend bool operator==(const Parameters& a, const Parameters& b);
 };
 

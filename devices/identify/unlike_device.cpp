@@ -79,12 +79,13 @@ ArmDescription loaded(ArmDescription arm, double mass) {
 }
 
 UnlikeDevice::UnlikeDevice(const ArmDescription& truth, const Unlikeness& unlike)
-    : device_(with(truth, unlike)), traits_(device_.traits()), torque_scale_(unlike.torque_scale) {
+    : device_(with(truth, unlike)), traits_(device_.traits()) {
   traits_.name = "a device unlike its file";
   traits_.guarded = true;
   push = Eigen::VectorXd::Zero(truth.dof());
   parameters_.encoder_step = unlike.encoder_step;
   parameters_.device_delay = unlike.delay;
+  parameters_.torque_scale = unlike.torque_scale;
   parameters_.weighs = parameters_.springy = true;
   hand_.grip = 0;
   put(rest_pose(truth));
@@ -108,9 +109,7 @@ void UnlikeDevice::expect(const Parameters& p, const HandInput& hand) noexcept {
 void UnlikeDevice::write(std::span<const double> torque) noexcept {
   hand_.torque = span_of(push);
   device_.expect(parameters_, hand_);
-  const std::size_t n = std::min(torque.size(), torque_.size());
-  for (std::size_t i = 0; i < n; ++i) torque_[i] = torque_scale_ * torque[i];
-  device_.write(std::span(torque_).first(n));
+  device_.write(torque);
 }
 
 }  // namespace limpid

@@ -3,7 +3,7 @@
 
 #include "core/dynamics/regressor.h"
 #include "devices/identify/unlikeness.h"
-#include "devices/simulated/virtual_arm.h"
+#include "devices/simulated/virtual_device.h"
 
 namespace limpid {
 
@@ -31,8 +31,6 @@ class UnlikeDevice final : public Device {
   DeviceTraits traits_;
   Parameters parameters_;
   HandInput hand_;
-  double torque_scale_;
-  std::array<double, kMaxDof> torque_{};
 };
 
 }  // namespace limpid

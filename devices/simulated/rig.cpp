@@ -8,7 +8,7 @@
 #include "core/tick/tick.h"
 #include "devices/device.h"
 #include "devices/reading_watch.h"
-#include "devices/simulated/virtual_arm.h"
+#include "devices/simulated/virtual_device.h"
 
 namespace limpid {
 

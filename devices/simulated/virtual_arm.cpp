@@ -5,6 +5,7 @@
 
 #include "core/math/subnormals.h"
 #include "core/math/triangular.h"
+#include "core/tick/tick.h"
 #include "devices/simulated/joint_friction.h"
 
 namespace limpid {
@@ -146,6 +147,7 @@ VirtualArm<N>::VirtualArm(const ArmDescription& arm)
       upper_(of_joints<N>(arm, &Joint::upper)),
       spring_(of_joints<N>(arm, &Joint::spring)),
       offset_(of_joints<N>(arm, &Joint::offset)),
+      left_out_(Vec<N>::Zero(arm.dof())),
       gravity_(arm.gravity) {
   const int n = arm.dof();
   place(Vec<N>::Zero(n), Vec<N>::Zero(n), Vec3::Zero());
@@ -166,15 +168,6 @@ void VirtualArm<N>::place(const Vec<N>& x, const Vec<N>& v, const Vec3& target) 
 }
 
 template <int N>
-Reading<N> VirtualArm<N>::read(double encoder_step) const {
-  Reading<N> reading{x_, x_, v_};
-  if (encoder_step > 0) {
-    reading.measured = (x_ / encoder_step).array().round().matrix() * encoder_step;
-  }
-  return reading;
-}
-
-template <int N>
 Drive<N> VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
                               const HandInput& hand) const {
   Drive<N> d{p.tick / p.substeps,
@@ -189,6 +182,7 @@ Drive<N> VirtualArm<N>::drive(const Parameters& p, const Vec<N>& torque,
              false,
              p.springy,
              p.weighs ? std::optional(gravity_of(p.down, gravity_)) : std::nullopt};
+  d.friction.array() += p.unknown_friction;
   d.rubs = d.friction.maxCoeff() > 0;
   if (!hand.torque.empty()) d.torque += Eigen::Map<const Vec<N>>(hand.torque.data(), torque.size());
   return d;
@@ -202,6 +196,7 @@ void VirtualArm<N>::linearize(bool drift, const std::optional<Vec3>& gravity) {
   typename Arm<N>::template Bodies<Pair> bodies;
   arm_.frames(linear_.angles, frames);
   arm_.inertia(frames, bodies, linear_.M);
+  for (Eigen::Index i = 0; i <= last; ++i) linear_.M(i, i) -= Pair(left_out_[i]);
   arm_.bias(frames, bodies, linear_.v, linear_.Cv);
   linear_.tip = arm_.tip(frames);
   arm_.point_jacobian(frames, last, linear_.tip, linear_.J);
@@ -327,64 +322,6 @@ void VirtualArm<N>::live(const Parameters& p, const Vec<N>& torque, const HandIn
   target_ = hand.target;
 }
 
-template <int N>
-VirtualDevice<N>::VirtualDevice(const ArmDescription& description) : arm(description) {
-  traits_.name = description.name;
-  traits_.id = "virtual";
-  traits_.dof = description.dof();
-  traits_.pushes = true;
-  traits_.guarded = false;
-  traits_.rate = 1 / p_.tick;
-  for (const Joint& joint : description.joints) {
-    traits_.lower.push_back(joint.lower);
-    traits_.upper.push_back(joint.upper);
-    traits_.resolution.push_back(0);
-    traits_.effort.push_back(joint.effort);
-  }
-  sent_.fill(Vec<N>::Zero(traits_.dof));
-  acted_ = sent_[0];
-}
-
-template <int N>
-void VirtualDevice<N>::place(std::span<const double> x, std::span<const double> v,
-                             const Vec3& target) noexcept {
-  const Eigen::Index n = traits_.dof;
-  arm.place(Eigen::Map<const Vec<N>>(x.data(), n), Eigen::Map<const Vec<N>>(v.data(), n), target);
-  sent_.fill(Vec<N>::Zero(n));
-  acted_ = sent_[0];
-}
-
-template <int N>
-std::optional<DeviceTruth> VirtualDevice<N>::truth() const noexcept {
-  const auto joints = [](const Vec<N>& values) {
-    return std::span(values.data(), static_cast<std::size_t>(values.size()));
-  };
-  return DeviceTruth{joints(arm.x()), joints(arm.v()), joints(arm.hand_torque()), joints(acted_)};
-}
-
-template <int N>
-bool VirtualDevice<N>::read(DeviceReading& newest) noexcept {
-  const Reading<N> reading = arm.read(p_.encoder_step);
-  std::copy_n(reading.measured.data(), reading.measured.size(), newest.x.begin());
-  newest.count = ++count_;
-  newest.age = 0;
-  return true;
-}
-
-template <int N>
-void VirtualDevice<N>::write(std::span<const double> torque) noexcept {
-  Vec<N> tau = Vec<N>::Zero(traits_.dof);
-  if (!torque.empty()) tau = Eigen::Map<const Vec<N>>(torque.data(), traits_.dof);
-  newest_ = (newest_ + 1) % sent_.size();
-  sent_[newest_] = tau;
-  acted_ =
-      sent_[(newest_ + sent_.size() - static_cast<std::size_t>(p_.device_delay)) % sent_.size()];
-  arm.live(p_, acted_, hand_);
-}
-
-template class VirtualDevice<3>;
-template class VirtualDevice<7>;
-template class VirtualDevice<kAnyDof>;
 template class VirtualArm<3>;
 template class VirtualArm<7>;
 template class VirtualArm<kAnyDof>;

@@ -1,4 +1,4 @@
-// The virtual device: an arm of continuous-time physics with motors, encoders and a hand on it.
+// The virtual arm: continuous-time physics of an arm with a hand on it.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,6 @@
 #include "core/dynamics/arm.h"
 #include "core/math/solve.h"
 #include "core/tick/parameters.h"
-#include "core/tick/tick.h"
 #include "devices/device.h"
 
 namespace limpid {
@@ -316,13 +315,16 @@ class VirtualArm {
 
   // Puts the arm at x and v, the hand's target on the tip [rad, rad/s].
   void place(const Vec<N>& x, const Vec<N>& v, const Vec3& target);
-  // Reads the position as encoders have it, and as it is.
-  Reading<N> read(double encoder_step) const;
+  // Leaves inertias of the joints to whoever simulates them, from the next tick on [kg m^2].
+  // Precondition: what is left of M is positive definite.
+  void leave_out(const Vec<N>& inertias) { left_out_ = inertias; }
   // Simulates one tick under this motor torque [N m].
   void live(const Parameters& p, const Vec<N>& torque, const HandInput& hand);
   Vec3 tip() const { return arm_.tip_at(x_); }
   const Vec<N>& x() const { return x_; }  // [rad]
   const Vec<N>& v() const { return v_; }  // [rad/s]
+  // Where the hand wants the tip, at the end of the last tick [m].
+  const Vec3& target() const { return target_; }
   // f1, the mean over the tick [N m].
   const Vec<N>& hand_torque() const { return hand_torque_; }
 
@@ -340,7 +342,7 @@ class VirtualArm {
                         SubstepState<N, double>& at) const;
 
   Arm<N> arm_;
-  Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_;
+  Vec<N> damping_, friction_, effort_, lower_, upper_, spring_, offset_, left_out_;
   Vec3 gravity_;
   Vec<N> x_, v_, hand_torque_;
   Vec3 target_ = Vec3::Zero();
@@ -348,39 +350,6 @@ class VirtualArm {
   Eigen::Index renewed_ = 0;       // joint whose sine and cosine were renewed last
 };
 
-// The virtual arm as a device: write() simulates the tick; its torque acts some ticks later.
-template <int N>
-class VirtualDevice final : public Device {
- public:
-  explicit VirtualDevice(const ArmDescription& arm);
-
-  void expect(const Parameters& p, const HandInput& hand) noexcept override {
-    p_ = p;
-    hand_ = hand;
-  }
-  void place(std::span<const double> x, std::span<const double> v,
-             const Vec3& target) noexcept override;
-  std::optional<DeviceTruth> truth() const noexcept override;
-  const DeviceTraits& traits() const override { return traits_; }
-  bool read(DeviceReading& newest) noexcept override;
-  void write(std::span<const double> torque) noexcept override;
-  void stop() noexcept override { write({}); }
-
-  VirtualArm<N> arm;
-
- private:
-  DeviceTraits traits_;
-  Parameters p_;
-  HandInput hand_;
-  std::array<Vec<N>, kMostDelay + 1> sent_;  // ring of torques, one a tick [N m]
-  std::size_t newest_ = 0;                   // its newest place
-  Vec<N> acted_;                             // torque that the motors gave over the last tick
-  std::uint64_t count_ = 0;
-};
-
-extern template class VirtualDevice<3>;
-extern template class VirtualDevice<7>;
-extern template class VirtualDevice<kAnyDof>;
 extern template class VirtualArm<3>;
 extern template class VirtualArm<7>;
 extern template class VirtualArm<kAnyDof>;

@@ -1,6 +1,4 @@
 // The virtual device against motions known by other means.
-#include "devices/simulated/virtual_arm.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -9,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "devices/simulated/virtual_device.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -42,8 +41,8 @@ TEST(VirtualArm, CoastsUnderItsDampingExponentially) {
   for (int k = 1; k <= 100; ++k) {
     arm.live(p, one(0), kNoHand);
     const double decay = std::exp(-b / m * k * p.tick);
-    ASSERT_NEAR(arm.read(0).v[0], 5 * decay, 1e-4);
-    ASSERT_NEAR(arm.read(0).x[0], 5 * m / b * (1 - decay), 1e-6);
+    ASSERT_NEAR(arm.v()[0], 5 * decay, 1e-4);
+    ASSERT_NEAR(arm.x()[0], 5 * m / b * (1 - decay), 1e-6);
   }
 }
 
@@ -56,7 +55,7 @@ TEST(VirtualArm, AcceleratesUnderAConstantTorqueAsAParabola) {
   for (int k = 1; k <= 100; ++k) {
     arm.live(p, one(0.01), kNoHand);
     const double t = k * p.tick;
-    ASSERT_NEAR(arm.read(0).x[0], 0.2 + 0.5 * 0.01 / m * t * t, 1e-12);
+    ASSERT_NEAR(arm.x()[0], 0.2 + 0.5 * 0.01 / m * t * t, 1e-12);
   }
 }
 
@@ -75,9 +74,9 @@ TEST(VirtualArm, SwingsInAGripForeverAsASpringDoes) {
   for (int k = 1; k <= 2000; ++k) {
     arm.live(p, one(0), {Vec3::UnitX(), 1});
     if (k <= 200) {
-      ASSERT_NEAR(arm.read(0).x[0], amplitude * std::cos(w * k * p.tick), 2e-3 * amplitude);
+      ASSERT_NEAR(arm.x()[0], amplitude * std::cos(w * k * p.tick), 2e-3 * amplitude);
     }
-    if (k > 1800) largest = std::max(largest, std::abs(arm.read(0).x[0]));
+    if (k > 1800) largest = std::max(largest, std::abs(arm.x()[0]));
   }
   EXPECT_NEAR(largest, amplitude, 1e-2 * amplitude);  // no numerical damping, no growth
 }
@@ -98,7 +97,7 @@ TEST(VirtualArm, ConvergesWithTheSquareOfItsSubsteps) {
         target += Vec3(1e-4, -2e-4, 1e-4);
         arm.live(p, torque, {target, 1});
       }
-      return Vector(arm.read(0).x);
+      return Vector(arm.x());
     };
     const Vector exact = after(800);
     const double coarse = (after(10) - exact).norm(), fine = (after(20) - exact).norm();
@@ -195,10 +194,10 @@ TEST(VirtualArm, SpeaksOfTheHandsMeanTorqueAsItsMomentumDoes) {
   p.damping = b;
   arm.place(one(0.3), one(0), Vec3::UnitX());
   for (int k = 0; k < 300; ++k) {
-    const double v = arm.read(0).v[0], x = arm.read(0).x[0];
+    const double v = arm.v()[0], x = arm.x()[0];
     arm.live(p, one(0.02), {Vec3(std::cos(0.3), std::sin(0.3 + 0.001 * k), 0), 1});
-    const double gained = m * (arm.read(0).v[0] - v) / p.tick;
-    const double damped = b * (arm.read(0).x[0] - x) / p.tick;
+    const double gained = m * (arm.v()[0] - v) / p.tick;
+    const double damped = b * (arm.x()[0] - x) / p.tick;
     ASSERT_NEAR(arm.hand_torque()[0], gained - 0.02 + damped, 1e-9);
   }
 }
@@ -208,9 +207,9 @@ TEST(VirtualArm, FeelsNoHandThatHasLetGo) {
   AnyArm arm(random_arm(3, 132));
   const Parameters p;
   arm.place(random.vector(3, 1), Vector::Zero(3), Vec3::Zero());
-  const Vector before = arm.read(0).x;
+  const Vector before = arm.x();
   for (int k = 0; k < 50; ++k) arm.live(p, Vector::Zero(3), {Vec3(1, 2, 3), 0});
-  EXPECT_EQ(arm.read(0).x, before);
+  EXPECT_EQ(arm.x(), before);
   EXPECT_EQ(arm.hand_torque().norm(), 0);
 }
 
@@ -224,14 +223,14 @@ TEST(VirtualArm, SticksBelowItsFrictionAndSlidesAboveIt) {
   for (const double tick : {1e-3, 4e-3}) {
     p.tick = tick;
     for (int k = 0; k < 1000; ++k) stuck.live(p, one(0.99 * kFriction), kNoHand);
-    EXPECT_EQ(stuck.read(0).v[0], 0);
-    EXPECT_EQ(stuck.read(0).x[0], 0);
+    EXPECT_EQ(stuck.v()[0], 0);
+    EXPECT_EQ(stuck.x()[0], 0);
   }
   p.tick = 1e-3;
   AnyArm sliding(wheel(m));
   sliding.place(one(0), one(0), Vec3::Zero());
   for (int k = 0; k < 100; ++k) sliding.live(p, one(1.5 * kFriction), kNoHand);
-  EXPECT_NEAR(sliding.read(0).v[0], 0.5 * kFriction / m * 0.1, 0.02 * 0.5 * kFriction / m * 0.1);
+  EXPECT_NEAR(sliding.v()[0], 0.5 * kFriction / m * 0.1, 0.02 * 0.5 * kFriction / m * 0.1);
 }
 
 TEST(VirtualArm, ComesToRestByFrictionWithoutSwingingBack) {
@@ -244,14 +243,14 @@ TEST(VirtualArm, ComesToRestByFrictionWithoutSwingingBack) {
   double last = 2;
   for (int k = 0; k < 200; ++k) {
     arm.live(p, one(0), kNoHand);
-    const double v = arm.read(0).v[0];
+    const double v = arm.v()[0];
     ASSERT_GE(v, 0);
     ASSERT_LE(v, last);
     last = v;
   }
   EXPECT_EQ(last, 0);
   // The way is the kinetic energy over the friction.
-  EXPECT_NEAR(arm.read(0).x[0], 0.5 * m * 4 / kFriction, 1e-3);
+  EXPECT_NEAR(arm.x()[0], 0.5 * m * 4 / kFriction, 1e-3);
 }
 
 // Three slides along directions that are not square to each other: an inertia that does not change,
@@ -329,25 +328,30 @@ TEST(VirtualArm, IsHeldByItsStops) {
     arm.place(one(0), one(0), Vec3::Zero());
     for (int k = 0; k < 3000; ++k) arm.live(p, one(torque), kNoHand);
     const double stop = torque > 0 ? 0.8 : -0.5;
-    EXPECT_NEAR(arm.read(0).x[0], stop + 0.01 * torque, 1e-4);
-    EXPECT_NEAR(arm.read(0).v[0], 0, 1e-6);
+    EXPECT_NEAR(arm.x()[0], stop + 0.01 * torque, 1e-4);
+    EXPECT_NEAR(arm.v()[0], 0, 1e-6);
   }
 }
 
-TEST(VirtualArm, IsReadInWholeEncoderSteps) {
+TEST(VirtualDevice, IsReadInWholeEncoderSteps) {
   Random random(133);
-  AnyArm arm(random_arm(3, 133));
+  VirtualDevice<kAnyDof> device(random_arm(3, 133));
   const Vector x = random.vector(3, 1), v = random.vector(3, 1);
-  arm.place(x, v, Vec3::Zero());
-  EXPECT_EQ(arm.read(0).measured, x);
-  constexpr double step = 4e-4;
-  const auto reading = arm.read(step);
-  EXPECT_EQ(reading.x, x);
-  EXPECT_EQ(reading.v, v);
+  device.arm.place(x, v, Vec3::Zero());
+  Parameters p;
+  const auto read = [&] {
+    device.expect(p, kNoHand);
+    DeviceReading reading;
+    device.read(reading);
+    return Vector(Eigen::Map<const Vector>(reading.x.data(), 3));
+  };
+  EXPECT_EQ(read(), x);
+  p.encoder_step = 4e-4;
+  const Vector shown = read();
   for (int i = 0; i < 3; ++i) {
-    const double steps = reading.measured[i] / step;
+    const double steps = shown[i] / p.encoder_step;
     EXPECT_NEAR(steps, std::round(steps), 1e-9);
-    EXPECT_LE(std::abs(reading.measured[i] - x[i]), step / 2 * (1 + 1e-9));
+    EXPECT_LE(std::abs(shown[i] - x[i]), p.encoder_step / 2 * (1 + 1e-9));
   }
 }
 
@@ -364,7 +368,7 @@ TEST(VirtualArm, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
     const Eigen::VectorXd torque = random.vector(3, 0.1);
     fixed.live(p, torque, {Vec3(0.1, 0, 0), 0.5});
     any.live(p, torque, {Vec3(0.1, 0, 0), 0.5});
-    ASSERT_LT((fixed.read(0).x - any.read(0).x).norm(), 1e-9);
+    ASSERT_LT((fixed.x() - any.x()).norm(), 1e-9);
   }
 }
 
@@ -395,8 +399,8 @@ TEST(VirtualArm, RubsInEachJointByItsOwnFriction) {
   for (int k = 1; k <= 100; ++k) {
     arm.live(p, two(0, 0), kNoHand);
     const double t = k * p.tick;
-    ASSERT_NEAR(arm.read(0).v[0], 6 - 0.02 / 5e-4 * t, 0.01) << k;
-    ASSERT_NEAR(arm.read(0).v[1], -20 + 0.05 / 3e-4 * t, 0.01) << k;
+    ASSERT_NEAR(arm.v()[0], 6 - 0.02 / 5e-4 * t, 0.01) << k;
+    ASSERT_NEAR(arm.v()[1], -20 + 0.05 / 3e-4 * t, 0.01) << k;
   }
 }
 
@@ -407,8 +411,8 @@ TEST(VirtualArm, IsDampedInEachJointByItsOwnDamper) {
   AnyArm arm(description);
   arm.place(two(0, 0), two(2, -3), Vec3::Zero());
   for (int k = 0; k < 50; ++k) arm.live(Parameters{}, two(0, 0), kNoHand);
-  EXPECT_NEAR(arm.read(0).v[0], 2 * std::exp(-0.004 / 5e-4 * 0.05), 1e-4);
-  EXPECT_NEAR(arm.read(0).v[1], -3 * std::exp(-0.009 / 3e-4 * 0.05), 1e-4);
+  EXPECT_NEAR(arm.v()[0], 2 * std::exp(-0.004 / 5e-4 * 0.05), 1e-4);
+  EXPECT_NEAR(arm.v()[1], -3 * std::exp(-0.009 / 3e-4 * 0.05), 1e-4);
 }
 
 TEST(VirtualArm, IsHeldByTheStopsOfEachJointAsItsMotorIsStrong) {
@@ -424,8 +428,8 @@ TEST(VirtualArm, IsHeldByTheStopsOfEachJointAsItsMotorIsStrong) {
     p.damping = 0.012;
     for (int k = 0; k < 3000; ++k) arm.live(p, sign * two(0.6, 0.2), kNoHand);
     // 0.01 rad at the motor's limit.
-    EXPECT_NEAR(arm.read(0).x[0], (sign > 0 ? 0.8 : -0.5) + sign * 0.01 * 0.6 / 1, 1e-5);
-    EXPECT_NEAR(arm.read(0).x[1], (sign > 0 ? 0.4 : -0.3) + sign * 0.01 * 0.2 / 0.25, 1e-5);
+    EXPECT_NEAR(arm.x()[0], (sign > 0 ? 0.8 : -0.5) + sign * 0.01 * 0.6 / 1, 1e-5);
+    EXPECT_NEAR(arm.x()[1], (sign > 0 ? 0.4 : -0.3) + sign * 0.01 * 0.2 / 0.25, 1e-5);
   }
 }
 
@@ -441,8 +445,8 @@ TEST(VirtualArm, BouncesOffItsStopsAsAHalfDampedSpringDoes) {
   arm.place(two(0, 0), two(4, -3), Vec3::Zero());
   for (int k = 0; k < 150; ++k) arm.live(p, two(0, 0), kNoHand);
   const double left = std::exp(-3.14159265358979 / std::sqrt(3.0));
-  EXPECT_NEAR(arm.read(0).v[0], -4 * left, 0.05 * 4 * left);
-  EXPECT_NEAR(arm.read(0).v[1], 3 * left, 0.05 * 3 * left);
+  EXPECT_NEAR(arm.v()[0], -4 * left, 0.05 * 4 * left);
+  EXPECT_NEAR(arm.v()[1], 3 * left, 0.05 * 3 * left);
 }
 
 TEST(VirtualArm, IsPulledByAHandThatGoesEvenlyFromTargetToTarget) {
@@ -478,18 +482,22 @@ TEST(VirtualArm, IsMovedByATorqueOfTheHandAsByOneOfTheMotors) {
     const std::span hand(half.data(), 4);
     pushed.live(Parameters{}, half, {Vec3::Zero(), 0, hand});
     driven.live(Parameters{}, torque, kNoHand);
-    ASSERT_LT((pushed.read(0).x - driven.read(0).x).norm(), 1e-12);
+    ASSERT_LT((pushed.x() - driven.x()).norm(), 1e-12);
     ASSERT_LT((pushed.hand_torque() - half).norm(), 1e-15);
     ASSERT_EQ(driven.hand_torque().norm(), 0);
   }
 }
 
-TEST(VirtualArm, IsReadAtTheNearestEncoderStep) {
-  AnyArm arm(two_wheels());
-  arm.place(two(3.6e-3, -3.6e-3), two(0, 0), Vec3::Zero());
-  const auto reading = arm.read(1e-3);
-  EXPECT_NEAR(reading.measured[0], 4e-3, 1e-15);
-  EXPECT_NEAR(reading.measured[1], -4e-3, 1e-15);
+TEST(VirtualDevice, IsReadAtTheNearestEncoderStep) {
+  VirtualDevice<kAnyDof> device(two_wheels());
+  device.arm.place(two(3.6e-3, -3.6e-3), two(0, 0), Vec3::Zero());
+  Parameters p;
+  p.encoder_step = 1e-3;
+  device.expect(p, kNoHand);
+  DeviceReading reading;
+  ASSERT_TRUE(device.read(reading));
+  EXPECT_NEAR(reading.x[0], 4e-3, 1e-15);
+  EXPECT_NEAR(reading.x[1], -4e-3, 1e-15);
 }
 
 TEST(VirtualDevice, IsReadAnewEachTimeAndLivesThroughATickAWrite) {
@@ -512,10 +520,10 @@ TEST(VirtualDevice, IsReadAnewEachTimeAndLivesThroughATickAWrite) {
   EXPECT_NEAR(reading.x[0], 0.012, 1e-15);
   const double torque[] = {0.1, -0.06};
   device.write(torque);
-  EXPECT_NEAR(device.arm.read(0).v[0], 0.1 / 5e-4 * 0.002, 1e-12);
-  EXPECT_NEAR(device.arm.read(0).v[1], -0.06 / 3e-4 * 0.002, 1e-12);
+  EXPECT_NEAR(device.arm.v()[0], 0.1 / 5e-4 * 0.002, 1e-12);
+  EXPECT_NEAR(device.arm.v()[1], -0.06 / 3e-4 * 0.002, 1e-12);
   device.stop();  // without torque it moves on unchanged
-  EXPECT_NEAR(device.arm.read(0).v[0], 0.4, 1e-12);
+  EXPECT_NEAR(device.arm.v()[0], 0.4, 1e-12);
 }
 
 }  // namespace

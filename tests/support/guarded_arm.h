@@ -1,7 +1,7 @@
 // The virtual arm as a real device: guarded, and with readings that a test can falsify.
 #pragma once
 
-#include "devices/simulated/virtual_arm.h"
+#include "devices/simulated/virtual_device.h"
 
 namespace limpid::test {
 

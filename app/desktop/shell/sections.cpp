@@ -58,6 +58,8 @@ DrawSection hand_section(Desktop& d) {
   };
 }
 
+bool with_device(const Desktop& d) { return !d.devices.hub().in_use().empty(); }
+
 DrawSection device_section(Desktop& d) {
   return [&d](const Act&) {
     Parameters& parameters = d.settings.parameters();
@@ -68,7 +70,7 @@ DrawSection device_section(Desktop& d) {
     if (asks.arm_file) d.dialog.open("device arm");
     say_for_rerun(d);
     // Nothing beside a device acts on the virtual arm.
-    if (d.devices.hub().in_use().empty()) {
+    if (!with_device(d)) {
       draw_parameters(
           parameters, arm,
           {"device.gravity", "device.springs", "model.gravity", "model.springs", "model.friction"});
@@ -77,6 +79,20 @@ DrawSection device_section(Desktop& d) {
                     {"device.torque_limit", "observer.anti_windup", "device.damping",
                      "device.friction", "device.encoder_step", "device.delay", "model.delay",
                      "observer.velocity", "model.inertia_error", "proxy.inertia_ratio"});
+  };
+}
+
+DrawSection imperfections_section(Desktop& d) {
+  return [&d](const Act&) {
+    if (with_device(d)) {
+      return ImGui::TextWrapped(
+          "These are the virtual arm's; a device is in use, which has its own.");
+    }
+    ImGui::TextWrapped("Of the virtual arm's motors and encoders. No law knows them.");
+    say_for_rerun(d);
+    draw_parameters(d.settings.parameters(), d.shown.stage().arm(),
+                    {"plant.torque_scale", "plant.current_loop", "plant.resonance", "plant.cogging",
+                     "plant.friction", "plant.eccentricity", "plant.zero"});
   };
 }
 
@@ -107,7 +123,6 @@ DrawSection tick_section(Desktop& d) {
 
 bool always(const Desktop&) { return true; }
 bool never(const Desktop&) { return false; }
-bool with_device(const Desktop& d) { return !d.devices.hub().in_use().empty(); }
 bool with_any_device(const Desktop& d) {
   return with_device(d) || !d.devices.hub().found().empty() || !d.pads.all().empty();
 }
@@ -116,6 +131,7 @@ constexpr std::array kSections{
     SectionKind{"Scene", always, scene_section, always},
     SectionKind{"Hand", always, hand_section, always},
     SectionKind{"Device", with_device, device_section, with_any_device},
+    SectionKind{"Imperfections", never, imperfections_section, never},
     SectionKind{"Analysis", never, analysis_section, never},
     SectionKind{"This tick", never, tick_section, never},
     SectionKind{"Timing", always, timing_section, never},

@@ -93,8 +93,8 @@ struct LoopOptions {
   // Settings by their keys, as "coupling.kind=predictive"; later ones win, also over `config`.
   // setting_list() has all of them. The law is "proposed" unless coupling.kind says another. Gains
   // that no setting names are fitted to the arm. Of a device say the step of its encoders,
-  // device.encoder_step, and its delay in ticks, model.delay. hand.* is
-  // the simulated hand's; a DeviceLoop refuses it.
+  // device.encoder_step, and its delay in ticks, model.delay. hand.* and
+  // plant.* are the simulated hand's and arm's; a DeviceLoop refuses them.
   std::vector<std::string> settings;
   // Time from a tick to the next, 1e-5 to 0.1 s: what your loop keeps. Faster loops render stiffer
   // walls. Most of what Limpid promises was tried at 0.001.

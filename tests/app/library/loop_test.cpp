@@ -322,7 +322,7 @@ TEST(DeviceLoop, SaysAStartOutsideOfTheRangeAndRefusesOneFarOutside) {
   }
 }
 
-TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHand) {
+TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHandAndArm) {
   LoopOptions options = slide();
   options.settings.emplace_back("hand.stiffness=300");
   EXPECT_THROW(DeviceLoop(options, std::array{0.0}), LoopError);
@@ -330,6 +330,7 @@ TEST(DeviceLoop, RefusesSettingsOfTheSimulatedHand) {
   DeviceLoop loop(slide(), std::array{0.0});
   EXPECT_THROW(loop.set("hand.damping=5"), LoopError);
   EXPECT_THROW(loop.set("hand.damping", 5), LoopError);
+  EXPECT_THROW(loop.set("plant.cogging=0.01"), LoopError);
 }
 
 // A spring of the wall's k and the coupling's k_vc in a row: the proxy is where both hold as much.

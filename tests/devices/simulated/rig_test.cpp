@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "devices/simulated/virtual_arm.h"
+#include "devices/simulated/virtual_device.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/rows.h"

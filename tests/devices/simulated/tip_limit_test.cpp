@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/torque_limits.h"
 #include "devices/simulated/random_corner.h"
 #include "tests/support/built_in.h"
 #include "tests/support/guarded_arm.h"

@@ -181,7 +181,8 @@ TEST_F(Words, AboutLimpidNameItsVersionAndWhatItIsBuiltOn) {
 }
 
 TEST_F(Words, OfSectionsAreThereOnceTheyAreUnfolded) {
-  for (const char* title : {"Scene", "Hand", "Device", "Analysis", "This tick", "Timing"}) {
+  for (const char* title :
+       {"Scene", "Hand", "Device", "Imperfections", "Analysis", "This tick", "Timing"}) {
     EXPECT_TRUE(find(title, kSidePanel)) << title;
   }
   height = 2600;

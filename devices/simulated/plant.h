@@ -1,0 +1,48 @@
+// What a real device has and no law knows of: motors that are slow and give another torque than
+// they are told, a transmission that yields, cogging, and encoders that are wrong.
+#pragma once
+
+#include "core/tick/parameters.h"
+#include "devices/simulated/virtual_arm.h"
+
+namespace limpid {
+
+// Motors, transmission and encoders of the virtual arm, as PlantSettings have them. Per joint:
+//
+//     i' = w_i (scale tau - i)              current loop, w_i its bandwidth
+//     J_m theta'' = i + c(theta) - s        rotor, c the cogging torque
+//     s = J_m w^2 (theta - x) + 2 z w J_m (theta' - x')    transmission, which drives the joint
+//
+// with z = 0.03, assumed. Encoders sit on the motors. J_m is a part of the arm's inertia and taken
+// from its links, so that arm and motors together weigh what the file says. With a rigid
+// transmission theta is x. Steps are as short as the arm's substeps or shorter; in each, positions
+// go half the way, forces act, and positions go the other half (position Verlet).
+template <int N>
+class Plant {
+ public:
+  explicit Plant(const ArmDescription& arm);
+
+  // Puts joints and motors at x and v, without torque [rad, rad/s].
+  void place(const Vec<N>& x, const Vec<N>& v);
+  // What encoders tell of the arm, not yet rounded to their steps [rad].
+  Vec<N> encoders(const Parameters& p, const Vec<N>& x) const;
+  // Simulates one tick of the arm in which the motors are told `torque` [N m].
+  void live(VirtualArm<N>& arm, const Parameters& p, const Vec<N>& torque, const HandInput& hand);
+
+  const Vec<N>& torque() const { return torque_; }  // on the joints, mean over the tick [N m]
+  const Vec<N>& hand_torque() const { return hand_torque_; }  // f1, mean over the tick [N m]
+
+ private:
+  Vec<N> current(const Parameters& p, const Vec<N>& wanted, double h);
+
+  Vec<N> rotors_;         // J_m [kg m^2]
+  Vec<N> current_;        // i [N m]
+  Vec<N> theta_, omega_;  // of the motors [rad, rad/s]
+  Vec<N> torque_, hand_torque_;
+};
+
+extern template class Plant<3>;
+extern template class Plant<7>;
+extern template class Plant<kAnyDof>;
+
+}  // namespace limpid
