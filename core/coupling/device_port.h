@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "core/coupling/cells.h"
 #include "core/coupling/law.h"
 #include "core/coupling/law_info.h"
 
@@ -38,12 +39,8 @@ class DevicePort {
   const Vec<N>& D() const { return D_; }  // motion in the tick that ended [rad]
   // Torque that left so many ticks before the last one [N m].
   const Vec<N>& sent(int ticks) const { return sent_[static_cast<std::size_t>(ticks)]; }
-  // Energy that dampers b took in the tick that ended [J]. A reading that changes by a step may be
-  // no motion.
-  double damped(const Vec<N>& b) const {
-    const Vec<N> sure = (D_.cwiseAbs().array() - q_).max(0);
-    return b.dot(sure.cwiseAbs2()) / elapsed_;
-  }
+  // Energy that dampers b took in the tick that ended [J].
+  double damped(const Vec<N>& b) const { return sure_loss<N>(b, D_, q_, elapsed_); }
   // Motion that is more than a step of the encoder [rad].
   Vec<N> moved() const { return (D_.array().abs() > 1.5 * q_).select(D_, 0); }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/coupling/cells.h"
 #include "core/math/solve.h"
 
 namespace limpid {
@@ -13,9 +14,8 @@ void DeviceTank<N>::start(const Vec<N>& x1, double energy) {
   in_ = energy;
   out_ = 0;
   spent_.fill(0);
-  x1_ = x1;
+  x1_ = z_ = x1;
   dx_ = change_ = Vec<N>::Zero(x1.size());
-  still_.fill(0);
   torques_.fill(dx_);
 }
 
@@ -34,18 +34,13 @@ void DeviceTank<N>::settle(const Vec<N>& x1, const Vec<N>& damping, double q, do
   change_ = dx - dx_;
   dx_ = dx;
   x1_ = x1;
-  // An unchanged reading says nothing.
-  for (Eigen::Index i = 0; i < dx.size(); ++i) {
-    int& n = still_[static_cast<std::size_t>(i)];
-    ++n;
-    if (q > 0 && dx[i] == 0) continue;
-    in_ += damping[i] * dx[i] * dx[i] / (n * T);
-    n = 0;
-  }
+  in_ += sure_loss<N>(damping, dx, q, T);
+  const Vec<N> z = within_cells<N>(x1, dx, q), dz = z - z_;
+  z_ = z;
   out_ = -std::numeric_limits<double>::infinity();
   for (int d = least_; d <= most_; ++d) {
     const auto place = static_cast<std::size_t>(d);
-    spent_[place] += torques_[(newest_ + place) % torques_.size()].dot(dx);
+    spent_[place] += torques_[(newest_ + place) % torques_.size()].dot(dz);
     out_ = std::max(out_, spent_[place]);
   }
   in_ = std::min(in_, out_ + most);

@@ -15,7 +15,8 @@ class DeviceTank {
  public:
   void start(const Vec<N>& x1, double energy);  // [J]
   // Books the tick of length T that just ended, with the reading x1 after it. `damping`: as far as
-  // it is sure [N m s/rad]; q: the encoders' step [rad]; `most`: the tank keeps no more [J].
+  // it is sure [N m s/rad]; q: the encoders' step [rad]; `most`: the tank keeps no more [J]. Work
+  // counts along within_cells().
   void settle(const Vec<N>& x1, const Vec<N>& damping, double q, double T, double most);
   // Sets the least and the largest delay between command and motor [ticks].
   void expect(int least, int most);
@@ -35,7 +36,7 @@ class DeviceTank {
   std::array<double, kMostDelay + 1> spent_{};  // by delay [J]
   int least_ = 0, most_ = 0;
   Vec<N> x1_, dx_, change_;                     // last reading, motion, change of motion [rad]
-  std::array<int, kMaxDof> still_{};            // ticks since a joint's reading changed
+  Vec<N> z_;                                    // path within the cells of the readings [rad]
   std::array<Vec<N>, kMostDelay + 1> torques_;  // torques that were sent [N m]
   std::size_t newest_ = 0;
 };

@@ -15,8 +15,9 @@
 namespace limpid {
 
 // Rate at which a hand's force is expected to change [N/s]: kForceRate at rest, and by kHandHold
-// [N/m] times its speed, as of a hand that holds.
-inline constexpr double kForceRate = 10, kHandHold = 800;
+// [N/m] times its speed, as of a hand that holds. With 800 N/m the filter of a moving hand would be
+// quicker than a transmission that yields allows; rigid ones do not tell 200 from 800.
+inline constexpr double kForceRate = 10, kHandHold = 200;
 
 // Variance of a reading [rad^2].
 inline double reading_variance(double q) { return q * q / 12; }

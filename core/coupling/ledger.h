@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/coupling/cells.h"
 #include "core/coupling/law_info.h"
 #include "core/math/sizes.h"
 
@@ -34,7 +35,6 @@ class Ledger {
     fresh_ = true;
     dy_ = dx_ = Vec<N>::Zero(y.size());
     let_through();
-    still_.fill(0);
     on_its_way_ = 0;
     y_ = x_ = rests_at_ = y;
     rested_ = 0;
@@ -53,8 +53,10 @@ class Ledger {
     most_ = most;
   }
 
+  // Where the device is by its readings alone, y the newest [rad].
+  Vec<N> located(const Vec<N>& y, double q) const { return within_cells<N>(y, y - y_, q); }
   // Books the tick just ended. y: the reading after it; x: the device's position as located; b_lo:
-  // a safe lower bound of its damping; q: the encoders' step: an unchanged reading says nothing.
+  // a safe lower bound of its damping; q: the encoders' step.
   // sent(d): torque sent d ticks before the last one [N m]. `given`: by the proxy to bodies of its
   // world, which have an account of their own [J].
   template <class Sent>
@@ -65,14 +67,7 @@ class Ledger {
     const Vec<N> now = y + (x - y).cwiseMin(q / 2).cwiseMax(-q / 2);
     dx_ = now - x_;
     x_ = now;
-    double damped = 0;
-    for (Eigen::Index i = 0; i < y.size(); ++i) {
-      int& n = still_[static_cast<std::size_t>(i)];
-      ++n;
-      if (q > 0 && dy_[i] == 0) continue;
-      damped += b_lo[i] * dy_[i] * dy_[i] / (n * T);
-      n = 0;
-    }
+    const double damped = sure_loss<N>(b_lo, dy_, q, T);
     for (int d = least_; d <= most_; ++d) at(d) += damped - sent(d).dot(dx_) - given;
     on_its_way_ = 0;
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
@@ -173,7 +168,6 @@ class Ledger {
   double E0_ = 0, stored_ = 0, on_its_way_ = 0;
   double H_ = std::numeric_limits<double>::infinity(), left_ = H_;
   double contact_ = 1, damping_ = 1, torque_ = 1;
-  std::array<int, kMaxDof> still_{};
   double rested_ = 0;  // time at rest at rests_at_ [s]
   Vec<N> y_, dy_, x_, dx_, rests_at_;
 };

@@ -5,6 +5,7 @@
 
 #include "core/dynamics/arm.h"
 #include "core/math/elementary.h"
+#include "core/tick/tick.h"
 
 namespace limpid {
 namespace {
@@ -60,7 +61,10 @@ Vec<N> cogging(double amplitude, const Vec<N>& theta) {
 }  // namespace
 
 template <int N>
-Plant<N>::Plant(const ArmDescription& arm) : rotors_(rotors_of<N>(arm)) {
+Plant<N>::Plant(const ArmDescription& arm)
+    : rotors_(rotors_of<N>(arm)),
+      damping_(of_joints<N>(arm, &Joint::damping)),
+      friction_(of_joints<N>(arm, &Joint::friction)) {
   place(Vec<N>::Zero(arm.dof()), Vec<N>::Zero(arm.dof()));
 }
 
@@ -99,8 +103,7 @@ void Plant<N>::live(VirtualArm<N>& arm, const Parameters& p, const Vec<N>& torqu
     current_ = torque_ = wanted;
     arm.live(p, wanted, hand);
     hand_torque_ = arm.hand_torque();
-    theta_ = arm.x();
-    omega_ = arm.v();
+    follow(arm);
     return;
   }
   const double w = kTurn * p.resonance;
@@ -108,30 +111,48 @@ void Plant<N>::live(VirtualArm<N>& arm, const Parameters& p, const Vec<N>& torqu
   Parameters piece = p;
   piece.substeps = 1;
   piece.tick = p.tick / pieces;
-  const double h = piece.tick;
+  if (yields) piece.damping = piece.friction = piece.unknown_friction = 0;  // are the motors'
   const Vec3 from = arm.target();
   HandInput held = hand;
   torque_.setZero();
   hand_torque_.setZero();
   for (int i = 1; i <= pieces; ++i) {
-    const Vec<N> middle = arm.x() + h / 2 * arm.v();
-    if (!yields) theta_ = arm.x(), omega_ = arm.v();
-    theta_ += h / 2 * omega_;
-    Vec<N> drive = current(p, wanted, h) + cogging<N>(p.cogging, theta_);
-    if (yields) {
-      const Vec<N> motors = drive;
-      drive =
-          rotors_.cwiseProduct(w * w * (theta_ - middle) + 2 * kDamping * w * (omega_ - arm.v()));
-      omega_ += h * (motors - drive).cwiseQuotient(rotors_);
-      theta_ += h / 2 * omega_;
-    }
-    held.target =
-        i == pieces ? hand.target : Vec3(from + double(i) / pieces * (hand.target - from));
+    const Vec<N> motors = current(p, wanted, piece.tick);
+    const Vec<N> drive =
+        yields ? transmitted(arm, p, motors, piece.tick)
+               : Vec<N>(motors + cogging<N>(p.cogging, arm.x() + piece.tick / 2 * arm.v()));
+    const double share = static_cast<double>(i) / pieces;
+    held.target = i == pieces ? hand.target : Vec3(from + share * (hand.target - from));
+    const Vec<N> before = arm.x();
     arm.live(piece, drive, held);
     torque_ += drive / pieces;
+    // Whoever keeps account takes the dampers to be the joints'.
+    if (yields) torque_ += resolve<N>(p.damping, damping_).cwiseProduct(arm.x() - before) / p.tick;
     hand_torque_ += arm.hand_torque() / pieces;
   }
-  if (!yields) theta_ = arm.x(), omega_ = arm.v();
+  if (!yields) follow(arm);
+}
+
+// Moves the motors on by h under this torque; returns the transmission's torque on the joints.
+template <int N>
+Vec<N> Plant<N>::transmitted(const VirtualArm<N>& arm, const Parameters& p, const Vec<N>& motors,
+                             double h) {
+  const double w = kTurn * p.resonance;
+  const Vec<N> joints = arm.x() + h / 2 * arm.v();
+  theta_ += h / 2 * omega_;
+  const Vec<N> drive =
+      rotors_.cwiseProduct(w * w * (theta_ - joints) + 2 * kDamping * w * (omega_ - arm.v()));
+  const Vec<N> damping = resolve<N>(p.damping, damping_);
+  const Vec<N> friction = resolve<N>(p.friction, friction_).array() + p.unknown_friction;
+  const Vec<N> on = motors + cogging<N>(p.cogging, theta_) - drive;
+  for (Eigen::Index i = 0; i < on.size(); ++i) {
+    const double half = h / 2 * damping[i] / rotors_[i];
+    const double free = ((1 - half) * omega_[i] + h / rotors_[i] * on[i]) / (1 + half);
+    const double held = h / rotors_[i] * friction[i] / (1 + half);
+    omega_[i] = std::copysign(std::max(std::abs(free) - held, 0.0), free);
+  }
+  theta_ += h / 2 * omega_;
+  return drive;
 }
 
 template class Plant<3>;
