@@ -1,5 +1,5 @@
-// What readings of encoders with steps tell of the energy of a device: where it surely was, and
-// what its dampers surely took.
+// Energy of a device by readings of encoders with steps: the loss that its dampers surely had, and
+// a path for the work of its motors.
 #pragma once
 
 #include <algorithm>

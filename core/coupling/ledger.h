@@ -53,7 +53,7 @@ class Ledger {
     most_ = most;
   }
 
-  // Where the device is by its readings alone, y the newest [rad].
+  // Position of the device by its readings alone, y the newest [rad].
   Vec<N> located(const Vec<N>& y, double q) const { return within_cells<N>(y, y - y_, q); }
   // Books the tick just ended. y: the reading after it; x: the device's position as located; b_lo:
   // a safe lower bound of its damping; q: the encoders' step.

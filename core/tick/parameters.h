@@ -154,8 +154,8 @@ struct DeviceSettings {
   }
 };
 
-// What a real device has and no law knows of, for the virtual arm; none of it by default. What each
-// does: devices/simulated/plant.h.
+// Imperfections of the virtual arm, as real devices have them and no law knows; none by default.
+// The equations are in devices/simulated/plant.h.
 struct PlantSettings {
   double torque_scale = 1;      // torque that the motors give over what they are told [-]
   double current_loop = 0;      // bandwidth of the motors' current loop [Hz]; 0: at once

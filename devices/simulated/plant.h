@@ -1,4 +1,4 @@
-// What a real device has and no law knows of: motors that are slow and give another torque than
+// Imperfections of a device that no law knows of: motors that are slow and give another torque than
 // they are told, a transmission that yields, cogging, and encoders that are wrong.
 #pragma once
 
@@ -25,7 +25,7 @@ class Plant {
 
   // Puts joints and motors at x and v, without torque [rad, rad/s].
   void place(const Vec<N>& x, const Vec<N>& v);
-  // What encoders tell of the arm, not yet rounded to their steps [rad].
+  // Readings of the encoders, not yet rounded to their steps [rad].
   Vec<N> encoders(const Parameters& p, const Vec<N>& x) const;
   // Simulates one tick of the arm in which the motors are told `torque` [N m].
   void live(VirtualArm<N>& arm, const Parameters& p, const Vec<N>& torque, const HandInput& hand);

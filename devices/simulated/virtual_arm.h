@@ -323,7 +323,7 @@ class VirtualArm {
   Vec3 tip() const { return arm_.tip_at(x_); }
   const Vec<N>& x() const { return x_; }  // [rad]
   const Vec<N>& v() const { return v_; }  // [rad/s]
-  // Where the hand wants the tip, at the end of the last tick [m].
+  // Place where the hand wants the tip, at the end of the last tick [m].
   const Vec3& target() const { return target_; }
   // f1, the mean over the tick [N m].
   const Vec<N>& hand_torque() const { return hand_torque_; }

@@ -48,7 +48,7 @@ class Adversary {
     cells_ += q_ * (tau - acted_).lpNorm<1>();
     const Any way = x - x_;
     given_ += tau.dot(way) - b_.dot(way.cwiseAbs2()) / T;  // an even motion loses least
-    // What acts now was sent `delay` ticks ago; the other accounts see other torques.
+    // The torque that acts now was sent `delay` ticks ago; the other accounts see other ones.
     std::rotate(sent_.begin(), sent_.end() - 1, sent_.end());
     for (Any& each : sent_) each = random_.vector(static_cast<int>(x.size()), 0.1);
     sent_[static_cast<std::size_t>(delay_)] = tau;
