@@ -142,7 +142,7 @@ class RobustBench {
                     limits.walls[static_cast<std::size_t>(of.of_law().kind)].stiffness);
   }
   std::vector<RobustCame> tap(const std::vector<RobustTap>& taps);
-  // Of each case the stiffest wall that is rendered well without giving more than kMayGive [N/m];
+  // Finds for each case the stiffest wall that is rendered well and gives at most kMayGive [N/m];
   // kSoftestTried if none is.
   std::vector<double> stiffest(const std::vector<RobustCase>& cases);
 
