@@ -111,7 +111,7 @@ struct RobustCase {
   }
 };
 
-// What became of a case in all hands, the worst.
+// Worst result of a case in all hands.
 struct RobustCame {
   double given = 0;             // most [J]
   double off = 0, shaking = 0;  // felt stiffness off the set one; rms force, of the press [-]
