@@ -27,7 +27,7 @@ class Pressed {
 
   // Runs a tick of the controller; returns the device's torque [N m, N].
   const Vec<N>& control() {
-    const Reading<N> reading = arm_.read(p_.encoder_step);
+    const Reading<N> reading{arm_.x(), arm_.x(), arm_.v()};
     return tick_.run(p_, reading, ForceRequest::as_it_is, row_);
   }
   // Runs a tick of the device and the hand.
