@@ -72,6 +72,7 @@ hdf5::Datatype setting_type() {
 // nothing else take no room in the file; HDF5 reads them as this value.
 std::optional<double> mostly(Column column) {
   switch (column) {
+    case Column::tool_orientation:
     case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
     case Column::contact_force:
     case Column::body_velocity:  // bodies sleep
@@ -80,6 +81,7 @@ std::optional<double> mostly(Column column) {
     case Column::pull_point:
     case Column::pull_target:
     case Column::energy_pulled:
+    case Column::motor_warmth:
     case Column::compensation_torque:
     case Column::energy_compensation: return 0.0;
     default: return std::nullopt;
