@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "core/tick/motor_warmth.h"
+
 namespace limpid {
 namespace {
-
-constexpr float kWarm = 0.5f;  // warmth from which it is worth a word
 
 const char* explain(NoForce reason) {
   switch (reason) {
@@ -33,7 +33,7 @@ std::string device_words(const DeviceReading& reading) {
   if (reading.no_force != NoForce::none) {
     say(fmt::format("The device itself gives no force: {}.", explain(reading.no_force)));
   }
-  if (reading.warmth >= kWarm) {
+  if (static_cast<double>(reading.warmth) >= kWarmFrom) {
     say(fmt::format("Its hottest motor is at {:.0f} % of the warmth that it bears.",
                     100 * reading.warmth));
   }

@@ -75,6 +75,14 @@ struct DeviceReading {
   NoForce no_force = NoForce::none;  // why the device itself has no force
   bool calibrated = true;            // a fault besides, if not
   float warmth = 0;                  // of its hottest motor: 0 cold, 1 as warm as it may be [-]
+  // Orientation of the tool as a quaternion w, x, y, z of unit length; all zero: not known. The
+  // tool's axes are x along it towards what it touches, y to its left, z up; they are those of the
+  // arm's base at 1 0 0 0.
+  std::array<double, 4> orientation{};
+
+  bool oriented() const {
+    return std::ranges::any_of(orientation, [](double part) { return part != 0; });
+  }
 };
 
 // Sentences of the device about itself, for people, beyond what force_text() says; empty: none.

@@ -24,6 +24,9 @@ struct Near {
   bool forces(const Vec3& a, const Vec3& b) const {
     return kMetersPerNewton * (a - b).norm() <= tolerance;
   }
+  bool turns(const std::optional<Mat3>& a, const std::optional<Mat3>& b) const {
+    return a.has_value() == b.has_value() && (!a || kPenLength * (*a - *b).norm() <= tolerance);
+  }
   bool operator()(const Pose& a, const Pose& b) const {
     return (*this)(Vec3(a.translation()), Vec3(b.translation())) &&
            kSpan * (a.linear() - b.linear()).norm() <= tolerance;
@@ -75,7 +78,7 @@ bool same_picture(const ViewState& a, const ViewState& b, double tolerance) {
          near(a.rerun, b.rerun) && near(a.beside, b.beside) && hands &&
          near.forces(a.hand_force, b.hand_force) && near(a.contacts, b.contacts) &&
          near(a.shade, b.shade) && near(a.pull, b.pull) && near(a.bodies, b.bodies) &&
-         near(a.rerun_bodies, b.rerun_bodies);
+         near(a.rerun_bodies, b.rerun_bodies) && near.turns(a.tool, b.tool);
 }
 
 void Damage::begin(const glm::mat4& to_clip, int width, int height) {

@@ -44,6 +44,22 @@ void add_arrow(const Vec3& from, const Vec3& force, const palette::Rgb& color, d
                  place(from + (length - head) * direction, direction, radius, head), color});
 }
 
+// Adds a pen with its point at the tip, and a button on its upper side, which shows how it is
+// turned about itself.
+void add_pen(const ArmPose& arm, const Mat3& tool, const palette::Rgb& color,
+             std::vector<SolidMark>& out) {
+  constexpr double kPoint = 0.022, kRadius = 0.0045;  // [m]
+  constexpr double kButton = 0.040;                   // from the point on [m]
+  if (arm.links.empty() || !arm.tip.allFinite() || !tool.allFinite()) return;
+  const Vec3 along = tool.col(0), up = tool.col(2);
+  const Vec3 neck = arm.tip - kPoint * along;
+  out.push_back({SolidMark::Shape::cone, place(neck, along, kRadius, kPoint), color});
+  out.push_back({SolidMark::Shape::tube, place(neck, -along, kRadius, kPenLength - kPoint), color});
+  out.push_back({SolidMark::Shape::ball,
+                 place(arm.tip - kButton * along + kRadius * up, up, 0.5 * kRadius, 0.5 * kRadius),
+                 lighter(color, 0.5f)});
+}
+
 void add_trail(const std::vector<Vec3>& trail, const palette::Rgb& color, LineBatch& lines) {
   const auto alpha = [&](std::size_t i) {
     const float t = static_cast<float>(i) / static_cast<float>(trail.size() - 1);
@@ -123,6 +139,10 @@ Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_s
     marks.solids.push_back({SolidMark::Shape::ball,
                             place(state.hand_target, Vec3::UnitZ(), 0.0085 * size, 0.0085 * size),
                             palette::kHand});
+  if (state.tool) {
+    add_pen(state.proxy, *state.tool, palette::kProxy, marks.solids);
+    if (state.show_ghost) add_pen(state.device, *state.tool, palette::kDevice, marks.solids);
+  }
   add_contacts(state, state.contacts, palette::kContact, size, marks);
   for (std::size_t i = 0; i < state.beside.size(); ++i) {
     const OtherRun& run = state.beside[i];

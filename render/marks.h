@@ -13,6 +13,7 @@
 namespace limpid {
 
 inline constexpr double kMetersPerNewton = 0.02;  // of an arrow
+inline constexpr double kPenLength = 0.12;        // of a tool in the hand [m]
 
 struct SolidMark {
   enum class Shape { tube, cone, ball };
@@ -34,7 +35,7 @@ struct Marks {
 };
 
 // Collects the marks of a state. Their sizes are in pixels, so that they stay readable; only arrows
-// have lengths in metres (kMetersPerNewton).
+// and pens have lengths in metres (kMetersPerNewton, kPenLength).
 Marks collect_marks(const ViewState& state, const Camera& camera, double pixel_scale);
 
 // Adds lines that others can hide, and lines on top of everything.

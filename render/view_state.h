@@ -69,6 +69,9 @@ struct ViewState {
   // finite stands where the scene has it.
   std::vector<Pose> bodies;
   std::vector<Pose> rerun_bodies;  // ghosts where they are apart
+  // Orientation of the tool in the hand, drawn as a pen at the tips of device and proxy: x along it
+  // towards what it touches, z up. Nothing: not known, not drawn.
+  std::optional<Mat3> tool;
 
   bool show_ghost = true;
   bool show_error = true;  // the two tips and the line between them

@@ -10,6 +10,7 @@
 
 #include "app/live/device_pace.h"
 #include "app/live/further_lane.h"
+#include "app/live/warmth_memory.h"
 #include "app/run/recorder.h"
 #include "core/realtime/hand_over.h"
 #include "core/realtime/haptic_thread.h"
@@ -112,7 +113,8 @@ class LiveLoop {
   // at first. Errors: as rest_at() and Rig; the last loop then goes on.
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p, const Vec3& home);
   // Opens a world with a device of as many joints in the arm's place; force is off until armed.
-  // Starts at the device's posture if it is known. Errors: as Rig; the last loop then goes on, and
+  // Starts at the device's posture if it is known, its motors as warm as those of the last device
+  // must still be. Errors: as Rig; the last loop then goes on, and
   // the device is disposed of.
   void open(const ArmDescription& arm, const Scene& scene, const Parameters& p,
             std::unique_ptr<Device> device);
@@ -218,6 +220,7 @@ class LiveLoop {
   RealDevice real_;        // the device in place; the window writes its encoders
   bool plugged_ = false;   // the window's
   bool virtual_armed_ = true;
+  WarmthMemory warmth_;  // of devices in place
 
   // Counted by the window, read by the loop.
   std::atomic<std::uint32_t> arms_{0}, cuts_{0};

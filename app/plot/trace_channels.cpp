@@ -102,6 +102,7 @@ std::string part_name(ColumnWidth width, int part) {
     case ColumnWidth::velocities: break;  // bodies have channels of their own
     case ColumnWidth::three:
     case ColumnWidth::three_if_bodies: return axis;
+    case ColumnWidth::four: return std::string(1, "wxyz"[part]);
     case ColumnWidth::dof: return "joint " + std::to_string(part + 1);
     case ColumnWidth::contacts: return "contact " + std::to_string(part / 3 + 1) + " " + axis;
   }

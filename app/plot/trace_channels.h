@@ -10,6 +10,7 @@
 #include "app/plot/history.h"
 #include "app/plot/plot_spec.h"
 #include "app/run/energy_shares.h"
+#include "app/run/motor_limits.h"
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
 #include "core/tick/row.h"
@@ -59,7 +60,7 @@ class TraceChannels {
                 const std::vector<std::string>& bodies);
 
   // Sets the motors' largest torques from now on [N m]; before, no motor is ever limited.
-  void set_limits(std::vector<double> limits) { limits_ = std::move(limits); }
+  void set_limits(std::vector<MotorLimit> limits) { limits_ = std::move(limits); }
   // Returns whether the motor of a joint gives all it can in this row.
   bool limited(std::span<const double> row, int joint) const;
 
@@ -95,7 +96,7 @@ class TraceChannels {
 
   std::vector<Place> columns_;
   std::vector<std::optional<SessionUnits::Scaled>> positions_;  // of each joint
-  std::vector<double> limits_;
+  std::vector<MotorLimit> limits_;
   std::optional<DerivedColumns> tips_;
 };
 

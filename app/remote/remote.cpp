@@ -75,11 +75,13 @@ Parameters usual_settings(const Parameters& now, const Parameters& chosen,
 json loop_state(const LiveLoop& loop, const ArmDescription& arm) {
   const Snapshot& now = loop.snapshot();
   const LoopStatus status = loop.status();
+  const auto warmth = loop.layout().in(std::span<const double>(now.row), Column::motor_warmth);
   return {{"arm", arm.name},
           {"joints", arm.dof()},
           {"device", loop.device_in_place()},
           {"force", now.armed()},
           {"why_no_force", explain(now.force_state)},
+          {"warmth", std::ranges::max(warmth)},
           {"unstable", now.diverged},
           {"ticks", status.ticks},
           {"late", status.late},

@@ -1,13 +1,6 @@
 // Shares of the energy E_c: what the coupling gave, apart from what changing a setting put in.
 #pragma once
 
-#include <span>
-#include <vector>
-
-#include "core/dynamics/arm_description.h"
-#include "core/tick/parameters.h"
-#include "core/tick/row.h"
-
 namespace limpid {
 
 // Energy that counts: E_c above zero by less than this is noise [J].
@@ -53,15 +46,5 @@ class EnergyShares {
   double peak_ = 0;      // of E_c since the excuse began [J]
   bool excused_ = false;
 };
-
-// Returns the largest torque of each motor [N m]: the parameters' one, or the arm's own where they
-// leave it to the arm.
-std::vector<double> motor_limits(const ArmDescription& arm, const Parameters& p);
-// Returns whether the motor of a joint gives all it can in this row; never without limits.
-bool at_limit(const RowLayout& layout, std::span<const double> row, std::span<const double> limits,
-              int joint);
-// Returns whether any motor gives all it can in this row.
-bool any_at_limit(const RowLayout& layout, std::span<const double> row,
-                  std::span<const double> limits);
 
 }  // namespace limpid

@@ -42,6 +42,7 @@ void add_start(Digest& digest, const std::optional<RigStart>& start) {
   digest.add(std::uint64_t{start->armed});
   digest.add(start->reserve);
   digest.add_all(start->world);
+  digest.add_all(start->warmth);
 }
 
 void add_changes(Digest& digest, const std::vector<SettingChange>& changes) {

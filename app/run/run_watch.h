@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/run/energy_shares.h"
+#include "app/run/motor_limits.h"
 #include "app/run/summary.h"
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
@@ -58,10 +59,10 @@ class RunWatch {
   std::optional<double> begun_at_;  // E_c at the first row [J]
   std::deque<Change> changes_;
   std::uint64_t rows_ = 0;
-  std::vector<double> limits_;  // of the motors
-  double promised_ = 0;         // largest E_c that the law allows [J]
-  bool at_fault_ = false;       // the law is known not to be passive
-  std::string settings_;        // in words
+  std::vector<MotorLimit> limits_;  // of the motors
+  double promised_ = 0;             // largest E_c that the law allows [J]
+  bool at_fault_ = false;           // the law is known not to be passive
+  std::string settings_;            // in words
   Excess energy_, speed_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/base/markup.h"
@@ -86,9 +87,17 @@ std::string own(const ArmDescription& arm) {
     springs += fmt::format("    <spring joint=\"{}\" stiffness=\"{}\" offset=\"{}\"/>\n",
                            escaped(joint.name), joint.spring / (unit * unit), joint.offset / unit);
   }
+  std::string warmths;
+  for (const Joint& joint : arm.joints) {
+    if (!(joint.continuous > 0)) continue;
+    const double unit = joint.kind == Joint::Kind::prismatic ? kSlideUnit : 1;
+    warmths += fmt::format("    <warmth joint=\"{}\" continuous=\"{}\" time=\"{}\"/>\n",
+                           escaped(joint.name), std::min(joint.continuous, joint.effort) / unit,
+                           joint.warming);
+  }
   const std::string delay = arm.delay ? fmt::format(" delay=\"{}\"", *arm.delay) : "";
-  return fmt::format("  <limpid gravity=\"{}\"{}>\n{}  </limpid>\n", numbers(arm.gravity), delay,
-                     springs);
+  return fmt::format("  <limpid gravity=\"{}\"{}>\n{}{}  </limpid>\n", numbers(arm.gravity), delay,
+                     springs, warmths);
 }
 
 }  // namespace

@@ -97,6 +97,9 @@ ViewState RowView::view(const RowLayout& layout, std::span<const double> row) co
   view.hand_grips = view.show_hand = at(Column::hand_grip)[0] > 0.5;
   view.hand_force = tip_force(at(Column::device_position), layout.human_torque(row));
   view.bodies = bodies(layout, row);
+  if (const auto q = at(Column::tool_orientation); !std::isnan(q[0])) {
+    view.tool = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  }
   if (layout.has(Column::hand_magnet)) {
     view.magnet = at(Column::hand_magnet)[0] > 0;
     view.magnet_holds = at(Column::magnet)[0] > 0;

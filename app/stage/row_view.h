@@ -58,7 +58,8 @@ class RowView {
   std::vector<ContactForce> contacts(const RowLayout& layout, std::span<const double> row) const;
   // Returns the frames of the scene's moving objects, as many as both row and scene have.
   std::vector<Pose> bodies(const RowLayout& layout, std::span<const double> row) const;
-  // Returns both arms, the hand with its force, and the moving objects; no contacts, no trails.
+  // Returns both arms, the hand with its force and its tool, and the moving objects; no contacts,
+  // no trails.
   ViewState view(const RowLayout& layout, std::span<const double> row) const;
 
  private:

@@ -1,7 +1,8 @@
 """A haptic device that is a program: Limpid finds it by its socket and drives it as one on USB.
 
 Standard library only. The reports are those of devices/hid/raw_protocol.h, without an id, in
-version 1, or in version 2 for joints that slide or have no motor, buttons and warmth.
+version 1, or in version 2 for joints that slide or have no motor, buttons, warmth and the
+orientation of the tool.
 A hand may be on what your program moves, so exchange() gives no torque once the connection has
 ended or no command came for 10 ms. Call it about every millisecond and apply what it returns, also
 while nobody is connected. Run as a program, it plays joints that springs hold:
@@ -73,16 +74,19 @@ class LimpidDevice:
         self._hang_up()
 
     def exchange(self, x: list, hand: bool = True, fault: bool = False, calibrated: bool = True,
-                 buttons: int = 0, no_force: int = 0, warmth: float = 0.0) -> list:
+                 buttons: int = 0, no_force: int = 0, warmth: float = 0.0,
+                 orientation: tuple = (0.0, 0.0, 0.0, 0.0)) -> list:
         """Says where the joints are [rad]; returns the torques to be held until the next call.
 
-        Buttons (a bit each), the reason for no force and warmth (0 to 1) need version 2.
+        Buttons (a bit each), the reason for no force, warmth (0 to 1) and the tool's orientation
+        (a quaternion w x y z, 1 0 0 0 if it points forward; zeros: not known) need version 2.
         """
         try:
             self._accept()
             if self._connection:
                 self._take_commands()
-                self._send_reading(x, (hand, calibrated, fault), (buttons, no_force, warmth))
+                self._send_reading(x, (hand, calibrated, fault),
+                                   (buttons, no_force, warmth, *orientation))
         except BlockingIOError:
             pass  # it does not listen at present
         except OSError:
@@ -117,7 +121,7 @@ class LimpidDevice:
                              self._sequence & 0xFFFFFFFF, round(1e6 * time.monotonic()),
                              *padded(x, self._room), self._command)
         self._connection.send(sealed(
-            report + (bytes(16) if self.version == 1 else struct.pack("<IB3xf60x", *more))))
+            report + (bytes(16) if self.version == 1 else struct.pack("<IB3xf4f44x", *more))))
 
     def _take_commands(self):
         """All that wait: after a pause only the newest counts."""

@@ -33,6 +33,9 @@ struct Joint {
   double friction = 0;                                      // Coulomb [N m]
   // Pull of a spring in every pose: -(spring x + offset) [N m/rad, N m].
   double spring = 0, offset = 0;
+  // Torque that the motor bears for hours [N m], 0: not known; and the time constant with which it
+  // warms up and cools [s].
+  double continuous = 0, warming = 0;
 };
 
 struct Link {

@@ -68,6 +68,8 @@ enum class Column : std::uint8_t {
   pull_point,
   pull_target,
   energy_pulled,
+  tool_orientation,
+  motor_warmth,
   wake_latency,
   compute,
   count_,
@@ -83,6 +85,7 @@ inline constexpr int kRowContacts = 4;
 enum class ColumnWidth : std::uint8_t {
   one,
   three,
+  four,
   dof,
   contacts,
   poses,
@@ -209,6 +212,12 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::pull_target, "/hand/pull_target", ColumnWidth::three_if_bodies, "m", "where to"},
     {Column::energy_pulled, "/energy/pulled", ColumnWidth::if_bodies, "J",
      "what these pulls have given to bodies"},
+    {Column::tool_orientation, "/device/orientation", ColumnWidth::four, "-",
+     "of the tool in the hand as a quaternion w, x, y, z, 1 0 0 0 if it points forward; not a "
+     "number if it is not known"},
+    {Column::motor_warmth, "/device/warmth", ColumnWidth::dof, "-",
+     "of each motor from 0 cold to 1 as warm as it may be: by the arm's model, or what the device "
+     "says of its hottest one if that is more; 0 if neither is known"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
      "how late the tick began"},
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},
@@ -235,6 +244,7 @@ class RowLayout {
     switch (kColumnInfo[static_cast<std::size_t>(c)].width) {
       case ColumnWidth::one: return 1;
       case ColumnWidth::three: return 3;
+      case ColumnWidth::four: return 4;
       case ColumnWidth::dof: return dof_;
       case ColumnWidth::contacts: return 3 * kRowContacts;
       case ColumnWidth::poses: return kPoseNumbers * bodies_;

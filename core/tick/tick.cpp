@@ -30,6 +30,7 @@ Tick<N>::Tick(const ArmDescription& arm, const Scene& scene)
       link_(arm.dof()),
       compensation_(arm),
       motors_(arm.dof()),
+      warmth_(arm),
       safety_(arm),
       J_(Jacobian<N>::Zero(3, arm.dof())) {
   start(Parameters{}, Start<N>::at_rest(Vec<N>::Zero(arm.dof())));
@@ -56,6 +57,7 @@ void Tick<N>::restart_here(const Parameters& p, const Start<N>& start) {
   velocity_.reset(start.x1);
   observer_.reset(start.f1_hat, zero);  // the sampled velocity is zero at k = 0
   compensation_.start(p);
+  warmth_.start(start.warmth);
   books_ = {};
   x1_before_ = start.x1;
   f1_hat_ = start.f1_hat;
@@ -84,6 +86,7 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   }
   const Parameters& p = of_device ? *of_device : given;
   const double put_out = k_ > 0 ? tau1_.dot(in.x - x1_before_) : 0;
+  if (k_ > 0) warm_up(p, in);
   const bool anew = in.health.gap || unbarred_;
   if (anew) begin_anew(in);
   const int periods = k_ > 0 && !anew ? in.periods : 1;
@@ -95,6 +98,8 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   b_d_ = resolve<N>(p.damping, arm_damping_);
   limit_ = resolve<N>(p.torque_limit, arm_limit_);
   if (in.health.guarded) limit_ = limit_.cwiseMin(arm_limit_);
+  warmth_.report(in.warmth);
+  warmth_.limit(limit_);
 
   // The device, (5), as the controller believes it to be.
   const bool goes_on = k_ > 0 && !anew;
@@ -157,6 +162,16 @@ Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, dou
   const Vec<N> friction = resolve<N>(p.friction, arm_friction_);
   loads_ = compensation_.step(p, arm_, frames_, at.x, at.v, friction, p.encoder_step, T);
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
+}
+
+// Lets the motors warm up by the torque that they held since the last tick. After a pause of the
+// loop they have held it for a part of the time.
+template <int N>
+void Tick<N>::warm_up(const Parameters& p, const Reading<N>& in) {
+  const double passed = in.dt > 0 ? in.dt : in.periods * p.tick;
+  const double held = std::min(passed, std::max(MotorWarmth<N>::kHeld, p.tick));
+  warmth_.hold(in.acted ? *in.acted : tau1_, held);
+  if (passed > held) warmth_.hold(Vec<N>::Zero(tau1_.size()), passed - held);
 }
 
 // Part of the tip's limit that the device's own forces leave to the law [N].
@@ -261,6 +276,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   put(Column::contact_torque, proxy_.f());
   put(Column::hand_torque_estimate, f1_hat_);
   put(Column::compensation_torque, loads_);
+  put(Column::motor_warmth, warmth_.known());
   set(Column::force_wanted, gate_.armed() ? 1 : 0);
   set(Column::force_state, static_cast<double>(gate_.why()));
   set(Column::kind, static_cast<double>(p.kind));

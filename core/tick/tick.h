@@ -11,6 +11,7 @@
 #include "core/math/sizes.h"
 #include "core/tick/compensation.h"
 #include "core/tick/motor_stage.h"
+#include "core/tick/motor_warmth.h"
 #include "core/tick/parameters.h"
 #include "core/tick/row.h"
 #include "core/tick/safety.h"
@@ -59,6 +60,7 @@ struct Reading {
   std::optional<Vec<N>> acted{};
   bool magnet = false;  // the tip is to hold a magnetic body near it
   BodyPull pull{};      // pull on a body from outside
+  double warmth = 0;    // of the hottest motor, as the device says it [-]
 };
 
 // Start of a loop.
@@ -73,6 +75,7 @@ struct Start {
   std::span<const double>
       world{};        // state of all bodies, see BodyWorld::write(); empty: as in the scene
   bool owed = false;  // the human has not put in the energy that is stored
+  std::span<const double> warmth{};  // of each motor [-]; empty: cold
 
   static Start at_rest(const Vec<N>& x) {
     const Vec<N> zero = Vec<N>::Zero(x.size());
@@ -103,8 +106,9 @@ class Tick {
   void exchange(std::unique_ptr<Contacts<N>>& contacts);
 
   const Proxy<N>& proxy() const { return proxy_; }
-  const Vec<N>& estimate() const { return f1_hat_; }      // f1_hat of the last tick [N m]
-  double reserve() const { return coupling_.reserve(); }  // see Start [J]
+  const Vec<N>& estimate() const { return f1_hat_; }           // f1_hat of the last tick [N m]
+  double reserve() const { return coupling_.reserve(); }       // see Start [J]
+  const Vec<N>& warmth() const { return warmth_.modelled(); }  // of each motor, see Start [-]
   Vec3 tip() const { return arm_.tip(frames_); }  // tip of the device as the law locates it [m]
   Vec3 tip_at(const Vec<N>& x) const { return arm_.tip_at(x); }
   // True if no force is fading, no coupling is being switched, and the contacts remember nothing
@@ -119,6 +123,7 @@ class Tick {
   const RowLayout& layout() const { return layout_; }
 
  private:
+  void warm_up(const Parameters& p, const Reading<N>& in);
   double tip_force_left(bool guarded) const;
   void begin_anew(const Reading<N>& in);
   void bring_proxy(const Vec<N>& x, const Parameters& p);
@@ -145,6 +150,7 @@ class Tick {
   Coupling<N> coupling_;
   Compensation<N> compensation_;
   MotorStage<N> motors_;
+  MotorWarmth<N> warmth_;
   Safety<N> safety_;
   ForceGate gate_;
   Jacobian<N> J_;  // of the device's tip

@@ -140,10 +140,13 @@ std::string list(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-constexpr double kMostGravity = 30;     // [m/s^2]
-constexpr double kStiffest = 1e4;       // [N m/rad]
-constexpr double kLongestDelay = 1;     // [s]
-constexpr double kLargestOffset = 1e3;  // [N m]
+constexpr double kMostGravity = 30;        // [m/s^2]
+constexpr double kStiffest = 1e4;          // [N m/rad]
+constexpr double kLongestDelay = 1;        // [s]
+constexpr double kLargestOffset = 1e3;     // [N m]
+constexpr double kLeastContinuous = 1e-3;  // part of a joint's effort
+constexpr double kShortestWarming = 0.1;   // [s]
+constexpr double kLongestWarming = 1e5;    // [s]
 
 class Own {
  public:
@@ -179,13 +182,33 @@ class Own {
   const UrdfPlaces& places_;
 };
 
-void read_spring(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
-  const Own own(element, places);
+// The name of the joint that an element is about, one of the robot's.
+std::string joint_named(const Own& own, const TiXmlElement& element, const UrdfPlaces& places) {
   const char* name = element.Attribute("joint");
   if (name == nullptr || !places.joint_lines.contains(name)) {
     own.refuse(
         fmt::format("joint \"{}\"; needed: a joint of this robot", name == nullptr ? "" : name));
   }
+  return name;
+}
+
+void read_warmth(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
+  const Own own(element, places);
+  const auto joint = std::ranges::find(arm.joints, joint_named(own, element, places), &Joint::name);
+  if (joint == arm.joints.end()) return;
+  const bool slides = joint->kind == Joint::Kind::prismatic;
+  const double unit = slides ? kSlideUnit : 1, effort = joint->effort / unit;
+  const auto continuous =
+      own.number("continuous", kLeastContinuous * effort, effort, slides ? "N" : "N m");
+  const auto time = own.number("time", kShortestWarming, kLongestWarming, "s");
+  if (!continuous || !time) own.refuse("has no continuous or no time; needed: both");
+  joint->continuous = *continuous * unit;
+  joint->warming = *time;
+}
+
+void read_spring(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
+  const Own own(element, places);
+  const std::string name = joint_named(own, element, places);
   const double stiffness = own.number("stiffness", -kStiffest, kStiffest, "N m/rad").value_or(0);
   const double offset = own.number("offset", -kLargestOffset, kLargestOffset, "N m").value_or(0);
   const auto joint = std::ranges::find(arm.joints, name, &Joint::name);
@@ -343,6 +366,10 @@ void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescriptio
     for (auto* spring = own->FirstChildElement("spring"); spring;
          spring = spring->NextSiblingElement("spring")) {
       read_spring(*spring, places, arm);
+    }
+    for (auto* warmth = own->FirstChildElement("warmth"); warmth;
+         warmth = warmth->NextSiblingElement("warmth")) {
+      read_warmth(*warmth, places, arm);
     }
   }
 }

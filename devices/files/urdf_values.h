@@ -85,18 +85,21 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places);
 //
 //     <limpid tip="LINK" gravity="0 0 -9.81" delay="0.002">
 //       <spring joint="JOINT" stiffness="0.12" offset="0.01"/>
+//       <warmth joint="JOINT" continuous="0.17" time="60"/>
 //     </limpid>
 //
 // gravity [m/s^2] in the base's frame, as the arm stands; delay [s] of the device that the arm was
 // identified from. Springs in N m/rad and N m, of slides in N/m and N: each pulls its joint by
-// -(stiffness x + offset). Where something is said twice, the last one holds.
+// -(stiffness x + offset). Warmth: the torque that the joint's motor bears for hours, in N m, of
+// slides in N, at most its effort; and the time constant with which it warms up and cools [s].
+// Where something is said twice, the last one holds.
 //
 // own_tip() returns the link named as the tip; empty: none.
 std::string own_tip(const TiXmlElement& robot);
 
-// Reads everything else of <limpid> into `arm`. Springs of joints outside of the chain have no
-// effect. Errors: FileError for what is no number or out of range, and for joints that the robot
-// does not have.
+// Reads everything else of <limpid> into `arm`. Springs and warmth of joints outside of the chain
+// have no effect. Errors: FileError for what is no number or out of range, and for joints that the
+// robot does not have.
 void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescription& arm);
 
 }  // namespace limpid

@@ -18,6 +18,7 @@ constexpr Usage kApplication = make_usage(0xFF4C, 0x01);
 // Ends of a joint of version 2 must be within these.
 constexpr double kFarthestTurn = 100;  // [rad]
 constexpr double kFarthestSlide = 10;  // [m]
+constexpr double kLengthOff = 0.01;    // of a quaternion that still is an orientation
 constexpr double kBeyond = 0.1;        // part of its range that a joint may be outside of it
 
 using Payload = std::span<const std::uint8_t>;
@@ -39,6 +40,20 @@ double milli_signed(std::uint16_t value) { return 1e-3 * static_cast<std::int16_
 
 double number_at(Payload body, std::size_t at, std::size_t joint) {
   return static_cast<double>(load_float_le(body, at + 4 * joint));
+}
+
+// The orientation of the tool in a reading; all zero where it is none.
+std::array<double, 4> orientation_in(Payload body) {
+  std::array<double, 4> parts{};
+  double square = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i] = number_at(body, Raw2Reading::orientation, i);
+    square += parts[i] * parts[i];
+  }
+  const double length = std::sqrt(square);
+  if (!(std::abs(length - 1) <= kLengthOff)) return {};
+  for (double& part : parts) part /= length;
+  return parts;
 }
 
 DeviceTraits read_common(Payload body, const RawLayout& layout) {
@@ -219,9 +234,7 @@ Decoded RawProtocol::take_more(Payload body, const Positions& x, std::uint32_t s
   if (reading.no_force != NoForce::none && !(body[RawAt::flags] & RawFlag::cut)) ++reading.lapses;
   const float warmth = load_float_le(body, Raw2Reading::warmth);
   reading.warmth = std::isfinite(warmth) ? std::clamp(warmth, 0.f, 1.f) : 0.f;
-  for (std::size_t i = 0; i < extras_.orientation.size(); ++i) {
-    extras_.orientation[i] = load_float_le(body, Raw2Reading::orientation + 4 * i);
-  }
+  reading.orientation = orientation_in(body);
   for (std::size_t i = 0; i < extras_.measured.size(); ++i) {
     extras_.measured[i] = load_float_le(body, Raw2Reading::measured + 4 * i);
   }

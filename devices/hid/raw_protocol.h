@@ -82,7 +82,9 @@ namespace limpid {
 //   57         reserved
 //   60 f32     warmth of the hottest motor, 0 cold to 1 as warm as it may be; 0 if not known
 //   64 f32[4]  orientation of the tool as a quaternion, w x y z; all zero if not known or if the
-//              joints have it already
+//              joints have it already. The tool's axes are x along it towards what it touches, y
+//              to its left, z up; at 1 0 0 0 they are those of the arm's base: it points forward.
+//              One whose length is off 1 by more than a hundredth counts as not known
 //   80 f32[8]  measured torques or forces at the joints [N m or N]; zero if there is no sensor
 //  112         reserved
 //
@@ -123,7 +125,7 @@ namespace limpid {
 // not go up. After 5 ms without a usable one it sends mode 0; after one with bit 4, or with a
 // reason why there is no force, it sends mode 0, then torques that begin at zero.
 //
-// Limpid does not use orientation and measured forces yet; RawProtocol::extras() has them.
+// Limpid does not use measured forces yet; RawProtocol::extras() has them.
 class RawProtocol final : public HidProtocol {
  public:
   static constexpr std::size_t kReportSize = 1 + kRaw1.command;    // with the id, which is 0
@@ -132,7 +134,6 @@ class RawProtocol final : public HidProtocol {
 
   // Numbers that a device of version 2 sends, and that nothing uses yet.
   struct Extras {
-    std::array<float, 4> orientation{};          // of the tool, w x y z; all zero: not known
     std::array<float, kRaw2.joints> measured{};  // at the joints [N m or N]
   };
 

@@ -14,6 +14,10 @@ namespace limpid {
 
 namespace {
 
+std::span<const double> all_of(const Eigen::VectorXd& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
 // Stands in for a device that was never there.
 class NoDevice final : public Device {
  public:
@@ -37,6 +41,7 @@ struct Rig::Of {
         x_before(Vec<N>::Zero(arm.dof())),
         v(x_before) {}
   Reading<N> read(const Parameters& p, const RigInput& now) noexcept;
+  void write_row(const HandInput& hand, std::span<double> row) const noexcept;
   void begin_at(const RigStart& start, const Vec3& target) noexcept;
   Vec3 tip() const;
   Vec<N> of_joints(std::span<const double> values) const;
@@ -116,19 +121,38 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   health.gap = health.gap || (believed && !before);  // nobody knows where it went meanwhile
   v = health.gap ? Vec<N>::Zero(x.size()) : Vec<N>((x - x_before) / (now.periods * p.tick));
   x_before = x;
-  const auto truth = device->truth();
-  if (!truth) {
-    return {x, x, v, health, now.periods, now.dt, {}, now.hand.magnet, now.hand.pull};
+  Reading<N> out{x, x, v, health, now.periods, now.dt, {}, now.hand.magnet, now.hand.pull};
+  if (heard) out.warmth = static_cast<double>(reading.warmth);
+  if (const auto truth = device->truth()) {
+    out.x = of_joints(truth->x);
+    out.v = of_joints(truth->v);
+    out.acted = of_joints(truth->motor_torque);
   }
-  return {x,
-          of_joints(truth->x),
-          of_joints(truth->v),
-          health,
-          now.periods,
-          now.dt,
-          of_joints(truth->motor_torque),
-          now.hand.magnet,
-          now.hand.pull};
+  return out;
+}
+
+// Writes what only the device knows.
+template <int N>
+void Rig::Of<N>::write_row(const HandInput& hand, std::span<double> row) const noexcept {
+  const RowLayout& layout = tick.layout();
+  const std::span<double> f1 = layout.in(row, Column::hand_torque);
+  const std::span<double> target = layout.in(row, Column::hand_target);
+  if (const auto truth = device->truth()) {
+    std::ranges::copy(truth->hand_torque, f1.begin());
+    std::ranges::copy(truth->motor_torque, layout.in(row, Column::motor_torque).begin());
+    std::copy_n(hand.target.data(), 3, target.begin());
+  } else {  // nobody measures the hand
+    std::ranges::fill(f1, std::numeric_limits<double>::quiet_NaN());
+    const Vec3 tip = tick.tip();
+    std::copy_n(tip.data(), 3, target.begin());
+  }
+  layout.in(row, Column::hand_grip)[0] = hand.grip;
+  const std::span<double> orientation = layout.in(row, Column::tool_orientation);
+  if (here && believed && reading.oriented()) {
+    std::ranges::copy(reading.orientation, orientation.begin());
+  } else {
+    std::ranges::fill(orientation, std::numeric_limits<double>::quiet_NaN());
+  }
 }
 
 template <int N>
@@ -176,7 +200,7 @@ void Rig::start(const Parameters& p, const RigStart& start) {
       [&](auto& of) {
         const bool armed = start.armed && !of->device->traits().guarded;
         of->tick.start(p, {start.x1, start.v1, start.x2, start.v2, start.f1_hat, armed,
-                           start.reserve, start.world, start.owed});
+                           start.reserve, start.world, start.owed, all_of(start.warmth)});
         of->begin_at(start, start.target);
       },
       of_);
@@ -186,8 +210,9 @@ void Rig::restart_here(const Parameters& p, RigStart& scratch, const Vec3& targe
   present(scratch);
   std::visit(
       [&](auto& of) {
-        of->tick.restart_here(p, {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat,
-                                  true, scratch.reserve, scratch.world});
+        of->tick.restart_here(p,
+                              {scratch.x1, scratch.v1, scratch.x2, scratch.v2, scratch.f1_hat, true,
+                               scratch.reserve, scratch.world, false, all_of(scratch.warmth)});
         of->begin_at(scratch, target);
       },
       of_);
@@ -206,6 +231,7 @@ void Rig::present(RigStart& into) const {
         into.target = of->input.hand.target;
         into.armed = of->tick.force().armed();
         into.reserve = of->tick.reserve();
+        into.warmth = of->tick.warmth();
         into.world.clear();
         if (const BodyWorld* world = of->tick.proxy().contacts().world()) {
           into.world.reserve(BodyWorld::kMostNumbers);  // allocates once, outside of a tick
@@ -218,23 +244,11 @@ void Rig::present(RigStart& into) const {
 void Rig::step(const Parameters& p, const RigInput& input, std::span<double> row) noexcept {
   std::visit(
       [&](auto& of) {
-        const RowLayout& layout = of->tick.layout();
         const auto reading = of->read(p, input);
         const auto& torque = of->tick.run(p, reading, input.force, row);
         of->device->write({torque.data(), static_cast<std::size_t>(torque.size())});
         of->input = input;
-        const std::span<double> f1 = layout.in(row, Column::hand_torque);
-        const std::span<double> target = layout.in(row, Column::hand_target);
-        if (const auto truth = of->device->truth()) {
-          std::ranges::copy(truth->hand_torque, f1.begin());
-          std::ranges::copy(truth->motor_torque, layout.in(row, Column::motor_torque).begin());
-          std::copy_n(input.hand.target.data(), 3, target.begin());
-        } else {  // nobody measures the hand
-          std::ranges::fill(f1, std::numeric_limits<double>::quiet_NaN());
-          const Vec3 tip = of->tick.tip();
-          std::copy_n(tip.data(), 3, target.begin());
-        }
-        layout.in(row, Column::hand_grip)[0] = input.hand.grip;
+        of->write_row(input.hand, row);
       },
       of_);
 }
@@ -268,14 +282,16 @@ RigStart start_of(const RowLayout& layout, std::span<const double> row) {
   const auto target = layout.in(row, Column::hand_target);
   // 0 if no law kept account until then.
   const double reserve = layout.in(row, Column::energy_ledger)[0];
-  return {vector(Column::device_position),
-          vector(Column::device_velocity),
-          vector(Column::proxy_position),
-          vector(Column::proxy_velocity),
-          vector(Column::hand_torque_estimate),
-          Vec3(target[0], target[1], target[2]),
-          layout.in(row, Column::force_wanted)[0] != 0,
-          reserve != 0 ? reserve : RigStart{}.reserve};
+  RigStart start{vector(Column::device_position),
+                 vector(Column::device_velocity),
+                 vector(Column::proxy_position),
+                 vector(Column::proxy_velocity),
+                 vector(Column::hand_torque_estimate),
+                 Vec3(target[0], target[1], target[2]),
+                 layout.in(row, Column::force_wanted)[0] != 0,
+                 reserve != 0 ? reserve : RigStart{}.reserve};
+  start.warmth = vector(Column::motor_warmth);
+  return start;
 }
 
 }  // namespace limpid

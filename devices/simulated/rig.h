@@ -43,6 +43,8 @@ struct RigStart {
   // State of all bodies, as the loop keeps it; empty: as the scene has them.
   std::vector<double> world{};
   bool owed = false;  // the hand has not put in the energy that is stored
+  // Warmth of each motor by the arm's model [-]; empty: cold.
+  Eigen::VectorXd warmth{};
 };
 
 // Everything that a rig's arm can touch, prepared for a running loop to take in.

@@ -57,7 +57,7 @@ struct VendorReading {
   bool fault = false;
   NoForce no_force = NoForce::none;
   float warmth = 0;                    // 0 to 1
-  std::array<float, 4> orientation{};  // w x y z; all zero: not known
+  std::array<float, 4> orientation{};  // of the tool, as in tool_frame.h; all zero: not known
 };
 
 struct VendorForce {

@@ -12,6 +12,7 @@
 
 #include "devices/vendor/back_end.h"
 #include "devices/vendor/library.h"
+#include "devices/vendor/tool_frame.h"
 
 namespace limpid {
 namespace {
@@ -58,6 +59,8 @@ struct Functions {
   int (*dhdEnableForce)(unsigned char, char);
   int (*dhdStop)(char);
   int (*dhdGetPosition)(double*, double*, double*, char);
+  int (*dhdGetOrientationFrame)(double (*)[3], char);
+  bool (*dhdHasWrist)(char);
   int (*dhdGetButtonMask)(char);
   int (*dhdSetForce)(double, double, double, char);
   int (*dhdGetStatus)(int*, char);
@@ -99,6 +102,8 @@ class ForceDimension final : public VendorBackEnd {
     find("dhdEnableForce", sdk_.dhdEnableForce);
     find("dhdStop", sdk_.dhdStop);
     find("dhdGetPosition", sdk_.dhdGetPosition);
+    find("dhdGetOrientationFrame", sdk_.dhdGetOrientationFrame);
+    find("dhdHasWrist", sdk_.dhdHasWrist);
     find("dhdGetButtonMask", sdk_.dhdGetButtonMask);
     find("dhdSetForce", sdk_.dhdSetForce);
     find("dhdGetStatus", sdk_.dhdGetStatus);
@@ -143,6 +148,7 @@ class ForceDimension final : public VendorBackEnd {
     sdk_.dhdGetSerialNumber(&serial, id_);
     VendorTraits traits;
     traits.name = fmt::format("{} {}", system, serial);
+    has_wrist_ = sdk_.dhdHasWrist(id_);
     traits.made_by = "libdrd.so.3";
     traits.lower.fill(-model->radius);
     traits.upper.fill(model->radius);
@@ -182,6 +188,7 @@ class ForceDimension final : public VendorBackEnd {
     double x = 0, y = 0, z = 0;
     demand(sdk_.dhdGetPosition(&x, &y, &z, id_), "it does not say where it is");
     reading.x = {-x, -y, z};
+    if (has_wrist_) read_wrist(reading);
     const int buttons = sdk_.dhdGetButtonMask(id_);
     reading.buttons = static_cast<std::uint32_t>(buttons);
     if (frames_++ % kStatusEvery != 0) return;
@@ -215,6 +222,15 @@ class ForceDimension final : public VendorBackEnd {
   }
 
  private:
+  // Without a wrist the library's frame never turns, which says nothing of the tool.
+  void read_wrist(VendorReading& reading) const {
+    double rows[3][3] = {};
+    demand(sdk_.dhdGetOrientationFrame(rows, id_), "it does not say how it is turned");
+    const Mat3 turned = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&rows[0][0]);
+    // Limpid's axes in the library's: forward is away from the person, left is against y.
+    reading.orientation = tool_orientation(Vec3(-1, -1, 1).asDiagonal(), turned);
+  }
+
   template <class Function>
   void find_function(const char* name, Function& function) const {
     Function found = nullptr;
@@ -252,7 +268,7 @@ class ForceDimension final : public VendorBackEnd {
   Library dhd_library_, drd_library_;
   Functions sdk_{};
   char id_ = -1;
-  bool opened_ = false, enabled_ = false;
+  bool opened_ = false, enabled_ = false, has_wrist_ = false;
   double most_ = 0;  // [N]
   unsigned frames_ = 0;
 };

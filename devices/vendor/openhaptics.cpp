@@ -12,6 +12,7 @@
 #include "devices/vendor/back_end.h"
 #include "devices/vendor/library.h"
 #include "devices/vendor/servo.h"
+#include "devices/vendor/tool_frame.h"
 
 namespace limpid {
 namespace {
@@ -182,6 +183,11 @@ class OpenHaptics final : public VendorBackEnd {
     hd_.hdGetDoublev(kPosition, place.data());
     reading.x = of_tip(place);
     for (double& each : reading.x) each /= kMetre;
+    // Column by column.
+    std::array<double, 16> frame{};
+    hd_.hdGetDoublev(kTransform, frame.data());
+    const Mat3 turned = Eigen::Map<const Eigen::Matrix4d>(frame.data()).topLeftCorner<3, 3>();
+    reading.orientation = tool_orientation(axes(), turned);
     int buttons = 0;
     hd_.hdGetIntegerv(kButtons, &buttons);
     reading.buttons = static_cast<std::uint32_t>(buttons);
@@ -243,6 +249,13 @@ class OpenHaptics final : public VendorBackEnd {
     hd_.hdEndFrame(device_);
     servo_->fail(error);
     return kDone;
+  }
+
+  // Limpid's axes in the library's, as of_tip() has them.
+  static Mat3 axes() {
+    Mat3 rows;
+    rows << 0, 0, -1, -1, 0, 0, 0, 1, 0;
+    return rows;
   }
 
   // Forward is away from the person, left is against x.

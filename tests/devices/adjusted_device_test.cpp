@@ -23,10 +23,12 @@ struct Adjusted : testing::Test {
 TEST_F(Adjusted, SaysAnglesAsItsUserWantsThem) {
   fake->reading.x = {0.25, 0.5};
   fake->reading.buttons = 5;
+  fake->reading.orientation = {0, 1, 0, 0};
   ASSERT_TRUE(device->read(reading));
   EXPECT_DOUBLE_EQ(reading.x[0], 0);
   EXPECT_DOUBLE_EQ(reading.x[1], 0.5);
   EXPECT_EQ(reading.buttons, 5u);
+  EXPECT_EQ(reading.orientation, fake->reading.orientation);
   fake->reading.x[0] = 0.5;
   device->read(reading);
   EXPECT_DOUBLE_EQ(reading.x[0], -0.5);

@@ -68,6 +68,7 @@ Scene crowd(const ArmDescription& description, const Vec3& tip) {
 RigStart start_at_zero(Rig& rig, int joints) {
   RigStart start;
   start.x1 = start.v1 = start.x2 = start.v2 = start.f1_hat = Eigen::VectorXd::Zero(joints);
+  start.warmth = start.x1;
   rig.start(Parameters{}, start);
   return start;
 }
@@ -77,7 +78,11 @@ INSTANTIATE_TEST_SUITE_P(Arms, NoWaiting, testing::Values(1, 3, 7, 32));
 
 TEST_P(NoWaiting, NeitherAllocatesNorLocksInATick) {
   const int n = GetParam();
-  const ArmDescription arm = random_arm(n, 151);
+  ArmDescription arm = random_arm(n, 151);
+  for (Joint& joint : arm.joints) {
+    joint.continuous = 0.1 * joint.effort;
+    joint.warming = 1;
+  }
   Rig rig(arm, Scene{});
   RigStart start = start_at_zero(rig, n);
   const Vec3 home = rig.tip();

@@ -39,6 +39,39 @@ void expect_arrow(const SolidMark& tube, const SolidMark& cone, const Vec3& from
 
 const Vec3 kPoint(0.1, -0.2, 0.3), kForce(1, 2, -2);  // 3 N
 
+// The pen's point is at the tip; its body goes from there against its own x, wherever it is turned.
+TEST(Marks, AreAPenAtTheTipsOfDeviceAndProxy) {
+  ViewState state;
+  state.tool = Eigen::AngleAxisd(1.1, Vec3(1, 2, 2).normalized()).toRotationMatrix();
+  EXPECT_TRUE(collect_marks(state, Camera(), 1).solids.empty()) << "no arm";
+  state.device.links = state.proxy.links = {Pose::Identity()};
+  state.proxy.tip = kPoint;
+  state.device.tip = 2 * kPoint;
+  const Marks marks = collect_marks(state, Camera(), 1);
+  ASSERT_EQ(marks.solids.size(), 6u);
+  const Vec3 x = state.tool->col(0), z = state.tool->col(2);
+  for (const std::size_t arm : {0u, 1u}) {
+    const SolidMark &cone = marks.solids[3 * arm], &tube = marks.solids[3 * arm + 1],
+                    &button = marks.solids[3 * arm + 2];
+    const Vec3 tip = arm == 0 ? kPoint : Vec3(2 * kPoint);
+    EXPECT_EQ(cone.shape, Shape::cone);
+    expect_near(at(cone.place) + along(cone.place), tip);
+    expect_near(along(cone.place).normalized(), x);
+    EXPECT_EQ(tube.shape, Shape::tube);
+    expect_near(at(tube.place), at(cone.place));
+    expect_near(at(tube.place) + along(tube.place), tip - kPenLength * x);
+    EXPECT_EQ(button.shape, Shape::ball);
+    const Vec3 off = at(button.place) - tip;
+    EXPECT_LT(off.dot(x), 0);
+    expect_near(off - off.dot(x) * x, across(tube.place) * z);
+    EXPECT_EQ(tube.color, arm == 0 ? palette::kProxy : palette::kDevice);
+  }
+  state.show_ghost = false;
+  EXPECT_EQ(collect_marks(state, Camera(), 1).solids.size(), 3u);
+  state.tool->setConstant(std::nan(""));
+  EXPECT_TRUE(collect_marks(state, Camera(), 1).solids.empty());
+}
+
 TEST(Marks, AreAnArrowAPatchAndAConeForEachContact) {
   ViewState state;
   const Vec3 normal(0.6, 0.8, 0);

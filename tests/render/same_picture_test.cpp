@@ -69,6 +69,20 @@ TEST(SamePicture, IsAnotherWhereAnythingAloneIsFurtherOffThanTheTolerance) {
   }
 }
 
+// A pen is 12 cm long: a turn of 1 mrad moves its end by 0.12 mm.
+TEST(SamePicture, IsAnotherWhereTheToolIsTurned) {
+  const auto turned = [](double angle) {
+    return Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+  };
+  expect_another("a tool", [&](ViewState& s) { s.tool = turned(0); });
+  ViewState before = everything(), after = before;
+  before.tool = turned(0.3);
+  after.tool = turned(0.302);
+  EXPECT_FALSE(same_picture(before, after, kTolerance));
+  after.tool = turned(0.3001);
+  EXPECT_TRUE(same_picture(before, after, kTolerance));
+}
+
 // Arrows have 2 cm per newton.
 TEST(SamePicture, IsAnotherWhereAnArrowIsLonger) {
   const std::pair<const char*, std::function<Vec3&(ViewState&)>> forces[] = {

@@ -65,6 +65,11 @@ inline int differences(const RowLayout& layout, std::span<const double> a,
   return count;
 }
 
+// Whether two rows of numbers have the same bits, those that are no numbers included.
+inline bool same_numbers(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
 // Index of the first row that differs between the two, or -1.
 inline long first_difference(const Rows& a, const Rows& b) {
   if (a.size() != b.size()) return static_cast<long>(std::min(a.size(), b.size()));

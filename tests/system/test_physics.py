@@ -157,6 +157,30 @@ class AnyArm(SystemTest):
                 options = [word for value in values for word in ("--set", value)]
                 self.assert_verified(self.run_and_read(*self.arm(3), *options))
 
+    def test_motors_that_get_warm_verify(self) -> None:
+        # A hand that presses a Touch onto the table for 12 s, then lifts it.
+        hand = write_hand(self.directory / "press.csv", (
+            (0, 0.2, 0, -0.02), (0.5, 0.2, 0, -0.02), (1, 0.2, 0, -0.055), (13, 0.2, 0.002, -0.055),
+            (14, 0.2, 0, -0.02), (15, 0.2, 0, -0.02)))
+        for coupling in ("predictive", "proposed"):
+            with self.subTest(coupling):
+                s = self.run_and_read("--device", ASSETS / "devices/touch.urdf", "--scene",
+                                      ASSETS / "scenes/table.toml", "--hand", hand, "--coupling", coupling)
+                self.assert_verified(s)
+                warmth, torque = s["/device/warmth"], np.abs(s["/device/motor_torque"])
+                self.assertGreater(warmth.max(), 0.9)
+                self.assertLessEqual(warmth.max(), 1)
+                # The shoulder: what it gives at first, and what it bears for hours.
+                self.assertGreater(torque[2000, 1], 0.5)
+                self.assertLess(torque[12900, 1], 1.2 * 0.17)
+                # First order, from the torque in the rows alone.
+                bears = np.array([j.continuous for j in s.chain.joints])
+                gain, modelled = 1 - np.exp(-s.tick / 60), np.zeros(3)
+                for k in range(1, len(s)):
+                    modelled += gain * ((torque[k - 1] / bears) ** 2 - modelled)
+                    if k % 1000 == 0:
+                        np.testing.assert_allclose(warmth[k], modelled, rtol=1e-9, atol=1e-12)
+
     def test_the_tip_starts_at_rest_on_the_first_point_of_the_path(self) -> None:
         for dof in (1, 3, 7, 30):
             with self.subTest(dof=dof):

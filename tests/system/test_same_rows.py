@@ -96,7 +96,7 @@ class Shipped(SameRows):
                 if rounds:
                     whole, again = again, self.out()
                     make_sessions.ship(whole, again, rounds)
-                self.assert_same_rows(session, again)
+                self.assert_same_rows(session, again, older=True)
 
 
 if __name__ == "__main__":

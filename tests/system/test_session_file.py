@@ -176,12 +176,13 @@ class SessionFile(SystemTest):
                 names = [n for n in datasets(file) if n.startswith(run) and "twin/" not in n[len(run):]]
                 for name in names:
                     data, short = file[name], name[len(run):]
-                    if short.startswith(("check/", "events/", "marks/")) or short in ("time", "joint", "axis",
-                                                                                             "contact_axis"):
+                    if short.startswith(("check/", "events/", "marks/")) or short in (
+                            "time", "joint", "axis", "quaternion", "contact_axis"):
                         continue
                     self.assertEqual(data.dims[0][0], time, name)
                     if data.ndim == 2 and data.shape[1] == 4:
-                        self.assertEqual(data.dims[1][0], file["joint"], name)
+                        other = "quaternion" if short == "device/orientation" else "joint"
+                        self.assertEqual(data.dims[1][0], file[other], name)
                     if data.ndim == 2 and data.shape[1] == 3:
                         self.assertEqual(data.dims[1][0], file["axis"], name)
                     if data.ndim == 2 and data.shape[1] == 12:

@@ -275,6 +275,28 @@ class Serves(unittest.TestCase):
             self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 7))
             self.assertAlmostEqual(link.newest.warmth, 0.95, 6)
 
+    def test_a_pen_that_points_to_the_right_is_turned_by_a_quarter(self) -> None:
+        half = math.sqrt(0.5)
+        with Vendor(*TOUCH, "turned") as vendor:
+            link = vendor.link()
+            link.go_on(0.2)
+            for part, wanted in zip(link.newest.orientation, (half, 0, 0, -half)):
+                self.assertAlmostEqual(part, wanted, 6)
+
+    def test_a_wrist_that_points_up_is_turned_by_a_quarter(self) -> None:
+        half = math.sqrt(0.5)
+        with Vendor(*OMEGA, "turned") as vendor:
+            link = vendor.link()
+            link.go_on(0.2)
+            for part, wanted in zip(link.newest.orientation, (half, 0, -half, 0)):
+                self.assertAlmostEqual(part, wanted, 6)
+
+    @on_both()
+    def test_a_tool_of_which_nothing_is_known_has_no_orientation(self, device: tuple, vendor: Vendor) -> None:
+        link = vendor.link()
+        link.go_on(0.2)
+        self.assertEqual(link.newest.orientation, (0.0, 0.0, 0.0, 0.0))
+
     def test_a_button_of_the_device_is_the_reason_for_no_force(self) -> None:
         with Vendor(*OMEGA, "button_off@400") as vendor:
             link = vendor.pushed()

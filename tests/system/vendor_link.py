@@ -43,6 +43,7 @@ class Reading:
     buttons: int
     no_force: int
     warmth: float
+    orientation: tuple = (0.0, 0.0, 0.0, 0.0)
 
     hand = property(lambda self: bool(self.status & 2))
     calibrated = property(lambda self: bool(self.status & 4))
@@ -121,8 +122,8 @@ class Link:
             assert len(packet) == 128 and packet == sealed(packet[:124])
             status, = struct.unpack_from("<B", packet, 3)
             x = struct.unpack_from("<3f", packet, 16)
-            answered, buttons, no_force, warmth = struct.unpack_from("<IIB3xf", packet, 48)
-            self.newest = Reading(status, x, answered, buttons, no_force, warmth)
+            answered, buttons, no_force, warmth, *orientation = struct.unpack_from("<IIB3xf4f", packet, 48)
+            self.newest = Reading(status, x, answered, buttons, no_force, warmth, tuple(orientation))
             self.readings.append(self.newest)
 
     def go_on(self, seconds: float, force: tuple | None = None, until=lambda reading: False,

@@ -240,5 +240,5 @@ class WindowTest(unittest.TestCase):
             runs = [run for run in ("", "twin/", "lane3/") if not run or run in a]
             for group in (run + part for run in runs for part in parts):
                 for name in a[group]:
-                    self.assertTrue(numpy.array_equal(a[group][name][...], b[group][name][...]),
+                    self.assertTrue(numpy.array_equal(a[group][name][...], b[group][name][...], equal_nan=True),
                                     f"/{group}/{name}")

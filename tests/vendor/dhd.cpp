@@ -129,6 +129,14 @@ int dhdGetPosition(double* x, double* y, double* z, char) {
   if (own.faults.due("nan")) *x = std::numeric_limits<double>::quiet_NaN();
   return 0;
 }
+bool dhdHasWrist(char) { return device().faults.due("turned"); }
+int dhdGetOrientationFrame(double (*rows)[3], char) {
+  // The handle is turned a quarter about the library's y, which is to the right: x goes to -z, so
+  // that what pointed away from the person points up.
+  const double frame[3][3] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+  std::memcpy(rows, frame, sizeof frame);
+  return 0;
+}
 int dhdGetButtonMask(char) { return 0; }
 int dhdSetForce(double x, double y, double z, char) {
   Device& own = device();

@@ -97,6 +97,12 @@ void hdGetDoublev(unsigned which, double* values) {
       values[i] = kMetre * (x[i] + own.leap);
       if (own.faults.due("nan")) values[i] = std::numeric_limits<double>::quiet_NaN();
     }
+  } else if (which == 0x2052) {
+    if (!own.faults.due("turned")) return;  // zeros say nothing
+    // The pen points to the right: a quarter turn clockwise about the library's y, which is up,
+    // takes z to -x. Column by column.
+    const double frame[16] = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 0, 1};
+    std::copy(frame, frame + 16, values);
   } else if (which == 0x2551) {
     const double room[6] = {-160, -100, -70, 160, 120, 70};
     std::copy(room, room + 6, values);

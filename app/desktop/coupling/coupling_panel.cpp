@@ -454,7 +454,9 @@ void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis
         "fault of the coupling.");
 }
 
-void draw_limited(const std::vector<int>& joints) {
+void draw_limited(const CouplingReading& now) {
+  const std::vector<int>& joints = now.limited;
+  if (!now.warm.empty()) ImGui::TextWrapped("%s", now.warm.c_str());
   if (joints.empty()) return;
   std::string text;
   for (const int joint : joints) {
@@ -510,7 +512,7 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
   }
   draw_unsolved(reading);
   draw_energy(reading, p, analysis);
-  draw_limited(reading.limited);
+  draw_limited(reading);
 }
 
 void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
@@ -529,7 +531,7 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
            "passive. The second plot shows it.");
   draw_passive(p, now.analysis);
   draw_unsolved(reading);
-  draw_limited(reading.limited);
+  draw_limited(reading);
 }
 
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,

@@ -29,6 +29,7 @@ struct CouplingReading {
   std::string error_unit = "rad";
   double gap = 0;      // of the tips of device and proxy [m]
   double contact = 0;  // how hard the scene pushes on the proxy [N]
+  std::string warm{};  // which motor its warmth holds back, in words; empty: none
 };
 
 // Situation of the coupling. `analysis` is of these parameters; `real`: a device is in the arm's

@@ -7,6 +7,7 @@
 
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/run/motor_limits.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -160,12 +161,16 @@ bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
   return wanted;
 }
 
-void draw_force(const LiveLoop& loop, StepState state) {
+// Says why force is off, or less than usual.
+void draw_force(const LiveStage& live, const Parameters& p, StepState state) {
+  const LiveLoop& loop = live.loop();
   const bool in_place = loop.device_in_place();
   begin_step(state, "Force", in_place ? explain(loop.snapshot().force_state) : "");
   tooltip("Force is off until the hand has the device and F arms it; it then fades in.");
   const std::string words = in_place ? device_words(loop.snapshot().reading) : std::string();
   if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());
+  const std::string warm = warm_text(live.stage().arm(), loop.taken(p), loop.layout(), live.row());
+  if (!warm.empty()) ImGui::TextWrapped("%s", warm.c_str());
   end_step();
 }
 
@@ -213,7 +218,7 @@ DeviceCardAsks draw_device_card(DeviceController& devices, const LiveStage& live
   asks.arm_file = draw_arm(devices, live, steps.arm);
   draw_axes(devices, steps.axes);
   asks.identify = draw_measured(devices, p, steps.measured);
-  draw_force(live.loop(), steps.force);
+  draw_force(live, p, steps.force);
   return asks;
 }
 

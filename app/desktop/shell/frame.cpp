@@ -14,6 +14,7 @@
 #include "app/desktop/scene/picking.h"
 #include "app/desktop/view/over_view.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/run/motor_limits.h"
 #include "app/stage/picture_signs.h"
 #include "app/style/theme.h"
 
@@ -244,6 +245,9 @@ void Frame::draw_coupling(ScreenRect rect) {
   for (int j = 0; j < layout.dof(); ++j) {
     if (channels.limited(row, j)) reading.limited.push_back(j);
   }
+  PlayedSession* const played = desktop_.playback.shown();
+  const Parameters& settings = played != nullptr ? played->settings() : desktop_.tuning.edited();
+  reading.warm = warm_text(shown.arm(), settings, layout, row);
   std::vector<double> values(static_cast<std::size_t>(channels.count()));
   channels.values(row, values);
   const auto value = [&](const char* key) {

@@ -33,7 +33,8 @@ constexpr auto kBetweenWorlds = std::chrono::milliseconds(33);
 // Returns whether two arms have the same limits, which the loop takes only when it opens.
 bool same_limits(const ArmDescription& one, const ArmDescription& other) {
   const auto same = [](const Joint& a, const Joint& b) {
-    return a.effort == b.effort && a.lower == b.lower && a.upper == b.upper;
+    return a.effort == b.effort && a.continuous == b.continuous && a.warming == b.warming &&
+           a.lower == b.lower && a.upper == b.upper;
   };
   return one.delay == other.delay && std::ranges::equal(one.joints, other.joints, same);
 }

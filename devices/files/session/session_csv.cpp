@@ -61,6 +61,8 @@ std::string column_name(const ColumnInfo& info, int width, int i, const std::str
   if (info.width == ColumnWidth::contacts) name += fmt::format("_{}", i / 3 + 1);
   if (info.width == ColumnWidth::contacts || of_axes(info.width)) {
     name += fmt::format("_{:c}", 'x' + i % 3);
+  } else if (info.width == ColumnWidth::four) {
+    name += fmt::format("_{}", std::string_view("wxyz").substr(static_cast<std::size_t>(i), 1));
   } else if (width > 1) {
     name += fmt::format("_{}", i + 1);
   }

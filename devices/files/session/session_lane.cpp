@@ -72,6 +72,7 @@ hdf5::Datatype setting_type() {
 // nothing else take no room in the file; HDF5 reads them as this value.
 std::optional<double> mostly(Column column) {
   switch (column) {
+    case Column::tool_orientation:
     case Column::contact_point: return std::numeric_limits<double>::quiet_NaN();
     case Column::contact_force:
     case Column::body_velocity:  // bodies sleep
@@ -80,6 +81,7 @@ std::optional<double> mostly(Column column) {
     case Column::pull_point:
     case Column::pull_target:
     case Column::energy_pulled:
+    case Column::motor_warmth:
     case Column::compensation_torque:
     case Column::energy_compensation: return 0.0;
     default: return std::nullopt;
@@ -111,6 +113,7 @@ Scales create_scales(hid_t root, const ArmDescription& arm, const std::vector<st
   Scales scales;
   scales.joint = create_names(root, "joint", joints, file);
   scales.axis = create_names(root, "axis", {"x", "y", "z"}, file);
+  scales.quaternion = create_names(root, "quaternion", {"w", "x", "y", "z"}, file);
   scales.contact = create_names(root, "contact_axis", contacts, file);
   if (bodies.empty()) return scales;
   scales.object = create_names(root, "object", bodies, file);
@@ -273,6 +276,9 @@ void SessionLane::attach(const hdf5::Scales& scales) const {
     }
     if (of_axes(column.width) && scales.axis) {
       hdf5::attach_scale(dataset, scales.axis, 1, path_);
+    }
+    if (column.width == ColumnWidth::four && scales.quaternion) {
+      hdf5::attach_scale(dataset, scales.quaternion, 1, path_);
     }
     if (column.width == ColumnWidth::contacts && scales.contact) {
       hdf5::attach_scale(dataset, scales.contact, 1, path_);

@@ -20,11 +20,11 @@ namespace limpid {
 namespace hdf5 {
 
 // Dimension scales of a file, by which HDF5 names rows and columns: /joint, the names of the
-// joints; /axis, x, y, z; /contact_axis, those of each contact. With bodies also /object, their
-// names; /pose and /motion, the parts of their poses and velocities. Invalid in a file whose arm is
-// not known.
+// joints; /axis, x, y, z; /quaternion, w, x, y, z; /contact_axis, x, y, z of each contact. With
+// bodies also /object, their names; /pose and /motion, the parts of their poses and velocities.
+// Invalid in a file whose arm is not known.
 struct Scales {
-  Dataset joint, axis, contact, object, pose, motion;
+  Dataset joint, axis, quaternion, contact, object, pose, motion;
 };
 // Errors: FileError naming `file`.
 Scales create_scales(hid_t root, const ArmDescription& arm, const std::vector<std::string>& bodies,

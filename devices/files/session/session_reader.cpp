@@ -55,8 +55,10 @@ std::optional<double> default_of(Column column) {
     case Column::pull_point:
     case Column::pull_target:
     case Column::energy_pulled:
+    case Column::motor_warmth:
     case Column::energy_ledger: return 0.0;
     // Unknown: what the human and objects were given, and whether something touched.
+    case Column::tool_orientation:
     case Column::energy_port:
     case Column::energy_to_objects:
     case Column::energy_objects:

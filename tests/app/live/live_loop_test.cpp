@@ -579,6 +579,53 @@ TEST(LiveLoop, HoldsADeviceThatIsOpenedAgainToItsLowerLimits) {
   }
 }
 
+// A device held inside a stop of its first joint; its motors warm up within milliseconds and cool
+// within a minute.
+TEST(LiveLoop, KnowsThatTheMotorsOfADeviceThatComesBackAreStillWarm) {
+  ArmDescription arm = test::omni();
+  for (Joint& joint : arm.joints) {
+    joint.continuous = 1e-3 * joint.effort;
+    joint.warming = 60;
+  }
+  Scene scene;
+  scene.add({.name = "stop", .shape = JointStop{0, 0.85, 1}, .material = {200}});
+  LiveLoop loop({});
+  const auto open = [&] {
+    loop.open(arm, scene, Parameters{}, std::make_unique<Turned>());
+    let_live(loop, 3);
+    loop.update();
+    return RowLayout(3).in(std::span<const double>(loop.snapshot().row), Column::motor_warmth)[0];
+  };
+  EXPECT_EQ(open(), 0);
+  loop.arm();
+  let_live(loop, 200);
+  loop.update();
+  const double warm =
+      RowLayout(3).in(std::span<const double>(loop.snapshot().row), Column::motor_warmth)[0];
+  ASSERT_GT(warm, 0.4);
+  EXPECT_GT(open(), 0.9 * warm);
+  loop.open(arm, scene, Parameters{}, kHome);  // the virtual arm's are cold
+  let_live(loop, 3);
+  loop.update();
+  EXPECT_EQ(RowLayout(3).in(std::span<const double>(loop.snapshot().row), Column::motor_warmth)[0],
+            0);
+  EXPECT_GT(open(), 0.8 * warm);
+}
+
+TEST(WarmthMemory, CoolsAndIsKeptByTheNumberOfJoints) {
+  ArmDescription arm = test::omni();
+  arm.joints[1].continuous = 0.1;
+  arm.joints[1].warming = 60;
+  WarmthMemory memory;
+  EXPECT_EQ(memory.left(arm, 5), Eigen::VectorXd(Eigen::Vector3d::Zero()));
+  memory.keep(Eigen::Vector3d(0, 0.8, 0.3), 5);
+  memory.keep(Eigen::Vector2d(1, 1), 6);
+  const Eigen::VectorXd left = memory.left(arm, 65);
+  ASSERT_EQ(left.size(), 3);
+  EXPECT_NEAR(left[1], 0.8 * std::exp(-1), 1e-12);
+  EXPECT_EQ(left[2], 0) << "this arm has no model of the motor";
+}
+
 // A SpaceMouse that leads the hand of the virtual arm.
 class Cap final : public Device {
  public:

@@ -81,7 +81,7 @@ TEST(TraceChannels, SayWhichMotorGivesAllItCan) {
   const ArmDescription arm = test::omni();
   Parameters p;
   const double effort = arm.joints[1].effort;
-  EXPECT_EQ(motor_limits(arm, p)[1], effort);
+  EXPECT_EQ(motor_limits(arm, p)[1].peak, effort);
   p.torque_limit = 0.2;
   TraceChannels channels{RowLayout(3)};
   const RowLayout& layout = channels.layout();

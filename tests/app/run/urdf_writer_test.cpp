@@ -21,6 +21,10 @@ TEST_P(UrdfOf, AnArmReadsAsThatArm) {
     joint.friction = 0.01 * static_cast<double>(i + 1);
     joint.spring = 0.02 * static_cast<double>(i);
     joint.offset = -0.003 * static_cast<double>(i);
+    if (i > 1) {
+      joint.continuous = 0.1 * static_cast<double>(i) * joint.effort;
+      joint.warming = 30.0 * static_cast<double>(i);
+    }
     if (i == 0 && !arm.slides(0)) continue;  // this one has no stops
     joint.lower = -0.5 - 0.1 * static_cast<double>(i);
     joint.upper = 0.7;
@@ -46,10 +50,21 @@ TEST_P(UrdfOf, AnArmReadsAsThatArm) {
     EXPECT_DOUBLE_EQ(b.friction, a.friction);
     EXPECT_DOUBLE_EQ(b.spring, a.spring);
     EXPECT_DOUBLE_EQ(b.offset, a.offset);
+    EXPECT_DOUBLE_EQ(b.continuous, a.continuous);
+    EXPECT_DOUBLE_EQ(b.warming, a.warming);
     EXPECT_DOUBLE_EQ(read.links[i].mass, arm.links[i].mass);
     EXPECT_LT((read.links[i].com - arm.links[i].com).norm(), 1e-12);
     EXPECT_LT((read.links[i].inertia - arm.links[i].inertia).norm(), 1e-15);
   }
+}
+
+// A device gives less than its file says: what is written of it has to be readable.
+TEST(UrdfOfAnArm, HasNoMotorThatBearsMoreThanItGives) {
+  ArmDescription arm = test::random_arm(2, 92);
+  arm.joints[0].continuous = 2 * arm.joints[0].effort;
+  arm.joints[0].warming = 60;
+  const ArmDescription read = parse_urdf(urdf_text(arm, ""), "text", {});
+  EXPECT_DOUBLE_EQ(read.joints[0].continuous, read.joints[0].effort);
 }
 
 }  // namespace

@@ -101,6 +101,22 @@ TEST(RowView, ShowsWhereTheHandWantsTheTip) {
   EXPECT_FALSE(view.hand_grips);
 }
 
+// A quarter turn to the left: the tool's x is the frame's y.
+TEST(RowView, TurnsTheToolAsTheRowSays) {
+  const RunPlan plan = test::plan("table.toml", "touch.csv", 1);
+  const RowLayout layout = plan.layout();
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const auto orientation = layout.in(std::span(row), Column::tool_orientation);
+  std::ranges::copy(std::array{std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)}, orientation.begin());
+  const RowView rows(plan.arm);
+  const ViewState view = rows.view(layout, row);
+  ASSERT_TRUE(view.tool);
+  EXPECT_NEAR((view.tool->col(0) - Vec3::UnitY()).norm(), 0, 1e-12);
+  EXPECT_NEAR((view.tool->col(2) - Vec3::UnitZ()).norm(), 0, 1e-12);
+  std::ranges::fill(orientation, std::nan(""));
+  EXPECT_FALSE(rows.view(layout, row).tool);
+}
+
 // A row has the centre of mass, the picture the object's own frame.
 TEST(RowView, PlacesWhatMovesByItsCentreOfMass) {
   RunPlan plan = test::plan("table.toml", "touch.csv", 1);

@@ -151,6 +151,8 @@ TEST(Touch, IsAnOmniFiveTimesAsHeavyWithTheFrictionOfItsDataSheet) {
     EXPECT_NEAR(real.links[i].mass, 5 * light.links[i].mass, 1e-12);
     EXPECT_LT((real.links[i].inertia - 5 * light.links[i].inertia).norm(), 1e-12);
     EXPECT_NEAR(real.joints[i].friction / lever[static_cast<Eigen::Index>(i)], 0.26, 1e-3);
+    EXPECT_NEAR(real.joints[i].continuous / real.joints[i].effort, 0.88 / 3.3, 2e-3);
+    EXPECT_EQ(light.joints[i].continuous, 0) << "the ideal arm stays cold";
     EXPECT_EQ(real.joints[i].damping, light.joints[i].damping);
     EXPECT_EQ(real.joints[i].lower, light.joints[i].lower);
     EXPECT_EQ(real.joints[i].upper, light.joints[i].upper);

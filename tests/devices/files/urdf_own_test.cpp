@@ -1,4 +1,5 @@
 // Elements that Limpid reads beyond URDF.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,6 +33,42 @@ TEST(UrdfOwn, HasGravityDelayAndSprings) {
   // For a slide 10 cm stand for 1 rad of a joint: 30 N/m are 0.3 N m/rad, 2 N are 0.2 N m.
   EXPECT_DOUBLE_EQ(arm.joints[1].spring, 0.3);
   EXPECT_DOUBLE_EQ(arm.joints[1].offset, 0.2);
+}
+
+TEST(UrdfOwn, HasTheTorqueThatMotorsBearForHours) {
+  const ArmDescription plain = parse(kChain);
+  EXPECT_EQ(plain.joints[0].continuous, 0);
+  const double effort = plain.joints[0].effort, force = plain.joints[1].effort / 0.1;
+  const ArmDescription arm =
+      parse(kChain + "<limpid><warmth joint='a_b' continuous='" + std::to_string(effort / 4) +
+            "' time='60'/><warmth joint='b_c' continuous='" + std::to_string(force / 2) +
+            "' time='0.5'/></limpid>");
+  EXPECT_NEAR(arm.joints[0].continuous, effort / 4, 1e-6);
+  EXPECT_EQ(arm.joints[0].warming, 60);
+  // 10 N of a slide are 1 N m.
+  EXPECT_NEAR(arm.joints[1].continuous, 0.1 * force / 2, 1e-6);
+  EXPECT_EQ(arm.joints[1].warming, 0.5);
+}
+
+TEST(UrdfOwn, RefusesWarmthThatNoMotorHas) {
+  const auto said = [](const std::string& warmth) {
+    return refusal([&] { parse(kChain + "<limpid>\n<warmth " + warmth + "/></limpid>"); });
+  };
+  const ArmDescription arm = parse(kChain);
+  const std::string good = std::to_string(arm.joints[0].effort / 2);
+  EXPECT_THAT(said("joint='a_b' continuous='-1' time='60'"), HasSubstr("allowed: "));
+  EXPECT_THAT(said("joint='a_b' continuous='0' time='60'"), HasSubstr("continuous \"0\""));
+  EXPECT_THAT(said("joint='a_b' continuous='1e6' time='60'"),
+              HasSubstr(fmt::format("to {} N m", arm.joints[0].effort)));
+  EXPECT_THAT(said("joint='b_c' continuous='1e6' time='60'"),
+              HasSubstr(fmt::format("to {} N", arm.joints[1].effort / 0.1)));
+  EXPECT_THAT(said("joint='a_b' continuous='nan' time='60'"), HasSubstr("continuous"));
+  EXPECT_THAT(said("joint='a_b' continuous='" + good + "' time='0'"),
+              HasSubstr("time \"0\"; allowed: 0.1 to 100000 s"));
+  EXPECT_THAT(said("joint='a_b' continuous='" + good + "'"), HasSubstr("needed: both"));
+  EXPECT_THAT(said("joint='a_b' time='60'"), HasSubstr("needed: both"));
+  EXPECT_THAT(said("joint='x' continuous='1' time='60'"), HasSubstr("a joint of this robot"));
+  EXPECT_THAT(said("continuous='1' time='60'"), HasSubstr("x.urdf:8: <warmth>"));
 }
 
 TEST(UrdfOwn, RefusesWhatIsNoNumberOrOutOfRangeAndSaysWhere) {

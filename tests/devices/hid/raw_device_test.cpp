@@ -67,7 +67,7 @@ TEST_F(RawDeviceAndLimpid, SayTheSameOfAReading) {
   state.buttons = 5;
   state.no_force = NoForce::dead_man;
   state.warmth = 0.5f;
-  state.orientation = {1, 0, 0, 0};
+  state.orientation = {0.5f, -0.5f, 0.5f, -0.5f};
   DeviceReading reading;
   ASSERT_EQ(protocol.decode(report_of(raw_reading(state, kJoints)), reading), Decoded::reading);
   EXPECT_NEAR(reading.x[0], 1, 1e-6);
@@ -78,7 +78,7 @@ TEST_F(RawDeviceAndLimpid, SayTheSameOfAReading) {
   EXPECT_EQ(reading.buttons, 5u);
   EXPECT_EQ(reading.no_force, NoForce::dead_man);
   EXPECT_EQ(reading.warmth, 0.5f);
-  EXPECT_EQ(protocol.extras().orientation[0], 1);
+  EXPECT_EQ(reading.orientation, (std::array{0.5, -0.5, 0.5, -0.5}));
 }
 
 TEST_F(RawDeviceAndLimpid, SayTheSameOfAForce) {

@@ -88,7 +88,7 @@ TEST_F(OpenRaw2, ReadsAReportThatAnotherProgramMade) {
   EXPECT_EQ(reading.buttons, 2u);
   EXPECT_EQ(reading.no_force, NoForce::warm);
   EXPECT_EQ(reading.warmth, 0.75f);
-  EXPECT_EQ(protocol.extras().orientation[0], 1);
+  EXPECT_EQ(reading.orientation, (std::array{1.0, 0.0, 0.0, 0.0}));
   EXPECT_EQ(protocol.extras().measured[1], 1.5f);
 }
 
@@ -158,6 +158,26 @@ TEST_F(OpenRaw2, TakesNoWarmthThatIsNone) {
   EXPECT_EQ(with(7), 1);
   EXPECT_EQ(with(-1), 0);
   EXPECT_EQ(with(kNan), 0);
+}
+
+TEST_F(OpenRaw2, TakesNoOrientationThatIsNone) {
+  std::uint32_t sequence = 0;
+  const auto with = [&](std::array<float, 4> parts) {
+    Raw2Report report = raw_2_reading(++sequence, {0, 0});
+    for (std::size_t i = 0; i < 4; ++i) store_float_le(report, byte(64 + 4 * i), parts[i]);
+    decode(report);
+    return reading.oriented();
+  };
+  EXPECT_FALSE(with({0, 0, 0, 0}));
+  EXPECT_TRUE(with({0, 1, 0, 0}));
+  EXPECT_FALSE(with({2, 0, 0, 0}));
+  EXPECT_FALSE(with({0.98f, 0, 0, 0}));
+  EXPECT_FALSE(with({kNan, 0, 0, 1}));
+  EXPECT_FALSE(with({0, 0, std::numeric_limits<float>::infinity(), 0}));
+  // 1 / 0.995 is another length than 1, which counts as rounding.
+  EXPECT_TRUE(with({0, 0, 0.6f / 0.995f, 0.8f / 0.995f}));
+  EXPECT_NEAR(reading.orientation[2], 0.6, 1e-7);
+  EXPECT_NEAR(reading.orientation[3], 0.8, 1e-7);
 }
 
 // The tenth of a range of 0.4 m is 0.04 m.

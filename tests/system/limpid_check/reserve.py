@@ -195,15 +195,18 @@ def _share_cancelled(s: Session) -> Array:
 
 def _springs(s: Session) -> Array:
     """V of every row (N,) [J]. After a tick with motors at their limit it returns the work of a
-    constant torque, from where the motors reached it."""
-    x, limit = s["/device/measured_position"] - s["/proxy/position"], s.law_limit
-    spring, pulled = spring_energy(x, s.number("coupling.k_vc"), limit), np.sum(limit * np.abs(x), axis=1)
-    before, out = 0.0, spring.copy()
+    constant torque, that tick's limit, from where the motors reached it."""
+    x = np.abs(s["/device/measured_position"] - s["/proxy/position"])
+    limit, limited = s.law_limit, np.roll(s["/coupling/solved"] == LIMITED, 1)
+    limited[0] = False
+    limit = np.where(limited[:, None], np.roll(limit, 1, axis=0), limit)
+    spring = spring_energy(x, s.number("coupling.k_vc"), limit)
+    out, reached = spring.copy(), 0
     for k in range(len(s)):
-        if k > 0 and s["/coupling/solved"][k - 1] == LIMITED:
-            out[k] = max(spring[k], pulled[k] + before)
+        if limited[k]:
+            out[k] = max(spring[k], limit[k] @ (x[k] - x[reached]) + spring[reached])
         else:
-            before = spring[k] - pulled[k]
+            reached = k
     return out
 
 

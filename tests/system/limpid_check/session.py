@@ -63,7 +63,7 @@ _LATER = (
 # Of sessions with compensation, with ticks solved in another way than the usual, and with objects that move; nothing
 # where they lack it.
 _OR_NOTHING = {"/device/compensation_torque": 0, "/energy/compensation": 1, "/coupling/solved": 1,
-               "/energy/to_objects": 1, "/objects/held": 1}
+               "/energy/to_objects": 1, "/objects/held": 1, "/device/warmth": 0}
 
 ATTRIBUTES = (
     "format", "version", "tick", "dof", "created", "app_version",
@@ -164,8 +164,13 @@ class Session:
 
     @property
     def torque_limit(self) -> Array:
-        """(N, n) [N m]."""
-        return self.joint_number("device.torque_limit", [j.effort for j in self.chain.joints])
+        """What the motors give at most (N, n) [N m]. From half of the warmth on its square falls in a
+        straight line, down to that of what they bear for hours."""
+        peak = self.joint_number("device.torque_limit", [j.effort for j in self.chain.joints])
+        bears = np.array([j.continuous for j in self.chain.joints]) + np.zeros_like(peak)
+        left = np.clip(2 * (1 - self["/device/warmth"]), 0, 1)
+        warm = np.sqrt(bears**2 + left * (peak**2 - bears**2))
+        return np.where((bears > 0) & (bears < peak), warm, peak)
 
     @property
     def late(self) -> Array:

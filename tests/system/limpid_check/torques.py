@@ -116,7 +116,7 @@ def check_motors(s: Session) -> list[Check]:
     """Motors get the commanded torque, and what holds the device's own forces, clipped at their limit; never more than the limit."""
     error = np.abs(s.sent_torque - s.asked_torque)
     steady = ~switching_rows(s)
-    above = float(np.max(np.abs(s["/device/motor_torque"]) - s.torque_limit))
+    above = float(np.max(np.abs(s.sent_torque) - s.torque_limit))
     return [
         Check(
             "motor torque",

@@ -40,6 +40,7 @@ class Joint:
     damping: float  # b_d [N m s/rad]
     friction: float  # Coulomb [N m]
     effort: float  # torque limit [N m]
+    continuous: float = 0  # torque that the motor bears for hours; 0: not known [N m]
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ def _body(link: ElementTree.Element, joint: int, frame: Transform) -> Body | Non
     return Body(joint, float(mass.get("value", "0")), frame.then(_origin(inertial)), tensor)
 
 
-def _joint(element: ElementTree.Element, origin: Transform) -> Joint:
+def _joint(element: ElementTree.Element, origin: Transform, bears: dict[str, str]) -> Joint:
     axis_element, dynamics, limit = (element.find(tag) for tag in ("axis", "dynamics", "limit"))
     axis = _numbers("1 0 0" if axis_element is None else axis_element.get("xyz", "1 0 0"))
     own = {} if dynamics is None else dynamics.attrib
@@ -110,6 +111,7 @@ def _joint(element: ElementTree.Element, origin: Transform) -> Joint:
         damping=float(own.get("damping", "0")) * unit**2,
         friction=float(own.get("friction", "0")) * unit,
         effort=float(effort) * unit,
+        continuous=float(bears.get(element.get("name", ""), "0")) * unit,
     )
 
 
@@ -129,6 +131,7 @@ def parse_chain(text: str) -> Chain:
     if len(roots) != 1:
         raise ValueError(f"{len(roots)} root links")
 
+    bears = {own.get("joint", ""): own.get("continuous", "0") for own in root.findall("limpid/warmth")}
     joints: list[Joint] = []
     bodies: list[Body] = []
     frame, link = Transform(), roots[0]
@@ -141,7 +144,7 @@ def parse_chain(text: str) -> Chain:
         frame = frame.then(_origin(element))
         kind = element.get("type")
         if kind in ("revolute", "continuous", "prismatic"):
-            joints.append(_joint(element, frame))
+            joints.append(_joint(element, frame, bears))
             frame = Transform()
         elif kind != "fixed":
             raise ValueError(f"joint {element.get('name')} is {kind}")

@@ -406,8 +406,9 @@ TEST(Session, KeepsABlockWithoutASingleNumber) {
     const test::TempDir dir;
     std::vector<double> rows = sample_rows(layout, 0, kRows);
     for (std::size_t k = 0; k < kRows; ++k) {
-      for (const Column c : {Column::contact_force, Column::compensation_torque,
-                             Column::energy_compensation, Column::contact_point}) {
+      for (const Column c :
+           {Column::contact_force, Column::compensation_torque, Column::energy_compensation,
+            Column::contact_point, Column::tool_orientation, Column::motor_warmth}) {
         std::ranges::fill(layout.in(std::span(rows).subspan(k * stride, stride), c), nothing);
       }
     }
