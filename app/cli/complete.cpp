@@ -12,7 +12,7 @@
 namespace limpid {
 namespace {
 
-std::vector<HelpWord> device_words() {
+std::vector<HelpWord> known_device_words() {
   std::vector<HelpWord> words{{"simulated", "one that is unlike its file"}};
   try {
     for (const FoundDevice& found : DeviceHub::look()) {
@@ -39,7 +39,7 @@ void add_values(const std::string& name, Completions& into) {
   } else if (name == "NAME") {
     into.words = experiment_words();
   } else if (name == "DEVICE") {
-    into.words = device_words();
+    into.words = known_device_words();
   } else if (name == "OUT") {
     into.folders = true;
     into.suffixes = {".mp4", ".gif"};
@@ -88,10 +88,10 @@ Position read(const CLI::App& app, std::span<const std::string> words) {
       const CLI::Option* option = option_called(*at.command, word);
       if (option != nullptr && !value_name(*option).empty()) at.open = option;
     } else {
-      const auto commands = shown_commands(app);
+      const auto commands = shown_commands(*at.command);
       const auto called = [&](const CLI::App* one) { return one->get_name() == word; };
       const auto found = std::ranges::find_if(commands, called);
-      if (at.command == &app && found != commands.end()) {
+      if (at.positionals == 0 && found != commands.end()) {
         at.command = *found;
       } else {
         ++at.positionals;
@@ -144,8 +144,8 @@ Completions completions(const CLI::App& app, std::span<const std::string> words)
       }
     }
   } else {
-    if (at.command == &app && at.positionals == 0) {
-      for (const CLI::App* command : shown_commands(app)) {
+    if (at.positionals == 0) {
+      for (const CLI::App* command : shown_commands(*at.command)) {
         all.words.push_back({command->get_name(), command->get_description()});
       }
     }
