@@ -101,6 +101,7 @@ std::map<std::string, Command> declare_commands(CLI::App& app, char** argv,
   commands["experiment"] = declare_experiment(app);
   commands["sweep"] = declare_sweep(app);
   commands["analyze"] = declare_analyze(app);
+  commands["characterize"] = declare_characterize(app);
   commands["check"] = declare_check(app);
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
