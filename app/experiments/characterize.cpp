@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "app/run/analysis.h"
 #include "app/run/tip_limits.h"
@@ -15,9 +16,10 @@
 namespace limpid {
 namespace {
 
-constexpr double kFreeSettle = 2;                             // [s]
+constexpr double kFreeSettle = 2, kFreePeriods = 2;           // [s]; whole periods of all
 constexpr double kMostShaken = 5e-3, kShakenPart = 1 / 60.0;  // at 1 Hz [m]; of the reach
-constexpr double kFreeGrip = 300, kFreeGripDamping = 4;       // [N/m], [N s/m]
+constexpr double kFreeGrip = 3000, kFreeGripDamping = 4;      // [N/m], [N s/m]
+constexpr double kFreeJudged = 5;                             // highest that is judged [Hz]
 constexpr double kFreeOff = 0.1;                              // mass felt off eta, of it
 constexpr double kGiven = 5e-3, kGivenByBounds = 1e-3;        // most energy given [J]
 constexpr double kAsNamed = 0.95;                             // wall by the named one
@@ -28,15 +30,19 @@ ArmUnderLaw under(const Characterized& subject, CouplingKind kind) {
   return at;
 }
 
+// Amplitude of the shaking at 1 Hz [m]; all frequencies have the same speed.
 double shaken_by(const ArmDescription& arm) {
   return std::min(kMostShaken, kShakenPart * reach(arm));
 }
 
-// The tip shaken about its rest pose, along the direction in which walls are judged.
-Trial shaken_at_rest(const ArmUnderLaw& at) {
+Multisine sine_of(const ArmDescription& arm, double f) { return {f, {{1, shaken_by(arm) / f, 0}}}; }
+
+// The tip shaken about its rest pose, along the direction in which walls are judged; at one
+// frequency alone, as friction would mix them.
+Trial shaken_at_rest(const ArmUnderLaw& at, double f) {
   const auto& [arm, p] = at;
   const TapPlace place = tap_place(arm, rest_pose(arm), p);
-  const auto path = [&, signal = seven_sines(shaken_by(arm))](double t) {
+  const auto path = [&place, signal = sine_of(arm, f)](double t) {
     return Vec3(place.point + minimum_jerk(t / 0.5) * signal.at(t) * place.out);
   };
   Trial trial;
@@ -47,8 +53,8 @@ Trial shaken_at_rest(const ArmUnderLaw& at) {
   plan.document = parse_scene(kFreeSpace, "scene", {}, arm);
   plan.parameters = p;
   BenchHand{kFreeGrip, kFreeGripDamping}.holds(plan.parameters);
-  plan.hand =
-      hand_path("shaking at 7 frequencies", p.tick, kFreeSettle + kShakenPeriod + p.tick, path);
+  plan.hand = hand_path(fmt::format("shaking at {} Hz", f), p.tick,
+                        kFreeSettle + kFreePeriods + p.tick, path);
   plan.rows = plan.hand.time.size();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
   plan.start = RigStart{place.x, zero, place.x, zero, zero, place.point, true};
@@ -57,26 +63,27 @@ Trial shaken_at_rest(const ArmUnderLaw& at) {
 
 // Mass and damping felt at the tip. With J'J in the place of the inertia matrix the "inertia" of
 // measured_motion() is the tip's mass, and its damping is per J'J.
-std::vector<FeltMotion> felt_at_the_tip(const Trial& trial, const TrialResult& result) {
-  if (result.end.diverged) return {};
+FeltMotion felt_at_the_tip(const Trial& trial, const TrialResult& result, double f) {
   const RunPlan& plan = trial.plan;
   const Eigen::MatrixXd J = arm_at(plan.arm, rest_pose(plan.arm)).J;
   const auto settled = static_cast<std::size_t>(std::llround(kFreeSettle / plan.parameters.tick));
-  std::vector<FeltMotion> felt =
-      measured_motion(result.session, settled, J.transpose() * J, seven_sines(shaken_by(plan.arm)));
-  for (FeltMotion& m : felt) m.damping /= m.mass;
+  FeltMotion felt =
+      measured_motion(result.session, settled, J.transpose() * J, sine_of(plan.arm, f)).front();
+  felt.damping /= felt.mass;
   return felt;
 }
 
-std::vector<FeltMotion> felt_by_analysis(const TipLimits& tip, const Parameters& p,
-                                         const Multisine& shaking) {
-  std::vector<FeltMotion> felt;
-  for (const Multisine::Line& line : shaking.lines) {
-    const double f = shaking.frequency(line);
-    const FeltAtTip at = felt_at_tip(tip, p, p.kind, f);
-    felt.push_back({f, at.mass, at.damping, 1});
+// Runs the trials, law by law and frequency by frequency.
+void measure_free(TrialRunner& lab, const std::vector<Trial>& shaken,
+                  std::vector<LawRendered>& laws) {
+  constexpr std::size_t kEach = std::size(kFreeTold);
+  std::vector<std::optional<FeltMotion>> felt(shaken.size());
+  lab.run(shaken, [&](std::size_t i, const TrialResult& result) {
+    if (!result.end.diverged) felt[i] = felt_at_the_tip(shaken[i], result, kFreeTold[i % kEach]);
+  });
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    if (felt[i]) laws[i / kEach].free.push_back(*felt[i]);
   }
-  return felt;
 }
 
 std::vector<LawRendered> measure(TrialRunner& lab, const Characterized& subject) {
@@ -89,19 +96,18 @@ std::vector<LawRendered> measure(TrialRunner& lab, const Characterized& subject)
     const auto& [arm, p] = all.back();
     const TipLimits tip = tip_limits(arm, rest_pose(arm), p, {});
     const TipLimits::Wall& wall = tip.walls[static_cast<std::size_t>(law.kind)];
-    laws.push_back({.kind = law.kind,
-                    .named = wall.stiffness,
-                    .bound = wall.bound,
-                    .free_named = felt_by_analysis(tip, p, seven_sines(1))});
+    laws.push_back({.kind = law.kind, .named = wall.stiffness, .bound = wall.bound});
+    for (const double f : kFreeTold) {
+      const FeltAtTip felt = felt_at_tip(tip, p, law.kind, f);
+      laws.back().free_named.push_back({f, felt.mass, felt.damping, 1});
+      shaken.push_back(shaken_at_rest(all.back(), f));
+    }
     for (const BenchHand& hand : kHands) {
       taps.push_back({all.back(), kCommonWall});
       hand.holds(taps.back().at.parameters);
     }
-    shaken.push_back(shaken_at_rest(all.back()));
   }
-  lab.run(shaken, [&](std::size_t i, const TrialResult& result) {
-    laws[i].free = felt_at_the_tip(shaken[i], result);
-  });
+  measure_free(lab, shaken, laws);
   const std::vector<Came> came = tap_arms(lab, taps);
   const std::vector<double> walls = stiffest_quiet_walls(lab, all);
   for (std::size_t i = 0; i < laws.size(); ++i) {
@@ -194,10 +200,11 @@ void judge_energy(const LawRendered& law, std::vector<Check>& checks) {
 
 void judge_free(const Characterized& subject, const LawRendered& law, std::vector<Check>& checks) {
   if (law.kind != CouplingKind::predictive) return;
-  double off = law.free.empty() ? std::nan("") : 0;
-  for (std::size_t i = 0; i < law.free.size(); ++i) {
-    if (law.free[i].f > 5) continue;
-    off = worse(off, std::abs(law.free[i].inertia / law.free_named[i].inertia - 1));
+  double off = 0;
+  for (const FeltMotion& named : law.free_named) {
+    if (named.f > kFreeJudged) continue;
+    const FeltMotion* const felt = at_frequency(law.free, named.f);
+    off = worse(off, felt == nullptr ? std::nan("") : std::abs(felt->inertia / named.inertia - 1));
   }
   Check check =
       at_most("predictive: mass felt, 0.5 to 5 Hz, off the one that limpid analyze names, of it",
@@ -211,8 +218,9 @@ std::string caption(const Characterized& subject) {
       "{}. Taps before the rest pose at {} m/s, pressed with {} N or half of what the motors bear, "
       "in grips of 300 and 3,000 N/m with 2 N s/m and without damping. Stiffest wall: felt within "
       "{} % of that set and the tip above 20 Hz at most {} mm/s, in both grips that damp; of {} to "
-      "{} N/m. Energy: most that the hand was given. Free motion: the tip shaken at seven "
-      "frequencies at once, {:.1f} mm at 1 Hz, in a grip of {} N/m and {} N s/m; friction of the "
+      "{} N/m. Energy: most that the hand was given. Free motion: the tip shaken at one "
+      "frequency after the other, {:.1f} mm at 1 Hz and as fast at all, in a grip of {} N/m and {} "
+      "N s/m; friction of the "
       "arm is felt as damping.",
       subject.name, WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall,
       1e3 * shaken_by(subject.at.arm), kFreeGrip, kFreeGripDamping);

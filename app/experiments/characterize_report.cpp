@@ -82,7 +82,8 @@ std::string free_section(const Characterization& found) {
   }
   return table_of("Free motion",
                   "Mass and damping felt at the tip. Friction is felt as damping, and not in the "
-                  "figures of limpid analyze.",
+                  "figures of limpid analyze. A tip that sticks where it turns round is felt as a "
+                  "spring, which counts as a mass below zero.",
                   head, rows);
 }
 
