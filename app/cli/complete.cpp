@@ -32,14 +32,17 @@ std::vector<HelpWord> experiment_words() {
 // Adds values by an option's type: "FILE.csv|FILE.h5" names suffixes of files, "DIR" folders,
 // others words.
 void add_values(const std::string& name, Completions& into) {
+  const auto add = [&into](const std::vector<HelpWord>& words) {
+    into.words.insert(into.words.end(), words.begin(), words.end());
+  };
   if (name == "KIND") {
     for (const auto& key : kLawKeys) into.words.push_back({std::string(key), ""});
   } else if (name.find("KEY=VALUE") != std::string::npos) {
-    into.words = parameter_words();
+    add(parameter_words());
   } else if (name == "NAME") {
-    into.words = experiment_words();
+    add(experiment_words());
   } else if (name == "DEVICE") {
-    into.words = known_device_words();
+    add(known_device_words());
   } else if (name == "OUT") {
     into.folders = true;
     into.suffixes = {".mp4", ".gif"};
