@@ -156,15 +156,9 @@ FigurePanel free_panel(const std::vector<LawRendered>& laws, const char* title, 
   return panel;
 }
 
-// The sentence on why a formula without encoder steps and friction does not judge this arm; empty
-// if it does.
-std::string beyond_theory(const ArmUnderLaw& at) {
-  const auto& [arm, p] = at;
-  if (p.encoder_step > 0) return "Steps of the encoders are not in the formula.";
-  if (device_friction(arm, p).maxCoeff() > 0) return "Friction is not in the formula.";
-  if (p.linked()) return "A link is not in the formula.";
-  return {};
-}
+// Closed forms of one direction, without friction and encoder steps, judge no arm of any kind.
+constexpr const char* kNoPromise =
+    "A formula for one direction, without friction and steps of encoders: it is no promise.";
 
 void judge_walls(const Characterized& subject, const LawRendered& law, std::vector<Check>& checks) {
   const auto& [arm, p] = under(subject, law.kind);
@@ -179,10 +173,9 @@ void judge_walls(const Characterized& subject, const LawRendered& law, std::vect
     const TipAlong tip = tip_along(at.J, at.M, b, least_damped(at.J, b));
     const double theory = direct_wall(
         tip, {.T = p.tick, .hand_damping = kHands[0].damping, .delay = device_delay(arm, p)});
-    const bool found = law.wall > kLeastWall && theory < 0.8 * kMostWall;
     for (Check check : by_direct_theory("direct: stiffest wall by (b_d + b_h)/(T/2 + delay)",
                                         law.wall / theory)) {
-      check.unjudged = found ? beyond_theory(subject.at) : "It is beyond the walls that are tried.";
+      check.unjudged = kNoPromise;
       checks.push_back(std::move(check));
     }
   }
@@ -198,7 +191,7 @@ void judge_energy(const LawRendered& law, std::vector<Check>& checks) {
   }
 }
 
-void judge_free(const Characterized& subject, const LawRendered& law, std::vector<Check>& checks) {
+void judge_free(const LawRendered& law, std::vector<Check>& checks) {
   if (law.kind != CouplingKind::predictive) return;
   double off = 0;
   for (const FeltMotion& named : law.free_named) {
@@ -209,7 +202,7 @@ void judge_free(const Characterized& subject, const LawRendered& law, std::vecto
   Check check =
       at_most("predictive: mass felt, 0.5 to 5 Hz, off the one that limpid analyze names, of it",
               off, kFreeOff);
-  check.unjudged = beyond_theory(subject.at);
+  check.unjudged = kNoPromise;
   checks.push_back(std::move(check));
 }
 
@@ -258,7 +251,7 @@ Characterization characterize(TrialRunner& lab, const Characterized& subject) {
   for (const LawRendered& law : found.laws) {
     judge_walls(subject, law, found.outcome.checks);
     judge_energy(law, found.outcome.checks);
-    judge_free(subject, law, found.outcome.checks);
+    judge_free(law, found.outcome.checks);
   }
   figure.caption += " " + lab.conditions().text();
   return found;

@@ -60,6 +60,7 @@ TEST_F(ACharacterization, FindsTheWallsOfTheory) {
     EXPECT_LT(direct, 1.25) << delay;
     EXPECT_LE(of(found, CouplingKind::eba).most_given(), 1e-9) << delay;
     EXPECT_TRUE(found.outcome.passed()) << delay;
+    for (const Check& check : found.outcome.checks) EXPECT_TRUE(check.passed) << check.what;
   }
 }
 
