@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <span>
@@ -66,10 +67,14 @@ bool asks_for_help(const std::vector<std::string>& words) {
 
 UsageError unexpected(const CLI::App& app) {
   const auto words = app.remaining(true);
-  const auto chosen = app.get_subcommands();
-  const std::string command = chosen.empty() ? "limpid" : "limpid " + chosen.front()->get_name();
+  const CLI::App* chosen = &app;
+  std::string command = "limpid";
+  while (!chosen->get_subcommands().empty()) {
+    chosen = chosen->get_subcommands().front();
+    command += " " + chosen->get_name();
+  }
   std::vector<std::string> known;
-  for (const CLI::Option* option : (chosen.empty() ? &app : chosen.front())->get_options()) {
+  for (const CLI::Option* option : chosen->get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
   const std::string first = words.empty() ? "" : words.front().substr(0, words.front().find('='));
@@ -77,6 +82,14 @@ UsageError unexpected(const CLI::App& app) {
   return UsageError(fmt::format("\"{}\": not expected; {}`{} --help` lists what is",
                                 fmt::join(words, " "),
                                 meant ? fmt::format("did you mean {}? ", *meant) : "", command));
+}
+
+// Calls `prepare` for each command below `app`, and for those below these.
+void for_each_command(CLI::App& app, const std::function<void(CLI::App&)>& prepare) {
+  for (CLI::App* command : app.get_subcommands({})) {
+    prepare(*command);
+    for_each_command(*command, prepare);
+  }
 }
 
 // Declares the commands that open no window, by name.
@@ -88,6 +101,7 @@ std::map<std::string, Command> declare_commands(CLI::App& app, char** argv,
   commands["experiment"] = declare_experiment(app);
   commands["sweep"] = declare_sweep(app);
   commands["analyze"] = declare_analyze(app);
+  commands["characterize"] = declare_characterize(app);
   commands["check"] = declare_check(app);
   commands["info"] = declare_info(app);
   commands["recover"] = declare_recover(app);
@@ -123,10 +137,10 @@ int run_program(int argc, char** argv, const VideoMakers& videos) {
       "or bad input.\nA run that is whole and gave energy ends with 0, and with a warning that its "
       "recording keeps.");
   refuse_empty_values(app);
-  for (CLI::App* command : app.get_subcommands({})) {
-    command->set_version_flag("-V,--version", version);
-    refuse_empty_values(*command);
-  }
+  for_each_command(app, [&](CLI::App& command) {
+    command.set_version_flag("-V,--version", version);
+    refuse_empty_values(command);
+  });
   try {
     std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words[0] == "complete") {
@@ -135,7 +149,7 @@ int run_program(int argc, char** argv, const VideoMakers& videos) {
     // Completions and manual pages break lines themselves.
     if (words.empty() || words[0] != "share") {
       wrap_help(app);
-      for (CLI::App* command : app.get_subcommands({})) wrap_help(*command);
+      for_each_command(app, wrap_help);
     }
     if (asks_for_help(words)) {
       words.erase(words.begin());

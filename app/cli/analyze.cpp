@@ -140,20 +140,6 @@ nlohmann::ordered_json units() {
           {"tip.LAW.felt_damping", "N s/m"}};
 }
 
-// Levers shorter than this are round-off [m].
-constexpr double kNoLever = 1e-9;
-
-bool moves_tip(const ArmDescription& arm) {
-  return arm_at(arm, rest_pose(arm)).J.norm() > kNoLever;
-}
-
-std::string still_tip(const ArmDescription& arm) {
-  return fmt::format(
-      "no joint moves '{}', the tip, from the rest pose: there is no wall to name and nothing is "
-      "felt there; --tip takes another link",
-      arm.tip_link);
-}
-
 std::optional<InHands> judged_in_hands(const AnalyzeOptions& options, const ArmDescription& arm,
                                        const Parameters& p, const Analysis& a,
                                        const std::optional<TipLimits>& tip) {
@@ -175,19 +161,20 @@ int analyze_command(const AnalyzeOptions& options) {
       options.band ? std::optional(2 * std::numbers::pi * *options.band) : std::nullopt;
   const Analysis a =
       options.mass ? analyze(*options.mass, arm, p, w_b) : analyze(arm, rest_pose(arm), p, w_b);
+  const std::string still = still_tip(arm);
   const std::optional<TipLimits> tip =
-      moves_tip(arm) ? std::optional(tip_limits(arm, rest_pose(arm), p, document.scene))
-                     : std::nullopt;
+      still.empty() ? std::optional(tip_limits(arm, rest_pose(arm), p, document.scene))
+                    : std::nullopt;
   const std::optional<InHands> hands = judged_in_hands(options, arm, p, a, tip);
   if (!options.json) {
     print(a, arm, p);
     if (options.mass) return 0;
     if (tip) print(*tip, p, options.all);
     if (hands) print_in_hands(*hands, laws_told(p, options.all));
-    if (!tip) fmt::print("\n{}\n", still_tip(arm));
+    if (!tip) fmt::print("\n{}\n", still);
     return 0;
   }
-  if (!tip && !options.mass) fmt::print(stderr, "limpid: warning: {}\n", still_tip(arm));
+  if (!tip && !options.mass) fmt::print(stderr, "limpid: warning: {}\n", still);
   nlohmann::ordered_json json{{"provenance", provenance(settings_digest(p), std::nullopt)},
                               {"w_f", a.w_f},
                               {"w_c", a.w_c},

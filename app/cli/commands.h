@@ -21,6 +21,7 @@ Command declare_serve(CLI::App& app);
 Command declare_experiment(CLI::App& app);
 Command declare_sweep(CLI::App& app);
 Command declare_analyze(CLI::App& app);
+Command declare_characterize(CLI::App& app);
 Command declare_check(CLI::App& app);
 Command declare_info(CLI::App& app);
 Command declare_recover(CLI::App& app);

@@ -12,7 +12,7 @@
 namespace limpid {
 namespace {
 
-std::vector<HelpWord> device_words() {
+std::vector<HelpWord> known_device_words() {
   std::vector<HelpWord> words{{"simulated", "one that is unlike its file"}};
   try {
     for (const FoundDevice& found : DeviceHub::look()) {
@@ -32,14 +32,17 @@ std::vector<HelpWord> experiment_words() {
 // Adds values by an option's type: "FILE.csv|FILE.h5" names suffixes of files, "DIR" folders,
 // others words.
 void add_values(const std::string& name, Completions& into) {
+  const auto add = [&into](const std::vector<HelpWord>& words) {
+    into.words.insert(into.words.end(), words.begin(), words.end());
+  };
   if (name == "KIND") {
     for (const auto& key : kLawKeys) into.words.push_back({std::string(key), ""});
   } else if (name.find("KEY=VALUE") != std::string::npos) {
-    into.words = parameter_words();
+    add(parameter_words());
   } else if (name == "NAME") {
-    into.words = experiment_words();
+    add(experiment_words());
   } else if (name == "DEVICE") {
-    into.words = device_words();
+    add(known_device_words());
   } else if (name == "OUT") {
     into.folders = true;
     into.suffixes = {".mp4", ".gif"};
@@ -88,10 +91,10 @@ Position read(const CLI::App& app, std::span<const std::string> words) {
       const CLI::Option* option = option_called(*at.command, word);
       if (option != nullptr && !value_name(*option).empty()) at.open = option;
     } else {
-      const auto commands = shown_commands(app);
+      const auto commands = shown_commands(*at.command);
       const auto called = [&](const CLI::App* one) { return one->get_name() == word; };
       const auto found = std::ranges::find_if(commands, called);
-      if (at.command == &app && found != commands.end()) {
+      if (at.positionals == 0 && found != commands.end()) {
         at.command = *found;
       } else {
         ++at.positionals;
@@ -144,8 +147,8 @@ Completions completions(const CLI::App& app, std::span<const std::string> words)
       }
     }
   } else {
-    if (at.command == &app && at.positionals == 0) {
-      for (const CLI::App* command : shown_commands(app)) {
+    if (at.positionals == 0) {
+      for (const CLI::App* command : shown_commands(*at.command)) {
         all.words.push_back({command->get_name(), command->get_description()});
       }
     }

@@ -8,6 +8,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
+#include "app/cli/look.h"
 #include "app/cli/options.h"
 #include "app/device/device_hub.h"
 #include "app/run/provenance.h"
@@ -123,7 +124,12 @@ Command declare_devices(CLI::App& app) {
                       "with --arm: its id, as listed here; default: the one in use");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "one JSON object on standard output")->excludes(arm);
-  return [options, json] {
+  const Command look = declare_look(*command);
+  return [options, json, command, look] {
+    if (!command->get_subcommands().empty()) {
+      if (options->device.empty() && options->arm.empty() && !*json) return look();
+      throw UsageError("look: its device and options stand behind it");
+    }
     if (!options->arm.empty()) return say_arm(*options);
     if (options->device.empty()) return devices(*json);
     throw UsageError(fmt::format(

@@ -8,6 +8,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
+#include "app/cli/outcome_text.h"
 #include "app/cli/progress.h"
 #include "app/experiments/live.h"
 #include "core/realtime/realtime.h"
@@ -48,30 +49,6 @@ std::vector<const E*> chosen(std::span<const E> known, const std::string& name,
                                meant ? fmt::format("did you mean {}? ", *meant) : "", names));
 }
 
-void print(const std::string& name, const Outcome& outcome) {
-  fmt::print("{}: {}\n", name, outcome.passed() ? "passed" : "FAILED");
-  for (const Check& c : outcome.checks) {
-    const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
-    fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
-    if (c.unjudged.empty()) fmt::print(", {} {:.4g}", relation(c), c.bound);
-    if (c.against && c.against->expected) {
-      fmt::print("; {:.6g} {} for {:.6g}", c.against->measured, c.against->unit,
-                 *c.against->expected);
-    }
-    fmt::print("\n");
-  }
-  std::fflush(stdout);
-}
-
-// Adds failed checks in words, with their experiment. An experiment without checks fails.
-void note_failures(const std::string& name, const Outcome& outcome,
-                   std::vector<std::string>& failed) {
-  for (const Check& c : outcome.checks) {
-    if (c.failed()) failed.push_back(fmt::format("{}: {}", name, c.what));
-  }
-  if (outcome.checks.empty()) failed.push_back(fmt::format("{}: no checks", name));
-}
-
 Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOptions& options,
                                 std::size_t index, std::size_t count) {
   Progress progress({.title = fmt::format("{} ({} of {})", experiment.name, index + 1, count),
@@ -83,15 +60,6 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOp
                                 .threads = options.threads,
                                 .stop = &interrupted,
                                 .progress = [&](double part) { progress.at(100 * part); }});
-}
-
-int finish(const ExperimentOptions& options, const std::vector<std::string>& failed) {
-  fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
-  if (!failed.empty()) {
-    fmt::print(stderr, "limpid: {} failed: {}\n", failed.size() == 1 ? "a check" : "checks",
-               fmt::join(failed, "; "));
-  }
-  return failed.empty() ? 0 : 1;
 }
 
 // Refuses options of world and settings: an experiment has its own, for which its verdict holds.
@@ -122,7 +90,7 @@ int run(const ExperimentOptions& options) {
   try {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       const Outcome outcome = carry_out_with_progress(*wanted[i], options, i, wanted.size());
-      print(wanted[i]->name, outcome);
+      print_outcome(wanted[i]->name, outcome);
       note_failures(wanted[i]->name, outcome, failed);
       write_report(options.out);
     }
@@ -132,7 +100,7 @@ int run(const ExperimentOptions& options) {
   } catch (const FileError& e) {  // of the results, not of the input
     throw std::runtime_error(e.what());
   }
-  return finish(options, failed);
+  return finish_report(options.out, failed);
 }
 
 // Functions that lead the hand through a trial of a live experiment, recorded in `folder`.
@@ -162,7 +130,7 @@ int run_on_device(const ExperimentOptions& options) {
     for (const LiveExperiment* one : wanted) {
       LiveLaboratory lab = laboratory_of(bench, fs::path(options.out) / live_name(*one));
       const Outcome outcome = carry_out(*one, lab, options.out);
-      print(live_name(*one), outcome);
+      print_outcome(live_name(*one), outcome);
       note_failures(live_name(*one), outcome, failed);
       write_report(options.out);
     }
@@ -170,7 +138,7 @@ int run_on_device(const ExperimentOptions& options) {
     fmt::print(stderr, "limpid: stopped\n");
     return 1;
   }
-  return finish(options, failed);
+  return finish_report(options.out, failed);
 }
 
 std::string experiment_help() {

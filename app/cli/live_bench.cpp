@@ -23,6 +23,16 @@ constexpr double kMostWithoutForce = 0.1;  // of a task's duration
 constexpr double kWorthSaying = 0.005;     // shortest time worth a message [s]
 constexpr double kBreath = 1;              // wait before a task without a question [s]
 
+// "these are: socket:springs, 1234:5678:9".
+std::string those_there(const DeviceHub& hub) {
+  std::string ids;
+  for (const FoundDevice& found : hub.found()) {
+    if (!found.missing.empty()) continue;
+    ids += (ids.empty() ? "these are: " : ", ") + found.place.id;
+  }
+  return ids.empty() ? "nothing is" : ids;
+}
+
 }  // namespace
 
 void LiveOptions::add(CLI::App& command) {
@@ -46,7 +56,9 @@ void choose_device(const std::string& id, DeviceHub& hub, const std::string& oth
   }
   hub.use(wanted);
   hub.take(hub.found());
-  if (hub.present() == nullptr) throw UsageError(fmt::format("{}: is not connected", wanted));
+  if (hub.present() == nullptr) {
+    throw UsageError(fmt::format("{}: is not connected; {}", wanted, those_there(hub)));
+  }
   if (!hub.refusal().empty()) throw UsageError(hub.refusal());
 }
 

@@ -47,9 +47,10 @@ std::string upper(std::string text) {
   return text;
 }
 
-std::string full_name(const CLI::App& app, const CLI::App& command, const char* between) {
-  if (&app == &command) return app.get_name();
-  return app.get_name() + between + command.get_name();
+// "limpid-devices-look", with these characters between the words.
+std::string full_name(const CLI::App& command, const char* between) {
+  const CLI::App* above = command.get_parent();
+  return (above == nullptr ? "" : full_name(*above, between) + between) + command.get_name();
 }
 
 // Keeps tables and lines broken by hand.
@@ -57,9 +58,8 @@ std::string as_it_stands(const std::string& text) {
   return fmt::format(".nf\n{}\n.fi\n", roff(text));
 }
 
-std::string synopsis(const CLI::App& app, const CLI::App& command) {
-  std::string text =
-      fmt::format("\\fB{}\\fR [\\fIOPTION\\fR]...", roff(full_name(app, command, " ")));
+std::string synopsis(const CLI::App& command) {
+  std::string text = fmt::format("\\fB{}\\fR [\\fIOPTION\\fR]...", roff(full_name(command, " ")));
   for (const CLI::Option* option : command.get_options()) {
     if (!option->get_positional()) continue;
     const std::string name = fmt::format("\\fI{}\\fR", roff(option->get_name(true)));
@@ -107,8 +107,8 @@ std::string options(const CLI::App& command) {
 std::string commands(const CLI::App& app) {
   std::string text = ".SH COMMANDS\n";
   for (const CLI::App* one : shown_commands(app)) {
-    text += fmt::format(".TP\n\\fBlimpid {0}\\fR\n{1}; see \\fBlimpid\\-{0}\\fR(1)\n",
-                        one->get_name(), roff(one->get_description()));
+    text += fmt::format(".TP\n\\fB{}\\fR\n{}; see \\fB{}\\fR(1)\n", full_name(*one, " "),
+                        roff(one->get_description()), roff(full_name(*one, "-")));
   }
   return text;
 }
@@ -128,35 +128,32 @@ small pictures of sessions; below \fBXDG_CACHE_HOME\fR if that is set
 socket of \fBlimpid \-\-listen NAME\fR and \fBlimpid serve NAME\fR, for programs of the same user
 )";
 
-std::string see_also(const CLI::App& app, const CLI::App& command) {
+std::string see_also(const CLI::App& command) {
   std::vector<std::string> pages;
-  if (&app != &command) {
-    pages.emplace_back("\\fBlimpid\\fR(1)");
-  } else {
-    for (const CLI::App* one : shown_commands(app)) {
-      pages.push_back(fmt::format("\\fBlimpid\\-{}\\fR(1)", one->get_name()));
-    }
-  }
+  const auto add = [&](const CLI::App& other) {
+    pages.push_back(fmt::format("\\fB{}\\fR(1)", roff(full_name(other, "-"))));
+  };
+  if (command.get_parent() != nullptr) add(*command.get_parent());
+  for (const CLI::App* one : shown_commands(command)) add(*one);
   return fmt::format(".SH SEE ALSO\n{}\n", fmt::join(pages, ",\n"));
 }
 
-std::string manual_page(const CLI::App& app, const CLI::App& command) {
-  const bool whole = &app == &command;
+std::string manual_page(const CLI::App& command) {
+  const bool whole = command.get_parent() == nullptr;
   std::string about = command.get_description();
   if (whole) about = about.substr(about.find(": ") + 2);  // the name stands before
-  std::string text =
-      fmt::format(".TH {} 1 \"\" \"Limpid {}\" \"Limpid\"\n",
-                  roff(upper(full_name(app, command, "-"))), roff(program_version()));
-  text += fmt::format(".SH NAME\n{} \\- {}\n", roff(full_name(app, command, "-")), roff(about));
-  text += ".SH SYNOPSIS\n" + synopsis(app, command);
-  if (whole) {
-    text +=
-        fmt::format(".br\n\\fBlimpid\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR]...\n{}", commands(app));
+  std::string text = fmt::format(".TH {} 1 \"\" \"Limpid {}\" \"Limpid\"\n",
+                                 roff(upper(full_name(command, "-"))), roff(program_version()));
+  text += fmt::format(".SH NAME\n{} \\- {}\n", roff(full_name(command, "-")), roff(about));
+  text += ".SH SYNOPSIS\n" + synopsis(command);
+  if (!shown_commands(command).empty()) {
+    text += fmt::format(".br\n\\fB{}\\fR \\fICOMMAND\\fR [\\fIOPTION\\fR]...\n{}",
+                        roff(full_name(command, " ")), commands(command));
   }
   text += ".SH OPTIONS\n" + options(command);
   if (!command.get_footer().empty()) text += ".SH NOTES\n" + as_it_stands(command.get_footer());
   if (whole) text += kFiles;
-  return text + see_also(app, command);
+  return text + see_also(command);
 }
 
 void write(const fs::path& file, const std::string& text) {
@@ -166,11 +163,10 @@ void write(const fs::path& file, const std::string& text) {
   if (!out.flush()) throw FileError(file.string() + ": could not be written");
 }
 
-void write_pages(const CLI::App& app, const fs::path& folder) {
-  write(folder / "limpid.1", manual_page(app, app));
-  for (const CLI::App* command : shown_commands(app)) {
-    write(folder / fmt::format("limpid-{}.1", command->get_name()), manual_page(app, *command));
-  }
+// Writes the pages of a command and of those below it.
+void write_pages(const CLI::App& command, const fs::path& folder) {
+  write(folder / (full_name(command, "-") + ".1"), manual_page(command));
+  for (const CLI::App* one : shown_commands(command)) write_pages(*one, folder);
 }
 
 void write_icons(const fs::path& folder) {

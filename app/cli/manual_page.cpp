@@ -28,6 +28,7 @@ constexpr std::array kChapters{
     Chapter{"README.md", "Limpid"},
     Chapter{"core/README.md", "Laws and real time"},
     Chapter{"devices/README.md", "Devices and safety"},
+    Chapter{"devices/LABORATORIES.md", "A new device"},
     Chapter{"devices/files/README.md", "Arms, scenes, sessions"},
     Chapter{"app/experiments/README.md", "Experiments"},
     Chapter{"assets/sweeps/README.md", "Sweeps"},

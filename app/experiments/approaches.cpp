@@ -8,24 +8,16 @@
 
 #include "app/base/folders.h"
 #include "app/experiments/experiment.h"
-#include "app/experiments/signals.h"
+#include "app/experiments/law_bench.h"
 #include "app/run/analysis.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
 #include "app/run/wall_tap.h"
-#include "core/dynamics/arm.h"
-#include "core/math/high_pass.h"
 #include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kHardest = 4;                         // at most; half of what motors bear [N]
-constexpr double kCommonWall = 2000;                   // the wall of all laws' taps [N/m]
-constexpr double kLeastWall = 50, kMostWall = 20000;   // walls tried [N/m]
-constexpr int kHalvings = 7;                           // of the search, in its logarithm
-constexpr double kQuiet = 0.02;                        // speed above 20 Hz of a quiet tip [m/s]
-constexpr double kFeltOff = 0.2;                       // felt stiffness off the set one [-]
 constexpr double kHeavier = 7, kPapersStep = 4.19e-4;  // of the built-in arm [-]; encoder [rad]
 
 // An arm with what its file does not say.
@@ -40,41 +32,6 @@ constexpr std::array kArms{
     BenchArm{"built-in, ideal", "omni.urdf", 0, 0}, BenchArm{"Touch", "touch.urdf", 4.19e-4, 1},
     BenchArm{"omega", "omega.urdf", 1e-4, 0}, BenchArm{"Inverse3", "inverse3.urdf", 1e-4, 1}};
 
-// A law is told by its ink, and without colours by the dash of its lines and the mark of its
-// points.
-struct BenchLaw {
-  CouplingKind kind;
-  const char* ink;
-  const char* dash;
-  int mark;
-
-  Series line() const {
-    Series line{info(kind).key, ink, Series::Style::line, {}};
-    line.dash = dash;
-    return line;
-  }
-  Series points() const {
-    Series points{info(kind).key, ink, Series::Style::points, {}};
-    points.mark = mark;
-    return points;
-  }
-};
-constexpr std::array kBenchLaws{BenchLaw{CouplingKind::standard, kStandardInk, "1", 6},
-                                BenchLaw{CouplingKind::proposed, kProposedInk, "(12,4)", 5},
-                                BenchLaw{CouplingKind::predictive, kPredictiveInk, "1", 15},
-                                BenchLaw{CouplingKind::tank, kTankInk, "1", 4},
-                                BenchLaw{CouplingKind::direct, kFamilyInk[3], "(6,6)", 2},
-                                BenchLaw{CouplingKind::eba, kFamilyInk[0], "(8,3,2,3)", 9},
-                                BenchLaw{CouplingKind::popc, kFamilyInk[2], "(6,2,2,2,2,2)", 13},
-                                BenchLaw{CouplingKind::sfa, kFamilyInk[1], "(4,4)", 11}};
-
-struct BenchHand {
-  double stiffness, damping;  // [N/m, N s/m]
-};
-constexpr std::array kHands{BenchHand{300, 2}, BenchHand{3000, 2}, BenchHand{300, 0},
-                            BenchHand{3000, 0}};
-constexpr std::size_t kDamped = 2;  // so many of them damp; they come first
-
 ArmDescription arm_of(const BenchArm& bench) {
   ArmDescription arm = read_urdf(default_device().parent_path() / bench.file);
   for (Link& link : arm.links) {
@@ -84,7 +41,15 @@ ArmDescription arm_of(const BenchArm& bench) {
   return arm;
 }
 
-// A tap: its plan, and what came of it.
+ArmUnderLaw arm_under(const BenchArm& bench, CouplingKind kind) {
+  ArmUnderLaw at{arm_of(bench), {}};
+  at.parameters = fitted(at.arm);
+  at.parameters.kind = kind;
+  at.parameters.encoder_step = bench.step;
+  at.parameters.device_delay = at.parameters.delay = bench.delay;
+  return at;
+}
+
 struct Tap {
   BenchArm arm;
   CouplingKind kind;
@@ -93,79 +58,18 @@ struct Tap {
   int link = 0;       // delay between device and proxy, each way [ticks]
   double hold = 0.5;  // [s]
 
-  Parameters parameters(const ArmDescription& description) const {
-    Parameters p = fitted(description);
-    p.kind = kind;
-    p.encoder_step = arm.step;
-    p.device_delay = p.delay = arm.delay;
-    p.link_delay = link;
-    p.hand_stiffness = hand.stiffness;
-    p.hand_damping = hand.damping;
-    return p;
+  ArmTap on_bench() const {
+    ArmTap tap{arm_under(arm, kind), wall, hold};
+    tap.at.parameters.link_delay = link;
+    hand.holds(tap.at.parameters);
+    return tap;
   }
 };
-
-struct Came {
-  double port = 0;     // most that the hand was given [J]
-  double total = 0;    // highest E_c [J]
-  double felt = 0;     // force on the hand over the depth of the tip, over the stiffness set [-]
-  double chatter = 0;  // rms speed of the tip above 20 Hz [m/s]
-
-  bool well() const { return chatter <= kQuiet && std::abs(felt - 1) <= kFeltOff; }
-};
-
-// Finds the force on the hand in the last part of a tap, from its own torque.
-Came came_of(const RunPlan& plan, const TapPlace& place, const WallTap& tap,
-             const TrialResult& result) {
-  if (result.end.diverged) return {HUGE_VAL, HUGE_VAL, 0, HUGE_VAL};
-  const Session& s = result.session;
-  const double T = s.info.tick;
-  const Arm<kAnyDof> arm(plan.arm);
-  const auto judged = static_cast<std::size_t>(tap.judged / T);
-  HighPass fast[] = {{WallTap::kFast, 1 / T}, {WallTap::kFast, 1 / T}, {WallTap::kFast, 1 / T}};
-  Came came;
-  double force = 0, depth = 0, fast2 = 0;
-  Vec3 before = arm.tip_at(vector_at(s, 0, Column::device_position));
-  for (std::size_t k = 0; k < s.size(); ++k) {
-    came.port = worse(came.port, s.at(k, Column::energy_port)[0]);
-    came.total = worse(came.total, s.at(k, Column::energy_total)[0]);
-    const Eigen::VectorXd x = vector_at(s, k, Column::device_position);
-    const Vec3 tip = arm.tip_at(x);
-    Vec3 v = (tip - before) / T;
-    before = tip;
-    for (int i = 0; i < 3; ++i) v[i] = fast[i](v[i]);
-    if (k + judged < s.size()) continue;
-    fast2 += v.squaredNorm();
-    const Eigen::VectorXd hand = vector_at(s, k, Column::hand_torque);
-    const Eigen::MatrixXd lever = arm_at(plan.arm, x).J.transpose();
-    force -= place.out.dot(lever.colPivHouseholderQr().solve(hand));
-    depth += std::max(0.0, place.depth(tip));
-  }
-  came.chatter = std::sqrt(fast2 / static_cast<double>(judged));
-  came.felt = depth > 0 ? force / depth / tap.wall : 0;
-  return came;
-}
 
 std::vector<Came> tap_each(TrialRunner& lab, const std::vector<Tap>& taps) {
-  std::vector<Trial> trials;
-  std::vector<TapPlace> places;
-  std::vector<WallTap> ways;
-  for (const Tap& tap : taps) {
-    const ArmDescription arm = arm_of(tap.arm);
-    const Parameters p = tap.parameters(arm);
-    places.push_back(tap_place(arm, rest_pose(arm), p));
-    ways.push_back({.wall = tap.wall,
-                    .press = bearable_press(arm, places.back(), p, kHardest),
-                    .hold = tap.hold});
-    trials.push_back({"", tap_plan(arm, places.back(), ways.back(), p)});
-    trials.back().keep = false;
-    trials.back().may_diverge = true;
-  }
-  std::vector<Came> came(taps.size());
-  lab.run(trials, [&](std::size_t i, const TrialResult& result) {
-    came[i] = came_of(trials[i].plan, places[i], ways[i], result);
-  });
-  return came;
+  std::vector<ArmTap> on_bench;
+  for (const Tap& tap : taps) on_bench.push_back(tap.on_bench());
+  return tap_arms(lab, on_bench);
 }
 
 struct Searched {
@@ -173,26 +77,10 @@ struct Searched {
   CouplingKind kind;
 };
 
-// For each the stiffest wall that is rendered well in both hands that damp [N/m]; kLeastWall if not
-// even that one is.
 std::vector<double> stiffest(TrialRunner& lab, const std::vector<Searched>& all) {
-  std::vector<double> low(all.size(), kLeastWall), high(all.size(), kMostWall);
-  for (int step = 0; step < kHalvings; ++step) {
-    std::vector<Tap> taps;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      for (std::size_t h = 0; h < kDamped; ++h) {
-        taps.push_back({all[i].arm, all[i].kind, kHands[h], std::sqrt(low[i] * high[i])});
-      }
-    }
-    const std::vector<Came> came = tap_each(lab, taps);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const double middle = std::sqrt(low[i] * high[i]);
-      const auto first = came.begin() + static_cast<std::ptrdiff_t>(kDamped * i);
-      const bool well = std::all_of(first, first + kDamped, [](const Came& c) { return c.well(); });
-      (well ? low : high)[i] = middle;
-    }
-  }
-  return low;
+  std::vector<ArmUnderLaw> on_bench;
+  for (const Searched& each : all) on_bench.push_back(arm_under(each.arm, each.kind));
+  return stiffest_quiet_walls(lab, on_bench);
 }
 
 TipAlong tip_of(const BenchArm& bench) {
@@ -236,9 +124,6 @@ constexpr std::array kLateTicks{0, 1, 2, 3};  // [ticks]
 constexpr std::array kOverDelay{CouplingKind::proposed, CouplingKind::predictive,
                                 CouplingKind::direct, CouplingKind::popc};
 
-const BenchLaw& bench_law(CouplingKind kind) {
-  return *std::ranges::find(kBenchLaws, kind, &BenchLaw::kind);
-}
 const char* ink_of(CouplingKind kind) { return bench_law(kind).ink; }
 
 // Laws through a link, pressed for long in a hand that damps and in one that does not.
@@ -321,28 +206,13 @@ void judge_links(const Linked& all, std::vector<Check>& checks) {
       at_least("tdpn, links of 5 to 50 ms: stiffness felt by that of wave", stiffer, 1));
 }
 
-// Energy given over stiffness felt at one wall, a point a law and hand.
 FigurePanel energy_panel(const Compared& all, const BenchArm& arm) {
-  constexpr double kLeast = 1e-4, kMost = 1e3;  // [mJ]
-  FigurePanel panel{.title = fmt::format("{}: a wall of {} N/m", arm.name, kCommonWall),
-                    .x_label = "stiffness felt [N/m]",
-                    .y_label = "most energy given [mJ]",
-                    .log_x = true,
-                    .log_y = true,
-                    .x_range = std::pair(20.0, 4000.0),
-                    .y_range = std::pair(0.5 * kLeast, 2 * kMost)};
-  for (const BenchLaw& law : kBenchLaws) {
-    Series points = law.points();
-    for (std::size_t i = 0; i < all.taps.size(); ++i) {
-      const Tap& tap = all.taps[i];
-      if (tap.kind != law.kind || std::string_view(tap.arm.name) != arm.name) continue;
-      const Came& came = all.came[i];
-      points.points.push_back({std::clamp(came.felt * kCommonWall, 20.0, 4000.0),
-                               std::clamp(1e3 * came.port, kLeast, kMost)});
-    }
-    panel.series.push_back(points);
+  std::vector<LawCame> of_arm;
+  for (std::size_t i = 0; i < all.taps.size(); ++i) {
+    if (std::string_view(all.taps[i].arm.name) != arm.name) continue;
+    of_arm.push_back({all.taps[i].kind, all.came[i]});
   }
-  return panel;
+  return energy_panel(fmt::format("{}: a wall of {} N/m", arm.name, kCommonWall), of_arm);
 }
 
 FigurePanel delay_panel(const std::vector<double>& walls) {
@@ -403,8 +273,7 @@ void judge_direct(const std::vector<double>& walls, std::vector<Check>& checks) 
     const double ratio = walls[first + static_cast<std::size_t>(delay)] / direct_wall(tip, s);
     const std::string what =
         fmt::format("direct, {} ms late: stiffest wall by (b_d + b_h)/(T/2 + delay)", delay);
-    checks.push_back(at_least(what, ratio, 0.85));
-    checks.push_back(at_most(what, ratio, 1.25));
+    std::ranges::copy(by_direct_theory(what, ratio), std::back_inserter(checks));
   }
 }
 

@@ -119,7 +119,7 @@ constexpr std::array kExperiments{
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,
-                   const std::filesystem::path& file) {
+                   const std::filesystem::path& file, const std::string& more) {
   nlohmann::ordered_json checks = nlohmann::ordered_json::array();
   for (const Check& c : outcome.checks) {
     nlohmann::ordered_json check{{"what", c.what},
@@ -140,12 +140,13 @@ void write_verdict(const std::string& name, const Outcome& outcome,
     }
     checks.push_back(check);
   }
-  const nlohmann::ordered_json verdict{{"name", name},
-                                       {"passed", outcome.passed()},
-                                       {"title", outcome.figure.title},
-                                       {"caption", outcome.figure.caption},
-                                       {"provenance", outcome.figure.made_by},
-                                       {"checks", checks}};
+  nlohmann::ordered_json verdict{{"name", name},
+                                 {"passed", outcome.passed()},
+                                 {"title", outcome.figure.title},
+                                 {"caption", outcome.figure.caption},
+                                 {"provenance", outcome.figure.made_by},
+                                 {"checks", checks}};
+  if (!more.empty()) verdict.update(nlohmann::ordered_json::parse(more));
   std::ofstream out(file);
   out << verdict.dump(2) << '\n';
   if (!out.flush()) throw FileError(file.string() + ": could not be written");
@@ -208,13 +209,19 @@ struct Page {
   json verdict;
 };
 
+std::optional<Page> page_in(const fs::path& dir, const std::string& name,
+                            const std::string& about) {
+  std::ifstream file(dir / (name + ".json"));
+  if (!file) return std::nullopt;
+  json found = json::parse(file, nullptr, false);
+  if (!found.is_object() || !found.contains("checks")) return std::nullopt;
+  return Page{name, about, std::move(found)};
+}
+
 std::vector<Page> pages_in(const fs::path& dir) {
   std::vector<Page> pages;
   const auto add = [&](const std::string& name, const char* about) {
-    std::ifstream file(dir / (name + ".json"));
-    if (!file) return;
-    json found = json::parse(file, nullptr, false);
-    if (found.is_object() && found.contains("checks")) pages.push_back({name, about, found});
+    if (auto page = page_in(dir, name, about)) pages.push_back(std::move(*page));
   };
   for (const Experiment& e : experiments()) add(e.name, e.about);
   for (const LiveExperiment& e : live_experiments()) add(live_name(e), e.about);
@@ -402,12 +409,12 @@ std::vector<TrialResult> TrialRunner::run(const std::vector<Trial>& trials) {
 std::span<const Experiment> experiments() { return kExperiments; }
 
 void write_outcome(const std::string& name, const Outcome& outcome,
-                   const std::filesystem::path& dir) {
+                   const std::filesystem::path& dir, const std::string& more) {
   std::filesystem::create_directories(dir);
   write_figure_data(outcome.figure, dir / (name + ".csv"));
   draw_figure(outcome.figure, dir, name);
   // Written last: a verdict means that everything else is there.
-  write_verdict(name, outcome, dir / (name + ".json"));
+  write_verdict(name, outcome, dir / (name + ".json"), more);
 }
 
 Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options) {
@@ -423,6 +430,11 @@ Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& opti
   outcome.figure.made_by = provenance(lab.conditions().settings(), lab.seed());
   write_outcome(experiment.name, outcome, options.dir);
   return outcome;
+}
+
+std::string report_section(const std::string& name, const std::string& about, const fs::path& dir) {
+  const std::optional<Page> page = page_in(dir, name, about);
+  return page ? section(*page) : std::string();
 }
 
 void write_report(const fs::path& dir) {

@@ -184,9 +184,10 @@ struct Experiment {
 // move.
 std::span<const Experiment> experiments();
 
-// Writes DIR/NAME.csv, .png, .svg and .json. Errors: FileError.
+// Writes DIR/NAME.csv, .png, .svg and .json. `more`: a JSON object whose members the file has
+// besides; empty: none. Errors: FileError.
 void write_outcome(const std::string& name, const Outcome& outcome,
-                   const std::filesystem::path& dir);
+                   const std::filesystem::path& dir, const std::string& more = {});
 
 // Runs `experiment`, then write_outcome(). Adds the conditions to the caption, and a check that no
 // trial diverged against expectation. Errors: FileError, Cancelled, std::runtime_error.
@@ -194,6 +195,10 @@ Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& opti
 
 // Writes DIR/report.html with every verdict found in DIR.
 void write_report(const std::filesystem::path& dir);
+// Returns the part of a report about DIR/NAME.json: figure, caption and checks; empty if it is not
+// there.
+std::string report_section(const std::string& name, const std::string& about,
+                           const std::filesystem::path& dir);
 
 // Writes NAME.key beside NAME.h5: the trial's key and a digest of the recording. Call it once the
 // recording is closed. Errors: FileError.

@@ -29,6 +29,9 @@ void LiveRun::check() {
   const nanoseconds now = MonotonicTime{}.now();
   if (session_.loop().snapshot().connected) seen_ = now;
   if (now - seen_ > kGone) throw std::runtime_error("the device is gone");
+  if (const std::string& why = session_.last_recording().trouble; !why.empty()) {
+    throw FileError(why);
+  }
 }
 
 bool LiveRun::pass(double seconds, const std::atomic<bool>& stop, const Row& row) {

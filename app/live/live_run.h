@@ -26,7 +26,7 @@ class LiveRun {
   using Row = std::function<void(std::span<const double>)>;
   // Runs for `seconds`, or until `stop`; false if stopped. Force fades soon after it returns, as
   // nothing else tells the loop that somebody is there. Errors: std::runtime_error if the loop has
-  // ended, or the device is gone for over a second.
+  // ended, or the device is gone for over a second; FileError if the recording ended by itself.
   bool pass(double seconds, const std::atomic<bool>& stop, const Row& row = {});
 
   void record(std::unique_ptr<Recorder> recorder) { session_.record(std::move(recorder)); }

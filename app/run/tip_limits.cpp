@@ -53,6 +53,15 @@ TipLimits::Wall predictive_wall(const TipMoved& tip, const WallSetting& s, doubl
 
 }  // namespace
 
+std::string still_tip(const ArmDescription& arm) {
+  constexpr double kNoLever = 1e-9;  // round-off [m]
+  if (arm_at(arm, rest_pose(arm)).J.norm() > kNoLever) return {};
+  return fmt::format(
+      "no joint moves '{}', the tip, from the rest pose: there is no wall to name and nothing is "
+      "felt there; --tip takes another link",
+      arm.tip_link);
+}
+
 TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x,
                      const Parameters& p, const Scene& scene) {
   const ArmAt arm = arm_at(description, x);

@@ -13,6 +13,9 @@
 
 namespace limpid {
 
+// Says that no joint moves the tip from the rest pose, so that it has no limits; empty if one does.
+std::string still_tip(const ArmDescription& arm);
+
 // Limits along the direction in which the arm's own dampers hold the tip least; walls of the
 // predictive coupling along the worst.
 struct TipLimits {

@@ -114,14 +114,22 @@ class Package(Run):
 
     def test_there_is_a_manual_page_of_every_command(self) -> None:
         pages = self.root / "usr/share/man/man1"
-        commands = re.findall(r"^  (\w+)", limpid("--help").out.split("Subcommands:\n")[1], re.M)
+
+        def below(*above: str) -> list[tuple]:
+            """Commands below one, and those below these."""
+            parts = limpid(*above, "--help").out.split("Subcommands:\n")
+            names = re.findall(r"^  (\w+)", parts[1], re.M) if len(parts) > 1 else []
+            return [each for name in names for each in [(*above, name), *below(*above, name)]]
+
+        commands = below()
         self.assertGreater(len(commands), 10)
+        self.assertIn(("devices", "look"), commands)
         self.assertEqual({page.name for page in pages.iterdir()},
-                         {"limpid.1.gz"} | {f"limpid-{command}.1.gz" for command in commands})  # fmt: skip
+                         {"limpid.1.gz"} | {f"limpid-{'-'.join(command)}.1.gz" for command in commands})  # fmt: skip
         for command in commands:
-            text = gzip.decompress((pages / f"limpid-{command}.1.gz").read_bytes()).decode()
+            text = gzip.decompress((pages / f"limpid-{'-'.join(command)}.1.gz").read_bytes()).decode()
             text = text.replace("\\", "")
-            for option in re.findall(r"^ +(--[\w-]+)", limpid(command, "--help").out, re.M):
+            for option in re.findall(r"^ +(--[\w-]+)", limpid(*command, "--help").out, re.M):
                 self.assertIn(option, text, command)
 
     def test_the_manual_pages_are_well_formed(self) -> None:

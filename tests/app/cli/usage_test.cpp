@@ -18,9 +18,9 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-const std::vector<std::string> kCommands{"run",    "serve", "experiment", "sweep",   "analyze",
-                                         "check",  "info",  "recover",    "devices", "identify",
-                                         "doctor", "story", "play",       "manual"};
+const std::vector<std::string> kCommands{
+    "run",     "serve",   "experiment", "sweep",  "analyze", "characterize", "check", "info",
+    "recover", "devices", "identify",   "doctor", "story",   "play",         "manual"};
 
 class Usage : public test::Program {};
 
@@ -182,6 +182,9 @@ TEST_F(Usage, IsCompletedWordByWord) {
   EXPECT_THAT(experiments, Contains("all"));
   EXPECT_THAT(experiments, Contains("stack"));
   EXPECT_THAT(offered(complete({"identify", ""})), Contains("simulated"));
+  EXPECT_THAT(offered(complete({"devices", ""})), Contains("look"));
+  EXPECT_THAT(offered(complete({"devices", "look", "-"})), Contains("--record"));
+  EXPECT_EQ(complete({"devices", "look", "--record", ""}), "\tfiles .h5\n");
   // Values that can be anything, names chosen freely, and what is unknown.
   EXPECT_EQ(complete({}), "");
   EXPECT_EQ(complete({"serve", ""}), "");
@@ -199,7 +202,7 @@ TEST_F(Usage, IsInManualPages) {
   for (const auto& page : fs::directory_iterator("made/man/man1")) {
     pages.insert(page.path().filename().string());
   }
-  std::set<std::string> expected{"limpid.1"};
+  std::set<std::string> expected{"limpid.1", "limpid-devices-look.1"};
   for (const std::string& command : kCommands) expected.insert("limpid-" + command + ".1");
   EXPECT_EQ(pages, expected);
   const std::string all = test::text_of("made/man/man1/limpid.1");
@@ -213,9 +216,15 @@ TEST_F(Usage, IsInManualPages) {
     for (const char* part : {".SH NAME\n", ".SH SYNOPSIS\n", ".SH OPTIONS\n"}) {
       EXPECT_THAT(page, HasSubstr(part)) << command;
     }
-    EXPECT_THAT(page, EndsWith(".SH SEE ALSO\n\\fBlimpid\\fR(1)\n")) << command;
-    EXPECT_THAT(page, Not(HasSubstr(".SH COMMANDS"))) << command;
+    const bool alone = command != "devices";
+    const std::string look = alone ? "" : ",\n\\fBlimpid\\-devices\\-look\\fR(1)";
+    EXPECT_THAT(page, EndsWith(".SH SEE ALSO\n\\fBlimpid\\fR(1)" + look + "\n")) << command;
+    EXPECT_EQ(page.find(".SH COMMANDS") == std::string::npos, alone) << command;
   }
+  const std::string look = test::text_of("made/man/man1/limpid-devices-look.1");
+  EXPECT_THAT(look,
+              HasSubstr("\\fBlimpid devices look\\fR [\\fIOPTION\\fR]... [\\fIDEVICE\\fR]\n"));
+  EXPECT_THAT(look, EndsWith(".SH SEE ALSO\n\\fBlimpid\\-devices\\fR(1)\n"));
   const std::string run = test::text_of("made/man/man1/limpid-run.1");
   EXPECT_THAT(run, HasSubstr(".TH LIMPID\\-RUN 1 "));
   EXPECT_THAT(run, HasSubstr("\\fBlimpid run\\fR [\\fIOPTION\\fR]...\n"));

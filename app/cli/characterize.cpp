@@ -1,0 +1,269 @@
+#include "app/experiments/characterize.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "app/base/interrupt.h"
+#include "app/cli/commands.h"
+#include "app/cli/live_bench.h"
+#include "app/cli/options.h"
+#include "app/cli/outcome_text.h"
+#include "app/cli/progress.h"
+#include "app/live/device_look.h"
+#include "app/live/rtkit.h"
+#include "app/run/analysis.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/provenance.h"
+#include "app/run/tip_limits.h"
+#include "core/realtime/realtime.h"
+
+namespace limpid {
+namespace {
+
+constexpr int kUsualDelay = 1;  // of a device of which nothing is known [ticks]
+
+struct CharacterizeOptions {
+  InputOptions input;                 // `device`: the arm's file
+  std::optional<std::string> device;  // id of a real one
+  std::string out;
+};
+
+// Whether these options set a number, whatever it was before. `one`, `other`: two values of it.
+template <class Settings, class V>
+bool sets(const InputOptions& options, V Settings::*number, V one, V other) {
+  Parameters p, q;
+  p.*number = one;
+  q.*number = other;
+  return make_parameters(options, p).*number == make_parameters(options, q).*number;
+}
+
+// An arm, and how much of it is known.
+struct Source {
+  ArmDescription arm;
+  std::string name;
+  std::string from;  // of inertia, damping and friction, for people
+  bool arm_assumed = false;
+  std::optional<double> encoder_step;  // that the device names; empty: no device [rad]
+};
+
+Source of_file(const CharacterizeOptions& options) {
+  Source source;
+  source.arm = arm_of(options.input);
+  source.name = source.arm.name;
+  source.from = source.arm.delay ? "the arm's file, identified on a device" : "the arm's file";
+  return source;
+}
+
+// Reads what the device says of itself. It gets no force.
+Source of_device(const CharacterizeOptions& options) {
+  DeviceHub hub(device_store_file(), by_rtkit());
+  choose_device(*options.device, hub, "");
+  const FoundDevice& found = *hub.present();
+  if (found.kind->leads_hand) {
+    throw UsageError(found.place.id + ": leads the hand of the virtual arm and renders nothing");
+  }
+  const OnlyLooked device(hub.open_to_look(), std::make_shared<DeviceSeen>());
+  std::optional<ArmDescription> named;
+  if (!options.input.device.empty()) named = arm_of(options.input);
+  TakenArm taken = hub.arm_for(device.traits(), named ? &*named : nullptr);
+  return {.arm = std::move(taken.arm),
+          .name = device.traits().name,
+          .from = taken.why,
+          .arm_assumed = !taken.known,
+          .encoder_step = encoder_step_of(device.traits())};
+}
+
+KnownNumber encoder_number(const Source& source, const InputOptions& input, Parameters& p) {
+  KnownNumber number{"encoder_step", "step of the encoders", "rad", 0, {}};
+  if (sets(input, &DeviceSettings::encoder_step, 0.01, 0.02)) {
+    number.from = "set";
+  } else if (source.encoder_step.value_or(0) > 0) {
+    p.encoder_step = *source.encoder_step;
+    number.from = "the device says so";
+  } else {
+    number.assumed = true;
+    number.from = source.encoder_step ? "exact, as the device names no step"
+                                      : "exact; --set device.encoder_step=STEP says another";
+  }
+  return number;
+}
+
+KnownNumber delay_number(const Source& source, const InputOptions& input, Parameters& p) {
+  KnownNumber number{"delay", "delay from a reading to its torque, beyond the tick", "ms", 0, {}};
+  if (sets(input, &DeviceSettings::device_delay, 1, 2)) {
+    number.from = "set";
+    return number;
+  }
+  if (source.arm.delay) {
+    p.device_delay =
+        static_cast<int>(std::min<long>(kMostDelay, std::lround(*source.arm.delay / p.tick)));
+    number.from = fmt::format("identified as {:.2f} ms, in whole ticks", 1e3 * *source.arm.delay);
+  } else if (source.encoder_step) {
+    p.device_delay = kUsualDelay;
+    number.assumed = true;
+    number.from = "one tick, as nobody has measured it; limpid identify does";
+  } else {
+    number.assumed = true;
+    number.from = "none; --set device.delay=TICKS says another";
+  }
+  p.delay = p.device_delay;
+  return number;
+}
+
+KnownNumber damping_number(const Source& source, const InputOptions& input, const Parameters& p) {
+  KnownNumber number{"damping",         "its own damping at the tip", "N s/m", 0, source.from,
+                     source.arm_assumed};
+  if (sets(input, &DeviceSettings::damping, 1.0, 2.0)) {
+    number.from = "set";
+    number.assumed = false;
+    return number;
+  }
+  if (!std::isnan(p.damping)) {
+    number.assumed = true;
+    number.from = "its file says none; one that slows it as fast as the built-in arm's does";
+  }
+  return number;
+}
+
+KnownNumber friction_number(const Source& source, const InputOptions& input, double friction) {
+  KnownNumber number{"friction", "friction at the tip", "N",
+                     friction,   source.from,           source.arm_assumed};
+  if (sets(input, &DeviceSettings::friction, 1.0, 2.0)) {
+    number.from = "set";
+    number.assumed = false;
+  } else if (friction <= 0 && !source.arm.delay) {
+    number.assumed = true;
+    number.from = "none, as its file has none";
+  }
+  return number;
+}
+
+Characterized subject_of(const CharacterizeOptions& options) {
+  const InputOptions& input = options.input;
+  Source source = options.device ? of_device(options) : of_file(options);
+  const ArmDescription& arm = source.arm;
+  if (const std::string still = still_tip(arm); !still.empty()) throw UsageError(still);
+  Parameters base = fitted(arm, make_parameters(input));
+  Characterized subject;
+  subject.name = source.name;
+  KnownNumber mass{"mass", "mass at the tip", "g", 0, source.from, source.arm_assumed};
+  KnownNumber damping = damping_number(source, input, base);
+  KnownNumber encoder = encoder_number(source, input, base);
+  KnownNumber delay = delay_number(source, input, base);
+  const Parameters p = make_parameters(input, base);
+  const TipLimits tip = tip_limits(arm, rest_pose(arm), p, {});
+  mass.value = 1e3 * tip.tip.mass;
+  damping.value = tip.tip.damping;
+  encoder.value = p.encoder_step;
+  delay.value = 1e3 * p.tick * p.device_delay;
+  const KnownNumber friction = friction_number(
+      source, input, friction_at_tip(arm_at(arm, rest_pose(arm)).J, device_friction(arm, p)));
+  subject.numbers = {mass, damping, friction, encoder, delay};
+  subject.at = {std::move(source.arm), p};
+  return subject;
+}
+
+void print_table(const Characterized& subject, const Characterization& found) {
+  fmt::print("{}\n", found.outcome.figure.title);
+  for (const KnownNumber& number : subject.numbers) {
+    fmt::print("  {:<52} {:>8.4g} {:<6} {}{}\n", number.what, number.value, number.unit,
+               number.assumed ? "ASSUMED: " : "", number.from);
+  }
+  fmt::print("\n{:<12} {:>16} {:>12} {:>24} {:>12} {:>22}\n", "law", "stiffest [N/m]", "analyze",
+             fmt::format("{} N/m felt as", kCommonWall), "given [mJ]", "felt at 2 Hz");
+  for (const LawRendered& law : found.laws) {
+    const auto [least, most] = law.felt();
+    const FeltMotion* const free = at_frequency(law.free, 2);
+    fmt::print("{:<12} {:>16} {:>12.0f} {:>24} {:>12} {:>22}\n", info(law.kind).key,
+               wall_text(law.wall), law.named,
+               most > 0 ? fmt::format("{:.0f} to {:.0f}", least, most) : "none", given_text(law),
+               free == nullptr
+                   ? "unstable"
+                   : fmt::format("{:.1f} g, {:.2f} N s/m", 1e3 * free->inertia, free->damping));
+  }
+  fmt::print("\n");
+}
+
+// Refuses what would have no effect: all laws are measured, in hands of the bench's own.
+void refuse_what_is_fixed(const InputOptions& input) {
+  const auto refuse = [](const char* what) {
+    throw UsageError(fmt::format("{}: every law is measured, in hands of the bench's own", what));
+  };
+  if (input.coupling) refuse("--coupling");
+  if (sets(input, &ControllerSettings::kind, CouplingKind::standard, CouplingKind::tank)) {
+    refuse("coupling.kind");
+  }
+  if (sets(input, &HandSettings::hand_stiffness, 1.0, 2.0)) refuse("hand.stiffness");
+  if (sets(input, &HandSettings::hand_damping, 1.0, 2.0)) refuse("hand.damping");
+}
+
+int run_characterize(const CharacterizeOptions& options) {
+  if (!options.device && options.input.device.empty()) {
+    throw UsageError("needed: an arm's file, or --device for a device that is plugged in");
+  }
+  refuse_what_is_fixed(options.input);
+  const Characterized subject = subject_of(options);
+  prepare_out(options.out);
+  catch_interrupts();
+  keep_what_is_freed();
+  TrialRunner::Options lab_options;
+  lab_options.dir = options.out;
+  lab_options.stop = &interrupted;
+  Characterization found;
+  try {
+    Progress progress({.title = "characterize", .whole = 100, .unit = "", .rate = "% a second"});
+    lab_options.progress = [&](double part) { progress.at(100 * part); };
+    TrialRunner lab("characterize", lab_options);
+    found = characterize(lab, subject);
+  } catch (const Cancelled&) {
+    fmt::print(stderr, "limpid: stopped; nothing was written\n");
+    return 1;
+  }
+  found.outcome.figure.made_by = provenance(settings_digest(subject.at.parameters), std::nullopt);
+  try {
+    write_characterization(subject, found, options.out);
+  } catch (const FileError& error) {  // of the results, not of the input
+    throw std::runtime_error(error.what());
+  }
+  print_table(subject, found);
+  print_outcome(subject.name, found.outcome);
+  std::vector<std::string> failed;
+  note_failures(subject.name, found.outcome, failed);
+  return finish_report(options.out, failed);
+}
+
+}  // namespace
+
+Command declare_characterize(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "characterize", "what an arm, or a device's arm, can render under each law: one report");
+  auto options = std::make_shared<CharacterizeOptions>();
+  command->add_option("ARM", options->input.device, "the arm's file")
+      ->transform(or_shipped({"devices"}), "", "")
+      ->type_name("FILE.urdf");
+  command
+      ->add_option_function<std::string>(
+          "--device", [options](const std::string& id) { options->device = id; },
+          "a real device, by its id, as `limpid devices` lists it: its arm, as it was identified "
+          "or "
+          "said to be, its encoders, delay and friction. It never pushes")
+      ->type_name("DEVICE");
+  command->add_option("--tip", options->input.tip, "the link of the arm that the hand holds")
+      ->type_name("LINK");
+  command->add_option("--out", options->out, "the folder for report.html and characterize.json")
+      ->required()
+      ->type_name("DIR");
+  options->input.add_parameters(*command);
+  command->footer(
+      "Law by law: the stiffest wall that is felt as set and quiet, the energy given, and mass and "
+      "damping felt in free\nmotion, on the virtual arm of that file, beside what `limpid analyze` "
+      "names. All is on the virtual arm: a real device\nmay be other than its numbers, and the "
+      "report says which are measured, set and assumed.\nExit status 1: a promise was not kept, "
+      "or it was stopped.\n\n" +
+      parameter_help());
+  return [options] { return run_characterize(*options); };
+}
+
+}  // namespace limpid

@@ -1,0 +1,168 @@
+#include "app/cli/look.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/base/folders.h"
+#include "app/base/interrupt.h"
+#include "app/cli/live_bench.h"
+#include "app/cli/look_report.h"
+#include "app/cli/options.h"
+#include "app/cli/progress.h"
+#include "app/device/device_hub.h"
+#include "app/live/live_run.h"
+#include "app/live/rtkit.h"
+#include "app/run/fitted_gains.h"
+#include "app/run/replay.h"
+#include "devices/files/scene/scene_file.h"
+
+namespace limpid {
+namespace {
+
+constexpr double kLookSeconds = 20, kMostLookSeconds = 86'400;  // [s]
+
+struct LookOptions {
+  std::string device;  // id; empty: the one in use, or the only one
+  std::string record;
+  double seconds = kLookSeconds;
+  bool force = false, json = false;
+};
+
+// A device opened without need of a check, and how it is to be recorded.
+struct Look {
+  LookedDevice device;
+  std::unique_ptr<Device> opened;
+  SafetyLimits limits;
+  RunPlan plan;
+};
+
+Look open_to_look(const LookOptions& options) {
+  Look look;
+  DeviceHub hub(device_store_file(), by_rtkit());
+  choose_device(options.device, hub, "");
+  const FoundDevice& found = *hub.present();
+  if (found.kind->leads_hand) {
+    throw UsageError(fmt::format(
+        "{}: leads the hand of the virtual arm and has no joints to record; `limpid` uses it",
+        found.place.id));
+  }
+  const DeviceNotes& notes = hub.notes(hub.in_use());
+  look.device.library = DeviceHub::library_of(hub.in_use());
+  look.opened = hub.open_to_look();
+  look.device.traits = look.opened->traits();
+  look.device.kind = found.kind->name;
+  look.device.checked = notes.checked;
+  TakenArm taken = hub.arm_for(look.device.traits);
+  look.device.arm = taken.arm;
+  look.device.arm_why = taken.why;
+  look.limits = notes.limits;
+  look.plan.arm = std::move(taken.arm);
+  look.plan.document = read_scene(data_dir() / "assets/scenes/free.toml", look.plan.arm);
+  look.plan.parameters = fitted(look.plan.arm);
+  look.plan.hand.source = fmt::format(
+      "device without force: {}, {}, {}{}", look.device.traits.name, look.device.kind,
+      look.device.traits.id, look.device.library.empty() ? "" : ", by " + look.device.library);
+  return look;
+}
+
+// How a look ended.
+struct LookEnd {
+  bool whole = false;
+  double seconds = 0;
+  std::string wrong;  // sentence; empty: nothing went wrong
+};
+
+void announce(const std::string& name, double seconds) {
+  fmt::print(stderr,
+             "limpid: {} is read for {:.3g} s and gets no force: it never pushes. Move each joint "
+             "slowly to both of its ends, hold still for a second, press its buttons; Ctrl-C ends "
+             "it.\n",
+             name, seconds);
+}
+
+// Records the device. Whatever ends it, what was seen is kept.
+LookEnd record_look(Look& look, const LookOptions& options,
+                    const std::shared_ptr<DeviceSeen>& seen) {
+  LookEnd end;
+  LiveRun run(look.plan, look.limits, std::make_unique<OnlyLooked>(std::move(look.opened), seen),
+              by_rtkit());
+  look.plan.parameters = run.taken(look.plan.parameters);
+  SessionInfo info = session_info(look.plan);
+  info.safety = limits_text(look.limits);
+  run.record(std::make_unique<Recorder>(options.record, info, look.plan.parameters, options.force,
+                                        Recorder::kLiveRoom));
+  announce(look.device.traits.name, options.seconds);
+  Progress progress({.title = "look", .whole = options.seconds, .unit = "s", .rate = ""});
+  try {
+    end.whole = run.pass(options.seconds, interrupted, [&](std::span<const double>) {
+      progress.at(end.seconds += look.plan.parameters.tick);
+    });
+  } catch (const std::exception& error) {
+    end.wrong = error.what();
+  }
+  try {
+    const std::uint64_t lost = run.finish_recording();
+    if (lost > 0 && end.wrong.empty()) {
+      end.wrong =
+          fmt::format("{} ticks found no room and are missing from {}", lost, options.record);
+    }
+  } catch (const FileError& error) {
+    end.wrong = error.what();
+  }
+  return end;
+}
+
+int run_look(const LookOptions& options) {
+  Look look = open_to_look(options);
+  catch_interrupts();
+  const auto seen = std::make_shared<DeviceSeen>();
+  LookEnd end = record_look(look, options, seen);
+  if (seen->readings() == 0 && end.wrong.empty()) end.wrong = "no reading came";
+  const bool recorded = std::filesystem::exists(options.record);
+  if (options.json) {
+    nlohmann::ordered_json json = look_json(look.device, *seen);
+    json["seconds"] = end.seconds;
+    json["recorded"] = nullptr;
+    if (recorded) json["recorded"] = options.record;
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    fmt::print("{}", look_text(look.device, *seen));
+    if (recorded) fmt::print("recorded {:.3f} s in {}\n", end.seconds, options.record);
+  }
+  if (!end.wrong.empty()) {
+    throw std::runtime_error(
+        fmt::format("{}: after {:.3f} s: {}", look.device.traits.id, end.seconds, end.wrong));
+  }
+  if (!end.whole) fmt::print(stderr, "limpid: stopped at {:.3f} s\n", end.seconds);
+  return end.whole ? 0 : 1;
+}
+
+}  // namespace
+
+Command declare_look(CLI::App& devices) {
+  auto* command =
+      devices.add_subcommand("look", "reads a device for a while and records it; it never pushes");
+  auto options = std::make_shared<LookOptions>();
+  command->add_option("DEVICE", options->device,
+                      "its id, as `limpid devices` lists it; default: the one in use");
+  command->add_option("--record", options->record, "the session file for what it reads")
+      ->required()
+      ->type_name("OUT.h5");
+  require_above_zero(
+      command->add_option("--seconds", options->seconds, "how long; Ctrl-C ends it before")
+          ->type_name("S")
+          ->capture_default_str(),
+      kMostLookSeconds, "s");
+  command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
+  command->add_flag("--json", options->json, "one JSON object on standard output");
+  command->footer(
+      "Force is off and cannot be armed: no torque is on its way to the device, whatever a law "
+      "finds. Its axes need\nno check before it. The arm is the one that the device says, was "
+      "identified or said to be, else a built-in one with\nas many joints. The session is what "
+      "Limpid's authors need of a device that they have never seen.");
+  return [options] { return run_look(*options); };
+}
+
+}  // namespace limpid

@@ -1,0 +1,41 @@
+#include "app/cli/outcome_text.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace limpid {
+
+void print_outcome(const std::string& name, const Outcome& outcome) {
+  fmt::print("{}: {}\n", name, outcome.passed() ? "passed" : "FAILED");
+  for (const Check& c : outcome.checks) {
+    const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
+    fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
+    if (c.unjudged.empty()) fmt::print(", {} {:.4g}", relation(c), c.bound);
+    if (c.against && c.against->expected) {
+      fmt::print("; {:.6g} {} for {:.6g}", c.against->measured, c.against->unit,
+                 *c.against->expected);
+    }
+    fmt::print("\n");
+  }
+  std::fflush(stdout);
+}
+
+void note_failures(const std::string& name, const Outcome& outcome,
+                   std::vector<std::string>& failed) {
+  for (const Check& c : outcome.checks) {
+    if (c.failed()) failed.push_back(fmt::format("{}: {}", name, c.what));
+  }
+  if (outcome.checks.empty()) failed.push_back(fmt::format("{}: no checks", name));
+}
+
+int finish_report(const std::string& out, const std::vector<std::string>& failed) {
+  fmt::print("report: {}\n", (std::filesystem::path(out) / "report.html").string());
+  if (!failed.empty()) {
+    fmt::print(stderr, "limpid: {} failed: {}\n", failed.size() == 1 ? "a check" : "checks",
+               fmt::join(failed, "; "));
+  }
+  return failed.empty() ? 0 : 1;
+}
+
+}  // namespace limpid
