@@ -140,7 +140,7 @@ Vec<N> Plant<N>::transmitted(const VirtualArm<N>& arm, const Parameters& p, cons
   const double w = kTurn * p.resonance;
   const Vec<N> joints = arm.x() + h / 2 * arm.v();
   theta_ += h / 2 * omega_;
-  const Vec<N> drive =
+  Vec<N> drive =
       rotors_.cwiseProduct(w * w * (theta_ - joints) + 2 * kDamping * w * (omega_ - arm.v()));
   const Vec<N> damping = resolve<N>(p.damping, damping_);
   const Vec<N> friction = resolve<N>(p.friction, friction_).array() + p.unknown_friction;
