@@ -285,7 +285,7 @@ std::string curve_label(const RobustCase& c) {
 
 FigurePanel panel_of(std::size_t way, const std::string& title, const std::string& y) {
   const Imperfection& of = imperfections()[way];
-  FigurePanel panel{.title = title,
+  FigurePanel panel{.title = fmt::format("{}, over the {}", title, of.title),
                     .x_label = fmt::format("{} [{}]", of.title, of.unit),
                     .y_label = y,
                     .log_x = true,
@@ -315,7 +315,7 @@ void add_curves(FigurePanel& panel, const std::vector<RobustCase>& cases, std::s
 
 FigurePanel given_panel(const Robustness& all, std::size_t way) {
   constexpr double kLeast = 1e-3, kMost = 1e4;  // [mJ]
-  FigurePanel panel = panel_of(way, "At the wall that limpid analyze names", "most given [mJ]");
+  FigurePanel panel = panel_of(way, "Energy given at the named wall", "most given [mJ]");
   panel.y_range = {0.5 * kLeast, 2 * kMost};
   add_curves(panel, all.cases, way,
              [&](std::size_t i) { return std::clamp(1e3 * all.came[i].given, kLeast, kMost); });
