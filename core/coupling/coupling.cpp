@@ -49,7 +49,7 @@ Vec<N> Coupling<N>::step(CouplingKind kind, const LawSettings& p, LawInput<N> in
   if (!now.books_itself() || takes_over_) book(p, in, proxy);
   least_left_ = now.least_left();
   takes_over_ = false;
-  const Vec<N> torque = now.step(p, in, proxy);
+  Vec<N> torque = now.step(p, in, proxy);
   const double reserve = now.report().reserve;
   if (std::isfinite(reserve)) {
     reserve_ = reserve;
