@@ -145,20 +145,6 @@ class _Account:
         return float(np.min(self.energy))
 
 
-class _Clock:
-    """Ticks since the last change of each reading."""
-
-    def __init__(self, joints: int) -> None:
-        self.still = np.zeros(joints)
-
-    def changed(self, moved: Array, step: float) -> Array:
-        """n_i of the last tick."""
-        self.still += 1
-        counted = np.where(step > 0, self.still, 1.0)
-        self.still[moved != 0] = 0
-        return counted
-
-
 def spring_energy(x_e: Array, k_vc: Array, limit: Array) -> Array:
     """V of every row (N,) [J]: a spring limited to the motors' torque."""
     x, limit = np.abs(x_e), np.broadcast_to(limit, x_e.shape)
@@ -260,7 +246,7 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
     least, most = s.possible_delays
     to_objects = s["/energy/to_objects"]  # bodies are a second port
 
-    network, clock, account = _Network(t, n), _Clock(n), _Account()
+    network, account = _Network(t, n), _Account()
     out = np.zeros((5, rows))
     b_w, u_n, k_n = np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n, n))
     gf = gb = ga = 1.0
@@ -271,8 +257,8 @@ def balance(s: Session, p: Prediction, m2: Array, c2: Array, u: Array) -> Reserv
             if cut.possible(k - 1, ga):
                 lost = cut.at(k - 1, b_w[k - 1], u_n[k - 1], k_n[k - 1], ga)
                 network.lose(-lost @ along[k])
-            ticks = clock.changed(moved[k], step[k])
-            account.add(sent, k, along[k], np.sum(damping[k] * moved[k] ** 2 / ticks) / t)
+            sure = np.maximum(0, np.abs(moved[k]) - step[k])  # a step of the encoder may be no motion
+            account.add(sent, k, along[k], np.sum(damping[k] * sure**2) / t)
             account.energy -= to_objects[k] - to_objects[k - 1]
         network.turn(eta[k])
         stored = held[k] + network.stored

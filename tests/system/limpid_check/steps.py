@@ -16,7 +16,7 @@ _SURFACES = ("plane", "sphere", "box", "mesh")
 _STIFFNESS = 600.0  # default of a surface [N/m]
 _PUSH = 0.05  # bound of a wall damper's force by an encoder's step [N]
 _HAND = 10.0  # rate of the force of a hand at rest [N/s]
-HELD = 800.0  # and what its speed adds [N/m]
+HELD = 200.0  # and what its speed adds [N/m]
 
 
 def faded_jump(p: Array, step: Array, tick: float) -> Array:

@@ -22,7 +22,7 @@ class _DeviceTank:
     def __init__(self, dof: int, energy: float) -> None:
         self.came = energy
         self.spent: dict[int, float] = {}
-        self.since = np.zeros(dof)
+        self.aside = np.zeros(dof)
         self.dx = np.zeros(dof)
         self.turn = np.zeros(dof)
 
@@ -35,15 +35,14 @@ class _DeviceTank:
             worst = max(self.spent.values(), default=0.0)
             self.spent = {d: worst for d in range(least, most + 1)}
 
-    def tick(self, dx: Array, torque_before: Array, b_d: Array, coarse: bool, T: float, most: float) -> None:
+    def tick(self, dx: Array, torque_before: Array, b_d: Array, step: float, T: float, most: float) -> None:
         """torque_before[d]: that left d ticks before the last one."""
         self.turn, self.dx = dx - self.dx, dx
-        self.since += 1
-        says = (dx != 0) | (not coarse)
-        self.came += float(np.sum(np.where(says, b_d * dx * dx / (self.since * T), 0.0)))
-        self.since[says] = 0
+        self.came += float(np.sum(b_d * np.maximum(0, np.abs(dx) - step) ** 2)) / T
+        aside = np.clip(dx / 2, -step / 2, step / 2)  # the edge that was crossed, by the reading
+        along, self.aside = dx - aside + self.aside, aside
         for d in self.spent:
-            self.spent[d] += float(torque_before[d] @ dx)
+            self.spent[d] += float(torque_before[d] @ along)
         self.came -= max(0.0, self.energy - most)
 
     def share(self, torque: Array, under_way: list[Array], m1: Array, T: float) -> float:
@@ -80,7 +79,7 @@ def check_tank(s: Session) -> list[Check]:
     E0, cap, beta, refill = (s.number(f"tank.{key}")[:, 0] for key in ("energy", "most", "share", "damping"))
     m1 = s.number("model.inertia_error")[:, :, None] * inertia(s.chain, x1)
     momentum = apply(m1, v1)
-    left, coarse = s.law_torque, s.number("device.encoder_step")[:, 0] > 0
+    left, step = s.law_torque, s.number("device.encoder_step")[:, 0]
     least, most = s.possible_delays
     law_limit = s.law_limit
     work2 = np.sum(s["/proxy/torque"][:-1] * np.diff(x2, axis=0), axis=1)
@@ -96,7 +95,7 @@ def check_tank(s: Session) -> list[Check]:
         device.delays(int(least[k]), int(most[k]))
         if k > 0:
             before = {d: left[k - 1 - d] if k > d else np.zeros(n) for d in device.spent}
-            device.tick(x1[k] - x1[k - 1], before, s.damping[k], bool(coarse[k]), T, cap[k])
+            device.tick(x1[k] - x1[k - 1], before, s.damping[k], float(step[k]), T, cap[k])
             proxy = min(proxy - work2[k - 1], cap[k])
         reserve[k] = device.energy + proxy + (total1 - got2) + (total2 - got1)
 
