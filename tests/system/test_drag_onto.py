@@ -32,7 +32,8 @@ class Onto(WindowTest):
 
     def drag(self, name: str) -> None:
         """Drags the tip onto a thing, in a straight line in the picture, and holds it there."""
-        self.wait(f"{name} in the picture", lambda s: name in s["places"]["objects"])
+        # A scene of many parts loads slowly on a busy computer.
+        self.wait(f"{name} in the picture", lambda s: name in s["places"]["objects"], 120)
         x, y = self.hold_tip()
         for step in range(1, 41):
             to = self.state()["places"]["objects"][name]
