@@ -26,6 +26,7 @@ Command declare_check(CLI::App& app);
 Command declare_info(CLI::App& app);
 Command declare_recover(CLI::App& app);
 Command declare_devices(CLI::App& app);
+Command declare_look(CLI::App& devices);  // below `devices`
 Command declare_identify(CLI::App& app);
 Command declare_doctor(CLI::App& app);
 // Hidden: writes what is installed beside the program, from the other commands and these keys.

@@ -8,7 +8,6 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
-#include "app/cli/look.h"
 #include "app/cli/options.h"
 #include "app/device/device_hub.h"
 #include "app/run/provenance.h"

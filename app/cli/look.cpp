@@ -1,5 +1,3 @@
-#include "app/cli/look.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,6 +5,7 @@
 
 #include "app/base/folders.h"
 #include "app/base/interrupt.h"
+#include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/look_report.h"
 #include "app/cli/options.h"

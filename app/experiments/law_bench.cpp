@@ -76,25 +76,33 @@ std::vector<Came> tap_arms(TrialRunner& lab, const std::vector<ArmTap>& taps) {
   return came;
 }
 
-std::vector<double> stiffest_quiet_walls(TrialRunner& lab, const std::vector<ArmUnderLaw>& all) {
-  std::vector<double> low(all.size(), kLeastWall), high(all.size(), kMostWall);
+std::vector<double> stiffest_of(std::size_t count, const WallsJudge& judge) {
+  std::vector<double> low(count, kLeastWall), high(count, kMostWall), middle(count);
   for (int step = 0; step < kQuietHalvings; ++step) {
+    for (std::size_t i = 0; i < count; ++i) middle[i] = std::sqrt(low[i] * high[i]);
+    const std::vector<bool> well = judge(middle);
+    for (std::size_t i = 0; i < count; ++i) (well[i] ? low : high)[i] = middle[i];
+  }
+  return low;
+}
+
+std::vector<double> stiffest_quiet_walls(TrialRunner& lab, const std::vector<ArmUnderLaw>& all) {
+  return stiffest_of(all.size(), [&](const std::vector<double>& walls) {
     std::vector<ArmTap> taps;
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (std::size_t h = 0; h < kDamped; ++h) {
-        taps.push_back({all[i], std::sqrt(low[i] * high[i])});
+        taps.push_back({all[i], walls[i]});
         kHands[h].holds(taps.back().at.parameters);
       }
     }
     const std::vector<Came> came = tap_arms(lab, taps);
+    std::vector<bool> well;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const double middle = std::sqrt(low[i] * high[i]);
       const auto first = came.begin() + static_cast<std::ptrdiff_t>(kDamped * i);
-      const bool well = std::all_of(first, first + kDamped, [](const Came& c) { return c.well(); });
-      (well ? low : high)[i] = middle;
+      well.push_back(std::all_of(first, first + kDamped, [](const Came& c) { return c.well(); }));
     }
-  }
-  return low;
+    return well;
+  });
 }
 
 std::array<Check, 2> by_direct_theory(const std::string& what, double ratio) {

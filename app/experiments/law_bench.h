@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -82,6 +83,12 @@ struct Came {
 };
 
 std::vector<Came> tap_arms(TrialRunner& lab, const std::vector<ArmTap>& taps);
+
+// Judges a wall for each of many cases [N/m]: true if it is rendered well.
+using WallsJudge = std::function<std::vector<bool>(const std::vector<double>& walls)>;
+// For each of `count` cases the stiffest wall of kLeastWall to kMostWall that is rendered well, by
+// bisection of its logarithm [N/m]; kLeastWall if none is. The search ends within 5 %.
+std::vector<double> stiffest_of(std::size_t count, const WallsJudge& judge);
 
 // For each the stiffest wall that is rendered well in both hands that damp [N/m]; kLeastWall if not
 // even that one is. The search ends within 5 %.

@@ -22,12 +22,13 @@ double sure_loss(const Vec<N>& b, const Vec<N>& dy, double q, double T) {
   return loss;
 }
 
-// Returns a path within the cells of readings y that changed by dy, for who has no better estimate:
-// where one changes, the edge that was crossed [rad]. Along the readings themselves a spring k
-// would seem to give k q^2/2 at each change.
+// Returns y moved by `off` within the cells of these readings, which reach q/2 to both sides [rad].
+// With no better estimate `off` is half of the last change back: where a reading changes, the edge
+// that was crossed. Along the readings themselves a spring k would seem to give k q^2/2 at each
+// change.
 template <int N>
-Vec<N> within_cells(const Vec<N>& y, const Vec<N>& dy, double q) {
-  return y - (dy / 2).cwiseMin(q / 2).cwiseMax(-q / 2);
+Vec<N> within_cells(const Vec<N>& y, const Vec<N>& off, double q) {
+  return y + off.cwiseMin(q / 2).cwiseMax(-q / 2);
 }
 
 }  // namespace limpid

@@ -76,8 +76,7 @@ void Coupling<N>::book(const LawSettings& p, const LawInput<N>& in, const Proxy<
       return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(d)) % sent_.size()];
     };
     const double given = in.authority > 0 ? given_to_bodies(proxy) : 0;
-    const Vec<N> x = ledger_.located(in.x1, in.encoder_step);
-    ledger_.add(in.x1, x, sent, in.b_d_sure, given, in.encoder_step, elapsed_);
+    ledger_.add(in.x1, ledger_.located(in.x1), sent, in.b_d_sure, given, in.encoder_step, elapsed_);
   }
   const double spring = spring_energy<N>(p.k_vc, in.x1 - proxy.x(), in.limit);
   ledger_.settle(p.energy, spring + proxy.kinetic_energy() + proxy.contact_potential(),

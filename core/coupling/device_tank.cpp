@@ -35,7 +35,7 @@ void DeviceTank<N>::settle(const Vec<N>& x1, const Vec<N>& damping, double q, do
   dx_ = dx;
   x1_ = x1;
   in_ += sure_loss<N>(damping, dx, q, T);
-  const Vec<N> z = within_cells<N>(x1, dx, q), dz = z - z_;
+  const Vec<N> z = within_cells<N>(x1, -dx / 2, q), dz = z - z_;
   z_ = z;
   out_ = -std::numeric_limits<double>::infinity();
   for (int d = least_; d <= most_; ++d) {

@@ -54,7 +54,7 @@ class Ledger {
   }
 
   // Position of the device by its readings alone, y the newest [rad].
-  Vec<N> located(const Vec<N>& y, double q) const { return within_cells<N>(y, y - y_, q); }
+  Vec<N> located(const Vec<N>& y) const { return y - (y - y_) / 2; }
   // Books the tick just ended. y: the reading after it; x: the device's position as located; b_lo:
   // a safe lower bound of its damping; q: the encoders' step.
   // sent(d): torque sent d ticks before the last one [N m]. `given`: by the proxy to bodies of its
@@ -64,7 +64,7 @@ class Ledger {
            double q, double T) {
     dy_ = y - y_;
     y_ = y;
-    const Vec<N> now = y + (x - y).cwiseMin(q / 2).cwiseMax(-q / 2);
+    const Vec<N> now = within_cells<N>(y, x - y, q);
     dx_ = now - x_;
     x_ = now;
     const double damped = sure_loss<N>(b_lo, dy_, q, T);

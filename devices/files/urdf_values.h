@@ -92,7 +92,7 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places);
 // identified from. Springs in N m/rad and N m, of slides in N/m and N: each pulls its joint by
 // -(stiffness x + offset). Warmth: the torque that the joint's motor bears for hours, in N m, of
 // slides in N, at most its effort; and the time constant with which it warms up and cools [s].
-// Where something is said twice, the last one holds.
+// The last one holds where something is said twice.
 //
 // own_tip() returns the link named as the tip; empty: none.
 std::string own_tip(const TiXmlElement& robot);

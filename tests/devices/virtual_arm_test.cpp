@@ -9,25 +9,16 @@
 
 #include "devices/simulated/virtual_device.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/wheel.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
 using test::random_arm;
+using test::wheel;
 using Vector = Vec<kAnyDof>;
 using AnyArm = VirtualArm<kAnyDof>;
-
-// A joint about z with a link of this inertia and its tip a metre ahead.
-ArmDescription wheel(double inertia) {
-  ArmDescription arm;
-  arm.joints.resize(1);
-  arm.links.resize(1);
-  arm.joints[0].effort = 1;
-  arm.links[0].inertia = inertia * Mat3::Identity();
-  arm.tip.translation() = Vec3::UnitX();
-  return arm;
-}
 
 Vector one(double value) { return Vector::Constant(1, value); }
 const HandInput kNoHand{Vec3::Zero(), 0};

@@ -5,9 +5,8 @@
 #include <cstdio>
 
 #include "app/device/taken_arm.h"
-#include "tests/support/built_in.h"
 #include "tests/support/device_traits.h"
-#include "tests/vm/simulated_desk.h"
+#include "tests/vm/leaned_desk.h"
 
 namespace limpid::test {
 namespace {
@@ -17,19 +16,7 @@ constexpr double kOwnLever = 0.05;  // of the device; the arm in use has other o
 
 // The largest torque while a strong hand leans the device through the side of its gate.
 double pushed(const ArmDescription& arm) {
-  Scene gate = read_scene(assets_dir() / "devices/joystick.toml", arm).scene;
-  std::erase_if(gate.objects, has_shape<Sphere>);
-  Parameters p;
-  p.kind = CouplingKind::standard;
-  p.k_vc = 30;
-  auto model = std::make_unique<RawDeviceModel>(
-      RawDeviceLayout{.joints = 2, .torque_limit = kStrong, .physics = stick_axis(1)});
-  SimulatedDesk<RawDeviceModel> desk(arm, gate, std::move(model), p);
-  AxisPhysics hand = stick_axis(0);
-  hand.stiffness = 30;
-  hand.damping = 0.5;
-  hand.path = lean_right;
-  desk.model->hand().axis(0) = hand;
+  LeanedDesk desk(arm, kStrong);
   desk.push();
   return desk.model->forces().largest();
 }

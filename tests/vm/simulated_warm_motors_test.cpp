@@ -6,8 +6,7 @@
 #include <cstdio>
 
 #include "core/tick/motor_warmth.h"
-#include "tests/support/built_in.h"
-#include "tests/vm/simulated_desk.h"
+#include "tests/vm/leaned_desk.h"
 
 namespace limpid::test {
 namespace {
@@ -22,19 +21,7 @@ TEST(WarmMotors, OfARawDeviceAreToldWhatTheyBearForHours) {
     joint.continuous = kBears;
     joint.warming = kTime;
   }
-  Scene gate = read_scene(assets_dir() / "devices/joystick.toml", arm).scene;
-  std::erase_if(gate.objects, has_shape<Sphere>);
-  Parameters p;
-  p.kind = CouplingKind::standard;
-  p.k_vc = 30;
-  auto model = std::make_unique<RawDeviceModel>(
-      RawDeviceLayout{.joints = 2, .torque_limit = kEffort, .physics = stick_axis(1)});
-  SimulatedDesk<RawDeviceModel> desk(arm, gate, std::move(model), p);
-  AxisPhysics hand = stick_axis(0);
-  hand.stiffness = 30;
-  hand.damping = 0.5;
-  hand.path = lean_right;
-  desk.model->hand().axis(0) = hand;
+  LeanedDesk desk(arm, kEffort);
   ASSERT_TRUE(desk.push());
   desk.run(3000);
   double full = 0;  // time at full torque [s]

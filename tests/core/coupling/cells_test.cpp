@@ -41,9 +41,9 @@ TEST(WithinCells, StaysInTheCellOfTheReading) {
   constexpr double q = 1e-3;
   for (int k = 0; k < 500; ++k) {
     const Any y = rounded_to(random.vector(4, 1), q), dy = rounded_to(random.vector(4, 3 * q), q);
-    const Any z = within_cells<kAnyDof>(y, dy, q);
+    const Any z = within_cells<kAnyDof>(y, -dy / 2, q);
     ASSERT_LE((z - y).cwiseAbs().maxCoeff(), q / 2 * (1 + 1e-12));
-    ASSERT_EQ(within_cells<kAnyDof>(y, dy, 0), y);
+    ASSERT_EQ(within_cells<kAnyDof>(y, -dy / 2, 0), y);
   }
 }
 
@@ -56,7 +56,7 @@ TEST(WithinCells, KeepsTheWorkOfASpringOnSteps) {
   double along_path = 0, along_readings = 0;
   for (int i = 1; i <= kCells * kTicksInACell; ++i) {
     const Any next = rounded_to(Any::Constant(1, q * i / kTicksInACell), q);
-    const Any to = within_cells<kAnyDof>(next, next - y, q);
+    const Any to = within_cells<kAnyDof>(next, (y - next) / 2, q);
     const double torque = k * y[0];  // held over the tick
     along_path += torque * (to - z)[0];
     along_readings += torque * (next - y)[0];

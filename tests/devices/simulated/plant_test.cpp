@@ -8,28 +8,19 @@
 
 #include "core/tick/as_taken.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/wheel.h"
 
 namespace limpid {
 namespace {
 
 using test::Random;
 using test::random_arm;
+using test::wheel;
 using Vector = Vec<kAnyDof>;
 
 constexpr double kInertia = 3e-4;  // [kg m^2]
 constexpr double kTurn = 2 * 3.14159265358979323846;
 const HandInput kNoHand{Vec3::Zero(), 0};
-
-// A joint about z with a link of this inertia and its tip a metre ahead.
-ArmDescription flywheel() {
-  ArmDescription arm;
-  arm.joints.resize(1);
-  arm.links.resize(1);
-  arm.joints[0].effort = 1;
-  arm.links[0].inertia = kInertia * Mat3::Identity();
-  arm.tip.translation() = Vec3::UnitX();
-  return arm;
-}
 
 // A wheel without a hand and its plant.
 struct Wheel {
@@ -43,8 +34,8 @@ struct Wheel {
   double v() const { return arm.v()[0]; }
   double shown() const { return plant.encoders(p, arm.x())[0]; }
 
-  VirtualArm<kAnyDof> arm{flywheel()};
-  Plant<kAnyDof> plant{flywheel()};
+  VirtualArm<kAnyDof> arm{wheel(kInertia)};
+  Plant<kAnyDof> plant{wheel(kInertia)};
   Parameters p;
 };
 
