@@ -37,10 +37,12 @@ struct RobustLaw {
   CouplingKind kind;
   bool promises = true;
 };
-constexpr std::array kRobustLaws{
-    RobustLaw{CouplingKind::standard},        RobustLaw{CouplingKind::tank},
-    RobustLaw{CouplingKind::eba},             RobustLaw{CouplingKind::predictive},
-    RobustLaw{CouplingKind::proposed, false}, RobustLaw{CouplingKind::direct, false}};
+constexpr std::array kRobustLaws{RobustLaw{CouplingKind::standard},
+                                 RobustLaw{CouplingKind::tank},
+                                 RobustLaw{CouplingKind::eba},
+                                 RobustLaw{CouplingKind::predictive},
+                                 RobustLaw{CouplingKind::proposed, false},
+                                 RobustLaw{CouplingKind::direct, false}};
 
 // A way of being unlike the model, from mild to severe.
 struct Imperfection {
@@ -287,7 +289,8 @@ void add_curves(FigurePanel& panel, const std::vector<RobustCase>& cases, std::s
     if (c.arm != arm || c.law != law) {
       arm = c.arm;
       law = c.law;
-      panel.series.push_back({curve_label(c), bench_law(c.of_law().kind).ink, c.of_arm().style, {}});
+      panel.series.push_back(
+          {curve_label(c), bench_law(c.of_law().kind).ink, c.of_arm().style, {}});
     }
     const Imperfection& of = c.of_way();
     panel.series.back().points.push_back({of.scale * of.levels[c.level - 1], value(i)});
@@ -375,8 +378,8 @@ Outcome robust(TrialRunner& lab) {
       "1e-3 mJ and at most 10 J shown. Rendered well: felt within {} % of what is set, force above "
       "{} Hz at most {} of the press in both grips that damp, and at most 5 mJ given in all; of {} "
       "to {} N/m.",
-      WallTap::kSpeed, kSoftestTap, kHardest, 100 * kFeltOff, WallTap::kFast, kMayShake,
-      kLeastWall, kMostWall);
+      WallTap::kSpeed, kSoftestTap, kHardest, 100 * kFeltOff, WallTap::kFast, kMayShake, kLeastWall,
+      kMostWall);
   outcome.figure.columns = 2;
   for (const std::size_t way : {kLoop, kResonance}) {
     outcome.figure.panels.push_back(given_panel(all, way));

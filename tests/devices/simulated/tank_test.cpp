@@ -53,6 +53,23 @@ TEST(Tanks, KeepTheirPromiseWithLateMotors) {
   }
 }
 
+// A reading with steps leaves a joint anywhere in its cell, so beyond the tanks' energy at most q
+// sum |dtau| of the motors' torque may be given.
+TEST(Tanks, GiveNoMoreThanTheEncodersCellsBesides) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    Tapping t = at_random(seed);
+    t.p.encoder_step = 1e-4;
+    const Rows rows = t.run();
+    double cells = 0;  // [J]
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      const Eigen::VectorXd now = rows.vec(k, Column::motor_torque);
+      cells +=
+          t.p.encoder_step * (now - rows.vec(k - 1, Column::motor_torque)).template lpNorm<1>();
+    }
+    EXPECT_LE(highest(rows), t.p.tank_energy + cells) << "seed " << seed;
+  }
+}
+
 // Tanks with enough energy change nothing: a slow hand in free space, and a press.
 TEST(Tanks, ThatAreFullLeaveTheStandardCouplingAsItIs) {
   Tapping t{.arm = test::omni()};
