@@ -193,7 +193,8 @@ TEST(Recorder, LetsTheRunGoOnWhenTheDiskIsFullAndKeepsWhatWasWritten) {
   std::size_t pushed = 0;
   std::string said;
   {
-    const FileSizeLimit limit(12'000'000);  // a second chunk of 8000 rows, but no third
+    const std::size_t chunk = 8000 * static_cast<std::size_t>(layout.stride()) * sizeof(double);
+    const FileSizeLimit limit(2 * chunk + chunk / 8);  // a second chunk of rows, but no third
     Recorder recorder(dir / "a.h5", sample_info(3), Parameters{}, false);
     while (recorder.push_waiting(sample_rows(layout, pushed, 1)) && pushed < 200'000) ++pushed;
     EXPECT_TRUE(recorder.failed());
