@@ -18,10 +18,18 @@ LinkTheory::LinkTheory(double grip)
       at_(arm_at(arm_, rest_at(arm_, Vec3(0.2, 0, TapBench::kSurface)).x1)),
       b_d_(device_damping(arm_, p_)) {}
 
+// Longer delays open windows of stability again, each a pose away from its end: they do not count.
 double LinkTheory::standard(int delay) const {
+  double wall = kStiffest;
+  for (int shorter = 0; shorter <= delay && wall > kSoftest; ++shorter) {
+    if (!stable(wall, shorter)) wall = stiffest_up_to(wall, shorter);
+  }
+  return wall;
+}
+
+double LinkTheory::stiffest_up_to(double unstable, int delay) const {
   if (!stable(kSoftest, delay)) return kSoftest;
-  if (stable(kStiffest, delay)) return kStiffest;
-  double low = kSoftest, high = kStiffest;
+  double low = kSoftest, high = unstable;
   for (int i = 0; i < 8; ++i) {
     const double middle = std::sqrt(low * high);
     (stable(middle, delay) ? low : high) = middle;

@@ -13,14 +13,15 @@ class LinkTheory {
   // `grip`: stiffness of the hand [N/m]; its damping is that of the taps.
   explicit LinkTheory(double grip);
 
-  // Return the stiffest wall on which a tap comes to rest, from kSoftest to kStiffest [N/m].
-  // `delay`: each way [ticks].
+  // Return the stiffest wall on which a tap comes to rest at this delay and at every shorter one,
+  // from kSoftest to kStiffest [N/m]. `delay`: each way [ticks].
   double standard(int delay) const;
   // The proposed law's spring is the standard coupling's, its contact late by the whole trip.
   double proposed(int delay) const;
 
  private:
   bool stable(double wall, int delay) const;
+  double stiffest_up_to(double unstable, int delay) const;  // [N/m]
 
   double grip_;
   Parameters p_{};

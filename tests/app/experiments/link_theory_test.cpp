@@ -37,7 +37,8 @@ TEST(LinkTheory, OfTheStandardLawSaysWhereTapsComeToRest) {
   const auto rests = [](const Touch& touch, bool) {
     return touch.energy <= 5e-3 && touch.moving <= 5e-3;
   };
-  for (const auto& [delay, stable] : {std::pair(2, true), std::pair(10, false)}) {
+  for (const auto& [delay, stable] :
+       {std::pair(2, true), std::pair(10, false), std::pair(13, false), std::pair(25, false)}) {
     const TapSetting late{.kind = CouplingKind::standard, .link = delay, .hold = 6};
     const double found = stiffest_walls(lab, std::array{late}, {kGrip, rests}).front();
     EXPECT_EQ(found > kSoftest, stable) << delay;
