@@ -475,6 +475,11 @@ std::string csv_text(const PlotTable& table) {
   return text;
 }
 
+std::string word_on_times(const PlotTable& table) {
+  if (table.times.empty() || table.times.front() >= 0) return "";
+  return " (negative times: before the last start over)";
+}
+
 std::string figure_svg(std::span<const FigurePart> parts, const History& history) {
   const PlotPicture& first = parts.front().picture;
   const double height = static_cast<double>(parts.size()) * first.height;

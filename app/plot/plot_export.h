@@ -27,6 +27,9 @@ PlotTable plot_table(const PlotSpec& spec, const History& history, double start,
 // are left empty.
 std::string csv_text(const PlotTable& table);
 
+// Returns words for a message about the table: that negative times are of the run before, or none.
+std::string word_on_times(const PlotTable& table);
+
 // Stretch and look of a plot's picture: the visible curves over [start, stop]. `y` is in the
 // channels' unit; `x` is for other things than time; light colours are for paper.
 struct PlotPicture {

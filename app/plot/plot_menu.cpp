@@ -32,15 +32,17 @@ PlotNotice copy_csv(const PlotSpec& spec, const History& history, const PlotPict
     return {fmt::format("{} rows are too many for the clipboard; save as CSV instead", rows), true};
   }
   ImGui::SetClipboardText(csv_text(table).c_str());
-  return {fmt::format("Copied {} rows", rows)};
+  return {fmt::format("Copied {} rows{}", rows, word_on_times(table))};
 }
 
 PlotNotice save_as(const std::filesystem::path& folder, const std::string& name,
-                   const char* extension, const std::function<std::string()>& text) {
+                   const char* extension, const std::function<std::string()>& text,
+                   const std::string& word = {}) {
   try {
     const auto file = save_text(free_file(folder, name, extension), text());
     // The name comes first: text too long for the plot is cut off at its end.
-    return {fmt::format("Saved {} in {}", file.filename().string(), folder.string()), false, file};
+    return {fmt::format("Saved {}{} in {}", file.filename().string(), word, folder.string()), false,
+            file};
   } catch (const std::exception& e) {
     return {e.what(), true};
   }
@@ -91,7 +93,8 @@ std::optional<PlotNotice> fulfil(PlotWish wish, const PlotSpec& spec, const Hist
   const auto save = [folder = saving.folder, name = spec.file_name,
                      table = std::make_shared<const PlotTable>(
                          plot_table(spec, history, picture.start, picture.stop))] {
-    return save_as(folder, name, "csv", [&] { return csv_text(*table); });
+    return save_as(
+        folder, name, "csv", [&] { return csv_text(*table); }, word_on_times(*table));
   };
   if (!saving.beside) return save();
   saving.beside(save);

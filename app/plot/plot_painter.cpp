@@ -327,6 +327,7 @@ class MarkRows {
     }
     return crossed;
   }
+  std::size_t within(std::size_t row) const { return std::min(row, most_ - 1); }
   void take(std::size_t row, float until) { free_from_[row] = std::max(free_from_[row], until); }
 
  private:
@@ -337,6 +338,34 @@ class MarkRows {
   std::size_t most_ = 1, usual_ = 1;
   std::array<float, kRows> free_from_{};
 };
+
+// Marks of one pixel; a note stands alone.
+struct MarksAt {
+  float x;
+  bool note;
+  std::vector<std::string> labels;
+};
+
+// Leaves out marks with these keys.
+std::vector<MarksAt> marks_by_place(const PlotFrame& frame, const History& history,
+                                    const std::vector<std::string>& said) {
+  std::vector<MarksAt> places;
+  for_marks(frame, history, [&](const PlotMark& mark, float x) {
+    if (std::ranges::find(said, mark.key) != said.end()) return;
+    const bool note = mark.key == kNoteMark;
+    const bool same = !places.empty() && !note && !places.back().note && places.back().x == x;
+    if (!same) places.push_back({x, note, {}});
+    places.back().labels.push_back(mark.label);
+  });
+  return places;
+}
+
+// Returns each label of a few marks, or of those pointed at; of many the first and a count.
+std::vector<std::string> labels_of(const MarksAt& at, bool pointed_at) {
+  constexpr std::size_t kFew = 2;
+  if (pointed_at || at.labels.size() <= kFew) return at.labels;
+  return {fmt::format("{} and {} more", at.labels.front(), at.labels.size() - 1)};
+}
 
 constexpr float kLawEdge = 3;  // of a law's band, at its top [px]
 
@@ -558,20 +587,23 @@ void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const Histor
     if (!band.key.empty() && !band_stretches(band, history, pixels).empty())
       said.push_back(band.key);
   }
-  for_marks(frame, history, [&](const PlotMark& mark, float x) {
-    if (std::ranges::find(said, mark.key) != said.end()) return;
-    const float width = text_size(Face::small, mark.label).x;
-    const float gap = 4 * frame.scale;
-    const bool at_the_end = x + gap + width > frame.area.max.x;
-    const float left = at_the_end ? x - gap - width : x + gap;
-    const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - x) < gap;
-    const auto row = rows.find(traces, left, width);
-    if (!row && !pointed_at) return;
-    draw_backed_text(frame, rows.box(row.value_or(0), left, width).min,
-                     mark.key == kNoteMark ? frame.palette.text : frame.palette.muted, mark.label,
-                     pointed_at ? 1.0f : 0.85f);
-    rows.take(row.value_or(0), left + width + 6 * frame.scale);
-  });
+  const float gap = 4 * frame.scale;
+  for (const MarksAt& at : marks_by_place(frame, history, said)) {
+    const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - at.x) < gap;
+    std::size_t forced = 0;  // rows for what is pointed at, whatever is there
+    for (const std::string& label : labels_of(at, pointed_at)) {
+      const float width = text_size(Face::small, label).x;
+      const bool at_the_end = at.x + gap + width > frame.area.max.x;
+      const float left = at_the_end ? at.x - gap - width : at.x + gap;
+      const auto row = rows.find(traces, left, width);
+      if (!row && !pointed_at) continue;
+      const std::size_t in_row = row ? *row : rows.within(forced++);
+      draw_backed_text(frame, rows.box(in_row, left, width).min,
+                       at.note ? frame.palette.text : frame.palette.muted, label,
+                       pointed_at ? 1.0f : 0.85f);
+      rows.take(in_row, left + width + 6 * frame.scale);
+    }
+  }
 }
 
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,

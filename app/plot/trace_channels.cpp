@@ -243,7 +243,7 @@ void TraceChannels::add_tips() {
                     .ink = proxy});
   infos_.push_back({.key = "contact/total_force_norm",
                     .group = "Contacts",
-                    .name = "force, |F|",
+                    .name = "force at the tip, |F|",
                     .label = "|F|",
                     .unit = "N",
                     .help = "how hard the scene pushes on the proxy, all contacts together",

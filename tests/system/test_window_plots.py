@@ -82,6 +82,25 @@ class Plots(WindowTest):
         self.restart()
         self.assertEqual(titles(self.state()), [*FOUR, "device velocity 2"])
 
+    def test_a_channel_is_dragged_into_another_plot(self) -> None:
+        before = self.settled()["plots"][0]["curves"]
+        self.open("n", "plot")
+        self.type("device tip speed")
+        self.settled()
+        place = self.wait("the channel", lambda s: any("device/tip_speed" in places for places in s["noted"].values()))
+        at = next(places["device/tip_speed"] for places in place["noted"].values() if "device/tip_speed" in places)
+        self.move(*at)
+        self.settled()
+        self.xdotool("mousedown", "1")
+        self.taken()
+        for part in (0.3, 0.6, 1):
+            self.move(at[0] + part * (150 - at[0]), at[1] + part * (PLOTS - at[1]))
+            self.settled()
+        self.xdotool("mouseup", "1")
+        plots = self.wait("one curve more", lambda s: len(s["plots"][0]["curves"]) == len(before) + 1)["plots"]
+        self.assertIn("device tip speed [m/s]", plots[0]["curves"])
+        self.assertEqual(len(plots[4]["curves"]), 0, "the plot of the chooser keeps what it had")
+
     def test_layouts_are_saved_used_renamed_and_removed(self) -> None:
         self.open("ctrl+l", "layouts")
         self.type_and_enter("mine")

@@ -39,27 +39,82 @@ void muted(const char* text) {
   ImGui::PopStyleColor();
 }
 
-}  // namespace
+// Groups of channels, what hands and eyes know first.
+constexpr std::array<std::string_view, 9> kGroupOrder{
+    "Contacts", "Coordination error", "Energy", "Hand", "Device", "Proxy",
+    "Objects",  "Coupling",           "Timing"};
+// Keys of what people look at most.
+constexpr std::array<std::string_view, 6> kMostLookedAt{
+    "contact/total_force_norm", "coordination/gap", "coordination/error",
+    "energy/controller_total",  "hand/torque_norm", "device/tip_speed"};
 
-bool meant_by(const ChannelInfo& channel, const std::string& words) {
-  const std::string all = lower(channel.group + " " + channel.name + " " + channel.label + " " +
-                                channel.unit + " " + channel.key);
-  // Synonyms that people use.
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kSame{
+// Returns the channel's place in the list without words.
+int place_of(const ChannelInfo& channel) {
+  const auto most = std::ranges::find(kMostLookedAt, channel.key) - kMostLookedAt.begin();
+  const auto group = std::ranges::find(kGroupOrder, channel.group) - kGroupOrder.begin();
+  const auto size = static_cast<std::ptrdiff_t>(kMostLookedAt.size());
+  return static_cast<int>(most < size ? most : size + group);
+}
+
+// Returns how far a word is from a channel: 0 where a word of its name begins so, 1 elsewhere in
+// name and label, 2 in group, unit and key, 3 by another word for the same; nothing without it.
+std::optional<int> apart_from_word(const ChannelInfo& channel, std::string_view word) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kSame{
       {{"human", "hand"},
        {"depth", "gap"},
        {"penetration", "gap"},
        {"drift", "gap"},
-       {"error", "gap"}}};
-  const auto has = [&](std::string_view word) { return all.find(word) != std::string::npos; };
+       {"error", "gap"},
+       {"work", "energy"},
+       {"power", "energy"},
+       {"effort", "torque"}}};
+  const auto has = [](const std::string& text, std::string_view part) {
+    return lower(text).find(part) != std::string::npos;
+  };
+  const auto anywhere = [&](std::string_view part) {
+    return has(channel.group + " " + channel.unit + " " + channel.key, part);
+  };
+  const bool begins =
+      lower(channel.name).starts_with(word) || has(channel.name, " " + std::string(word));
+  if (begins) return 0;
+  if (has(channel.name + " " + channel.label, word)) return 1;
+  if (anywhere(word)) return 2;
+  const bool meant = std::ranges::any_of(kSame, [&](const auto& same) {
+    return same.first.starts_with(word) && word.size() > 2 &&
+           (anywhere(same.second) || has(channel.name + " " + channel.label, same.second));
+  });
+  return meant ? std::optional(3) : std::nullopt;
+}
+
+// Returns the sum over all words; nothing if one is not in it.
+std::optional<int> apart_from(const ChannelInfo& channel, const std::string& words) {
+  int apart = 0;
   std::istringstream in(lower(words));
   for (std::string word; in >> word;) {
-    const bool meant = has(word) || std::ranges::any_of(kSame, [&](const auto& same) {
-                         return same.first.starts_with(word) && word.size() > 2 && has(same.second);
-                       });
-    if (!meant) return false;
+    const std::optional<int> of_word = apart_from_word(channel, word);
+    if (!of_word) return std::nullopt;
+    apart += *of_word;
   }
-  return true;
+  return apart;
+}
+
+}  // namespace
+
+std::vector<const ChannelInfo*> meant_by(const std::string& words, const TraceChannels& channels) {
+  struct Found {
+    const ChannelInfo* channel;
+    int apart, place;
+  };
+  std::vector<Found> all;
+  for (const ChannelInfo& channel : channels.infos()) {
+    if (const auto apart = apart_from(channel, words)) {
+      all.push_back({&channel, *apart, place_of(channel)});
+    }
+  }
+  std::ranges::stable_sort(all, {}, [](const Found& f) { return std::pair(f.apart, f.place); });
+  std::vector<const ChannelInfo*> found;
+  for (const Found& each : all) found.push_back(each.channel);
+  return found;
 }
 
 bool PlotChooser::draw(bool& open, PlotChoice& choice, const TraceChannels& channels,
@@ -136,28 +191,27 @@ void PlotChooser::draw_filter(PlotChoice& choice, const TraceChannels& channels)
   done_ = entered && filter_.empty();
   if (!entered || done_) return;
   ImGui::SetKeyboardFocusHere(-1);
-  const auto infos = channels.infos();
-  const auto first =
-      std::ranges::find_if(infos, [&](const ChannelInfo& c) { return meant_by(c, filter_); });
-  if (first != infos.end()) toggle(choice, first->key);
+  const auto found = meant_by(filter_, channels);
+  if (!found.empty()) toggle(choice, found.front()->key);
   filter_.clear();
 }
 
 void PlotChooser::draw_list(PlotChoice& choice, const TraceChannels& channels) const {
-  std::vector<std::string> groups;
-  for (const ChannelInfo& channel : channels.infos()) {
-    if (!meant_by(channel, filter_)) continue;
-    if (std::ranges::find(groups, channel.group) == groups.end()) groups.push_back(channel.group);
-  }
-  if (groups.empty()) muted("No channel has these words.");
-  for (const std::string& group : groups) {
-    ImGui::PushFont(font(Face::semibold));
-    ImGui::TextUnformatted(group.c_str());
-    ImGui::PopFont();
-    for (const ChannelInfo& channel : channels.infos()) {
-      if (channel.group == group && meant_by(channel, filter_)) draw_channel(choice, channel);
+  const std::vector<const ChannelInfo*> found = meant_by(filter_, channels);
+  if (found.empty()) muted("No channel has these words.");
+  std::string heading;
+  for (const ChannelInfo* channel : found) {
+    const bool looked_at =
+        filter_.empty() && std::ranges::find(kMostLookedAt, channel->key) != kMostLookedAt.end();
+    const std::string group = looked_at ? "Looked at most" : channel->group;
+    if (group != heading) {
+      if (!heading.empty()) ImGui::Spacing();
+      ImGui::PushFont(font(Face::semibold));
+      ImGui::TextUnformatted(group.c_str());
+      ImGui::PopFont();
+      heading = group;
     }
-    ImGui::Spacing();
+    draw_channel(choice, *channel);
   }
 }
 
@@ -165,7 +219,13 @@ void PlotChooser::draw_channel(PlotChoice& choice, const ChannelInfo& channel) c
   ImGui::PushID(channel.key.c_str());
   bool on = chosen(choice, channel.key);
   if (ImGui::Checkbox(channel.name.c_str(), &on)) toggle(choice, channel.key);
-  tooltip((channel.help + "\n" + channel.key).c_str());
+  note_place(channel.key.c_str());
+  if (ImGui::BeginDragDropSource()) {
+    ImGui::SetDragDropPayload(kDraggedChannel, channel.key.data(), channel.key.size());
+    ImGui::TextUnformatted((channel.label + ": into another plot").c_str());
+    ImGui::EndDragDropSource();
+  }
+  tooltip((channel.help + "\n" + channel.key + "\nCan be dragged into any plot.").c_str());
   const float em = ImGui::GetFontSize();
   const float right = ImGui::GetWindowContentRegionMax().x;
   const bool cross = choice.kind == PlotKind::cross;

@@ -2,14 +2,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/plot/plot_frame.h"
 #include "app/stage/stage.h"
 
 namespace limpid {
 
-// Returns whether each of these words is in the channel's group, name, label, unit or key.
-bool meant_by(const ChannelInfo& channel, const std::string& words);
+// Returns the channels that have each of these words in group, name, label, unit or key: first the
+// ones whose names have them, then in the order of kGroupOrder. What people look at most comes
+// first of all.
+std::vector<const ChannelInfo*> meant_by(const std::string& words, const TraceChannels& channels);
+
+// What a channel that is dragged carries: its key.
+constexpr const char* kDraggedChannel = "channel";
 
 class PlotChooser {
  public:

@@ -1,5 +1,8 @@
 #include "app/desktop/plots/plots_panel.h"
 
+#include <utility>
+
+#include "app/desktop/plots/plot_chooser.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/plot/plot_row.h"
 #include "app/style/theme.h"
@@ -15,6 +18,20 @@ PlotsRequest draw_no_plots() {
   ImGui::SetCursorPos(
       {ImGui::GetCursorPosX() + 0.5f * (room.x - size.x), ImGui::GetCursorPosY() + 0.4f * room.y});
   return ImGui::Button(text, size) ? PlotsRequest{PlotWish::add} : PlotsRequest{};
+}
+
+// Returns the key of a channel that was dropped into this room; empty without one.
+std::string dropped_into(ImVec2 at, ImVec2 size) {
+  ImGui::SetCursorPos(at);
+  ImGui::Dummy(size);
+  if (!ImGui::BeginDragDropTarget()) return "";
+  std::string key;
+  if (const ImGuiPayload* payload = ImGui::AcceptDragDropPayload(kDraggedChannel)) {
+    key.assign(static_cast<const char*>(payload->Data),
+               static_cast<std::size_t>(payload->DataSize));
+  }
+  ImGui::EndDragDropTarget();
+  return key;
 }
 
 }  // namespace
@@ -41,7 +58,8 @@ PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, 
   const ImVec2 origin = ImGui::GetCursorPos();
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     const ScreenRect& place = at.places[i];
-    ImGui::SetCursorPos({origin.x + place.min.x, origin.y + place.min.y});
+    const ImVec2 from(origin.x + place.min.x, origin.y + place.min.y);
+    ImGui::SetCursorPos(from);
     const PlotEvents events = stage.plots[i].draw(stage.history, stage.group, place.size(), saving);
     if (events.playback && player != nullptr) player->seek(*events.playback);
     if (events.range) {
@@ -50,6 +68,7 @@ PlotsRequest draw_plots(Stage& stage, Player* player, const PlotSaving& saving, 
       stage.group.select(std::nullopt);
     }
     if (events.wish != PlotWish::none) wish = {events.wish, i};
+    if (auto key = dropped_into(from, place.size()); !key.empty()) wish = {{}, i, std::move(key)};
   }
   ImGui::EndChild();
   ImGui::End();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "app/desktop/playback/player.h"
 #include "app/plot/plot_menu.h"
@@ -13,6 +14,7 @@ namespace limpid {
 struct PlotsRequest {
   PlotWish wish = PlotWish::none;  // choose, add, remove
   std::size_t plot = 0;
+  std::string dropped = {};  // key of a channel that the plot is to show as well
 };
 
 // Draws the plots. `player` of the recording that is shown; null: the loop is shown.

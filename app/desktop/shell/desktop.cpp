@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -80,6 +81,13 @@ void PlotLayout::remove(std::size_t plot) {
   std::vector<PlotChoice>& plots = settings_.plot_choices;
   if (plot < plots.size()) plots.erase(plots.begin() + static_cast<std::ptrdiff_t>(plot));
   if (dialog_.name() == "plot") dialog_.close();
+}
+
+void PlotLayout::show_in(std::size_t plot, const std::string& channel) {
+  std::vector<PlotChoice>& plots = settings_.plot_choices;
+  if (plot >= plots.size()) return;
+  std::vector<std::string>& shown = plots[plot].channels;
+  if (std::ranges::find(shown, channel) == shown.end()) shown.push_back(channel);
 }
 
 void PlotLayout::use(const std::string& name) {

@@ -80,7 +80,8 @@ class PlotLayout {
   void choose(std::size_t plot);
   std::size_t chosen() const { return chosen_; }
   void remove(std::size_t plot);
-  void use(const std::string& name);  // name of a layout
+  void show_in(std::size_t plot, const std::string& channel);  // by its key, beside the others
+  void use(const std::string& name);                           // name of a layout
 
   NamedTexts layouts;
 

@@ -72,8 +72,11 @@ fs::path Exporter::carry_out(const ExportOrder& order, const Stage& stage) {
   if (order.what == ExportOrder::What::table) {
     const auto table = std::make_shared<const PlotTable>(
         plot_table(parts.front().spec, stage.history, first.start, first.stop));
-    live_.save_beside(
-        said([table, file = order.file] { return written_as(file, bytes_of(csv_text(*table))); }));
+    live_.save_beside(said([table, file = order.file] {
+      PlotNotice notice = written_as(file, bytes_of(csv_text(*table)));
+      notice.text += word_on_times(*table);
+      return notice;
+    }));
     return {};
   }
   if (order.format == ExportOrder::Format::svg) {

@@ -326,6 +326,7 @@ void Frame::draw_plot_row(ScreenRect rect, ScreenRect view) {
   if (asked.wish == PlotWish::choose) desktop_.plots.choose(asked.plot);
   if (asked.wish == PlotWish::export_as) desktop_.exporter.begin(asked.plot);
   if (asked.wish == PlotWish::remove) desktop_.plots.remove(asked.plot);
+  if (!asked.dropped.empty()) desktop_.plots.show_in(asked.plot, asked.dropped);
 }
 
 void Frame::draw_fold_tabs(const Layout& at) {

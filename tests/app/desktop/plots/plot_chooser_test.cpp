@@ -9,9 +9,7 @@ TEST(PlotChooser, FindsChannelsByAnyWordsOfTheirs) {
   const TraceChannels channels{RowLayout(3)};
   const auto found = [&](const std::string& words) {
     std::vector<std::string> keys;
-    for (const ChannelInfo& info : channels.infos()) {
-      if (meant_by(info, words)) keys.push_back(info.key);
-    }
+    for (const ChannelInfo* channel : meant_by(words, channels)) keys.push_back(channel->key);
     return keys;
   };
   EXPECT_EQ(found("").size(), static_cast<std::size_t>(channels.count()));
@@ -26,6 +24,14 @@ TEST(PlotChooser, FindsChannelsByAnyWordsOfTheirs) {
   EXPECT_EQ(found("human torque |"), found("hand torque |"));
   EXPECT_FALSE(found("human torque |").empty());
   EXPECT_EQ(found("proxy tip").size(), 4u) << "where it is, and how fast it moves";
+  // The best one comes first.
+  EXPECT_EQ(found("").front(), "contact/total_force_norm");
+  EXPECT_EQ(found("force").front(), "contact/total_force_norm");
+  EXPECT_EQ(found("tip force").front(), "contact/total_force_norm");
+  EXPECT_EQ(found("work").front(), "energy/controller_total");
+  EXPECT_EQ(found("power").front(), "energy/controller_total");
+  EXPECT_EQ(found("penetr").front(), "coordination/gap");
+  EXPECT_EQ(found("torque").front(), "hand/torque_norm");
 }
 
 }  // namespace
