@@ -43,12 +43,11 @@ void add(CLI::App& command, WindowOptions& options) {
           "$XDG_RUNTIME_DIR/limpid/NAME.control; default: control. See `limpid serve`")
       ->type_name("[NAME]")
       ->expected(0, 1);
-  command.add_flag(
-      "--until-eof", options.desktop.until_eof,
-      "with --listen: end as soon as standard input does, as that of a program that has "
-      "ended, and keep no settings");
+  command.add_flag("--until-eof", options.desktop.until_eof,
+                   "with --listen: end when standard input ends, as it does when the calling "
+                   "program ends, and keep no settings");
   command.add_flag("--print-state", options.desktop.print_state,
-                   "print the state as a line of JSON ten times a second");
+                   "print the state as one line of JSON, ten times per second");
 }
 
 // Merges the options before and behind the command; the latter win.
@@ -101,9 +100,10 @@ int open_window(const WindowOptions& options) {
   for (const std::string& file : options.files) {
     if (!std::filesystem::exists(file)) {
       const auto meant = nearest(file, options.commands);
-      throw UsageError(fmt::format(
-          "\"{}\": not expected: no command, and no file to open; {}`limpid --help` lists what is",
-          file, meant ? fmt::format("did you mean {}? ", *meant) : ""));
+      throw UsageError(
+          fmt::format("\"{}\": neither a command nor a file that can be opened; {}`limpid --help` "
+                      "lists the commands",
+                      file, meant ? fmt::format("did you mean {}? ", *meant) : ""));
     }
     desktop.files.emplace_back(file);
   }

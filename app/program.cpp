@@ -79,7 +79,7 @@ UsageError unexpected(const CLI::App& app) {
   }
   const std::string first = words.empty() ? "" : words.front().substr(0, words.front().find('='));
   const auto meant = first.starts_with("-") ? nearest(first, known) : std::nullopt;
-  return UsageError(fmt::format("\"{}\": not expected; {}`{} --help` lists what is",
+  return UsageError(fmt::format("\"{}\": not expected here; {}`{} --help` lists what is allowed",
                                 fmt::join(words, " "),
                                 meant ? fmt::format("did you mean {}? ", *meant) : "", command));
 }

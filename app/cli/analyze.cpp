@@ -63,7 +63,7 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   if (!p.linked()) return;
   const std::string old =
       a.condition3.known ? fmt::format("up to {:.4g} ms old each way, as (3) has it", 1e3 * a.link)
-                         : "packets are lost, and what is known is of any age";
+                         : "packets are lost, so the newest that arrived may be of any age";
   fmt::print("link                       {}; {}\n", old, info(p.kind).through_link);
 }
 
@@ -78,8 +78,8 @@ void print(const TipLimits& tip, const Parameters& p, bool all) {
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
   }
   fmt::print(
-      "stiffest wall, in any hand {:>6.0f} N/m  no linear law is passive beyond b_d/(T/2 + "
-      "delay)\n",
+      "stiffest wall, in any hand {:>6.0f} N/m  a plain spring, passive up to b_d/(T/2 + delay) "
+      "(Colgate and Schenkel)\n",
       tip.every_hand);
   if (tip.scene > 0) fmt::print("stiffest in the scene      {:>6.0f} N/m\n", tip.scene);
   if (const std::string late = late_text(tip, p); !late.empty()) {

@@ -82,9 +82,12 @@ KnownNumber encoder_number(const Source& source, const InputOptions& input, Para
   } else if (source.encoder_step.value_or(0) > 0) {
     p.encoder_step = *source.encoder_step;
     number.from = "the device says so";
+  } else if (source.arm.encoder_step > 0) {
+    p.encoder_step = source.arm.encoder_step;
+    number.from = "the arm's file";
   } else {
     number.assumed = true;
-    number.from = source.encoder_step ? "exact, as the device names no step"
+    number.from = source.encoder_step ? "exact: the device names no step"
                                       : "exact; --set device.encoder_step=STEP says another";
   }
   return number;
@@ -100,6 +103,10 @@ KnownNumber delay_number(const Source& source, const InputOptions& input, Parame
     p.device_delay =
         static_cast<int>(std::min<long>(kMostDelay, std::lround(*source.arm.delay / p.tick)));
     number.from = fmt::format("identified as {:.2f} ms, in whole ticks", 1e3 * *source.arm.delay);
+  } else if (source.arm.assumed_delay > 0) {
+    p.device_delay = with_readings_of(source.arm, p).device_delay;
+    number.assumed = true;
+    number.from = "assumed by the arm's file; limpid identify measures it";
   } else if (source.encoder_step) {
     p.device_delay = kUsualDelay;
     number.assumed = true;
@@ -135,7 +142,7 @@ KnownNumber friction_number(const Source& source, const InputOptions& input, dou
     number.assumed = false;
   } else if (friction <= 0 && !source.arm.delay) {
     number.assumed = true;
-    number.from = "none, as its file has none";
+    number.from = "none: its file names none";
   }
   return number;
 }
@@ -259,9 +266,9 @@ Command declare_characterize(CLI::App& app) {
   command->footer(
       "Law by law: the stiffest wall that is felt as set and quiet, the energy given, and mass and "
       "damping felt in free\nmotion, on the virtual arm of that file, beside what `limpid analyze` "
-      "names. All is on the virtual arm: a real device\nmay be other than its numbers, and the "
-      "report says which are measured, set and assumed.\nExit status 1: a promise was not kept, "
-      "or it was stopped.\n\n" +
+      "names. All is on the virtual arm: a real device\nmay differ from its numbers, and the "
+      "report says which are measured, set and assumed.\nExit status 1: a promise was not kept, or "
+      "it was stopped.\n\n" +
       parameter_help());
   return [options] { return run_characterize(*options); };
 }

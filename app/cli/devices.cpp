@@ -99,17 +99,13 @@ Command declare_devices(CLI::App& app) {
       "feedback,\nand devices that speak Limpid's open raw-HID protocol "
       "(devices/hid/raw_protocol.h),\nalso programs that do so on a socket, "
       "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
-      "a "
-      "Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
+      "a Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
       "inverse3:ID@HOST:PORT. Touch, Omni and Premium (OpenHaptics), omega, delta, sigma, lambda "
-      "and "
-      "Falcon\n(Force Dimension) are known where their makers' libraries are installed: "
-      "limpid-vendor "
-      "loads these, and\n`limpid doctor` says which are missing.\n\nRanges and levers of its arm "
-      "bound what a device's motors may do. "
-      "Which arm it is, a device that does not\nsay it itself is told once, here or in the "
-      "window's Device panel; until then it is a built-in one with as many\njoints, at little "
-      "force.");
+      "and Falcon\n(Force Dimension) are known where their makers' libraries are installed: "
+      "limpid-vendor loads these, and\n`limpid doctor` says which are missing.\n\nRanges and "
+      "levers of its arm bound what a device's motors may do. A device that does not say which arm "
+      "it is\nhas to be told once, here or in the window's Device panel. Until then Limpid takes a "
+      "built-in arm with as many\njoints, and little force.");
   auto options = std::make_shared<ArmOptions>();
   auto* arm = command
                   ->add_option("--arm", options->arm,
@@ -132,7 +128,8 @@ Command declare_devices(CLI::App& app) {
     if (!options->arm.empty()) return say_arm(*options);
     if (options->device.empty()) return devices(*json);
     throw UsageError(fmt::format(
-        "{}: a device is named beside --arm only, which says which arm it is", options->device));
+        "{}: a device can be named only together with --arm, which says which arm it is",
+        options->device));
   };
 }
 

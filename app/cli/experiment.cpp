@@ -74,8 +74,8 @@ void refuse_what_has_no_effect(const InputOptions& input) {
                                       {input.alpha.has_value(), "--alpha"}}) {
     if (!given) continue;
     throw UsageError(
-        fmt::format("{}: only beside --live; this experiment has its own arm, scene and settings "
-                    "(`limpid run` and `limpid sweep` take yours)",
+        fmt::format("{}: only together with --live; this experiment has its own arm, scene and "
+                    "settings (`limpid run` and `limpid sweep` take yours)",
                     option));
   }
 }
@@ -122,7 +122,7 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
 }
 
 int run_on_device(const ExperimentOptions& options) {
-  const auto wanted = chosen(live_experiments(), options.name, ": not beside --live");
+  const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
   prepare_out(options.out);
   LiveBench bench(options.live, options.input);
   std::vector<std::string> failed;  // checks
@@ -164,12 +164,12 @@ Command declare_experiment(CLI::App& app) {
       app.add_subcommand("experiment", "one of the paper's experiments: data, figure, verdict");
   auto options = std::make_shared<ExperimentOptions>();
   command->add_option("NAME", options->name, "an experiment, or all")->required();
-  command->add_option("--out", options->out, "the folder for what it finds")
+  command->add_option("--out", options->out, "the folder for its results")
       ->required()
       ->type_name("DIR");
   require_whole_number(
-      command->add_option("--seed", options->seed, "for whatever is random")->type_name("N"));
-  command->add_option("--threads", options->threads, "default: one a core")
+      command->add_option("--seed", options->seed, "of all random numbers")->type_name("N"));
+  command->add_option("--threads", options->threads, "default: one per core")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));
   options->live.add(*command);

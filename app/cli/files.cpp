@@ -227,7 +227,7 @@ Session read_and_tell(const InfoOptions& options, RowsTold& told) {
 int info(const InfoOptions& options) {
   const bool to_stdout = options.csv == kStandardOutput;
   if (to_stdout && options.json) {
-    throw UsageError("--json: not beside --csv -, which is standard output as well");
+    throw UsageError("--json: not together with --csv -, which is standard output as well");
   }
   if (!to_stdout) keep_apart("--csv", options.csv, std::span(&options.session, 1));
   std::error_code none;

@@ -324,9 +324,9 @@ Command declare_identify(CLI::App& app) {
   command->add_flag("--yes", options->yes, "begin without asking");
   command->add_flag("--forget", options->forget, "take the device for its file's arm again");
   command->footer(
-      "The device is held by nobody meanwhile. It ends at once on Ctrl-C, when something holds it, "
-      "when it\nfalls silent, and at every limit of safety. The URDF holds what was found: "
-      "limpid --device OUT/identified.urdf");
+      "Nobody may hold the device meanwhile. The motion ends at once on Ctrl-C, when something "
+      "holds it, when it\nfalls silent, and at every limit of safety. The URDF holds what was "
+      "found: limpid --device OUT/identified.urdf");
   return [options] { return identify_device(*options); };
 }
 

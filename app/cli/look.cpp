@@ -157,10 +157,10 @@ Command declare_look(CLI::App& devices) {
   command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
-      "Force is off and cannot be armed: no torque is on its way to the device, whatever a law "
-      "finds. Its axes need\nno check before it. The arm is the one that the device says, was "
-      "identified or said to be, else a built-in one with\nas many joints. The session is what "
-      "Limpid's authors need of a device that they have never seen.");
+      "Force is off and cannot be armed: no torque is sent to the device, whatever a law computes. "
+      "Its axes need\nno check before. The arm is the one that the device names, or that was "
+      "identified or chosen for it; otherwise a\nbuilt-in one with as many joints. The session is "
+      "what Limpid's authors need of a device that they have never seen.");
   return [options] { return run_look(*options); };
 }
 

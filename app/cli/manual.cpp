@@ -196,7 +196,7 @@ Command declare_share(CLI::App& app, std::vector<ManualKey> keys) {
 Command declare_manual(CLI::App& app) {
   auto* command = app.add_subcommand("manual", "opens the manual in the browser");
   auto path = std::make_shared<bool>(false);
-  command->add_flag("--path", *path, "only say where it is");
+  command->add_flag("--path", *path, "only print where it is");
   return [path] {
     const fs::path file = manual_file();
     if (file.empty()) {

@@ -194,8 +194,8 @@ void InputOptions::add_hand(CLI::App& command) {
   require_above_zero(length, kLongestRun, "s");
   command
       .add_option("--variation", variation,
-                  "the hand as the same person would lead it another time, as `repeats` of a sweep "
-                  "have it; default: 0, as it is")
+                  "a small random variation of the hand, by its number, as if the same person led "
+                  "it another time (as `repeats` of a sweep); default: 0, none")
       ->type_name("I")
       ->check(whole_number());
   command.add_option("--seed", seed, "which hands the variations are; nothing else is random")
@@ -288,7 +288,7 @@ void keep_apart(const char* option, const std::filesystem::path& out,
     std::error_code none;
     if (out.empty() || file.empty() || !std::filesystem::equivalent(out, file, none)) continue;
     throw UsageError(
-        fmt::format("{} {}: is what the command reads; name another file", option, out.string()));
+        fmt::format("{} {}: the command reads this file; name another one", option, out.string()));
   }
 }
 

@@ -245,11 +245,10 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
     }
   }
   if (end.diverged) {  // which explains all other warnings
-    fmt::print(
-        stderr,
-        "limpid: unstable from t = {:.3f} s on: {}; try a larger eta, a smaller alpha or k_vc "
-        "(`limpid analyze` shows the limits)\n",
-        end.diverged_at, end.why);
+    fmt::print(stderr,
+               "limpid: unstable since t = {:.3f} s: {}; try a larger eta, a smaller alpha or k_vc "
+               "(`limpid analyze` shows the limits)\n",
+               end.diverged_at, end.why);
     return 1;
   }
   print_warnings(log.cautions());
@@ -270,20 +269,21 @@ void say_about(const RunPlan& plan) {
   const bool again = plan.hand.tick > 0;  // a recording has its own settings
   const std::string fit = again ? "" : fit_text(fitted(plan.arm, plan.parameters));
   if (!fit.empty()) {
-    fmt::print(stderr, "limpid: gains fitted to the arm, but for those that are set: {}\n", fit);
+    fmt::print(stderr, "limpid: gains fitted to the arm, except those that are set: {}\n", fit);
   }
 }
 
 int live(const RunOptions& options) {
   const auto refuse = [](bool given, std::string_view what) {
-    if (given) throw UsageError(fmt::format("{}: not beside --live; the hand is yours", what));
+    if (given)
+      throw UsageError(fmt::format("{}: not together with --live; the hand is yours", what));
   };
   refuse(!options.input.hand.empty(), "--hand");
   refuse(options.input.variation.has_value(), "--variation");
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     refuse(options.beside[lane - 1].has_value(), lane_option(lane));
   }
-  if (options.json) throw UsageError("--json: not beside --live");
+  if (options.json) throw UsageError("--json: not together with --live");
   check_outputs(options);
   return run_live({options.live, options.input, options.record, options.picture, options.force});
 }
@@ -338,7 +338,8 @@ int run(const RunOptions& options) {
 }  // namespace
 
 Command declare_run(CLI::App& app) {
-  auto* command = app.add_subcommand("run", "the same loop without a window, as fast as it goes");
+  auto* command =
+      app.add_subcommand("run", "runs the same loop without a window, as fast as possible");
   auto options = std::make_shared<RunOptions>();
   command->add_option("--record", options->record, "write every tick to this session file")
       ->type_name("OUT.h5");

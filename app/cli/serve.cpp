@@ -98,7 +98,8 @@ class Worlds {
 // A device in the arm's place, with its arm, its world and its limits.
 struct RealDevice {
   RealDevice(const std::string& id, const InputOptions& input, ServedSession::World& world) {
-    if (!input.hand.empty()) throw UsageError("--hand: not beside --live; the hand is yours");
+    if (!input.hand.empty())
+      throw UsageError("--hand: not together with --live; the hand is yours");
     DeviceHub hub(device_store_file(), by_rtkit());
     device = open_device(id, hub, "");
     const DeviceTraits& traits = device->traits();
@@ -178,13 +179,14 @@ Command declare_serve(CLI::App& app) {
       ->type_name("[ID]")
       ->expected(0, 1);
   command->add_flag("--until-eof", options->until_eof,
-                    "end as soon as standard input does, as that of a program that has ended");
+                    "end when standard input ends, as it does when the calling program ends");
   options->input.add_parameters(*command);
   command->footer(
-      "One JSON object a line each way, as {\"id\": 1, \"do\": \"set\", \"values\": "
-      "{\"coupling.eta\": 0.5}};\n{\"do\": \"hello\"} lists what can be asked. The Python package "
-      "limpid speaks it. Only the user who\nstarts the program can connect. Nobody arms a real "
-      "device through it, or raises a limit; cut is always taken.\n\n" +
+      "Each line is one JSON object, and so is each answer: {\"id\": 1, \"do\": \"set\", "
+      "\"values\": {\"coupling.eta\": 0.5}};\n{\"do\": \"hello\"} lists what can be asked. The "
+      "Python package limpid speaks it. Only the user who\nstarts the program can connect. No "
+      "program can arm a real device through it, or raise a limit; the command cut is always "
+      "accepted.\n\n" +
       parameter_help());
   return [options] {
     try {

@@ -106,7 +106,7 @@ class Sweeping {
 
  private:
   Progress::Words words(double points) const {
-    return {.title = plan_.title, .whole = points, .unit = "", .rate = "points a second"};
+    return {.title = plan_.title, .whole = points, .unit = "", .rate = "points per second"};
   }
 
   // Works until done; false if stopped.
@@ -145,10 +145,9 @@ class Sweeping {
     }
     if (book_.complete()) return finish();
     book_.write();
-    return stopped(
-        fmt::format("its tasks go on, and the same command gathers what they find; "
-                    "scancel -n {} ends them",
-                    array.name()));
+    return stopped(fmt::format(
+        "its tasks go on, and the same command collects their results; scancel -n {} ends them",
+        array.name()));
   }
 
   int stopped(const std::string& advice) {
@@ -217,10 +216,10 @@ Command declare_sweep(CLI::App& app) {
       ->transform(or_shipped({"sweeps"}), "", "")
       ->required()
       ->type_name("");
-  command->add_option("--out", options->out, "the folder for what it finds")
+  command->add_option("--out", options->out, "the folder for its results")
       ->required()
       ->type_name("DIR");
-  command->add_option("--threads", options->threads, "default: one a core; one under mpirun")
+  command->add_option("--threads", options->threads, "default: one per core; one under mpirun")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));
   auto* shard =

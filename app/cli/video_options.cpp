@@ -13,7 +13,7 @@ void VideoOptions::add(CLI::App& command) {
   const auto of_video = [&](CLI::Option* option) { option->needs(video); };
   of_video(command.add_option("--size", size, "of the video in pixels, even; default: 1280x720")
                ->type_name("WxH"));
-  of_video(command.add_option("--fps", fps, "pictures a second; default: 30, in a GIF 15")
+  of_video(command.add_option("--fps", fps, "pictures per second; default: 30, in a GIF 15")
                ->type_name("N"));
   of_video(command.add_option("--from", from, "begin here in the session; default: 0")
                ->type_name("SECONDS"));

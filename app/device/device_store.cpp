@@ -33,7 +33,7 @@ void each_joint(const TomlTable& entry, const char* key, const char* allowed, co
 }
 
 void read_axes(const TomlTable& entry, std::vector<AxisAdjustment>& axes) {
-  each_joint(entry, "axis", "a list of tables, one a joint",
+  each_joint(entry, "axis", "a list of tables, one per joint",
              [&](std::size_t i, const toml::node& node) {
                if (!node.is_table()) return false;
                const TomlTable each = entry.element("axis", i, *node.as_table());
@@ -44,7 +44,7 @@ void read_axes(const TomlTable& entry, std::vector<AxisAdjustment>& axes) {
                read_fields(each, kAxisFields, axis);
                return true;
              });
-  each_joint(entry, "reverse", "a list of true or false, one a joint",
+  each_joint(entry, "reverse", "a list of true or false, one per joint",
              [&](std::size_t i, const toml::node& node) {
                if (!node.is_boolean()) return false;
                if (axes.size() <= i) axes.resize(i + 1);

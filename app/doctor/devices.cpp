@@ -105,7 +105,7 @@ DoctorFindings look_at_devices() {
     all.push_back({kDevicesArea,
                    "haptic device",
                    State::fine,
-                   "none is plugged in; the virtual arm is built in",
+                   "no device is plugged in; the virtual arm works without one",
                    {},
                    {}});
   }

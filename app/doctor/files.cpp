@@ -30,7 +30,11 @@ Finding assets() {
     return {kFilesArea,    "assets", State::broken, (data / "shaders").string() + " is missing",
             "no pictures", kAgain};
   } catch (const std::exception& error) {
-    return {kFilesArea, "assets", State::broken, error.what(), "nothing but these lines works",
+    return {kFilesArea,
+            "assets",
+            State::broken,
+            error.what(),
+            "Limpid cannot start; only this report works",
             kAgain};
   }
 }

@@ -116,7 +116,7 @@ Finding window() {
             State::better,
             wayland ? "Wayland without Xwayland (DISPLAY is not set)"
                     : "no display (DISPLAY is not set)",
-            "the window does not open; all commands without one work",
+            "the window does not open; all commands that need no window work",
             wayland ? "sudo apt install xwayland    # then log in again"
                     : "start it from a desktop, or over `ssh -X`"};
   }
@@ -130,7 +130,7 @@ Finding window() {
           "window",
           State::better,
           it.text,
-          "drawn by the processor: few pictures a second, and less of it for the loop",
+          "drawn by the processor: few pictures per second, and less of it for the loop",
           "sudo apt install libgl1-mesa-dri firmware-linux    # for Intel and AMD; NVIDIA: "
           "nvidia-driver"};
 }
@@ -140,8 +140,8 @@ Finding file_dialog() {
   const auto version = file_portal_version();
   const std::string found =
       version ? fmt::format("the desktop's own, by its portal (FileChooser {})", *version)
-      : has_session_bus() ? "Limpid's own: no portal of the desktop answers with one"
-                          : "Limpid's own: there is no session bus to ask the desktop over";
+      : has_session_bus() ? "Limpid's own: the desktop has no portal for it"
+                          : "Limpid's own: no session bus leads to the desktop";
   return {kPictureArea, "file dialog", State::fine, found, {}, {}};
 }
 

@@ -20,33 +20,14 @@ namespace {
 
 constexpr double kHeavier = 7, kPapersStep = 4.19e-4;  // of the built-in arm [-]; encoder [rad]
 
-// An arm with what its file does not say.
-struct BenchArm {
-  const char* name;
-  const char* file;
-  double step;  // of the encoders [rad]; of slides as the setting has it
-  int delay;    // known to the law [ticks]
-  double heavier = 1;
-};
-constexpr std::array kArms{
-    BenchArm{"built-in, ideal", "omni.urdf", 0, 0}, BenchArm{"Touch", "touch.urdf", 4.19e-4, 1},
-    BenchArm{"omega", "omega.urdf", 1e-4, 0}, BenchArm{"Inverse3", "inverse3.urdf", 1e-4, 1}};
-
-ArmDescription arm_of(const BenchArm& bench) {
-  ArmDescription arm = read_urdf(default_device().parent_path() / bench.file);
-  for (Link& link : arm.links) {
-    link.mass *= bench.heavier;
-    link.inertia *= bench.heavier;
-  }
-  return arm;
-}
+constexpr std::array kArms{BenchArm{"built-in, ideal", "omni.urdf"},
+                           BenchArm{"Touch", "touch.urdf"}, BenchArm{"omega", "omega.urdf"},
+                           BenchArm{"Inverse3", "inverse3.urdf"}};
 
 ArmUnderLaw arm_under(const BenchArm& bench, CouplingKind kind) {
-  ArmUnderLaw at{arm_of(bench), {}};
-  at.parameters = fitted(at.arm);
+  ArmUnderLaw at{bench.arm(), {}};
+  at.parameters = with_readings_of(at.arm, fitted(at.arm));
   at.parameters.kind = kind;
-  at.parameters.encoder_step = bench.step;
-  at.parameters.device_delay = at.parameters.delay = bench.delay;
   return at;
 }
 
@@ -84,7 +65,7 @@ std::vector<double> stiffest(TrialRunner& lab, const std::vector<Searched>& all)
 }
 
 TipAlong tip_of(const BenchArm& bench) {
-  const ArmDescription arm = arm_of(bench);
+  const ArmDescription arm = bench.arm();
   const ArmAt at = arm_at(arm, rest_pose(arm));
   const Eigen::VectorXd b = device_damping(arm, {});
   return tip_along(at.J, at.M, b, least_damped(at.J, b));
@@ -283,7 +264,7 @@ void judge_promises(const Compared& all, std::vector<Check>& checks) {
     return [kind](const Tap& tap) { return tap.kind == kind; };
   };
   const auto exact = [](const Tap& tap) {
-    return tap.kind == CouplingKind::eba && tap.arm.step == 0;
+    return tap.kind == CouplingKind::eba && tap.arm.arm().encoder_step == 0;
   };
   checks.push_back(
       at_most("eba, exact encoders: most energy given [J]", all.most(exact, given), 1e-9));
@@ -297,7 +278,7 @@ void judge_promises(const Compared& all, std::vector<Check>& checks) {
 
 // On an arm as heavy as those of the papers, with exact encoders and with the Omni's.
 void judge_observer(TrialRunner& lab, std::vector<Check>& checks) {
-  const BenchArm heavy{"built-in, 7 times as heavy", "omni.urdf", 0, 0, kHeavier};
+  const BenchArm heavy{"built-in, 7 times as heavy", "omni.urdf", kHeavier};
   BenchArm stepped = heavy;
   stepped.step = kPapersStep;
   std::vector<Tap> taps;
@@ -326,7 +307,7 @@ Outcome approaches(TrialRunner& lab) {
   for (const CouplingKind kind : kOverDelay) {
     for (const int delay : kLateTicks) {
       BenchArm arm = kArms[0];
-      arm.delay = delay;
+      arm.late = delay * Parameters{}.tick;
       late.push_back({arm, kind});
     }
   }

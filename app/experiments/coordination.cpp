@@ -128,11 +128,10 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
                             "right one",
                             kInertiaErrors[i]),
                 largest_error(s) / largest_error(b), 1.25));
-    checks.push_back(at_most(
-        fmt::format("slope of the error with the model's inertia times {}, over that of the "
-                    "standard coupling",
-                    kInertiaErrors[i]),
-        contact_slope(s) / contact_slope(a), 0.01));
+    checks.push_back(at_most(fmt::format("slope of the error with {} times the inertia in the "
+                                         "model, divided by that of the standard coupling",
+                                         kInertiaErrors[i]),
+                             contact_slope(s) / contact_slope(a), 0.01));
   }
   return checks;
 }

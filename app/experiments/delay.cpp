@@ -305,13 +305,12 @@ Outcome delay(TrialRunner& lab) {
   outcome.figure.title = "A device whose torque answers its reading late";
   outcome.figure.caption = fmt::format(
       "Predictive coupling, eta {} to {}, a delay of 0 to {} ms from reading to torque that the "
-      "law "
-      "knows (model.delay) or does not; in grips of {} to {} N/m and {} N s/m, the worst of them. "
-      "Free motion: the tip shaken at 0.5 to 7 Hz at once, {} mm at 1 Hz. The inertia is held "
-      "against what limpid analyze says: eta times the arm's own, less what the networks, and "
-      "under a delay that is not known the dampers, take by being late. Walls: a tap at {} m/s, "
-      "then {} N. What lies beyond a "
-      "frame is drawn at its edge.",
+      "law knows (model.delay) or does not; in grips of {} to {} N/m and {} N s/m; the worst grip "
+      "is drawn. Free motion: the tip is shaken at all frequencies from 0.5 to 7 Hz together, {} "
+      "mm at 1 Hz. The inertia felt is compared with that of limpid analyze: eta times the arm's "
+      "own, minus the part that late networks take, and under an unknown delay late dampers too. "
+      "Walls: the tip taps at {} m/s and presses with {} N. Points beyond a frame are drawn at its "
+      "edge.",
       DelayPlan::kEtas[0], DelayPlan::kEtas[std::size(DelayPlan::kEtas) - 1], DelayPlan::kMost,
       DelayPlan::kGrips[0], DelayPlan::kGrips[std::size(DelayPlan::kGrips) - 1],
       TapBench::kGripDamping, 1e3 * DelayPlan::kAmplitude, TapBench::kSpeed, DelayPlan::kPress);

@@ -181,7 +181,7 @@ std::vector<Dragged> drag_all(TrialRunner& lab) {
 
 FigurePanel ratio_panel(const std::vector<Dragged>& all) {
   FigurePanel panel{.title = "Tangential over normal force, against the drag",
-                    .x_label = "hand aside of where it pressed [mm]",
+                    .x_label = "sideways distance of the hand from where it pressed [mm]",
                     .y_label = "tangential over normal force [-]"};
   for (const Dragged& d : all) {
     Series line{d.what.label, d.what.ink, Series::Style::line, {}};

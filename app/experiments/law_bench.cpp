@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/base/folders.h"
 #include "app/experiments/signals.h"
 #include "app/run/analysis.h"
 #include "app/run/wall_tap.h"
 #include "core/dynamics/arm.h"
 #include "core/math/high_pass.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {
@@ -50,6 +52,17 @@ Came came_of(const RunPlan& plan, const TapPlace& place, const WallTap& tap,
 }
 
 }  // namespace
+
+ArmDescription BenchArm::arm() const {
+  ArmDescription arm = read_urdf(default_device().parent_path() / file);
+  for (Link& link : arm.links) {
+    link.mass *= heavier;
+    link.inertia *= heavier;
+  }
+  arm.encoder_step = step.value_or(arm.encoder_step);
+  arm.assumed_delay = late.value_or(arm.assumed_delay);
+  return arm;
+}
 
 const BenchLaw& bench_law(CouplingKind kind) {
   return *std::ranges::find(kBenchLaws, kind, &BenchLaw::kind);

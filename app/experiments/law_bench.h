@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,6 +61,18 @@ struct BenchHand {
 inline constexpr std::array kHands{BenchHand{300, 2}, BenchHand{3000, 2}, BenchHand{300, 0},
                                    BenchHand{3000, 0}};
 inline constexpr std::size_t kDamped = 2;  // so many of them damp; they come first
+
+// An arm by its file in assets/devices, as it is or altered.
+struct BenchArm {
+  const char* name;
+  const char* file;
+  double heavier = 1;               // all its links [-]
+  std::optional<double> step = {};  // of the encoders, for the file's [rad]
+  std::optional<double> late = {};  // beyond the tick, for the file's [s]
+
+  // Errors: FileError.
+  ArmDescription arm() const;
+};
 
 struct ArmUnderLaw {
   ArmDescription arm;

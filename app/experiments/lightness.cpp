@@ -292,15 +292,14 @@ Outcome lightness(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "How light the arm can be made";
   outcome.figure.caption = fmt::format(
-      "Free motion, the tip shaken at seven frequencies at once, {} mm at 1 Hz and less above, in "
+      "Free motion, the tip shaken at seven frequencies together, {} mm at 1 Hz and less above, in "
       "a grip of {} N/m and {} N s/m; exact encoders. Inertia and damping: the hand's torque "
       "against and along the motion of all joints. An inertia of eta up to {} Hz costs every "
       "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
       "Under the proposed coupling eta scales the damping, and with it what is felt of slow "
-      "motion; "
-      "the inertia felt is not eta times the arm's own, as (12) has it, and above eta = 1 it is "
-      "negative up to 5 Hz. Last: the arm roams in an undamped grip of 3000 N/m, with motors that "
-      "have no limit to speak of.",
+      "motion; the inertia felt is not eta times the arm's own, as (12) has it, and above eta = 1 "
+      "it is negative up to 5 Hz. Last: the arm roams in an undamped grip of 3000 N/m, with motors "
+      "that have no limit to speak of.",
       1e3 * kAmplitude, kLightGrip, kLightGripDamping, Parameters{}.band);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(laws);

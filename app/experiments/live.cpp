@@ -250,7 +250,7 @@ Outcome live_inertia(LiveLaboratory& lab) {
     damping.points.push_back({p.eta, drag});
     if (i == 0) {
       outcome.checks.push_back(
-          at_least("inertia felt at eta = 1, by the model's", felt.inertia, 0.5));
+          at_least("inertia felt at eta = 1, divided by the model's", felt.inertia, 0.5));
       continue;
     }
     outcome.checks.push_back(

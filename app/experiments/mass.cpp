@@ -351,18 +351,14 @@ Outcome mass(TrialRunner& lab) {
   outcome.figure.panels.push_back(least_panel(lab, outcome.checks));
   outcome.figure.caption = fmt::format(
       "A cube that the magnet holds by its centre of mass at {} N/m ({} N/m where it is said), "
-      "shaken "
-      "at five frequencies at once, {} mm at 1 Hz and less above, no weight. Felt: the hand's "
-      "force "
-      "in phase with the tip's acceleration, less that of the same shaking with {} mg, of the "
-      "other "
-      "laws with nothing. The spring between them makes m / (1 - m w^2 / K) of a mass. "
-      "{}Staggered: "
-      "no coupling; the force of a tick follows from where tip and body last were, and the body is "
-      "stepped after it. Last: a nudge of {} mm, with motors that never meet their limit, and "
-      "whether the cube comes to rest. While the device stands still, a staggered body needs "
-      "K T^2/4 + B T/2 (Jury); it does not stand still beyond {} N/m, or without a damper, and "
-      "where a curve ends nothing up to {} kg is stable.",
+      "shaken at five frequencies together, {} mm at 1 Hz and less above, no weight. Felt: the "
+      "hand's force in phase with the tip's acceleration, less that of the same shaking with {} "
+      "mg, of the other laws with nothing. The spring between them makes m / (1 - m w^2 / K) of a "
+      "mass. {}Staggered: no coupling; the force of a tick follows from where tip and body last "
+      "were, and the body is stepped after it. Last: a nudge of {} mm, with motors that never meet "
+      "their limit, and whether the cube comes to rest. While the device stands still, a staggered "
+      "body needs K T^2/4 + B T/2 (Jury); it does not stand still beyond {} N/m, or without a "
+      "damper, and where a curve ends nothing up to {} kg is stable.",
       kHeld, kHeldSoftly, 1e3 * kHeldAmplitude, 1e6 * kSpeck, not_held(all), 1e3 * kNudge,
       kStillDevice, kHeaviest);
   return outcome;

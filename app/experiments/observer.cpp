@@ -163,7 +163,7 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   outcome.checks.push_back(at_most(
       fmt::format("-3 dB bandwidth off alpha / m where w_f T <= {}", kUnsampled), off_fast, 0.02));
   outcome.checks.push_back(
-      at_most("-3 dB and -45 degree bandwidths off those of (17) in ticks, all gains and modes",
+      at_most("-3 dB and -45 degree bandwidths: error against (17) in ticks, all gains and modes",
               off_sampled, 0.03));
 }
 
@@ -239,8 +239,8 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
     }
   }
   outcome.figure.panels.push_back(panel);
-  outcome.checks.push_back(
-      at_most("decay rate of a wrong estimate off that of (18) in ticks, all modes", worst, 0.02));
+  outcome.checks.push_back(at_most(
+      "decay rate of a wrong estimate: error against (18) in ticks, all modes", worst, 0.02));
 }
 
 // Checks that estimates stay bounded for gains over many decades.
@@ -320,7 +320,8 @@ Outcome observer(TrialRunner& lab) {
   outcome.figure.title = "The human force observer: bandwidth, error and stability over its gain";
   outcome.figure.caption = fmt::format(
       "Built-in arm with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of "
-      "{} ms. The hand shakes from {} to {} Hz at once; modes of M at that pose.",
+      "{} ms. The hand shakes with all frequencies from {} to {} Hz together; modes of M at that "
+      "pose.",
       start().x(), 1e3 * kTick, kLowest, kHighest);
   outcome.figure.columns = 2;
   bandwidth(lab, shaking, outcome);

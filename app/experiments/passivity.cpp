@@ -229,7 +229,7 @@ std::vector<Check> judge(const Runs& runs) {
   std::vector<Check> checks;
   for (std::size_t i = 0; i < runs.compared(); ++i) {
     checks.push_back(
-        at_most(fmt::format("highest E_c, total, of all trials, {} [J]", runs.cases[i].name),
+        at_most(fmt::format("highest total E_c of all trials, {} [J]", runs.cases[i].name),
                 highest(runs.of(i), &Books::highest_total), kNoise));
   }
   for (std::size_t i = 0; i < runs.compared(); ++i) {

@@ -21,16 +21,8 @@ constexpr double kMayGive = 5e-3;    // energy that a law may give [J]
 constexpr double kMayShake = 0.1;    // rms force above 20 Hz, of the press [-]
 constexpr double kSoftestTap = 300;  // walls that are named softer are tapped with this [N/m]
 
-// An arm with the encoders and the delay that its file does not say.
-struct RobustArm {
-  const char* name;
-  const char* file;
-  double step;  // [rad]
-  int delay;    // known to the laws [ticks]
-  Series::Style style;
-};
-constexpr std::array kRobustArms{RobustArm{"ideal", "omni.urdf", 0, 0, Series::Style::dashed},
-                                 RobustArm{"Touch", "touch.urdf", 4.19e-4, 1, Series::Style::line}};
+constexpr std::array kRobustArms{BenchArm{"ideal", "omni.urdf"}, BenchArm{"Touch", "touch.urdf"}};
+constexpr std::array kLines{Series::Style::dashed, Series::Style::line};  // of the arms
 
 // A law and whether it promises to give no more than kMayGive.
 struct RobustLaw {
@@ -85,14 +77,12 @@ constexpr std::size_t kLoop = 2, kResonance = 3;  // places in imperfections()
 struct RobustCase {
   std::size_t arm, law, way, level;
 
-  const RobustArm& of_arm() const { return kRobustArms[arm]; }
   const RobustLaw& of_law() const { return kRobustLaws[law]; }
   const Imperfection& of_way() const { return imperfections()[way]; }
   Parameters parameters(const ArmDescription& description) const {
-    Parameters p = fitted(description, {}, of_arm().delay * Parameters{}.tick);
+    Parameters p =
+        with_readings_of(description, fitted(description, {}, description.assumed_delay));
     p.kind = of_law().kind;
-    p.encoder_step = of_arm().step;
-    p.device_delay = p.delay = of_arm().delay;
     p.delay_most = p.delay + 1;  // as for a device that was identified
     return p;
   }
@@ -116,9 +106,7 @@ struct RobustTap {
 class RobustBench {
  public:
   explicit RobustBench(TrialRunner& lab) : lab_(lab) {
-    for (const RobustArm& arm : kRobustArms) {
-      arms_.push_back(read_urdf(default_device().parent_path() / arm.file));
-    }
+    for (const BenchArm& arm : kRobustArms) arms_.push_back(arm.arm());
   }
 
   // The wall that `limpid analyze` names for the case without any imperfection [N/m].
@@ -263,7 +251,7 @@ Robustness tap_everything(RobustBench& bench) {
 }
 
 std::string curve_label(const RobustCase& c) {
-  return fmt::format("{}, {}", info(c.of_law().kind).key, c.of_arm().name);
+  return fmt::format("{}, {}", info(c.of_law().kind).key, kRobustArms[c.arm].name);
 }
 
 FigurePanel panel_of(std::size_t way, const std::string& title, const std::string& y) {
@@ -289,8 +277,7 @@ void add_curves(FigurePanel& panel, const std::vector<RobustCase>& cases, std::s
     if (c.arm != arm || c.law != law) {
       arm = c.arm;
       law = c.law;
-      panel.series.push_back(
-          {curve_label(c), bench_law(c.of_law().kind).ink, c.of_arm().style, {}});
+      panel.series.push_back({curve_label(c), bench_law(c.of_law().kind).ink, kLines[c.arm], {}});
     }
     const Imperfection& of = c.of_way();
     panel.series.back().points.push_back({of.scale * of.levels[c.level - 1], value(i)});

@@ -350,10 +350,11 @@ Outcome transparency(TrialRunner& lab) {
   outcome.figure.title = "Transparency: what the hand feels";
   outcome.figure.caption = fmt::format(
       "Built-in arm at the paper's gains, tip {} m ahead, moved sideways so that only the first "
-      "joint turns. Human torque over velocity of that joint, the hand shaking from {} to {} Hz at "
-      "once in an undamped grip of {} N/m; in contact it presses with {} N and damps with {} N "
-      "s/m. Without that damper the proposed coupling is unstable at this wall: its contact torque "
-      "trails by b_v/k_vc + T/2, which takes more damping than there is.",
+      "joint turns. Human torque over velocity of that joint, the hand shaking with all "
+      "frequencies from {} to {} Hz together in an undamped grip of {} N/m; in contact it presses "
+      "with {} N and damps with {} N s/m. Without that damper the proposed coupling is unstable at "
+      "this wall: its contact torque trails by b_v/k_vc + T/2, which takes more damping than there "
+      "is.",
       Bench::kArm, Bench::kLowest, Bench::kHighest, Bench::kGrip, Bench::kPress,
       Bench::kGripDamping);
   outcome.figure.columns = 2;

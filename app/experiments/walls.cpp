@@ -231,8 +231,8 @@ Outcome walls(TrialRunner& lab) {
       "pose of its own, its tip tapping a wall at {} m/s along the direction in which its dampers "
       "hold it least, and pressed on it with {} N, or with what its motors bear twice. Desktop "
       "devices in grips of {} and {} N/m, arms from {} kg on in grips of {} and {} N/m: the worst "
-      "of both. Allowed above {} Hz: {} of the press, and {} N of robots. What lies beyond a frame "
-      "is drawn at its edge.",
+      "of both. Allowed above {} Hz: {} of the press, and {} N of robots. Points beyond a frame "
+      "are drawn at its edge.",
       P::kArms, P::kMostJoints, P::kLightest, P::kHeaviest, WallTap::kSpeed, P::kPress,
       P::kDesktopGrips[0].stiffness, P::kDesktopGrips[1].stiffness, P::kRobot,
       P::kRobotGrips[0].stiffness, P::kRobotGrips[1].stiffness, WallTap::kFast, P::kRattle,

@@ -131,7 +131,7 @@ void check_format(const fs::path& out, const VideoFormat& format, VideoKind kind
                     out.string(), format.width, format.height, kLeastVideo, kLargestVideo));
   }
   if (format.fps < 1 || format.fps > most_fps(kind)) {
-    throw FileError(fmt::format("{}: {} pictures a second; allowed: 1 to {}", out.string(),
+    throw FileError(fmt::format("{}: {} pictures per second; allowed: 1 to {}", out.string(),
                                 format.fps, most_fps(kind)));
   }
 }

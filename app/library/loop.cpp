@@ -63,7 +63,7 @@ void compare_range(const ArmDescription& arm, std::size_t joint, double x,
 RigStart start_at(const ArmDescription& arm, std::span<const double> position,
                   std::vector<std::string>& notes) {
   if (position.size() != arm.joints.size()) {
-    throw LoopError(fmt::format("position: has {} numbers; needed: {}, one a joint",
+    throw LoopError(fmt::format("position: has {} numbers; needed: {}, one per joint",
                                 position.size(), arm.joints.size()));
   }
   Eigen::VectorXd x(arm.dof());
@@ -305,7 +305,7 @@ bool DeviceLoop::armed() const noexcept { return state_->rig->force().armed(); }
 double DeviceLoop::force_share() const noexcept { return state_->rig->force().gain(); }
 std::string DeviceLoop::force_text() const {
   if (state_->wrong_count > 0) {
-    return fmt::format("force off: a reading has {} positions; needed: {}, one a joint",
+    return fmt::format("force off: a reading has {} positions; needed: {}, one per joint",
                        state_->wrong_count - 1, joints());
   }
   return limpid::force_text(state_->rig->force_state());
@@ -348,9 +348,8 @@ SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double du
       return take(si);
     });
     return {end.rows, end.diverged,
-            end.diverged
-                ? fmt::format("unstable from t = {:.3f} s on: {}", end.diverged_at, end.why)
-                : std::string()};
+            end.diverged ? fmt::format("unstable since t = {:.3f} s: {}", end.diverged_at, end.why)
+                         : std::string()};
   });
 }
 

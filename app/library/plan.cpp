@@ -103,7 +103,7 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
     all.notes.push_back(std::move(warning));
   }
   if (const std::string text = fit_text(fit); !text.empty()) {
-    all.notes.push_back("gains fitted to the arm, but for those that are set: " + text);
+    all.notes.push_back("gains fitted to the arm, except those that are set: " + text);
   }
   for (std::string& note : notes_on(plan.parameters)) all.notes.push_back(std::move(note));
   return all;

@@ -66,7 +66,7 @@ std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
     infos.push_back({"coordination/error." + joint, "Coordination error", "joint " + joint,
                      "x_E " + joint,
                      joint_units[joint_units.size() == 1 ? 0 : static_cast<std::size_t>(j)],
-                     "position of the device less that of the proxy",
+                     "position of the device minus that of the proxy",
                      static_cast<Ink>(static_cast<int>(joint_1) + j % kJointInks)});
   }
   return infos;
@@ -82,6 +82,13 @@ constexpr std::array kGroups{
     Group{"hand", "Hand", hand},        Group{"coupling", "Coupling", neutral},
     Group{"energy", "Energy", energy},  Group{"contact", "Contacts", contact},
     Group{"timing", "Timing", neutral}, Group{"objects", "Objects", neutral}};
+
+static_assert(std::ranges::all_of(kColumnInfo, [](const ColumnInfo& column) {
+  const std::string_view path(column.path + 1);
+  const std::string_view folder = path.substr(0, path.find('/'));
+  return column.column == Column::time ||
+         std::ranges::any_of(kGroups, [&](const Group& group) { return group.path == folder; });
+}));
 
 // Channels of each body, in this order: its place, and how fast it goes and turns.
 constexpr std::size_t kOfBody = 5;
@@ -272,7 +279,7 @@ void TraceChannels::add_bodies(const std::vector<std::string>& names) {
       {"y", "m", "its centre of mass, to the left"},
       {"z", "m", "its centre of mass, upward"},
       {"speed", "m/s", "how fast its centre of mass moves"},
-      {"turning", "rad/s", "how fast it turns, about whatever axis"},
+      {"turning", "rad/s", "how fast it turns, about any axis"},
   }};
   for (std::size_t i = 0; i < static_cast<std::size_t>(layout_.bodies()); ++i) {
     std::string body = i < names.size() ? names[i] : "object " + std::to_string(i + 1);

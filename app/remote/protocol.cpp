@@ -28,7 +28,7 @@ constexpr std::array kAsk{"text", "choices", "beside", "seconds"};
 constexpr std::array kPicture{"file", "replace"};
 
 constexpr std::array kVerbs{
-    Verb{"hello", kNone, "which Limpid this is, and what it has"},
+    Verb{"hello", kNone, "which version of Limpid this is, and what it offers"},
     Verb{"get", kGet, "settings, all or those of \"keys\", and the state"},
     Verb{"set", kSet,
          "\"values\" of settings, all or none of them; with \"twin\" true, the twin's, and with "

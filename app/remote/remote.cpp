@@ -262,7 +262,7 @@ std::vector<Remote::Wanted> Remote::find(const std::vector<std::string>& names,
 json Remote::newest(const Keys& keys) const {
   const TraceChannels& channels = host_.channels();
   const auto rows = host_.rows();
-  if (rows.empty()) throw RemoteError("row: there is none yet");
+  if (rows.empty()) throw RemoteError("row: no row is there yet");
   std::vector<std::vector<double>> values;
   for (const std::span<const double> row : rows) {
     values.emplace_back(static_cast<std::size_t>(channels.count()));

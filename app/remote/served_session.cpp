@@ -201,7 +201,9 @@ Answer ServedSession::record(const Keys& keys) {
   if (session_.recording()) {
     throw RemoteError("record: a recording is under way; stop it before");
   }
-  if (session_.closing()) throw RemoteError("record: the last one is being closed");
+  if (session_.closing())
+    throw RemoteError(
+        "record: the previous recording is still being written; try again in a moment");
   fs::path file;
   if (keys.has("file")) {
     file = keys.file(".h5");

@@ -56,6 +56,7 @@ Analysis of_modes(std::vector<LockedMode> modes, const ArmDescription& arm, cons
   a.delay = device_delay(arm, p);
   a.measured = arm.delay.has_value() && std::isnan(p.damping);
   a.condition3 = condition3(arm, p);
+  a.line_margin = b_d.minCoeff() - (p.wave_matched ? 3 : 2) * p.line();
   a.link = p.oldest() * p.tick;
   a.above_eta_min = p.eta >= a.eta_min;
   return a;
@@ -94,7 +95,7 @@ Passivity of_feedforward(const Analysis& a, const Parameters& p) {
     return {std::nullopt, fmt::format("no bound is known for a feedforward that is {:.3g} ms late",
                                       1e3 * a.delay)};
   }
-  return {true, "eta is at or above eta_min, (25), and condition (3) holds"};
+  return {true, "in free motion: eta is at or above eta_min, (25), and condition (3) holds"};
 }
 
 // A value of every joint: what is set, else the arm's own.
@@ -188,6 +189,9 @@ Passivity passivity(const Analysis& a, const Parameters& p) {
       return {true, fmt::format("its tanks: at most {:.3g} mJ are given", 1e3 * p.tank_energy)};
     case Promise::port:
       return {true, "its account: nothing is given, as far as the device's damping is right"};
+    case Promise::line:
+      if (a.line_margin >= 0) return {true, "its line, which is soft beside the device's damping"};
+      return {std::nullopt, "no bound is known: its line is above a third of the device's damping"};
     case Promise::observer:
       return {std::nullopt, "no bound is known: its damper may be too small or too late"};
     case Promise::none:

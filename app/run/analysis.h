@@ -40,6 +40,8 @@ struct Analysis {
   double link = 0;                     // of the link each way, in (3) [s]
   bool measured = false;  // inertia, damping and delay are measured on the device itself
   Condition3 condition3;
+  double line_margin = 0;  // of `wave`: b_d less three dampers of the line, two without the matched
+                           // one, at the joint with the least [N m s/rad]
   bool above_eta_min = false;  // eta >= eta_min, (25); this is about the proposed law alone
 };
 

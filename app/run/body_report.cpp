@@ -57,6 +57,7 @@ double half_width(const Shape& shape) {
   if (const auto* mesh = std::get_if<Mesh>(&shape)) {
     return box_around(*mesh).first.size.minCoeff() / 2;
   }
+  static_assert(kShapes == 7);
   return 0;
 }
 

@@ -94,6 +94,13 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen, double de
   return p;
 }
 
+Parameters with_readings_of(const ArmDescription& arm, Parameters p) {
+  p.encoder_step = arm.encoder_step;
+  p.device_delay = p.delay =
+      static_cast<int>(std::min<long>(kMostDelay, std::lround(arm.assumed_delay / p.tick)));
+  return p;
+}
+
 CompensationSettings suggested_compensation(const ArmDescription& arm) {
   CompensationSettings c;
   if (!arm.delay) return c;

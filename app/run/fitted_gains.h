@@ -24,6 +24,10 @@ inline constexpr std::array kFittedKeys{"coupling.k_vc", "coupling.b_vc", "coupl
 Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, double delay = 0,
                   const LinkSettings& link = {});
 
+// Returns `p` with what the arm's file says of the device's readings: step of the encoders, and
+// delay in whole ticks, which the law knows.
+Parameters with_readings_of(const ArmDescription& arm, Parameters p);
+
 // Returns which of its own forces an arm's motors should take off the hand. For an arm that was
 // identified: all that was found, and the usual share of its friction; else none.
 CompensationSettings suggested_compensation(const ArmDescription& arm);

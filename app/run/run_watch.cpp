@@ -76,8 +76,8 @@ void RunWatch::add(std::span<const double> row) {
 std::vector<std::string> RunWatch::warnings() const {
   std::vector<std::string> all = cautions();
   if (diverged_.lost()) {
-    all.insert(all.begin(), fmt::format("unstable from t = {:.3f} s on: {}", diverged_.since(),
-                                        diverged_.why()));
+    all.insert(all.begin(),
+               fmt::format("unstable since t = {:.3f} s: {}", diverged_.since(), diverged_.why()));
   }
   return all;
 }
@@ -89,14 +89,14 @@ std::vector<std::string> RunWatch::cautions() const {
         promised_ > 0
             ? fmt::format(", more than the {} that its account allows", joules_text(promised_))
             : "";
-    all.push_back(
-        fmt::format("E_c rose to {}{}, from t = {:.3f} s on: this run is not passive ({})",
-                    joules_text(energy_.most), allowed, energy_.since, energy_.with));
+    all.push_back(fmt::format(
+        "E_c rose to {}{}, above the bound since t = {:.3f} s: this run is not passive ({})",
+        joules_text(energy_.most), allowed, energy_.since, energy_.with));
   }
   if (speed_.since >= 0) {
     all.push_back(
-        fmt::format("the tip reached {:.3g} m/s, above {:.0f} m/s from t = {:.3f} s on: "
-                    "no hand moves so fast ({})",
+        fmt::format("the tip reached {:.3g} m/s, above {:.0f} m/s since t = {:.3f} s: no hand "
+                    "moves so fast ({})",
                     speed_.most, kFastestTip, speed_.since, speed_.with));
   }
   return all;

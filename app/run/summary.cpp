@@ -148,10 +148,8 @@ std::string Summary::text() const {
   const Totals& t = totals();
   std::string text = fmt::format("ticks                    {}\n", all_.rows);
   if (watch_.lost()) {
-    text += fmt::format(
-        "unstable                 from t = {:.3f} s on: {}\n"
-        "before that\n",
-        watch_.since(), watch_.why());
+    text += fmt::format("unstable                 since t = {:.3f} s: {}\nbefore that\n",
+                        watch_.since(), watch_.why());
   }
   text += fmt::format(
       "in contact               {:.0f} %\n"
@@ -179,8 +177,9 @@ std::string Summary::text() const {
     text += fmt::format("contact points left out  {:.0f} at once: they push nothing\n", t.left_out);
   }
   if (t.stood_still > 0) {
-    text += fmt::format("objects stood still      {:.0f} ticks: their forces were not found\n",
-                        t.stood_still);
+    text +=
+        fmt::format("objects stood still      {:.0f} ticks: the solver found no forces for them\n",
+                    t.stood_still);
   }
   return text;
 }
@@ -222,7 +221,7 @@ std::string Summary::beside(std::span<const Summary* const> lanes,
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     const DivergenceWatch& watch = lanes[lane]->watch_;
     if (!watch.lost()) continue;
-    text += fmt::format("{} is unstable from t = {:.3f} s on: {}\n", names[lane], watch.since(),
+    text += fmt::format("{} is unstable since t = {:.3f} s: {}\n", names[lane], watch.since(),
                         watch.why());
   }
   return text;

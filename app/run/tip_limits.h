@@ -28,7 +28,7 @@ struct TipLimits {
     std::string bound;
   };
   std::array<Wall, kLaws> walls;  // in the order of the laws
-  double every_hand;  // stiffest wall that a linear law can render passively in every hand [N/m]
+  double every_hand;  // stiffest wall that a plain spring renders passively in every hand [N/m]
   double scene;       // stiffest thing in the scene, 0 without any [N/m]
   FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
   double w_f;         // of the observer at the tip [rad/s]

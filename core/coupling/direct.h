@@ -1,8 +1,12 @@
-// The law of most programs: walls on the device itself, as a god-object has them (Zilles and
-// Salisbury 1995; Ruspini, Kolarov and Khatib 1997).
+// The law of most programs: walls on the device itself, each a spring. On one face, in right-angled
+// corners and on meshes the force is that of a god-object (Zilles and Salisbury 1995; Ruspini,
+// Kolarov and Khatib 1997). Unlike there the proxy sinks in with the reading, and oblique planes
+// add up.
 //
 // A torque held for a tick, and late, gives energy: a wall K is passive in every hand up to
-// K = 2 b_d/T, and quiet in a hand that damps with b_h up to (b_d + b_h)/(T/2 + delay).
+// K = 2 b_d/T (Colgate and Schenkel 1997), and quiet in a hand that damps with b_h up to
+// (b_d + b_h)/(T/2 + delay) (Gil, Sanchez, Hulin, Preusche and Hirzinger 2009), where delay and
+// damping are small.
 #pragma once
 
 #include <array>
@@ -19,7 +23,7 @@ struct DirectLaw {
   static constexpr LawInfo kInfo{
       .key = "direct",
       .label = "Direct",
-      .meaning = "the walls' springs on the device itself (god-object), without a virtual mass.",
+      .meaning = "the walls' springs act on the device itself, without a virtual mass.",
       .verdict = "What most programs do: walls as stiff as the hand damps.",
       .promise = Promise::none,
       .on_device = true,

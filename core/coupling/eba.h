@@ -44,12 +44,11 @@ struct EbaLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 1> settings() {
-      return {
-          {{"eba.damping", "b bounded by", "Damping believed", &P::eba_damping, "N m s/rad", 0, 10,
-            0, 0.1, false, true,
-            "Energy bounding: damping of every joint that pays for the walls' torque. Default: the "
-            "device's own, as identified or as its file says. More than there is gives energy "
-            "away; of a real device no more is believed than is known."}}};
+      return {{{"eba.damping", "b bounded by", "Damping believed", &P::eba_damping, "N m s/rad", 0,
+                10, 0, 0.1, false, true,
+                "Energy bounding: damping of every joint that pays for the walls' torque. Default: "
+                "the device's own, as identified or as its file says. A value above the true one "
+                "gives energy away; of a real device Limpid believes no more than is known."}}};
     }
   };
 

@@ -16,10 +16,11 @@ inline constexpr int kMostDelay = 20;  // largest delay of a device [ticks]
 enum class Promise : std::uint8_t {
   none,        // no bound is known
   condition3,  // nothing, where condition (3) holds
-  eta_min,     // nothing, above eta_min of (25)
+  eta_min,     // nothing in free motion, above eta_min of (25)
   ledger,      // at most the ledger's energy
   tanks,       // at most the tanks' energy
   port,        // nothing, whatever the hand does
+  line,        // nothing, where the line is soft beside the device's damping
   observer,    // what was given is taken back, as far as a damper can
 };
 

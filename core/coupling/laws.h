@@ -109,6 +109,6 @@ inline constexpr auto kLawNumbers =
       put(" ");
       put(law.key);
     });
-static_assert(kLaws <= 10);
+static_assert(kLaws <= 10);  // the texts above have one digit for a number
 
 }  // namespace limpid

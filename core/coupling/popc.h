@@ -1,5 +1,5 @@
-// Passivity observer and controller on the device itself (Hannaford and Ryu 2002), with the mends
-// that were published for it.
+// Passivity observer and controller on the device itself (Hannaford and Ryu 2002), with mends of
+// others and of this program.
 //
 // W is what came in at the device's port, U what the walls store at the reading, B = b/T, D_k the
 // motion in a tick, a_k the torque that was held in it, t_j the torques on their way, d the delay:
@@ -8,9 +8,9 @@
 //     tau1 = tau_e - alpha M1 v,  alpha = min(-S/(T v.M1 v), c/(T (1 + d))) where S < 0.
 // The held torque in W: Ryu, Kim and Hannaford (2004, T-RO 20, 772). U as reference energy, so that
 // the damper acts within the first bounce: Ryu, Preusche, Hannaford and Hirzinger (2005, T-CST 13,
-// 737). S is foretold for when the torque acts. Motions below 1.5 steps of the encoder are none.
-// The damper is bounded, as without bound it diverges on light devices. M1 v instead of v keeps it
-// from turning the motion of several joints.
+// 737). This program's own: S is foretold for when the torque acts. Motions below 1.5 steps of the
+// encoder are none. The damper is bounded, as without bound it diverges on light devices. M1 v
+// instead of v keeps it from turning the motion of several joints.
 #pragma once
 
 #include <array>
@@ -30,12 +30,12 @@ struct PopcLaw {
       .meaning =
           "walls on the device itself, with a damper that takes back what they gave (passivity "
           "observer and controller, Hannaford and Ryu 2002).",
-      .verdict = "Brakes after it gave energy. Coarse encoders mislead it.",
+      .verdict = "Brakes what it gave, as far as it may. Coarse encoders mislead it.",
       .promise = Promise::observer,
       .on_device = true,
       .for_comparison = true,
       .through_link = "the law renders walls on the device itself and has no link",
-      .damper_share = "100 % while no damper acts, 0 % at the largest one allowed",
+      .damper_share = "100 % without a damper, 0 % at the largest damper allowed",
       .sliders = kSliders,
   };
 
@@ -52,7 +52,7 @@ struct PopcLaw {
                {"popc.reference", "reference", "Reference energy", &P::popc_reference, "-", 0, 1, 0,
                 1, false, true,
                 "PO/PC: the energy that came in is compared to what the walls store. Off: to zero, "
-                "as published in 2002, so that a bounce has to use up what was stored before the "
+                "as in 2002, so that a bounce has to use up what was stored before the "
                 "damper acts."}}};
     }
   };

@@ -33,14 +33,14 @@ struct ProposedLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 1> settings() {
-      return {{{"coupling.eta", "\xCE\xB7", "Impedance scaling \xCE\xB7", &P::eta, "-", 0.01, 100,
-                0.1, 10, true, true,
-                "Impedance scaling: what the hand feels of free motion. Predictive coupling: eta "
-                "times the inertia "
-                "M1 + M2, up to coupling.band. Proposed coupling: eta times the damping, and so "
-                "what is felt of slow motion; the paper has it of the inertia, (12), of which is "
-                "measured 0.7 at eta 0.6 and less than none above eta 1. Below eta_min of (25) the "
-                "proposed coupling is not passive."}}};
+      return {
+          {{"coupling.eta", "\xCE\xB7", "Impedance scaling \xCE\xB7", &P::eta, "-", 0.01, 100, 0.1,
+            10, true, true,
+            "Impedance scaling: how much of the arm the hand feels in free motion. Predictive "
+            "coupling: eta times the inertia M1 + M2, up to coupling.band. Proposed coupling: eta "
+            "times the damping, which dominates slow motion. Equation (12) of the paper says eta "
+            "times the inertia; measured are 0.7 times at eta 0.6, and a negative inertia above "
+            "eta 1. Below eta_min of (25) the proposed coupling is not passive."}}};
     }
   };
 

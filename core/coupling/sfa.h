@@ -1,6 +1,6 @@
 // Successive force augmentation on the device itself, after Singh, Janetzko, Jafari, Weber, Lee and
-// Ryu (2020, T-IE 67, 809). The rule of the increment is rebuilt here: the paper's own is not
-// known.
+// Ryu (2020, T-IE 67, 809). The rule of the increments, and those at rest, are this program's: the
+// paper's text was not read. What is measured here says nothing of the paper's rule.
 //
 // Walls are soft, and a force o is added until they push as they should; with `sfa.extended` they
 // push in full until the hand first turns back or rests. With tau_e the walls'
@@ -29,7 +29,7 @@ struct SfaLaw {
       .meaning =
           "soft walls on the device itself, whose force grows in the hand until it is right "
           "(successive force augmentation, Singh and others 2020).",
-      .verdict = "Grows stiff in the hand; gives energy for it.",
+      .verdict = "Grows stiff in the hand; by our rule it gives energy for it.",
       .promise = Promise::none,
       .on_device = true,
       .for_comparison = true,
@@ -52,8 +52,8 @@ struct SfaLaw {
             "every hand is stable."},
            {"sfa.step", "step sigma", "Part added at a time", &P::sfa_step, "-", 0.01, 1, 0.01, 1,
             false, true,
-            "Augmentation: part of what is missing that one increment makes up for, before the "
-            "hand yields."},
+            "Augmentation: part of the missing force that one increment adds, before the hand "
+            "yields."},
            {"sfa.extended", "extended", "Begin with the whole wall", &P::sfa_extended, "-", 0, 1, 0,
             1, false, true,
             "Augmentation: a wall pushes in full until the hand first turns back or rests. Off: "

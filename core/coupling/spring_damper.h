@@ -52,11 +52,11 @@ struct LinkSettings {
           "coupling solves both together and has no link."},
          {"link.jitter", "link jitter", "Link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter,
           0, 20, false, true,
-          "Each packet between device and proxy takes up to so many ticks more, at random; each "
-          "side goes by the packet that was sent last of those that it has."},
+          "Each packet between device and proxy takes up to this many ticks more, at random. Each "
+          "side uses the newest packet that it has."},
          {"link.loss", "link loss", "Packets lost", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
-          "Share of the packets between device and proxy that never arrive; what has nothing new "
-          "keeps the last one."},
+          "Share of the packets between device and proxy that never arrive; a side without a new "
+          "packet keeps the last one."},
          {"link.seed", "link seed", "link seed", &P::link_seed, "-", 0, 1e9, 0, 100, false, true,
           "Whole number from which the random numbers of link.jitter and link.loss follow."}}};
   }

@@ -55,8 +55,8 @@ struct TankLaw {
             "any part of the time."},
            {"tank.share", "tank's share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1,
             true, true,
-            "Tank coupling: share of what a tank holds above its half of tank.energy that it sends "
-            "to the other one in a tick."},
+            "Tank coupling: in each tick a tank sends this share of what it holds above its half "
+            "of tank.energy to the other one."},
            {"tank.damping", "refill", "Refilling damper", &P::tank_damping, "1/s", 0, 200, 0, 200,
             false, true,
             "Tank coupling: where the device's tank holds less than its half of tank.energy, a "

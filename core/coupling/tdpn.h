@@ -6,7 +6,8 @@
 // lowered. With in2 as it came, D the motion in a tick and t_j the torques on their way,
 //     S = in2 - out1 - sum_j (t_j.D)+ - (tau.D)+,  S < 0: tau1 = tau - alpha M1 v as in popc.h,
 //     v = v_d + fix - beta F,  beta the least with T F.v <= in1 - out2.
-// fix takes drift back, a part of it in each tick, out of what is left (Artigas, Ryu and Preusche
+// The device's own damping counts as taken in, which the published law does not know. fix takes
+// drift back, a part of it in each tick, out of what is left (Artigas, Ryu and Preusche
 // 2010; Chawda and O'Malley 2014; Coelho et al. 2018).
 #pragma once
 
@@ -28,7 +29,7 @@ struct TdpnLaw {
       .meaning =
           "velocity there and force back, with dampers that keep both ports passive (Ryu, Artigas "
           "and Preusche 2010).",
-      .verdict = "Passive through a link, by damping and drift.",
+      .verdict = "Brakes what both ends gave, as far as it may; drifts.",
       .promise = Promise::observer,
       .for_links = true,
       .for_comparison = true,

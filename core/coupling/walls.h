@@ -39,8 +39,8 @@ struct WallSetting {
 // Stiffest wall of the proposed coupling [N/m]: the present damping against the lag of its contact,
 // half a tick, b_v/k_vc and the device's delay.
 double proposed_wall(const TipAlong& tip, const WallSetting& s);
-// Stiffest wall that any linear law can render passively in every hand (Colgate), with its torque a
-// delay late [N/m]: b_d / (T/2 + delay).
+// Stiffest wall that a plain spring renders passively in every hand, with its torque a delay late
+// [N/m]: b_d / (T/2 + delay) (Colgate and Schenkel 1997). A law of another shape may show more.
 double every_hands_wall(const TipAlong& tip, double T, double delay = 0);
 // Stiffest wall on the device itself that stays quiet in this hand [N/m]: (b_d + b_h) / (T/2 +
 // delay).

@@ -1,5 +1,5 @@
 // Wave variables between device and proxy (Niemeyer and Slotine 1991, 2004), as sums that are
-// played out evenly (Niemeyer and Slotine 1998; Chopra et al. 2003).
+// played out evenly (after Niemeyer and Slotine 1998). The cut of the energy is this program's.
 //
 // With the impedance b of the line and r = sqrt(2 b) the device feels tau1 = -b v1 + r w, and
 // beside it a damper b that matches the line. After a tick with the motion D, in which a acted, the
@@ -8,9 +8,12 @@
 // leaves for the proxy's side. There
 //     F2 = k_vc (x_d - x2) + b (v_d - v2),  v_d = (r u - F2)/b,  and w = u - r F2/b goes back.
 // Packets carry the sums of u T and of u.u T/2. They are played out link.delay + link.jitter ticks
-// after they were sent, with packets lost a little later, and never with more energy than came. So
-// device and proxy are given nothing at any delay. A wall K is felt as 1/(1/K + 1/k_vc + (t_l +
-// T/2)/b), t_l the delay. b = b_v is matched on both sides: no mass of the line is felt.
+// after they were sent, with packets lost a little later, and never with more energy than came.
+// Both dampers are held for a tick, whose debt the device's own b_d pays: 3 b <= b_d pays for any
+// motion (2 b without the matching damper), and then device and proxy are given nothing at any
+// delay. A hand that turns round in each tick is given energy from 2 b > b_d on. A wall K is felt
+// as 1/(1/K + 1/k_vc + (t_l + T/2)/b), t_l the delay. b = b_v is matched on both sides: no mass of
+// the line is felt.
 #pragma once
 
 #include <array>
@@ -31,11 +34,11 @@ struct WaveLaw {
       .meaning =
           "device and proxy tied by waves on a line, whatever its delay (Niemeyer and Slotine "
           "1991).",
-      .verdict = "Passive through any delay; as soft as its line.",
-      .promise = Promise::port,
+      .verdict = "Stable through any delay; as soft as its line.",
+      .promise = Promise::line,
       .for_links = true,
       .for_comparison = true,
-      .through_link = "passive at any delay, jitter and loss",
+      .through_link = "delay, jitter and loss add no energy",
       .sliders = kSliders,
   };
 

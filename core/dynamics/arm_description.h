@@ -76,6 +76,9 @@ struct ArmDescription {
   // Delay of the device that this arm was identified from: from a reading to its answering torque,
   // beyond the tick [s]. Empty: not identified, the numbers are the file's.
   std::optional<double> delay;
+  // Readings of the device, by the file: step of its encoders [rad], and an assumed delay beyond
+  // the tick [s]. 0: the file says nothing of it.
+  double encoder_step = 0, assumed_delay = 0;
   std::vector<NamedFrame> frames;
   std::vector<Visual> visuals;
   std::string urdf;                   // the text that described it

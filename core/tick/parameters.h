@@ -127,8 +127,8 @@ struct DeviceSettings {
           "predictive coupling how many it has to expect."},
          {"device.encoder_step", "encoder step", "Encoder step", &P::encoder_step, "rad", 0,
           kMostEncoderStep, 0, 2e-3, false, true,
-          "Resolution of the joint encoders; 0 is exact. An Omni has 4e-4. For a real device it is "
-          "at least what the device says."},
+          "Step of the joint encoders; 0 is exact. An Omni has 4e-4 rad. For a real device Limpid "
+          "never takes less than the device reports."},
          {"device.friction", "friction", "Device friction", &P::friction, "N m", 0, 100, 0, 0.05,
           false, true, "Coulomb friction of every joint; default: the arm's file."},
          {"device.damping", "b_d", "Device damping b_d", &P::damping, "N m s/rad", 0, 100, 1e-4,
@@ -170,8 +170,8 @@ struct PlantSettings {
     return {
         {{"plant.torque_scale", "torque scale", "Scale of the motors' torque", &P::torque_scale,
           "-", 0.1, 10, 0.5, 2, true, true,
-          "Torque that the virtual arm's motors give over what they are told. No law knows it, nor "
-          "any other plant setting."},
+          "Torque that the virtual arm's motors give, divided by what they are told. No law knows "
+          "this setting, nor any other plant setting."},
          {"plant.current_loop", "current loop", "Bandwidth of the current loop", &P::current_loop,
           "Hz", 0, 1e4, 0, 1000, false, true,
           "The motors' torque follows the command as a first-order lag of this bandwidth; 0: at "

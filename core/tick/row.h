@@ -152,7 +152,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "through; sfa: of the walls' torque what it has built up"},
     {Column::solved, "/coupling/solved", ColumnWidth::one, "-",
      "how the tick was solved: 0 as usual; with the predictive law 1 with motors at their limit, 2 "
-     "contacts that did not settle one after the other; 3 not at all: the proxy stood still",
+     "contacts that did not settle one after the other; 3 no solution: the proxy stood still",
      true},
     {Column::unsettled, "/coupling/unsettled", ColumnWidth::one, "-",
      "ticks so far in which contacts, and with the predictive law motors at their limit, had no "
@@ -178,14 +178,15 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::contact_force, "/contact/force", ColumnWidth::contacts, "N",
      "force on the proxy there, over the tick"},
     {Column::compensation_torque, "/device/compensation_torque", ColumnWidth::dof, "N m",
-     "for weight, springs and friction of the device, beside tau1"},
+     "for weight, springs and friction of the device, in addition to tau1"},
     {Column::energy_compensation, "/energy/compensation", ColumnWidth::one, "J",
      "what of E_c the motors gave for weight, springs and friction of the device"},
     {Column::body_pose, "/objects/pose", ColumnWidth::poses, "m",
      "of each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z "
      "[-]"},
     {Column::body_velocity, "/objects/velocity", ColumnWidth::velocities, "m/s",
-     "of each body: x, y, z of its centre of mass's velocity, and of its angular velocity [rad/s]"},
+     "of each body: velocity of its centre of mass, x, y, z, then its angular velocity, x, y, z "
+     "[rad/s]"},
     {Column::energy_to_objects, "/energy/to_objects", ColumnWidth::if_bodies, "J",
      "what the proxy has given to bodies"},
     {Column::energy_objects, "/energy/objects", ColumnWidth::if_bodies, "J",
@@ -200,7 +201,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::objects_left_out, "/objects/left_out", ColumnWidth::if_bodies, "-",
      "points at which bodies touch beyond as many as the loop has room for: these do not push"},
     {Column::objects_stood_still, "/objects/stood_still", ColumnWidth::if_bodies, "-",
-     "ticks so far in which forces of bodies were not found: these stood still for them"},
+     "ticks so far in which the solver found no forces for bodies: they stood still in these"},
     {Column::magnet, "/objects/held", ColumnWidth::if_bodies, "-",
      "number of the body that the magnet held over the tick, from 1 on; 0 none"},
     {Column::hand_magnet, "/hand/magnet", ColumnWidth::if_bodies, "-",

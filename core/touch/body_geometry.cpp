@@ -273,6 +273,7 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
     const btVector3 size = high - low;
     solid->least = std::min({size.x(), size.y(), size.z()});
   } else {
+    static_assert(kShapes == 7);
     return;  // a joint's stop has no place in space
   }
   solid->at.setCollisionShape(solid->shape.get());

@@ -87,6 +87,7 @@ struct JointStop {
 };
 
 using Shape = std::variant<Plane, Sphere, Box, Cylinder, Capsule, Mesh, JointStop>;
+inline constexpr std::size_t kShapes = std::variant_size_v<Shape>;
 
 // A part of a body made of several shapes, in the body's frame.
 struct BodyPart {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/tick/parameters.h"
 #include "devices/files/rpy.h"
 #include "devices/files/text_file.h"
 #include "devices/files/urdf_chain.h"
@@ -206,6 +207,17 @@ void read_warmth(const TiXmlElement& element, const UrdfPlaces& places, ArmDescr
   joint->warming = *time;
 }
 
+void read_readings(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
+  const Own own(element, places);
+  const bool slides = std::ranges::all_of(
+      arm.joints, [](const Joint& j) { return j.kind == Joint::Kind::prismatic; });
+  const double unit = slides ? kSlideUnit : 1;
+  if (const auto step = own.number("step", 0, kMostEncoderStep * unit, slides ? "m" : "rad")) {
+    arm.encoder_step = *step / unit;
+  }
+  if (const auto delay = own.number("delay", 0, kLongestDelay, "s")) arm.assumed_delay = *delay;
+}
+
 void read_spring(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
   const Own own(element, places);
   const std::string name = joint_named(own, element, places);
@@ -370,6 +382,10 @@ void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescriptio
     for (auto* warmth = own->FirstChildElement("warmth"); warmth;
          warmth = warmth->NextSiblingElement("warmth")) {
       read_warmth(*warmth, places, arm);
+    }
+    for (auto* readings = own->FirstChildElement("readings"); readings;
+         readings = readings->NextSiblingElement("readings")) {
+      read_readings(*readings, places, arm);
     }
   }
 }

@@ -86,13 +86,16 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places);
 //     <limpid tip="LINK" gravity="0 0 -9.81" delay="0.002">
 //       <spring joint="JOINT" stiffness="0.12" offset="0.01"/>
 //       <warmth joint="JOINT" continuous="0.17" time="60"/>
+//       <readings step="4.19e-4" delay="0.001"/>
 //     </limpid>
 //
 // gravity [m/s^2] in the base's frame, as the arm stands; delay [s] of the device that the arm was
 // identified from. Springs in N m/rad and N m, of slides in N/m and N: each pulls its joint by
 // -(stiffness x + offset). Warmth: the torque that the joint's motor bears for hours, in N m, of
 // slides in N, at most its effort; and the time constant with which it warms up and cools [s].
-// The last one holds where something is said twice.
+// Readings: the step of the device's encoders in rad, of an arm that only slides in m; and the
+// delay beyond the tick that is assumed of the device [s]. The last one holds where something is
+// said twice.
 //
 // own_tip() returns the link named as the tip; empty: none.
 std::string own_tip(const TiXmlElement& robot);

@@ -46,7 +46,9 @@ void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexc
   try {
     become_realtime(ask);
     if (sched_getscheduler(0) == SCHED_IDLE) {
-      throw HidError("its thread would run behind all others: whoever opened it had stepped back");
+      throw HidError(
+          "its thread would have a lower priority than all others, as the thread that opened it "
+          "had lowered its own");
     }
     const std::vector<Report>& stop = protocol_->stop_reports();
     if (traits_.pushes && !path_.empty()) {

@@ -55,7 +55,7 @@ class SocketTransport : public HidTransport {
   explicit SocketTransport(const std::string& path) : file_(connect_to(path)) {
     if (!take_description(kFirstPacket)) {
       close(file_);
-      throw HidError(path + ": it hangs up; another program may use it");
+      throw HidError(path + ": it closes the connection; another program may be using it");
     }
   }
   SocketTransport(const SocketTransport&) = delete;

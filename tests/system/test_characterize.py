@@ -43,6 +43,16 @@ class Characterize(SystemTest):
         for end in ("report.html", "characterize.svg", "characterize.csv"):
             self.assertTrue((out / end).exists(), end)
 
+    def test_a_file_that_says_what_its_device_measures(self) -> None:
+        out = self.folder / "touch"
+        result = limpid("characterize", "touch.urdf", "--out", out)
+        self.assertEqual(result.status, 0, result.err)
+        numbers = self.numbers(out)
+        step, delay = numbers["encoder_step"], numbers["delay"]
+        self.assertEqual((step["value"], step["from"], step["assumed"]), (4.19e-4, "the arm's file", False))
+        self.assertEqual((delay["value"], delay["assumed"]), (1, True))
+        self.assertIn("assumed by the arm's file", delay["from"])
+
     def test_a_device_that_is_never_pushed(self) -> None:
         book = self.folder / "config/limpid/devices.toml"
         book.parent.mkdir(parents=True)

@@ -209,7 +209,7 @@ class Run(WithAnArm):
                 before = file.read_bytes()
                 result = limpid(*words, "--force")
                 self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
-                self.assertIn("is what the command reads", result.err)
+                self.assertIn("the command reads this file", result.err)
                 self.assertEqual(file.read_bytes(), before)
 
     def test_a_scene_that_came_along_is_found_by_its_name(self) -> None:

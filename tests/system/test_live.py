@@ -94,8 +94,8 @@ class Live(unittest.TestCase):
                 (("--yes",), "no device is chosen"),
                 (("nothing", "--yes"), "nothing: is not connected"),
                 ((), "nobody can be asked"),
-                (("--yes", "--hand", "x.csv"), "--hand: not beside --live"),
-                (("--yes", "--twin"), "--twin: not beside --live")):
+                (("--yes", "--hand", "x.csv"), "--hand: not together with --live"),
+                (("--yes", "--twin"), "--twin: not together with --live")):
             with self.subTest(words=words):
                 result = limpid("run", "--live", *words)
                 self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
@@ -291,7 +291,7 @@ class Live(unittest.TestCase):
     def test_serve_leaves_the_hand_to_a_person(self) -> None:
         result = limpid("serve", "x", "--live", "socket:replay", "--hand", ASSETS / "hands/touch.csv")
         self.assertEqual(result.status, 2)
-        self.assertIn("--hand: not beside --live", result.err)
+        self.assertIn("--hand: not together with --live", result.err)
 
 
 if __name__ == "__main__":

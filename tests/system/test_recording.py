@@ -103,7 +103,7 @@ class Recording(WithAnArm):
                 self.assertEqual(result.status, 1, result.err + result.out)
                 self.assertEqual(len(result.error_lines), 1, result.err)
                 said = re.search(
-                    r"unstable from t = (\d+\.\d{3}) s on: "
+                    r"unstable since t = (\d+\.\d{3}) s: "
                     r"the (torque|speed|distance) .* joint [123] (grew beyond|is not finite)",
                     result.err,
                 )

@@ -75,7 +75,7 @@ class Headless(WithAnArm):
         for option in ("--twin", "--lane3"):
             result = limpid("run", "--live", "--yes", option)
             self.assertEqual(result.status, 2, result)
-            self.assertIn(f"{option}: not beside --live", result.err)
+            self.assertIn(f"{option}: not together with --live", result.err)
 
     def test_what_is_no_setting_is_refused_before_anything_is_written(self) -> None:
         for wrong in ("coupling.etta=1", "coupling.eta=-1", "loop.tick=0.002"):

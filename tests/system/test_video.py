@@ -125,7 +125,7 @@ class Video(SystemTest):
         data = out.read_bytes()
         self.assertEqual(struct.unpack("<6sHH", data[:10]), (b"GIF89a", 320, 180))
         self.assertIn(b"NETSCAPE2.0\x03\x01\x00\x00", data)
-        self.assertEqual(data.count(b"\x21\xf9\x04"), 3, "0.2 s at 15 pictures a second")
+        self.assertEqual(data.count(b"\x21\xf9\x04"), 3, "0.2 s at 15 pictures per second")
 
     def test_what_is_there_is_replaced_only_if_forced(self) -> None:
         out = self.out(".mp4")

@@ -128,8 +128,8 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
   const TipLimits::Wall& mine = tip_.walls[static_cast<std::size_t>(p.kind)];
   tooltip(fmt::format("How stiff a wall each coupling renders well at this pose, along the tip's "
                       "least damped direction.\n{}: {:.0f} N/m, {}.\nGrey line: {:.0f} N/m, the "
-                      "most that any linear law can show and be passive in every hand "
-                      "(b_d/(T/2 + delay)). "
+                      "most that a plain spring can show and be passive in every hand "
+                      "(b_d/(T/2 + delay), Colgate and Schenkel). "
                       "Coloured line: the stiffest thing in this scene.",
                       info(p.kind).label, mine.stiffness, mine.bound, tip_.every_hand)
               .c_str());

@@ -53,8 +53,8 @@ std::string proxy_needs(const Parameters& p, const Analysis& a) {
 
 std::string device_broken(const Parameters& p, const Analysis& a) {
   if (!a.condition3.known) {
-    return "Condition (3): no bound is known where packets are lost (link loss): what is held for "
-           "want of a newer one may be of any age.\nThe tank law is passive all the same.";
+    return "Condition (3): no bound is known where packets are lost (link loss): the last packet "
+           "that is held may be of any age.\nThe tank law is passive all the same.";
   }
   if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
   return fmt::format("Condition (3): b_d is {:.4g} N m s/rad short of {}.\nLower k_vc or b_vc.",
@@ -300,7 +300,7 @@ void draw_shares(const CouplingReading& now, const LawInfo& law) {
           "A part of the walls' torque is held back: they feel softer than set.", law.torque_share);
   }
   if (law.damper_share != nullptr) {
-    share("Damper not needed", now.damping_governor, "It brakes what the walls gave.",
+    share("Damper not needed", now.damping_governor, "It takes back what the walls gave.",
           law.damper_share);
   }
 }
@@ -433,11 +433,12 @@ void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis
   const EnergyAccount& energy = now.energy;
   const auto [own, broken, at_fault] = own_energy(now, p, a);
   read_out("Energy given E_c", energy_text(now.energy_total), {},
-           "What the coupling gave since the start, with the device's own damping, as the plots "
-           "show it. Below it stands whose it is.");
-  read_out("The coupling's own", energy_text(own), broken,
-           "Of E_c, what the coupling itself gave: it stays below zero while that is passive. What "
-           "switching and motors at their limit put in is counted apart.");
+           "Energy that the coupling gave since the start, with the device's own damping, as in "
+           "the plots. The lines below say what gave it.");
+  read_out(
+      "The coupling's own", energy_text(own), broken,
+      "The part of E_c that the coupling itself gave. It stays below zero while the coupling is "
+      "passive. What switching laws and motors at their limit put in is counted separately.");
   const auto apart = [](const char* label, double joules, const char* help) {
     if (std::abs(joules) > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
   };
@@ -447,7 +448,7 @@ void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis
   apart("Before the last change", energy.forgiven(),
         "Of E_c: what settings gave that are no longer there.");
   apart("From compensation", now.compensation,
-        "Of E_c: what the motors gave for the device's weight, springs and friction.");
+        "The part of E_c that the motors gave for the device's weight, springs and friction.");
   if (at_fault) return;
   apart("From motors at their limit", energy.by_limits(),
         "Of E_c: a motor at its limit gives another torque than the coupling asks for. It is no "
@@ -474,8 +475,8 @@ void draw_break(bool broken, const Act& act) {
   if (pressed) {
     act(broken ? "coupling.end_break" : "coupling.break_passivity");
   }
-  tooltip(broken ? "Puts all settings back to what they were before. So do C, Ctrl+Z, and another "
-                   "law, scene, arm or recording."
+  tooltip(broken ? "Puts all settings back as they were before. C, Ctrl+Z and a change of law, "
+                   "scene, arm or recording do the same."
                  : "Takes the proposed law, a stiff grip without damping, and so small an inertia "
                    "\xCE\xB7 that the loop gives energy without end. A hand holds the arm: it "
                    "begins to tremble, and E_c climbs. Repair puts everything back.");
@@ -521,8 +522,8 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
            "How far the tips of your device and of its avatar, the proxy, are apart.");
   read_out("Apart in the joints",
            fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
-           "Coordination error |x_E|: the joints' angles of the device less those of the proxy. "
-           "The first plot shows it.");
+           "Coordination error |x_E|: joint angles of the device minus those of the proxy. The "
+           "first plot shows it.");
   read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
            "How hard the scene pushes on the proxy.");
   const OwnEnergy energy = own_energy(reading, p, now.analysis);

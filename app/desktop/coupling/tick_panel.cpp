@@ -15,7 +15,7 @@ namespace {
 
 const char* solved_text(double solved) {
   constexpr std::array kTexts{"one after the other", "with motors at their limit", "all at once",
-                              "not at all: the proxy stood still"};
+                              "no solution: the proxy stood still"};
   return kTexts[static_cast<std::size_t>(std::clamp(solved, 0.0, 3.0))];
 }
 
@@ -75,7 +75,8 @@ void draw_tick(const Stage& stage, std::span<const double> row) {
     read_out("awake", fmt::format("{:.0f} of {}", one(Column::objects_awake), layout.bodies()), {},
              "Objects that move");
     read_out("objects gained", millijoules(one(Column::objects_gain)), {},
-             "What they have beyond what they had and were given; less than 0: they lost it");
+             "Energy of the objects, minus what they had at first and what they were given; below "
+             "0: they lost it");
   }
   read_out("stored in contacts", millijoules(one(Column::contact_potential)));
   read_out("controller, E_c", millijoules(one(Column::energy_total)));

@@ -77,9 +77,10 @@ void draw_time_histogram(const LatencyHistogram& histogram, double late, const c
 LateTicks late_ticks(bool motors) {
   if (motors) {
     return {"Ticks that began after the next one was due",
-            "Ticks given up because the one before began so late; with motors none is caught up",
-            "Ticks that were due while another was late were given up at once: motors never get "
-            "several ticks in a burst. The loop went on that much later."};
+            "Ticks skipped because the one before began too late; with motors they are never made "
+            "up for",
+            "Ticks that were due while another one was late were skipped: motors never get several "
+            "ticks in a burst. The loop went on that much later."};
   }
   return {"Ticks that began after the next one was due; they are caught up",
           "Ticks given up after long stalls",
@@ -158,8 +159,8 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
            : assumed ? "not measured"
                      : milliseconds(p.delay * p.tick) + ", as set",
            {},
-           "From a reading to the torque that answers it, beyond the tick. limpid identify finds "
-           "it; without it the walls below are those of none.");
+           "Time from a reading to the torque that answers it, beyond the tick. limpid identify "
+           "measures it; until then the walls below assume no delay.");
   const auto law = static_cast<std::size_t>(p.kind);
   const TipLimits::Wall& wall = now_.walls[law];
   const auto pair = [](double now, double prompt) {
@@ -173,7 +174,7 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
   read_out("passive in any hand",
            pair(every_hands_wall(now_.tip, T, now_.delay), prompt_.every_hand), {},
            "b_d / (T/2 + delay), T the longer of tick and readings: the stiffest wall that a "
-           "linear law can render and be passive in every hand");
+           "plain spring can render and be passive in every hand");
 }
 
 }  // namespace limpid

@@ -40,7 +40,7 @@ void Tuning::toggle_twin() {
   run_lanes(before > 1 ? 1 : 2);
   notices_.say(before == 1 ? "Two couplings on one hand. The tabs choose which one the sliders set."
                : before == 2 ? "The twin is gone. B brings it back."
-                             : "One run is left. B brings the second one back.");
+                             : "Only one run is shown. B shows the second one again.");
 }
 
 void Tuning::add_lane() {
@@ -83,7 +83,8 @@ void Tuning::reset() {
   settings_.parameters() = fitted(live_.stage().arm());
   const bool usual = settings_.parameters() == Parameters{};
   notices_.say(usual
-                   ? "All settings have their usual values again, the paper's where it gives them."
+                   ? "All settings are back at their default values. Where the paper gives a "
+                     "value, that is the default."
                    : "All settings have their usual values again, with gains fitted to this arm.");
 }
 

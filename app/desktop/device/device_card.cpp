@@ -118,8 +118,8 @@ void draw_axes(DeviceController& devices, StepState state) {
     ImGui::TextWrapped("%s", devices.problem().c_str());
     if (noted_button(kCheckAxes)) devices.start_check();
     tooltip(
-        "Pushes each axis with a tenth of the force, to see that it moves, and which way. Let the "
-        "device stand free, the hands beside it; Esc stops it.");
+        "Pushes each axis with a tenth of the force to see whether it moves, and which way. Let go "
+        "of the device; Esc stops it.");
   }
   end_step();
 }
@@ -142,7 +142,7 @@ bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
   }
   if (notes.torque_scale != 1) {
     read_out("motors", fmt::format("give {:.3f} of what they are told", notes.torque_scale), {},
-             "Measured with a load at the tip; what they are told takes it into account.");
+             "Measured with a load at the tip; what they are told is scaled by it.");
   }
   const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
   tooltip("Moves it by itself and finds inertia, friction, weight and delay.");

@@ -173,7 +173,7 @@ bool joystick_settings(DeviceNotes& notes) {
 // Returns true once a limit was changed.
 bool limit_sliders(SafetyLimits& limits) {
   if (!ImGui::TreeNode("Limits of force")) return false;
-  tooltip("They can be lowered for this device; as they are at first is the most they can be.");
+  tooltip("They can be lowered for this device. Their first values are the largest allowed.");
   bool changed = false;
   for (const auto& limit : kSafetyLimits) changed = settled_slider(limit, limits, 9) || changed;
   ImGui::TreePop();

@@ -131,7 +131,7 @@ bool draw_found(IdentifyController& controller) {
       controller.keep();
       return controller.wrong().empty();
     }
-    tooltip("From now on the device is taken for what was found.");
+    tooltip("From now on Limpid uses the values that were found for this device.");
     ImGui::SameLine();
   }
   if (noted_button(controller.simulated() ? kAgain : "Leave it as it was")) controller.stop();
@@ -164,7 +164,9 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
   down_ = static_cast<Down>(down);
   ImGui::Checkbox(kWithLoad, &with_load_);
   note_place(kWithLoad);
-  tooltip("A mass that you know tells what the motors really give of what they are told.");
+  tooltip(
+      "With a known mass at the tip Limpid measures how much of the commanded torque the motors "
+      "really give.");
   if (with_load_) {
     ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
     ImGui::SliderFloat(kLoad, &load_, static_cast<float>(1e3 * kLeastLoad), 300, "%.0f g",

@@ -132,10 +132,10 @@ bool Playback::take_results() {
     if (!note.empty() && !std::exchange(told_of_build_, true)) notices_.say(note);
     shown_->show(std::move(*again));
     if (end.diverged) {
-      notices_.say(fmt::format("The re-run is unstable from {:.3f} s on: {}. It is shown up to its "
-                               "end.",
-                               end.diverged_at, end.why),
-                   true);
+      notices_.say(
+          fmt::format("The re-run is unstable since {:.3f} s: {}. It is shown up to its end.",
+                      end.diverged_at, end.why),
+          true);
     }
   }
   for (const auto& [work, file] : {std::pair(&exporting_, &table_), {&filming_, &film_}}) {

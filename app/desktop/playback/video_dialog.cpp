@@ -53,7 +53,7 @@ void VideoDialog::draw_choices(const PlayedSession& session) {
   std::tie(request_.width, request_.height) = choose(
       "size", std::pair{request_.width, request_.height}, kSizes,
       [](std::pair<int, int> size) { return fmt::format("{} x {}", size.first, size.second); });
-  request_.fps = choose("pictures a second",
+  request_.fps = choose("pictures per second",
                         request_.fps.value_or(request_.kind == Kind::gif ? kOfGif : kOfVideo),
                         kRates, [](int rate) { return fmt::format("{}", rate); });
   if (request_.kind == Kind::gif) request_.fps = std::min(*request_.fps, kMostOfGif);

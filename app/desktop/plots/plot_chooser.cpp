@@ -211,14 +211,16 @@ void PlotChooser::draw_list(PlotChoice& choice, const TraceChannels& channels) c
       ImGui::PopFont();
       heading = group;
     }
-    draw_channel(choice, *channel);
+    draw_channel(choice, *channel,
+                 looked_at ? channel->group + ": " + channel->name : channel->name);
   }
 }
 
-void PlotChooser::draw_channel(PlotChoice& choice, const ChannelInfo& channel) const {
+void PlotChooser::draw_channel(PlotChoice& choice, const ChannelInfo& channel,
+                               const std::string& name) const {
   ImGui::PushID(channel.key.c_str());
   bool on = chosen(choice, channel.key);
-  if (ImGui::Checkbox(channel.name.c_str(), &on)) toggle(choice, channel.key);
+  if (ImGui::Checkbox(name.c_str(), &on)) toggle(choice, channel.key);
   note_place(channel.key.c_str());
   if (ImGui::BeginDragDropSource()) {
     ImGui::SetDragDropPayload(kDraggedChannel, channel.key.data(), channel.key.size());

@@ -28,7 +28,7 @@ class PlotChooser {
   void draw_kinds(PlotChoice& choice, const TraceChannels& channels);
   void draw_filter(PlotChoice& choice, const TraceChannels& channels);
   void draw_list(PlotChoice& choice, const TraceChannels& channels) const;
-  void draw_channel(PlotChoice& choice, const ChannelInfo& channel) const;
+  void draw_channel(PlotChoice& choice, const ChannelInfo& channel, const std::string& name) const;
 
   bool was_open_ = false, done_ = false;
   std::string filter_;

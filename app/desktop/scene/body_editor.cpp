@@ -93,7 +93,7 @@ std::string_view edit_limits(BodyJoint& joint) {
     joint.high = limited ? room : kInfinity;
     what = "stops";
   }
-  tooltip("Where its way ends on both sides; 0 is where it starts.");
+  tooltip("Limits of its motion on both sides; 0 is where it starts.");
   if (!limited) return what;
   constexpr double kApart = 1e-4;  // least distance of the stops [m or rad]
   const double far = 100;
@@ -231,7 +231,7 @@ std::string_view edit_moments(Object& object) {
     body.center = own ? std::optional(mass_properties(object).center) : std::nullopt;
     what = "own center";
   }
-  tooltip("Otherwise that of a solid of its shape and its parts.");
+  tooltip("Otherwise it has that of a solid of its shape and its parts.");
   if (body.center) {
     Vec3 center = 1e3 * *body.center;
     if (drag3("Centre of mass x, y, z [mm]", center, 0.1, 1e3 * kPosition.minimum,
@@ -247,7 +247,7 @@ std::string_view edit_moments(Object& object) {
         own ? std::optional<Vec3>(mass_properties(object).inertia.diagonal()) : std::nullopt;
     what = "own inertia";
   }
-  tooltip("Otherwise those of a solid of its shape and its parts.");
+  tooltip("Otherwise it has those of a solid of its shape and its parts.");
   if (!body.inertia) return what;
   constexpr double kShown = 1e7;  // g cm^2 in a kg m^2
   Vec3 shown = kShown * *body.inertia;
@@ -291,7 +291,8 @@ void draw_springs(Document& document) {
   if (count_bodies(document.scene()) == 0) return;
   Vec3 gravity = document.scene().gravity;
   if (drag3("Gravity x, y, z [m/s\xC2\xB2]", gravity, 0.05, kGravity.minimum, kGravity.maximum,
-            "%.2f", "Of what moves. On the Moon it is 1.62, here 9.81, downwards.") &&
+            "%.2f",
+            "Gravity on everything that moves: on Earth 9.81, on the Moon 1.62, downwards.") &&
       document.may_edit()) {
     document.editor().set_gravity(gravity);
   }

@@ -19,9 +19,10 @@ struct Hint {
 };
 constexpr std::array kBefore{
     Hint{"left drag at the tip",
-         "pull the arm, as deep as what the mouse comes to; wheel meanwhile: nearer and farther; "
-         "Shift keeps the depth"},
-    Hint{"Ctrl+left drag", "pull what moves, without the arm; wheel meanwhile: nearer and farther"},
+         "pull the arm, at the depth of what is under the mouse; turn the wheel meanwhile for "
+         "nearer and farther; Shift keeps the depth"},
+    Hint{"Ctrl+left drag",
+         "pull what moves, without the arm; turn the wheel meanwhile for nearer and farther"},
     Hint{"left drag elsewhere, right drag", "turn the camera"},
     Hint{"middle drag, Shift+right drag", "move the camera"},
     Hint{"wheel", "zoom to the cursor"},

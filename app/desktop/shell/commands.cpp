@@ -12,6 +12,7 @@
 #include "app/desktop/shell/desktop.h"
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
+#include "devices/files/urdf_file.h"
 
 namespace limpid {
 namespace {
@@ -148,18 +149,17 @@ void end_recording_and_quit(Desktop& d) {
   d.recording_may_end = d.asked.close = true;
 }
 
-// Step of a Touch's encoders, which its file cannot say [rad].
-constexpr double kStepOfTouch = 4.19e-4;
-
+// A step that is the present arm's goes with it.
 void open_ideal(Desktop& d) {
   double& step = d.settings.parameters().encoder_step;
-  if (step == kStepOfTouch) step = 0;
+  if (step == d.live.stage().arm().encoder_step) step = 0;
   d.world.open_arm(default_device());
 }
 
 void open_touch(Desktop& d) {
-  d.settings.parameters().encoder_step = kStepOfTouch;
-  d.world.open_arm(data_dir() / "assets/devices/touch.urdf");
+  const std::filesystem::path file = data_dir() / "assets/devices/touch.urdf";
+  d.settings.parameters().encoder_step = read_urdf(file).encoder_step;
+  d.world.open_arm(file);
   d.notices.say("A Touch has 52 g at the tip, friction of 0.26 N and encoder steps of 0.42 mrad.");
 }
 
@@ -371,11 +371,11 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.dialog.open("save scene"); }),
     row("export.begin", "Export...", "File", "Ctrl+E",
         "export a plot, a table, a picture or a video", begin_export, {.apart = true}),
-    row("export.open", "Open what was exported", nullptr, nullptr, nullptr,
+    row("export.open", "Open the exported file", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.open_written(); }, {.why_not = nothing_written}),
-    row("export.show", "Show what was exported in its folder", nullptr, nullptr, nullptr,
+    row("export.show", "Show the exported file in its folder", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.show_written(); }, {.why_not = nothing_written}),
-    row("export.forget", "Say no more of what was exported", nullptr, nullptr, nullptr,
+    row("export.forget", "Hide the line about the export", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.forget(); }, {.why_not = nothing_written}),
     row("window.save_picture", "Save picture", "File", "F12", "save a picture of the window",
         [](Desktop& d) { d.asked.picture = sessions_dir() / picture_name(); }),

@@ -355,8 +355,8 @@ Focus Desktop::focus() const {
 void Desktop::toggle_force() {
   if (!live.force_armed() && playback.on() && live.loop().device_in_place()) {
     return notices.say(
-        "A recording is on the screen, not what the device would push in. Go back to live "
-        "(Backspace), then arm the force.",
+        "A recording is on the screen, not the scene in which the device would push. Go back to "
+        "live (Backspace), then arm the force.",
         true);
   }
   live.toggle_force();

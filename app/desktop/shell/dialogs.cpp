@@ -288,8 +288,8 @@ DrawDialog preset_list(Desktop& d) {
       d, d.tuning.presets,
       {.title = "Presets",
        .what = "preset",
-       .help = "Coupling and gains by name; of several runs those that the sliders set. Ctrl+Z "
-               "brings back what was before."},
+       .help = "Coupling and gains by name; with several runs, those of the run that the sliders "
+               "set. Ctrl+Z brings back what was before."},
       [](Desktop& desktop, const std::string& name) { desktop.tuning.use_preset(name); },
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
 }

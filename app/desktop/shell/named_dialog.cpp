@@ -110,7 +110,8 @@ void NamedDialog::draw_changes(NamedTexts& texts) {
 NamedDialog::Asked NamedDialog::draw_name(const NamedTexts& texts, bool entered) {
   const bool known = texts.find(name_) != nullptr;
   const bool replaces = known && texts.may_change(name_);
-  const bool pressed = ImGui::Button(replaces ? "Replace by what is now" : "Save what is now");
+  const bool pressed =
+      ImGui::Button(replaces ? "Replace by the present one" : "Save the present one");
   if (!pressed && !entered) return {};
   if (!pressed && known) return {Request::use, name_};
   if (name_.empty()) {

@@ -33,7 +33,7 @@ void draw_unsaved_question(bool& open, bool has_file, const Act& act) {
 void draw_quit_question(bool& open, const Act& act) {
   if (!begin_modal("End the recording?", open, {0, 0})) return;
   ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
-  ImGui::TextUnformatted("A recording is under way. It is kept as far as it has come.");
+  ImGui::TextUnformatted("A recording is under way. What is recorded so far is kept.");
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
   bool end = accepted();

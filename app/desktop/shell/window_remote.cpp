@@ -226,7 +226,9 @@ Answer WindowRemote::play(const fs::path& file) {
 
 Answer WindowRemote::record(const Keys& keys) {
   if (d_.live.recording()) throw RemoteError("record: a recording is under way; stop it before");
-  if (!d_.live.may_record()) throw RemoteError("record: the last one is being closed");
+  if (!d_.live.may_record())
+    throw RemoteError(
+        "record: the previous recording is still being written; try again in a moment");
   fs::path file;
   const bool replaces = keys.flag_or("force", false);
   if (keys.has("file")) {

@@ -226,6 +226,7 @@ void put_shape(SceneText& text, const Shape& shape) {
     put_model(text, *mesh);
     put_fields(text, kMeshFields, *mesh);
   }
+  static_assert(kShapes == 7 && kShapeKeys.size() == 4);
 }
 
 void put_joint(SceneText& text, const BodyJoint& joint) {

@@ -362,8 +362,8 @@ class RunReader {
                      scaled, rounding_ ? roundings_.data() + k * scaled.size() : nullptr, layout_,
                      row)) {
         why =
-            "not of these numbers: damaged, or they were changed by another program (which then "
-            "has to delete /check)";
+            "not of these numbers: the file is damaged, or another program changed it (one that "
+            "changes values on purpose deletes /check)";
       }
       if (why == nullptr) continue;
       if (is_leftover(file_)) return k;

@@ -128,9 +128,10 @@ CheckSums::Checked CheckSums::check(const RowLayout& layout, std::span<const dou
       if (found[column] == wanted[i]) continue;
       const char* path = kColumnInfo[column].path;
       if (!hdf5::has(root_, path, file_)) continue;  // somebody left it out
-      return {at, fmt::format("{}: {} are not as they were recorded: damaged, or changed by "
-                              "another program (which then has to delete /check)",
-                              path, these)};
+      return {at,
+              fmt::format("{}: {} differ from what was recorded: the file is damaged, or another "
+                          "program changed it (one that changes values on purpose deletes /check)",
+                          path, these)};
     }
   }
   return {size, ""};

@@ -118,7 +118,7 @@ TEST_F(Commands, WriteNothingOverWhatTheyRead) {
     const std::string before = text_of(file);
     std::vector<std::string> forced = words;
     forced.emplace_back("--force");
-    EXPECT_THAT(refused(forced), HasSubstr("is what the command reads")) << file;
+    EXPECT_THAT(refused(forced), HasSubstr("the command reads this file")) << file;
     EXPECT_EQ(text_of(file), before);
   }
 }
@@ -162,7 +162,7 @@ TEST_F(Commands, RunWarnsOfEnergyAndFailsWhereItIsUnstable) {
       run({"run", "--coupling", "proposed", "--eta", "0.05", "--set", "hand.stiffness=3000",
            "--set", "hand.damping=0", "--set", "device.torque_limit=1000"});
   EXPECT_EQ(lost.status, 1);
-  EXPECT_THAT(lost.err, HasSubstr("limpid: unstable from t = "));
+  EXPECT_THAT(lost.err, HasSubstr("limpid: unstable since t = "));
 }
 
 TEST_F(Commands, RunHasVariationsOfPathsAlone) {
@@ -203,10 +203,10 @@ TEST_F(Commands, RunOnADeviceHasNoOtherHand) {
        {std::pair("--hand", "touch.csv"), std::pair("--variation", "1"), std::pair("--twin", "")}) {
     std::vector<std::string> words{"run", "--live", "--yes", option};
     if (*value != '\0') words.emplace_back(value);
-    EXPECT_THAT(refused(words), HasSubstr(std::string(option) + ": not beside --live"));
+    EXPECT_THAT(refused(words), HasSubstr(std::string(option) + ": not together with --live"));
   }
   EXPECT_THAT(refused({"run", "--live", "--yes", "--json"}),
-              HasSubstr("--json: not beside --live"));
+              HasSubstr("--json: not together with --live"));
   EXPECT_THAT(refused({"run", "--live", "--yes"}), HasSubstr("no device is chosen"));
   EXPECT_THAT(refused({"run", "--live", "nothing:1", "--yes"}), HasSubstr("is not connected"));
 }
@@ -265,7 +265,8 @@ TEST_F(Commands, InfoWritesATableBesideWhereItIsFrom) {
   EXPECT_THAT(beside["dc:description"].get<std::string>(), StartsWith("limpid "));
   EXPECT_THAT(refused({"info", "a.h5", "--csv", "a.csv"}), HasSubstr("a.csv"));
   EXPECT_THAT(refused({"info", "a.h5", "--csv", "none/a.csv"}), HasSubstr("none/a.csv"));
-  EXPECT_THAT(refused({"info", "a.h5", "--csv", "-", "--json"}), HasSubstr("--json: not beside"));
+  EXPECT_THAT(refused({"info", "a.h5", "--csv", "-", "--json"}),
+              HasSubstr("--json: not together with"));
   const Said both = run({"info", "a.h5", "--csv", "b.csv", "--json"});
   EXPECT_EQ(both.status, 0);
   EXPECT_EQ(json::parse(both.out)["runs"][0]["ticks"], 50);

@@ -118,7 +118,7 @@ TEST_F(Work, OfAnExperimentHasItsOwnWorld) {
         std::pair("--set", "coupling.eta=1"), std::pair("--coupling", "tank"),
         std::pair("--eta", "1"), std::pair("--alpha", "1")}) {
     EXPECT_THAT(refused({"experiment", "inertia", "--out", "o", option, value}),
-                HasSubstr(std::string(option) + ": only beside --live"))
+                HasSubstr(std::string(option) + ": only together with --live"))
         << option;
   }
   const std::string unknown = refused({"experiment", "banana", "--out", "o"});
@@ -128,7 +128,7 @@ TEST_F(Work, OfAnExperimentHasItsOwnWorld) {
   EXPECT_EQ(run({"experiment", "inertia", "--out", "o", "--threads", "257"}).status, 2);
   EXPECT_FALSE(fs::exists("o"));
   EXPECT_THAT(refused({"experiment", "banana", "--out", "o", "--live", "--yes"}),
-              HasSubstr("\"banana\": not beside --live"));
+              HasSubstr("\"banana\": not together with --live"));
 }
 
 constexpr const char* kStory = R"(title = "Short"
@@ -328,7 +328,7 @@ TEST_F(Work, OfServingEndsWithItsInput) {
   EXPECT_THAT(said.out, ContainsRegex("^limpid listens on .*/home/limpid/here.control\n$"));
   EXPECT_THAT(refused({"serve", "a/b", "--until-eof"}), HasSubstr("a/b"));
   EXPECT_THAT(refused({"serve", "--live", "--hand", "touch.csv"}),
-              HasSubstr("--hand: not beside --live"));
+              HasSubstr("--hand: not together with --live"));
 }
 
 }  // namespace

@@ -195,12 +195,15 @@ TEST(HandRange, SaysOfEveryLawWhatIsKnown) {
     EXPECT_FALSE(each.two_port_why.empty());
   }
   using enum CouplingKind;
-  for (const CouplingKind passive : {standard, predictive, tank, eba, wave}) {
+  for (const CouplingKind passive : {standard, predictive, tank, eba}) {
     EXPECT_TRUE(std::isinf(*law(all, passive).in_range.up_to)) << name(passive);
   }
+  Parameters soft_line;
+  soft_line.wave_b = 0.0039;  // less than a third of the built-in arm's 0.012
+  EXPECT_TRUE(std::isinf(*law(judged(soft_line, 300, 3000), wave).in_range.up_to));
   EXPECT_FALSE(law(all, proposed).in_any_hand.up_to) << "(25) is about free motion";
   EXPECT_GT(*law(all, proposed).in_range.up_to, 500);
-  for (const CouplingKind open : {popc, tdpn, sfa}) {
+  for (const CouplingKind open : {popc, tdpn, sfa, wave}) {
     EXPECT_FALSE(law(all, open).in_range.up_to) << name(open);
     EXPECT_FALSE(law(all, open).in_any_hand.up_to) << name(open);
     EXPECT_FALSE(law(all, open).two_port) << name(open);

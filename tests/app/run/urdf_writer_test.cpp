@@ -31,11 +31,15 @@ TEST_P(UrdfOf, AnArmReadsAsThatArm) {
   }
   arm.gravity = Vec3(1, -2, -9.5);
   arm.delay = 0.00213;
+  arm.encoder_step = 3.3e-4;
+  arm.assumed_delay = 0.0017;
   const ArmDescription read = parse_urdf(urdf_text(arm, "a remark -- <of> it"), "text", {});
   EXPECT_EQ(read.name, arm.name);
   ASSERT_EQ(read.dof(), 4);
   EXPECT_EQ(read.gravity, arm.gravity);
   EXPECT_EQ(read.delay, arm.delay);
+  EXPECT_DOUBLE_EQ(read.encoder_step, arm.encoder_step);
+  EXPECT_EQ(read.assumed_delay, arm.assumed_delay);
   EXPECT_LT((read.tip.matrix() - arm.tip.matrix()).norm(), 1e-9);
   for (std::size_t i = 0; i < 4; ++i) {
     const Joint &a = arm.joints[i], &b = read.joints[i];

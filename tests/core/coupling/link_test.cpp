@@ -340,5 +340,41 @@ TEST(Link, MakesEachSideGoByWhatWasSoADelayAgo) {
   }
 }
 
+// The dampers of line and match are held for a tick. A hand that turns round in each of them is
+// given 2 b D^2/T in one. The device's own damping takes b_d D^2/T of it; no wave is under way.
+TEST(Wave, GivesToAHandThatTurnsRoundInEachTickWhatDampersHeldForATickGive) {
+  const double T = 0.001, b_d = 0.012, A = 1e-3;
+  for (const double part : {1.0 / 3, 0.5, 1.0}) {
+    LawSettings p;
+    p.wave_b = part * b_d;
+    Proxy<kAnyDof> proxy(test::random_arm(1, 9), Scene{});
+    const Vec<kAnyDof> zero = Eigen::VectorXd::Zero(1), b = Eigen::VectorXd::Constant(1, b_d),
+                       limit = Eigen::VectorXd::Constant(1, 10);
+    proxy.place(zero, zero, 0.1);
+    const auto law = WaveLaw::make<kAnyDof>();
+    Vec<kAnyDof> x = zero, tau = zero;
+    const Arm<kAnyDof>::Frames frames{};
+    const Dynamics<kAnyDof> device{Eigen::MatrixXd::Constant(1, 1, 1e-3),
+                                   Eigen::MatrixXd::Zero(1, 1), zero};
+    law->start({x, zero, zero});
+    double given = 0, expected = 0;
+    for (int k = 0; k < 200; ++k) {
+      const Vec<kAnyDof> next = Eigen::VectorXd::Constant(1, k % 2 == 0 ? A : -A);
+      const Vec<kAnyDof> D = next - x;
+      given += tau.dot(D) - b_d * D.squaredNorm() / T;
+      if (k > 1) expected += (2 * p.wave_b - b_d) * D.squaredNorm() / T;
+      x = next;
+      const Vec<kAnyDof> v = D / T;
+      law->locate(p, {x, v, T, 0});
+      proxy.catch_up();
+      const LawInput<kAnyDof> in{x, v, device, zero, proxy.vbar(), T, frames, b, b, limit,
+                                 1, T,     0,      0};
+      tau = law->step(p, in, proxy);
+      law->applied(tau);
+    }
+    EXPECT_NEAR(given, expected, 0.02 * b_d * 4 * A * A / T * 200) << part;
+  }
+}
+
 }  // namespace
 }  // namespace limpid

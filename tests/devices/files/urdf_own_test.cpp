@@ -50,6 +50,24 @@ TEST(UrdfOwn, HasTheTorqueThatMotorsBearForHours) {
   EXPECT_EQ(arm.joints[1].warming, 0.5);
 }
 
+TEST(UrdfOwn, HasTheStepAndTheDelayOfItsDevicesReadings) {
+  const std::string kReadings = "<limpid><readings step='4e-4' delay='0.001'/></limpid>";
+  const ArmDescription arm = parse(kChain + kReadings);
+  EXPECT_EQ(arm.encoder_step, 4e-4);
+  EXPECT_EQ(arm.assumed_delay, 0.001);
+  EXPECT_FALSE(arm.delay) << "nobody identified it";
+  EXPECT_EQ(parse(kChain).encoder_step, 0);
+  // 4e-4 m of a slide are 4e-3 rad.
+  const std::string slide = link("a") + joint("a", "b", "prismatic") + link("b");
+  EXPECT_DOUBLE_EQ(parse(slide + kReadings).encoder_step, 4e-3);
+  const auto said = [](const std::string& readings) {
+    return refusal([&] { parse(kChain + "<limpid>\n<readings " + readings + "/></limpid>"); });
+  };
+  EXPECT_THAT(said("step='0.2'"),
+              HasSubstr("x.urdf:8: <readings> step \"0.2\"; allowed: 0 to 0.1"));
+  EXPECT_THAT(said("delay='-1'"), HasSubstr("allowed: 0 to 1 s"));
+}
+
 TEST(UrdfOwn, RefusesWarmthThatNoMotorHas) {
   const auto said = [](const std::string& warmth) {
     return refusal([&] { parse(kChain + "<limpid>\n<warmth " + warmth + "/></limpid>"); });

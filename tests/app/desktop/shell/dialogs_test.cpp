@@ -59,15 +59,15 @@ TEST_F(Dialog, OfPresetsListsUsesKeepsRenamesAndRemoves) {
 
   run("settings.presets");
   frames(3);
-  click("Save what is now", "Presets");
+  click("Save the present one", "Presets");
   EXPECT_THAT(words("Presets"), HasSubstr("It needs a name."));
   click("Close (Esc)", "Presets");
   run("settings.presets");
   frames(4);
   write("mine");
-  click("Save what is now", "Presets");
+  click("Save the present one", "Presets");
   EXPECT_TRUE(find("mine", "Presets"));
-  EXPECT_TRUE(find("Replace by what is now", "Presets")) << "it is one's own";
+  EXPECT_TRUE(find("Replace by the present one", "Presets")) << "it is one's own";
   EXPECT_NE(desktop->tuning.presets.find("mine"), nullptr);
   click("Remove", "Presets");
   EXPECT_NE(desktop->tuning.presets.find("mine"), nullptr) << "asks once more";
@@ -79,7 +79,7 @@ TEST_F(Dialog, OfPresetsTakesANameByEnterAndKeepsWhatCameAlong) {
   run("settings.presets");
   frames(4);
   write("Heavy hand");
-  click("Save what is now", "Presets");
+  click("Save the present one", "Presets");
   EXPECT_THAT(words("Presets"), HasSubstr("Heavy hand comes with Limpid; choose another name."));
   click("Close (Esc)", "Presets");
   run("settings.presets");
@@ -336,7 +336,7 @@ TEST_F(Dialog, OfARecordingThatIsUnderWayKeepsIt) {
   ASSERT_TRUE(until([&] { return desktop->live.loop().recording(); }));
   desktop->dialog.open("quit");
   frames(5);
-  EXPECT_THAT(words("End the recording?"), HasSubstr("It is kept as far as it has come."));
+  EXPECT_THAT(words("End the recording?"), HasSubstr("What is recorded so far is kept."));
   click("Go on (Esc)", "End the recording?");
   EXPECT_FALSE(desktop->asked.close);
   EXPECT_EQ(desktop->dialog.name(), "");

@@ -302,11 +302,11 @@ TEST_F(Words, OfTheVideoDialogReckonItsLength) {
   frames(4);
   const std::string shown = words("Write a video");
   const double duration = desktop->playback.shown()->player().duration();
-  for (const char* label : {"MP4 video", "format", "size", "pictures a second", "speed",
+  for (const char* label : {"MP4 video", "format", "size", "pictures per second", "speed",
                             "as it was", "with the plots", "from", "to", "Write (Enter)"}) {
     EXPECT_THAT(shown, HasSubstr(std::string(label))) << label;
   }
-  // 30 pictures a second, as usual.
+  // 30 pictures per second, as usual.
   EXPECT_THAT(shown, HasSubstr(fmt::format("{:.1f} s, {:.0f} pictures", duration,
                                            std::round(30 * duration))));
   EXPECT_EQ(shown.find("in one picture") != std::string::npos,
