@@ -16,7 +16,7 @@ import time
 import unittest
 from pathlib import Path
 
-from support import LIMPID
+from support import LIMPID, ROOT
 from vendor_link import (STAND_INS, VENDOR, Held, Link, Vendor, environment, motors_in, zero_after,
                          zero_after_the_last_force)
 
@@ -68,8 +68,15 @@ class Lists(unittest.TestCase):
     def test_which_library_the_library_needs(self) -> None:
         missing = next(line["missing"] for line in listed(libraries=STAND_INS / "needs_ncurses")
                        if line["backend"] == "openhaptics")
-        self.assertIn("needs libncurses.so.5", missing)
-        self.assertIn("Debian 13", missing)
+        self.assertIn("needs libncurses.so.5, which is not installed: ", missing)
+        # The window copies what stands between the quotes.
+        how, command, rest = missing.partition("not installed: ")[2].split("'")
+        self.assertEqual(rest, "")
+        for package in ("libtinfo5", "libncurses5"):
+            self.assertIn(f"ncurses/{package}_6.4-4_amd64.deb ", command + " ")
+            self.assertIn(f" ./{package}_6.4-4_amd64.deb", command.partition("apt install")[2])
+        told = " ".join((ROOT / "devices/README.md").read_text().split())
+        self.assertIn(how + command, told)
 
     def test_prints_of_a_library_stay_out_of_the_lines(self) -> None:
         for line in listed("prints"):
