@@ -185,6 +185,8 @@ class LiveLoop {
   const HapticThread& thread() const { return thread_; }
   // Punctuality of the device in the arm's place.
   const DevicePace& device_pace() const { return pace_; }
+  // Memory for what warms up a device's motors beside the loop; the next loop begins with it.
+  const std::shared_ptr<WarmthMemory>& warmth_memory() const { return warmth_; }
 
  private:
   void tick(const TickTiming& timing);                                  // the loop's
@@ -220,7 +222,7 @@ class LiveLoop {
   RealDevice real_;        // the device in place; the window writes its encoders
   bool plugged_ = false;   // the window's
   bool virtual_armed_ = true;
-  WarmthMemory warmth_;  // of devices in place
+  std::shared_ptr<WarmthMemory> warmth_ = std::make_shared<WarmthMemory>();  // of devices in place
 
   // Counted by the window, read by the loop.
   std::atomic<std::uint32_t> arms_{0}, cuts_{0};

@@ -186,7 +186,13 @@ void DeviceController::start_check() {
   problem_.clear();
   check_failed_ = false;
   connecting_id_ = hub_.in_use();
-  check_ = live_.device_tasks().run(hub_.checking(progress_));
+  const auto run = [check = hub_.checking(progress_), progress = progress_,
+                    warmth = live_.loop().warmth_memory()] {
+    AxisCheck done = check();
+    warmth->add(progress->warmth, in_seconds(MonotonicTime{}.now()));
+    return done;
+  };
+  check_ = live_.device_tasks().run(run);
 }
 
 void DeviceController::follow_check() {

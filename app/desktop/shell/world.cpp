@@ -256,7 +256,10 @@ void World::open_device(std::unique_ptr<Device> device) {
   if (!in_place) virtual_arm_ = present;
   const ArmDescription& arm = taken.arm;
   const bool same_arm = in_place && arm.urdf == present.urdf;
-  if (same_arm && same_limits(arm, present)) return d_.live.loop().plug(std::move(device));
+  const bool warmed_beside = d_.live.loop().warmth_memory()->added(arm.dof());
+  if (same_arm && same_limits(arm, present) && !warmed_beside) {
+    return d_.live.loop().plug(std::move(device));
+  }
   d_.playback.close();
   if (!same_arm) return change_arm(arm, std::move(device));
   const SceneEditor& editor = d_.document.editor();
