@@ -6,8 +6,10 @@ a real device does.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
+import os
 import re
 import signal
 import subprocess
@@ -471,3 +473,25 @@ class Asks(unittest.TestCase):
 
 if __name__ == "__main__":
     unittest.main()
+    def test_a_program_that_is_stopped_is_killed(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]):
+                process = self.start("sway:0.3", "run", "--live", ":".join(device), "--yes",
+                                     "--duration", "60")
+                self.pushes(process)
+                child = next(int(each) for thread in Path(f"/proc/{process.pid}/task").iterdir()
+                             for each in (thread / "children").read_text().split()
+                             if Path(f"/proc/{each}/comm").read_text().strip() == "limpid-vendor")
+                at = time.monotonic()
+                os.kill(child, signal.SIGSTOP)
+                runs = lambda: Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+                with contextlib.suppress(FileNotFoundError):
+                    while runs():
+                        self.assertLess(time.monotonic() - at, 5, "it still has the device")
+                        time.sleep(1e-3)
+                print(f"{device[0]}: stopped, killed after {1e3 * (time.monotonic() - at):.0f} ms")
+                self.assertGreater(time.monotonic() - at, 0.15, "before others would notice")
+                _, said = process.communicate(timeout=60)
+                self.assertNotEqual(process.returncode, 0)
+                self.assertIn("the device is gone", said)
+
