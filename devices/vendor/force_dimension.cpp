@@ -194,19 +194,12 @@ class ForceDimension final : public VendorBackEnd {
     if (frames_++ % kStatusEvery != 0) return;
     std::array<int, kMostStatus> status{};
     demand(sdk_.dhdGetStatus(status.data(), id_), "it does not say how it is");
-    const int cause = status[kStatusForceOffCause];
-    reading.no_force = NoForce::none;
-    if (enabled_ && status[kStatusForce] == 0) {
-      reading.no_force =
-          cause > 0 && cause < kCauses ? static_cast<NoForce>(cause) : NoForce::other;
-    }
-    // Our own lateness: the next force switches the motors on again. Any other reason is left to
-    // the device and the person, whose button it may be.
-    if (reading.no_force == NoForce::watchdog) enabled_ = false;
+    reading.no_force = why_off(status[kStatusForce] != 0, status[kStatusForceOffCause]);
   }
 
   void write(const VendorForce& force) override {
-    if (force.enabled != enabled_) {
+    const bool kept_off = force.enabled && withheld_ != NoForce::none;
+    if (force.enabled != enabled_ && !kept_off) {
       demand(sdk_.dhdEnableForce(force.enabled ? kOn : kOff, id_), "its force cannot be switched");
       enabled_ = force.enabled;
     }
@@ -229,6 +222,21 @@ class ForceDimension final : public VendorBackEnd {
     const Mat3 turned = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&rows[0][0]);
     // Limpid's axes in the library's: forward is away from the person, left is against y.
     reading.orientation = tool_orientation(Vec3(-1, -1, 1).asDiagonal(), turned);
+  }
+
+  // The reason why the motors are off that were switched on. The watchdog's is our own lateness:
+  // the next force switches them on again. Any other one is left to the device and the person,
+  // whose button it may be: until the device has force again, nobody else switches its motors on.
+  NoForce why_off(bool on, int cause) {
+    if (on) withheld_ = NoForce::none;
+    if (on || !enabled_ || withheld_ != NoForce::none) return withheld_;
+    const NoForce why = cause > 0 && cause < kCauses ? static_cast<NoForce>(cause) : NoForce::other;
+    if (why == NoForce::watchdog) {
+      enabled_ = false;
+    } else {
+      withheld_ = why;
+    }
+    return why;
   }
 
   template <class Function>
@@ -269,7 +277,8 @@ class ForceDimension final : public VendorBackEnd {
   Functions sdk_{};
   char id_ = -1;
   bool opened_ = false, enabled_ = false, has_wrist_ = false;
-  double most_ = 0;  // [N]
+  NoForce withheld_ = NoForce::none;  // why the device has switched its motors off by itself
+  double most_ = 0;                   // [N]
   unsigned frames_ = 0;
 };
 

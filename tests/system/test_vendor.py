@@ -310,9 +310,22 @@ class Serves(unittest.TestCase):
         with Vendor(*OMEGA, "button_off@400") as vendor:
             link = vendor.pushed()
             self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 1))
-            before = len(vendor.motors())
-            link.go_on(0.5, (1.0, 0.0, 0.0))
-            self.assertFalse([held for held in vendor.motors()[before:] if held.on], "a person's button")
+            # Also after silence, in which the program has switched the motors off itself.
+            for silence in (0, 0.05):
+                time.sleep(silence)
+                before = len(vendor.motors())
+                link.go_on(0.5, (1.0, 0.0, 0.0))
+                self.assertFalse([held for held in vendor.motors()[before:] if held.on], "a person's button")
+                self.assertEqual(link.newest.no_force, 1)
+
+    def test_the_device_gives_the_force_back_that_its_button_took(self) -> None:
+        with Vendor(*OMEGA, "button_off@400,button_on@900") as vendor:
+            link = vendor.pushed()
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 1))
+            time.sleep(0.05)
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 0))
+            link.go_on(0.2, (1.0, 0.0, 0.0))
+            self.assertTrue(any(any(held.force) for held in vendor.motors()[-50:]))
 
     @on_both("stop:20@1000")
     def test_after_a_pause_of_the_library_a_command_of_no_force_comes_first(self, device: tuple,
