@@ -19,6 +19,7 @@
 #include "devices/hid/raw_device.h"
 #include "devices/hid/raw_protocol.h"
 #include "devices/hid/transports.h"
+#include "devices/hid/vendor_kinds.h"
 
 namespace limpid {
 namespace {
@@ -29,18 +30,15 @@ using nlohmann::json;
 constexpr std::chrono::seconds kLongestList{15};
 constexpr std::size_t kMostText = 64 * 1024;
 
-constexpr std::array kKinds{DeviceKind{.key = "openhaptics",
-                                       .name = "OpenHaptics device",
-                                       .use = "its tip in three directions, pushes",
-                                       .pushes = true,
-                                       .arm = "openhaptics.urdf",
-                                       .service = true},
-                            DeviceKind{.key = "forcedimension",
-                                       .name = "Force Dimension device",
-                                       .use = "its tip in three directions, pushes",
-                                       .pushes = true,
-                                       .arm = "forcedimension.urdf",
-                                       .service = true}};
+#define KIND(key_, name_, maker, ...)                      \
+  DeviceKind{.key = #key_,                                 \
+             .name = name_ " device",                      \
+             .use = "its tip in three directions, pushes", \
+             .pushes = true,                               \
+             .arm = #key_ ".urdf",                         \
+             .service = true},
+constexpr std::array kKinds{LIMPID_VENDORS(KIND)};
+#undef KIND
 
 const DeviceKind* kind_of(const std::string& back_end) {
   const auto found =

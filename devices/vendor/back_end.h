@@ -1,5 +1,6 @@
 // Back ends of limpid-vendor: the libraries of makers, by which it reaches their devices. A further
-// maker is a file with a VendorBackEnd and its line in the table of back_ends.cpp.
+// maker is a file with a VendorBackEnd and the function that makes it, and a line in
+// devices/hid/vendor_kinds.h.
 //
 // A library is loaded while the program runs. Nothing of it, header or text, is part of Limpid:
 // each back end declares the few functions that it calls.
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "devices/device.h"
+#include "devices/hid/vendor_kinds.h"
 
 namespace limpid {
 
@@ -111,7 +113,8 @@ struct BackEndEntry {
 
 std::span<const BackEndEntry> back_ends();
 
-std::unique_ptr<VendorBackEnd> make_openhaptics();
-std::unique_ptr<VendorBackEnd> make_force_dimension();
+#define DECLARED(key, name, maker, ...) std::unique_ptr<VendorBackEnd> make_##key();
+LIMPID_VENDORS(DECLARED)
+#undef DECLARED
 
 }  // namespace limpid

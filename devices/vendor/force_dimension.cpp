@@ -284,6 +284,6 @@ class ForceDimension final : public VendorBackEnd {
 
 }  // namespace
 
-std::unique_ptr<VendorBackEnd> make_force_dimension() { return std::make_unique<ForceDimension>(); }
+std::unique_ptr<VendorBackEnd> make_forcedimension() { return std::make_unique<ForceDimension>(); }
 
 }  // namespace limpid
