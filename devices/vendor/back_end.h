@@ -97,6 +97,8 @@ class VendorBackEnd {
   virtual void begin(Servo& servo);
   // Ends the frames; the last one has commanded no force, if it came.
   virtual void end() noexcept;
+  // Words about what the frames have shown of the device, once they have ended; empty: none.
+  virtual std::string remark() const { return {}; }
   // Leaves the device without force and closes it.
   virtual void close() noexcept = 0;
 

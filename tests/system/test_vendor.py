@@ -121,6 +121,24 @@ class Serves(unittest.TestCase):
             self.assertAlmostEqual(effort, force, 5)
         self.assertEqual((found.name, found.made_by), (name, made_by))
 
+    def test_a_library_that_does_not_say_its_version_drives_the_device(self) -> None:
+        with Vendor(*TOUCH, "no_version") as vendor:
+            link = vendor.link()
+            self.assertEqual(link.description.made_by, "libHD.so.3.4")
+            link.go_on(0.2)
+            self.assertFalse(link.gone)
+
+    def test_joint_angles_are_compared_with_the_position(self) -> None:
+        for faults, apart in (("sway:0.6", range(0, 1)), ("sway:0.6,bent", range(1, 100))):
+            with Vendor(*TOUCH, faults) as vendor:
+                vendor.link().go_on(1)
+                vendor.process.terminate()
+                said = self.ends(vendor, 0)
+                found = re.search(r"its joint angles .* up to ([\d.]+) mm apart while it moved (\d+) mm", said)
+                self.assertIsNotNone(found, said)
+                self.assertIn(int(float(found[1]) + 0.5), apart)
+                self.assertGreater(int(found[2]), 20)
+
     # The stand-in's spring is 40 N/m.
     @on_both()
     def test_a_force_along_an_axis_moves_the_tip_along_it(self, device: tuple, vendor: Vendor) -> None:
