@@ -126,6 +126,7 @@ std::size_t LiveLoop::drain(std::span<double> into) {
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
+  if (plugged_) device_source_ = "device: " + device_text(device->traits());
   auto slot = std::make_unique<DeviceSlot>(std::move(device), dispose_, held_);
   if (plugged_) real_.encoder_step = slot->encoder_step;
   slots_.offer(std::move(slot));

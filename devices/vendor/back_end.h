@@ -36,6 +36,11 @@ struct VendorAbsent : VendorError {
 // Axes as Limpid has them: x forward, y to the left, z up.
 using TipVector = std::array<double, 3>;
 
+struct VendorLibrary {
+  std::string path;
+  std::string version;  // empty: it says none before a device is open
+};
+
 struct VendorListed {
   std::string name;     // by which it is opened
   std::string title;    // for people
@@ -45,7 +50,8 @@ struct VendorListed {
 // Properties of an open device: a tip that is moved and pushed in three directions.
 struct VendorTraits {
   std::string name;            // model and serial number
-  std::string made_by;         // the library and its version
+  std::string serial;          // empty: not known
+  std::string made_by;         // the library and its version, at most 28 characters
   TipVector lower{}, upper{};  // range [m]
   double resolution = 0;       // [m]
   double force = 0;            // largest along each axis [N]
@@ -78,9 +84,9 @@ class VendorBackEnd {
   VendorBackEnd& operator=(const VendorBackEnd&) = delete;
   virtual ~VendorBackEnd() = default;
 
-  // Loads the library; the other functions need it. Returns its path. All functions but end() and
-  // close() throw VendorError.
-  virtual std::string load() = 0;
+  // Loads the library; the other functions need it. All functions but end() and close() throw
+  // VendorError.
+  virtual VendorLibrary load() = 0;
   virtual std::vector<VendorListed> list(const VendorOptions& options) = 0;
   // Opens a device, which stays without force.
   virtual VendorTraits open(const std::string& name, const VendorOptions& options) = 0;

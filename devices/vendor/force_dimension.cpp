@@ -66,6 +66,7 @@ struct Functions {
   int (*dhdGetStatus)(int*, char);
   const char* (*dhdErrorGetLastStr)();
   void (*dhdEnableSimulator)(bool) = nullptr;  // newer libraries have it
+  void (*dhdGetSDKVersion)(int*, int*, int*, int*) = nullptr;
 };
 
 std::vector<std::string> places_of(const std::string& name) {
@@ -79,7 +80,7 @@ std::vector<std::string> places_of(const std::string& name) {
 
 class ForceDimension final : public VendorBackEnd {
  public:
-  std::string load() override {
+  VendorLibrary load() override {
     dhd_library_.load(places_of("libdhd.so.3"), kOwner);
     drd_library_.load(places_of("libdrd.so.3"), kOwner);
     // The second one may have all functions of the first, with a state of their own.
@@ -109,7 +110,8 @@ class ForceDimension final : public VendorBackEnd {
     find("dhdGetStatus", sdk_.dhdGetStatus);
     find("dhdErrorGetLastStr", sdk_.dhdErrorGetLastStr);
     drd_library_.find_if_any("dhdEnableSimulator", sdk_.dhdEnableSimulator);
-    return drd_library_.path();
+    dhd_library_.find_if_any("dhdGetSDKVersion", sdk_.dhdGetSDKVersion);
+    return {drd_library_.path(), version()};
   }
 
   std::vector<VendorListed> list(const VendorOptions& options) override {
@@ -148,8 +150,9 @@ class ForceDimension final : public VendorBackEnd {
     sdk_.dhdGetSerialNumber(&serial, id_);
     VendorTraits traits;
     traits.name = fmt::format("{} {}", system, serial);
+    if (serial != 0) traits.serial = std::to_string(serial);
     has_wrist_ = sdk_.dhdHasWrist(id_);
-    traits.made_by = "libdrd.so.3";
+    traits.made_by = fmt::format("libdrd.so.3 {}", version());
     traits.lower.fill(-model->radius);
     traits.upper.fill(model->radius);
     traits.resolution = kResolution;
@@ -245,6 +248,14 @@ class ForceDimension final : public VendorBackEnd {
     drd_library_.find_if_any(name, found);
     if (found == nullptr) dhd_library_.find(name, found);
     function = found;
+  }
+
+  // Empty where the library has no function that says it.
+  std::string version() const {
+    if (sdk_.dhdGetSDKVersion == nullptr) return {};
+    int major = 0, minor = 0, release = 0, revision = 0;
+    sdk_.dhdGetSDKVersion(&major, &minor, &release, &revision);
+    return fmt::format("{}.{}.{}.{}", major, minor, release, revision);
   }
 
   void look_at_simulator(const VendorOptions& options) const {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <link.h>
 
+#include <filesystem>
+
 #include "devices/vendor/back_end.h"
 
 namespace limpid {
@@ -39,6 +41,9 @@ void Library::load(std::span<const std::string> names, const std::string& where)
     if (handle_ != nullptr) {
       link_map* map = nullptr;
       path_ = ::dlinfo(handle_, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr ? map->l_name : name;
+      std::error_code none;
+      const auto file = std::filesystem::canonical(path_, none);
+      if (!none) path_ = file.string();
       return;
     }
     const char* const said = ::dlerror();

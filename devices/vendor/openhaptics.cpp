@@ -28,7 +28,7 @@ struct ErrorInfo {
 };
 
 constexpr Handle kNoDevice = 0xFFFFFFFF;
-constexpr unsigned kModel = 0x2501, kSerial = 0x2504, kCalibrationStyle = 0x2555;
+constexpr unsigned kVersion = 0x2500, kModel = 0x2501, kSerial = 0x2504, kCalibrationStyle = 0x2555;
 constexpr unsigned kCalibrated = 0x5000, kNeedsUpdate = 0x5001;  // else it needs a person
 constexpr unsigned kForceOutput = 0x4000;
 constexpr unsigned kPosition = 0x2050, kTransform = 0x2052, kJointAngles = 0x2100;
@@ -51,6 +51,7 @@ constexpr const char* kOwner =
     "the owner of the device gets it from 3D Systems: OpenHaptics for Linux, and the Touch Device "
     "Driver";
 constexpr const char* kDefault = "Default Device";
+constexpr const char* kLibrary = "libHD.so.3.4";
 
 // Functions of the library, by their names there.
 struct Functions {
@@ -129,8 +130,8 @@ class TipsCompared {
 
 class OpenHaptics final : public VendorBackEnd {
  public:
-  std::string load() override {
-    const std::array<std::string, 2> names{"libHD.so.3.4", "libHD.so"};
+  VendorLibrary load() override {
+    const std::array<std::string, 2> names{kLibrary, "libHD.so"};
     library_.load(names, kOwner);
     const auto find = [&](const char* name, auto& function) { library_.find(name, function); };
     find("hdInitDevice", hd_.hdInitDevice);
@@ -152,7 +153,7 @@ class OpenHaptics final : public VendorBackEnd {
     find("hdUnschedule", hd_.hdUnschedule);
     find("hdStartScheduler", hd_.hdStartScheduler);
     find("hdStopScheduler", hd_.hdStopScheduler);
-    return library_.path();
+    return {library_.path(), {}};
   }
 
   // The devices that the driver was told of. Nobody asks the devices, as that would open them.
@@ -183,8 +184,8 @@ class OpenHaptics final : public VendorBackEnd {
     hd_.hdMakeCurrentDevice(device_);
     VendorTraits traits;
     const std::string model = text(kModel);
-    traits.name = fmt::format("{} {}", model, text(kSerial));
-    traits.made_by = "libHD.so.3.4";
+    traits.serial = text(kSerial);
+    traits.name = fmt::format("{} {}", model, traits.serial);
     has_switch_ = model.find("Touch X") != std::string::npos;
     known_links_ = !has_switch_ && (model.find("Touch") != std::string::npos ||
                                     model.find("Omni") != std::string::npos);
@@ -201,6 +202,9 @@ class OpenHaptics final : public VendorBackEnd {
     traits.resolution = kResolution;
     hd_.hdGetDoublev(kMostForce, &traits.force);
     throw_errors("open");
+    const std::string version = text(kVersion);
+    traits.made_by = version.empty() ? kLibrary : fmt::format("{} {}", kLibrary, version);
+    take_errors();  // whoever does not know its version may still drive the device
     return traits;
   }
 

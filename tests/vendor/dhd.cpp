@@ -92,6 +92,9 @@ int stand_in_find_zero() {
   return 0;
 }
 
+void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
+  *major = 3, *minor = 17, *release = 1, *revision = 20;
+}
 int dhdGetDeviceCount() { return device().faults.due("no_device") ? 0 : 1; }
 const char* dhdGetSystemName(char) {
   return device().faults.due("unknown_model") ? "epsilon" : "omega.3";

@@ -90,7 +90,13 @@ ErrorInfo hdGetError() {
   return {error, 0, kDevice};
 }
 
-const char* hdGetString(unsigned which) { return which == 0x2501 ? "Touch" : "S1"; }
+const char* hdGetString(unsigned which) {
+  if (which == 0x2501) return "Touch";
+  if (which != 0x2500) return "S1";
+  if (!library().faults.due("no_version")) return "3.40.0";
+  library().error = 0x100;
+  return nullptr;
+}
 
 void hdGetIntegerv(unsigned which, int* value) {
   *value = which == 0x2555 ? 4 : library().faults.due("button") ? 2 : 0;

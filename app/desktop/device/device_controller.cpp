@@ -158,8 +158,9 @@ void DeviceController::take_connected() {
     problem_.clear();
     notices_.say(
         traits.pushes
-            ? fmt::format("{} is in the loop. Take it in your hand, then F arms the force.",
-                          traits.name)
+            ? fmt::format("{} is in the loop{}. Take it in your hand, then F arms the force.",
+                          traits.name,
+                          traits.made_by.empty() ? "" : ", driven by " + traits.made_by)
             : fmt::format("{} leads the hand.", traits.name));
   } catch (const UncheckedError&) {
     unchecked_ = connecting_id_;

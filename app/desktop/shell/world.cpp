@@ -535,7 +535,8 @@ void World::start_recording(fs::path file, bool replaces) {
   plan.arm = d_.live.stage().arm();
   plan.document = d_.document.editor().document();
   plan.document.toml = d_.document.toml();
-  plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
+  const LiveLoop& loop = d_.live.loop();
+  plan.hand.source = loop.device_in_place() ? loop.device_source() : "mouse";
   plan.parameters = d_.live.loop().taken(d_.settings.parameters());
   const std::size_t lanes = d_.live.loop().device_in_place() ? 1 : d_.settings.lanes.count;
   for (std::size_t i = 1; i < lanes; ++i) {
