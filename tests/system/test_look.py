@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -21,6 +22,7 @@ import h5py
 import numpy as np
 
 from support import ASSETS, LIMPID, limpid
+from test_inverse3 import Service
 from vendor_link import environment, motors_in
 
 sys.path.insert(0, str(ASSETS / "python"))
@@ -208,6 +210,43 @@ class Look(unittest.TestCase):
         self.assertLess(time.monotonic() - begun, 40, "goes on without its recording")
         self.assertIn("limpid: ", result.err)
         self.assertRegex(result.err, "space|full|written|recording")
+
+
+class OfAService(unittest.TestCase):
+    """An Inverse3 through a stand-in of its service, which says each force that it is asked for."""
+
+    def test_is_read_and_gets_no_force(self) -> None:
+        service = Service()
+        self.addCleanup(service.end)
+        service.tell("move 0.05 -0.12 0.2")
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder, "look.h5")
+            process = subprocess.Popen(
+                [LIMPID, "devices", "look", service.name, "--record", out, "--seconds", "3", "--json"],
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                env={**os.environ, "XDG_CONFIG_HOME": folder, "XDG_RUNTIME_DIR": folder})
+            self.addCleanup(process.kill)
+            service.wait(lambda line: line == "session")
+            while process.poll() is None:  # to and fro along the service's z, which is up
+                service.tell(f"move 0.05 -0.12 {0.2 + 0.03 * math.sin(4 * time.monotonic()):.4f}")
+                time.sleep(0.01)
+            text, said = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 0, said)
+            found = json.loads(text)
+            self.assertIn("it says so itself", found["arm_why"])
+            self.assertEqual((found["pushes"], found["force_given"]), (True, False))
+            self.assertGreater(found["readings"], 300)
+            spans = [joint["most"] - joint["least"] for joint in found["joints"]]
+            self.assertEqual([joint["unit"] for joint in found["joints"]], ["m"] * 3)
+            self.assertAlmostEqual(spans[2], 0.06, delta=2e-3)
+            self.assertLess(max(spans[:2]), 1e-6)
+            self.assertEqual(service.pushes(), [], "it was pushed")
+            service.tell("count")
+            messages = int(service.wait(lambda line: line.startswith("messages")).split()[1])
+            self.assertGreater(messages, 300, "nothing was sent at all")
+            with h5py.File(out) as file:
+                self.assertIn("device without force: ", str(file.attrs["source"]))
+                self.assertFalse(file["device/motor_torque"][...].any())
 
 
 class OfAMaker(unittest.TestCase):
