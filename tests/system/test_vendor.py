@@ -228,7 +228,7 @@ class Serves(unittest.TestCase):
             self.assertGreater(len(times), 300)
             middle, late, worst = (1e3 * np.quantile(times, part) for part in (0.5, 0.99, 1))
             print(f"{device[0]}: {what} {middle:.2f} ms, 99 % {late:.2f}, at most {worst:.2f} ms")
-            self.assertLess(middle, 1, "a tick")
+            self.assertLess(middle, 1.5, "more than a frame")
 
     @on_both()
     def test_no_force_5_ms_after_the_last_command(self, device: tuple, vendor: Vendor) -> None:
@@ -537,9 +537,9 @@ class InLimpid(WithLimpid):
                     print(f"{device[0]}: limpid killed {1e3 * zero:.1f} ms")
                     self.assertLess(zero, AT_ONCE + 2 * BUSY)
 
-    def test_a_program_that_is_stopped_is_killed(self) -> None:
-        for device in BOTH:
-            with self.subTest(device=device[0]):
+    def test_the_device_is_gone_once_its_program_is_killed_or_stopped(self) -> None:
+        for device, which in ((device, which) for device in BOTH for which in (signal.SIGKILL, signal.SIGSTOP)):
+            with self.subTest(device=device[0], which=which.name):
                 process = self.start("sway:0.3", "run", "--live", ":".join(device), "--yes",
                                      "--duration", "60")
                 self.pushes(process)
@@ -547,14 +547,16 @@ class InLimpid(WithLimpid):
                              for each in (thread / "children").read_text().split()
                              if Path(f"/proc/{each}/comm").read_text().strip() == "limpid-vendor")
                 at = time.monotonic()
-                os.kill(child, signal.SIGSTOP)
+                os.kill(child, which)
                 runs = lambda: Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
                 with contextlib.suppress(FileNotFoundError):
                     while runs():
                         self.assertLess(time.monotonic() - at, 5, "it still has the device")
                         time.sleep(1e-3)
-                print(f"{device[0]}: stopped, killed after {1e3 * (time.monotonic() - at):.0f} ms")
-                self.assertGreater(time.monotonic() - at, 0.15, "before others would notice")
+                took = time.monotonic() - at
+                print(f"{device[0]}: {which.name}, has ended after {1e3 * took:.0f} ms")
+                if which == signal.SIGSTOP:
+                    self.assertGreater(took, 0.15, "killed too soon")
                 _, said = process.communicate(timeout=60)
                 self.assertNotEqual(process.returncode, 0)
                 self.assertIn("the device is gone", said)
