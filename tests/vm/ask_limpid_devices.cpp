@@ -1,5 +1,5 @@
-// Plugs the three kinds of devices in and asks the program itself what it finds; then has it look at
-// the two that have joints, whose own logs say whether it pushed.
+// Plugs the three kinds of devices in and asks the program itself what it finds; then has it look
+// at the two that have joints, whose own logs say whether it pushed.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -46,10 +46,10 @@ bool look(ReferenceDevice& model, UhidDevice& plugged, const std::string& more) 
   char id[200];
   std::snprintf(id, sizeof id, "%04x:%04x:%s", identity.vendor, identity.product,
                 identity.serial.c_str());
-  const Answer answer = ask_program(std::string("devices look ") + id +
-                                    " --record /tmp/look.h5 --force --seconds 2");
+  const Answer answer =
+      ask_program(std::string("devices look ") + id + " --record /tmp/look.h5 --force --seconds 2");
   std::printf("%s", answer.text.c_str());
-  bool well = answer.status == 0 && has_all(answer.text, {identity.name, "got no force", more});
+  bool well = answer.status == 0 && has_all(answer.text, {id, "got no force", more});
   plugged.with([&](Time) {
     const double largest = model.forces().largest();
     std::printf("%s: %zu commands, largest torque %g, %zu violations\n", identity.name.c_str(),

@@ -114,8 +114,8 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   EXPECT_TRUE(device.stopped);
 }
 
-// The device notes when it was told which torque. Warmth by its definition: the torque's square over
-// the continuous one's, over the time constant, while it is still far from its end.
+// The device notes when it was told which torque. Warmth by its definition: the torque's square
+// over the continuous one's, over the time constant, while it is still far from its end.
 TEST(AxisCheckRun, TellsByHowMuchTheMotorsWereWarmedUp) {
   ArmDescription arm = stick();
   constexpr double kContinuous = 0.02, kTime = 600;
