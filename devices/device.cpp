@@ -24,6 +24,11 @@ const char* explain(NoForce reason) {
 
 }  // namespace
 
+std::string device_text(const DeviceTraits& traits) {
+  return fmt::format("{}, {}{}", traits.name, traits.id,
+                     traits.made_by.empty() ? "" : ", by " + traits.made_by);
+}
+
 std::string device_words(const DeviceReading& reading) {
   std::string words;
   const auto say = [&](const std::string& sentence) {

@@ -40,7 +40,11 @@ struct DeviceTraits {
   std::vector<double> effort;        // torque limit of each joint [N m]; empty if it cannot push
   double rate = 0;                   // reports a second [Hz]
   std::vector<bool> slides = {};     // joints that slide; empty: the device does not say it
+  std::string made_by = {};          // what speaks for it, as firmware or library with its version
 };
+
+// Name, id and maker's library of a device, for people and recordings.
+std::string device_text(const DeviceTraits& traits);
 
 // The step of the device's coarsest encoder, at most device.encoder_step's; 0 if it names none
 // [rad].

@@ -56,10 +56,30 @@ Source of_file(const CharacterizeOptions& options) {
   return source;
 }
 
+// Chooses the device. One that is not connected has no encoders to read; the arm that is remembered
+// for it can be named in its place.
+void choose_plugged_in(const std::string& id, DeviceHub& hub) {
+  try {
+    choose_device(id, hub, "");
+  } catch (const UsageError& error) {
+    const DeviceNotes& notes = hub.notes(hub.in_use());
+    if (hub.present() != nullptr || hub.in_use().empty()) throw;
+    const std::string arm = !notes.arm.empty()               ? notes.arm
+                            : notes.taken_for == kBuiltInArm ? std::string()
+                                                             : notes.taken_for;
+    throw UsageError(fmt::format("{}. Plug it in: it says its encoders itself.{}", error.what(),
+                                 arm.empty()
+                                     ? std::string()
+                                     : fmt::format(" Without it: limpid characterize {} --set "
+                                                   "device.encoder_step=STEP",
+                                                   arm)));
+  }
+}
+
 // Reads what the device says of itself. It gets no force.
 Source of_device(const CharacterizeOptions& options) {
   DeviceHub hub(device_store_file(), by_rtkit());
-  choose_device(*options.device, hub, "");
+  choose_plugged_in(*options.device, hub);
   const FoundDevice& found = *hub.present();
   if (found.kind->leads_hand) {
     throw UsageError(found.place.id + ": leads the hand of the virtual arm and renders nothing");

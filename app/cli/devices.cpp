@@ -59,6 +59,8 @@ void print_json(DeviceHub& hub) {
                     {"path", found.place.path},
                     {"in_use", found.place.id == hub.in_use()},
                     {"in_use_by", found.in_use_by},
+                    {"library", found.place.library},
+                    {"library_version", found.version},
                     {"arm", arm_words(hub.notes(found.place.id), *found.kind)},
                     {"missing", found.missing}});
   }
@@ -78,6 +80,10 @@ void print_text(DeviceHub& hub) {
     const std::string arm = arm_words(hub.notes(found.place.id), *found.kind);
     if (!arm.empty()) fmt::print("  {}\n", arm);
     if (!found.in_use_by.empty()) fmt::print("  in use by {}\n", found.in_use_by);
+    if (!found.place.library.empty()) {
+      fmt::print("  driven by {}{}\n", found.place.library,
+                 found.version.empty() ? "" : ", version " + found.version);
+    }
   }
   if (hub.found().empty()) fmt::print("no haptic device is plugged in\n");
 }

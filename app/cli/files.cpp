@@ -45,9 +45,9 @@ class RowsTold {
       watch_.reset();  // another version wrote the settings
     }
     const auto arm = recorded_arm(about.info);
-    const std::vector<bool> slides = arm ? slides_of(*arm) : about.info.slides;
     layout_ = about.layout;
-    lanes_.assign(about.lanes(), Summary(layout_, slides));
+    lanes_.assign(about.lanes(),
+                  arm ? Summary(layout_, *arm) : Summary(layout_, about.info.slides));
     force_.emplace(layout_);
   }
   void take(LaneRows rows) {

@@ -85,6 +85,9 @@ ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
   if (!input.device.empty() && device_named(input.device).empty()) named = arm_of(input);
   TakenArm taken = hub.arm_for(traits, named ? &*named : nullptr);
   fmt::print(stderr, "limpid: {}\n", taken.why);
+  if (!traits.made_by.empty()) {
+    fmt::print(stderr, "limpid: {} is driven by {}\n", traits.name, traits.made_by);
+  }
   return std::move(taken.arm);
 }
 
@@ -106,7 +109,7 @@ LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : ye
   Parameters usual = make_parameters(input, plan_.arm);
   notes.compensation.give(usual);  // as in the window
   plan_.parameters = make_parameters(input, usual);
-  plan_.hand.source = "device";
+  plan_.hand.source = "device: " + device_text(traits);
   limits_ = notes.limits;
   catch_interrupts();
   run_ = std::make_unique<LiveRun>(plan_, limits_, std::move(device), by_rtkit());

@@ -48,7 +48,6 @@ Look open_to_look(const LookOptions& options) {
         found.place.id));
   }
   const DeviceNotes& notes = hub.notes(hub.in_use());
-  look.device.library = DeviceHub::library_of(hub.in_use());
   look.opened = hub.open_to_look();
   look.device.traits = look.opened->traits();
   look.device.kind = found.kind->name;
@@ -60,9 +59,7 @@ Look open_to_look(const LookOptions& options) {
   look.plan.arm = std::move(taken.arm);
   look.plan.document = read_scene(data_dir() / "assets/scenes/free.toml", look.plan.arm);
   look.plan.parameters = fitted(look.plan.arm);
-  look.plan.hand.source = fmt::format(
-      "device without force: {}, {}, {}{}", look.device.traits.name, look.device.kind,
-      look.device.traits.id, look.device.library.empty() ? "" : ", by " + look.device.library);
+  look.plan.hand.source = "device without force: " + device_text(look.device.traits);
   return look;
 }
 

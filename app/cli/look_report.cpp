@@ -147,7 +147,7 @@ std::string look_text(const LookedDevice& device, const DeviceSeen& seen) {
   std::string text =
       look_line("device", fmt::format("{}, {}, {}", traits.name, device.kind, traits.id)) +
       look_line("arm", device.arm_why);
-  if (!device.library.empty()) text += look_line("library", device.library);
+  if (!traits.made_by.empty()) text += look_line("driven by", traits.made_by);
   text +=
       look_line("motors", traits.pushes ? "it has some, and got no force" : "it has none") +
       look_line("axes", device.checked ? "adjusted as they were checked"
@@ -169,7 +169,7 @@ ordered_json look_json(const LookedDevice& device, const DeviceSeen& seen) {
       {"id", traits.id},
       {"name", traits.name},
       {"kind", device.kind},
-      {"library", device.library.empty() ? ordered_json(nullptr) : ordered_json(device.library)},
+      {"driven_by", traits.made_by.empty() ? ordered_json(nullptr) : ordered_json(traits.made_by)},
       {"arm", device.arm.name},
       {"arm_why", device.arm_why},
       {"axes_checked", device.checked},

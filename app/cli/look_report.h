@@ -12,7 +12,7 @@ namespace limpid {
 // A device, and what it was taken for.
 struct LookedDevice {
   DeviceTraits traits;
-  std::string kind, library, arm_why;  // library: of its maker; empty: none is needed
+  std::string kind, arm_why;
   ArmDescription arm;
   bool checked = false;  // its axes were, and are adjusted
 };

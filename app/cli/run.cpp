@@ -48,7 +48,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
 int run_live(const LiveRunOptions& options) {
   LiveBench bench(options.live, options.input);
   const RunPlan& plan = bench.plan();
-  Summary summary(plan.layout());
+  Summary summary(plan.layout(), plan.arm);
   RunWatch watch(plan.arm, plan.layout(), plan.parameters);
   const double seconds = options.input.duration.value_or(kLiveSeconds);
   const LiveTask task{
@@ -146,7 +146,7 @@ class RunLog {
  public:
   RunLog(const RunPlan& plan, Recorder* recorder, bool waits)
       : stride_(static_cast<std::size_t>(plan.layout().stride())),
-        runs_(plan.lanes(), Summary(plan.layout(), slides_of(plan.arm))),
+        runs_(plan.lanes(), Summary(plan.layout(), plan.arm)),
         recorder_(recorder),
         waits_(waits) {
     for (std::size_t i = 0; i < plan.lanes(); ++i) {

@@ -14,6 +14,10 @@ ordered_json summary_json(const Summary& summary) {
                     {"energy_total_J", t.energy_total},
                     {"highest_energy_total_J", t.highest_total},
                     {"energy_commanded_J", t.energy_commanded}};
+  if (t.warmest > 0) {
+    json["largest_motor_warmth"] = t.warmest;
+    json["held_by_warmth_s"] = t.held_by_warmth;
+  }
   if (summary.watch().lost()) json["unstable_at_s"] = summary.watch().since();
   return json;
 }

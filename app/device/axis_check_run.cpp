@@ -8,6 +8,7 @@
 #include "core/dynamics/arm.h"
 #include "core/realtime/haptic_thread.h"
 #include "core/tick/motor_stage.h"
+#include "core/tick/motor_warmth.h"
 #include "core/tick/safety.h"
 
 namespace limpid {
@@ -26,6 +27,7 @@ class Limits {
   Limits(const ArmDescription& arm, const SafetyLimits& limits)
       : arm_(arm),
         safety_(arm),
+        warmth_(arm),
         J_(Jacobian<kAnyDof>::Zero(3, arm.dof())),
         x_(Vector::Zero(arm.dof())),
         v_(Vector::Zero(arm.dof())),
@@ -53,15 +55,20 @@ class Limits {
     return against.ceiling >= 1 && against.fault == ForceState::on;
   }
 
-  std::span<const double> within(std::span<const double> torque) noexcept {
+  // Limits the torque that the motors hold from now on, T [s] after the last one.
+  std::span<const double> within(std::span<const double> torque, double T) noexcept {
+    warmth_.hold(torque_, T);
     torque_ = TorqueLimits<kAnyDof>(effort_, J_, safety_.tip_force())
                   .within(Eigen::Map<const Vector>(torque.data(), torque_.size()));
     return {torque_.data(), torque.size()};
   }
 
+  const Vector& warmth() const { return warmth_.modelled(); }
+
  private:
   Arm<kAnyDof> arm_;
   Safety<kAnyDof> safety_;
+  MotorWarmth<kAnyDof> warmth_;
   Jacobian<kAnyDof> J_;
   Vector x_, v_, torque_;
   const Vector none_, effort_;  // [N m]
@@ -121,7 +128,7 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
       const std::span<const double> x = std::span(reading.x).first(joints);
       const double T = timing.periods * 1e-3;
       if (well && !set.allow(x, T)) check.exceed();
-      device.write(set.within(check.step({x, T, well})));
+      device.write(set.within(check.step({x, T, well}), T));
       progress.axis = check.axis();
       progress.stage = check.stage();
       done = check.done();
@@ -136,6 +143,7 @@ AxisCheck run_axis_check(Device& device, const ArmDescription& arm, const Safety
     }
   }
   device.stop();
+  progress.warmth = set.warmth();
   return check;
 }
 

@@ -22,6 +22,7 @@ struct AxisCheckProgress {
   std::atomic<AxisStage> stage{AxisStage::resting};
   std::atomic<bool> cancel{false};
   std::atomic<CheckEnd> end{CheckEnd::none};
+  Eigen::VectorXd warmth;  // by which cold motors were warmed up; once the check has ended [-]
   std::atomic<std::chrono::steady_clock::time_point> window_seen{std::chrono::steady_clock::now()};
 
   void see_window() { window_seen = std::chrono::steady_clock::now(); }

@@ -140,18 +140,6 @@ std::filesystem::path DeviceHub::arm_file_of(const std::string& id) {
   return data_dir() / "assets/devices" / (kind != nullptr ? kind->arm : "inverse3.urdf");
 }
 
-std::string DeviceHub::library_of(const std::string& id) {
-  const DeviceKind* const kind = vendor_kind(id);
-  if (kind == nullptr) return {};
-  for (const VendorLine& line : ask_vendors()) {
-    if (line.is_device || line.back_end != kind->key || line.name.empty()) continue;
-    std::error_code none;
-    const std::filesystem::path file = std::filesystem::canonical(line.name, none);
-    return none ? line.name : file.string();
-  }
-  return {};
-}
-
 const FoundDevice* DeviceHub::present() const {
   const auto same = [&](const FoundDevice& each) { return each.place.id == store_.in_use; };
   const auto device = std::ranges::find_if(found_, same);

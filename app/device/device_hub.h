@@ -38,10 +38,6 @@ class DeviceHub {
   // File of the own arm of such a device.
   static std::filesystem::path arm_file_of(const std::string& id);
 
-  // File of the maker's library that drives a device of this id, without symbolic links: its name
-  // has the version. Empty for other devices. Asks programs, which takes a moment.
-  static std::string library_of(const std::string& id);
-
   const std::string& in_use() const { return store_.in_use; }  // id; empty: the virtual arm
   // The device in use, if it is plugged in; else null.
   const FoundDevice* present() const;

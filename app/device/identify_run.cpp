@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "core/realtime/haptic_thread.h"
+#include "core/tick/motor_warmth.h"
 #include "devices/device.h"
 
 namespace limpid {
@@ -19,11 +20,18 @@ constexpr double kLongestWay = 30;  // longest way to the middle at the start [s
 
 double seconds(steady_clock::duration t) { return duration<double>(t).count(); }
 
+// Warmth of cold motors that have held these torques for a tick each, a column a tick.
+Eigen::VectorXd warmth_of(const ArmDescription& arm, const Eigen::MatrixXd& torque) {
+  MotorWarmth<kAnyDof> motors(arm);
+  for (Eigen::Index k = 0; k < torque.cols(); ++k) motors.hold(torque.col(k), kT);
+  return motors.modelled();
+}
+
 // Data of a run that its ticks write; allocates only when constructed.
 class Recording {
  public:
   Recording(const ArmDescription& arm, const DeviceTraits& traits, const ExcitationPlan& plan)
-      : motion_(arm, traits, plan), joints_(static_cast<std::size_t>(traits.dof)) {
+      : arm_(arm), motion_(arm, traits, plan), joints_(static_cast<std::size_t>(traits.dof)) {
     const auto rows = static_cast<Eigen::Index>((motion_.duration() + kLongestWay) / kT);
     x_.resize(traits.dof, rows);
     torque_.resize(traits.dof, rows);
@@ -69,6 +77,7 @@ class Recording {
                     .record = {.T = kT,
                                .x = x_.leftCols(rows_).transpose(),
                                .torque = torque_.leftCols(rows_).transpose()},
+                    .warmth = warmth_of(arm_, torque_.leftCols(rows_)),
                     .timing = {}};
     ReadingTimes& timing = run.timing;
     timing.intervals = std::move(intervals_);
@@ -100,6 +109,7 @@ class Recording {
     arrived_ = arrived;
   }
 
+  ArmDescription arm_;
   Excitation motion_;
   std::size_t joints_;
   Eigen::MatrixXd x_, torque_;  // a column a tick

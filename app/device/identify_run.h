@@ -34,6 +34,7 @@ struct IdentifyRun {
   ForceState objection = ForceState::on;  // the limit, or the device's fault, that ended it
   int joint = 0;                          // that was held and did not follow
   MotionRecord record;                    // up to the end
+  Eigen::VectorXd warmth;                 // by which cold motors were warmed up [-]
   ReadingTimes timing;
 };
 

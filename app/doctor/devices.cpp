@@ -84,7 +84,10 @@ Finding one(const FoundDevice& device) {
 // A maker's library: nobody without a device of that maker needs it.
 Finding library(const VendorLine& line) {
   const std::string what = fmt::format("library for {}", line.back_end);
-  if (line.missing.empty()) return {kDevicesArea, what, State::fine, line.name, {}, {}};
+  if (line.missing.empty()) {
+    const std::string version = line.version.empty() ? "" : ", version " + line.version;
+    return {kDevicesArea, what, State::fine, line.name + version, {}, {}};
+  }
   if (line.absent) {
     return {kDevicesArea, what, State::fine, line.missing, {}, {}};
   }

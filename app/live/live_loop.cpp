@@ -55,7 +55,7 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
       device && device->read(first) && first.count > 0 && within_reach(first, device->traits())) {
     start.x1 = start.x2 = Eigen::Map<const Eigen::VectorXd>(first.x.data(), arm.dof());
   }
-  start.warmth = warmth_.left(arm, in_seconds(MonotonicTime{}.now()));
+  start.warmth = warmth_->take(arm, in_seconds(MonotonicTime{}.now()));
   plug(std::move(device));
   begin(std::move(start), p);
 }
@@ -90,7 +90,7 @@ void LiveLoop::close() {
   if (rig_ && !in_place_) virtual_armed_ = rig_->force().armed();
   if (rig_ && in_place_) {
     rig_->present(home_);
-    warmth_.keep(home_.warmth, in_seconds(MonotonicTime{}.now()));
+    warmth_->keep(home_.warmth, in_seconds(MonotonicTime{}.now()));
   }
   stop_recording();
   recording_to_ = nullptr;  // the next loop's rows are not for it
@@ -126,6 +126,7 @@ std::size_t LiveLoop::drain(std::span<double> into) {
 
 void LiveLoop::plug(std::unique_ptr<Device> device) {
   plugged_ = device != nullptr;
+  if (plugged_) device_source_ = "device: " + device_text(device->traits());
   auto slot = std::make_unique<DeviceSlot>(std::move(device), dispose_, held_);
   if (plugged_) real_.encoder_step = slot->encoder_step;
   slots_.offer(std::move(slot));

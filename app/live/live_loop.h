@@ -130,6 +130,8 @@ class LiveLoop {
   void lead(std::unique_ptr<LedPath> path) { paths_.offer(std::move(path)); }
   bool device_in_place() const { return in_place_; }
   bool device_plugged() const { return plugged_; }  // by the window; its connection may be lost
+  // The source of recordings with the device that was plugged in last; empty: none was.
+  const std::string& device_source() const { return device_source_; }
   // The settings as the loop takes them: as_taken() with a real device in the arm's place.
   Parameters taken(const Parameters& p) const { return device_in_place() ? as_taken(p, real_) : p; }
   // Whether a slot still has a device, in use or replaced; devices are free once this is false.
@@ -183,6 +185,8 @@ class LiveLoop {
 
   LoopStatus status() const { return thread_.status(); }
   const HapticThread& thread() const { return thread_; }
+  // Memory for what warms up a device's motors beside the loop; the next loop begins with it.
+  const std::shared_ptr<WarmthMemory>& warmth_memory() const { return warmth_; }
   // Punctuality of the device in the arm's place.
   const DevicePace& device_pace() const { return pace_; }
 
@@ -219,8 +223,9 @@ class LiveLoop {
   bool in_place_ = false;  // a device has the arm's place; changes only while the loop is stopped
   RealDevice real_;        // the device in place; the window writes its encoders
   bool plugged_ = false;   // the window's
+  std::string device_source_;
   bool virtual_armed_ = true;
-  WarmthMemory warmth_;  // of devices in place
+  std::shared_ptr<WarmthMemory> warmth_ = std::make_shared<WarmthMemory>();  // of devices in place
 
   // Counted by the window, read by the loop.
   std::atomic<std::uint32_t> arms_{0}, cuts_{0};

@@ -193,7 +193,7 @@ Answer ServedSession::open(const Keys& keys) {
 }
 
 std::string ServedSession::source() const {
-  if (loop().device_in_place()) return "device";
+  if (loop().device_in_place()) return loop().device_source();
   return world_.led ? world_.plan.hand.source : "nobody";
 }
 

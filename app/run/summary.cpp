@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/tick/arming.h"
+#include "core/tick/motor_warmth.h"
 
 namespace limpid {
 
@@ -110,9 +112,31 @@ std::string ForceTally::text(double tick) const {
   return text;
 }
 
+Summary::Summary(const RowLayout& layout, const ArmDescription& arm)
+    : Summary(layout, slides_of(arm)) {
+  for (const Joint& joint : arm.joints) {
+    warming_.push_back(joint.continuous > 0 ? joint.name : std::string());
+  }
+}
+
+// Adds the warmth of the arm's motors; `passed`: time since the row before [s].
+void Summary::add_warmth(std::span<const double> row, double passed) {
+  const auto warmth = layout_.in(row, Column::motor_warmth);
+  bool held = false;
+  for (std::size_t i = 0; i < warming_.size(); ++i) {
+    if (warming_[i].empty()) continue;
+    held = held || warmth[i] > kWarmFrom;
+    if (warmth[i] <= all_.warmest) continue;
+    all_.warmest = warmth[i];
+    all_.warmest_joint = i;
+  }
+  all_.held_by_warmth += held ? passed : 0;
+}
+
 bool Summary::add(std::span<const double> row) {
   const auto at = [&](Column c) { return layout_.in(row, c); };
-  time_ = at(Column::time)[0];
+  const double before = std::exchange(time_, at(Column::time)[0]);
+  add_warmth(row, all_.rows > 0 ? time_ - before : 0);
   const bool was_wild = watch_.wild();
   watch_.add(row);
   if (watch_.wild() && !was_wild) stable_ = all_;
@@ -167,6 +191,12 @@ std::string Summary::text() const {
   };
   held("walls held back in", t.walls_held);
   held("torque held back in", t.torque_held);
+  if (t.warmest > 0) {
+    text += fmt::format(
+        "warmth of the motors     at most {:.0f} % of what they bear for hours ({}); less than the "
+        "full torque for {:.3f} s\n",
+        100 * t.warmest, warming_[t.warmest_joint], t.held_by_warmth);
+  }
   if (layout_.bodies() == 0) return text;
   text += fmt::format(
       "to objects               {:.3f} mJ\n"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dynamics/arm_description.h"
 #include "core/tick/row.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_units.h"
@@ -63,6 +64,8 @@ class Summary {
   // `slides`: whether each joint slides; empty: none.
   explicit Summary(const RowLayout& layout, const std::vector<bool>& slides = {})
       : layout_(layout), units_(norm_units(slides)), watch_(layout) {}
+  // Summarizes a run of this arm, also the warmth of those motors whose file says what they bear.
+  Summary(const RowLayout& layout, const ArmDescription& arm);
 
   // Adds a row; returns whether it is the memorable one, for now.
   bool add(std::span<const double> row);
@@ -88,6 +91,9 @@ class Summary {
     double stood_still = 0;                   // ticks in which forces of bodies were not found
     // Ticks in which the account of energy held back the walls' force, and torque.
     std::uint64_t walls_held = 0, torque_held = 0;
+    double warmest = 0;  // of the arm's motors [-]
+    std::size_t warmest_joint = 0;
+    double held_by_warmth = 0;  // time in which warmth left a motor less than its peak [s]
     std::vector<double> memorable;
 
     double share_in_contact() const { return static_cast<double>(in_contact) / counted(); }
@@ -106,9 +112,11 @@ class Summary {
     double value;
   };
   std::vector<Number> numbers() const;
+  void add_warmth(std::span<const double> row, double passed);
 
   RowLayout layout_;
   NormUnits units_;
+  std::vector<std::string> warming_;  // names of joints; empty: one whose motor has no model
   DivergenceWatch watch_;
   double time_ = 0;
   Totals all_;

@@ -76,8 +76,12 @@ Child::~Child() {
   if (id_ >= 0) end();
 }
 
+void Child::kill() noexcept {
+  if (id_ > 0) ::kill(id_, SIGKILL);
+}
+
 int Child::end() {
-  ::kill(id_, SIGKILL);
+  kill();
   return wait();
 }
 

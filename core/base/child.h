@@ -36,6 +36,8 @@ class Child {
   int wait();
   // Waits for the program's end, then kills it; returns its status.
   int end_within(std::chrono::milliseconds longest);
+  // Kills the program, and does not wait for its end.
+  void kill() noexcept;
   // Kills the program and returns its status; one that was ending by itself keeps its own.
   int end();
 

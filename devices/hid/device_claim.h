@@ -44,6 +44,11 @@ class DeviceClaim {
   int file_ = -1;
 };
 
+// Key of a device of a maker's library, for Limpid and for the program that drives it.
+inline std::string vendor_claim_key(const std::string& back_end, const std::string& name) {
+  return "vendor:" + back_end + ":" + name;
+}
+
 // The process that has a device, for people, as "process 1234 (limpid run --live), since 2026-11-23
 // 16:05"; empty if none has, or this one.
 std::string claimed_by(const std::string& key,

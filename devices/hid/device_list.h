@@ -26,6 +26,7 @@ struct FoundDevice {
   // Names the physical device for its claim, the same by whatever way it was found.
   std::string (*claim_key)(const FoundDevice& found) = nullptr;
   std::string in_use_by = {};  // another program, for people; empty if none (device_claim.h)
+  std::string version = {};    // of place.library, if it says that without a device
 };
 
 // Places and kinds of devices to look for.

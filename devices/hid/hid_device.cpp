@@ -1,5 +1,6 @@
 #include "devices/hid/hid_device.h"
 
+#include <fmt/format.h>
 #include <sched.h>
 
 #include <optional>
@@ -20,6 +21,7 @@ HidDevice::HidDevice(std::unique_ptr<HidTransport> transport, std::unique_ptr<Hi
   traits_ = protocol_->traits();
   if (traits_.name.empty()) traits_.name = place.name;
   traits_.id = place.id;
+  if (!place.library.empty()) traits_.made_by += fmt::format(" ({})", place.library);
   exchange_ =
       std::make_unique<HidExchange>(*transport_, *protocol_, [] { return MonotonicTime{}.now(); });
   std::promise<void> guarded;

@@ -22,6 +22,7 @@ struct HidPlace {
   std::string name;
   std::string id;    // vendor:product:serial
   std::string path;  // of the hidraw node; empty: the transport guards the device, if at all
+  std::string library = {};  // file of the maker's library that drives it; empty: none
 };
 
 class HidDevice final : public Device {

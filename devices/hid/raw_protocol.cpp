@@ -145,6 +145,8 @@ DeviceTraits read_traits_of_any_kind(Payload body) {
         "one with motors must have a largest torque or force above 0");
   traits.name =
       printable(body.subspan(Raw2Feature::name, Raw2Feature::made_by - Raw2Feature::name));
+  traits.made_by =
+      printable(body.subspan(Raw2Feature::made_by, Raw2Feature::end - Raw2Feature::made_by));
   return traits;
 }
 
@@ -178,8 +180,6 @@ void RawProtocol::open(HidTransport& transport) {
     traits_ = read_traits(body);
   } else {
     traits_ = read_traits_of_any_kind(body);
-    made_by_ =
-        printable(body.subspan(Raw2Feature::made_by, Raw2Feature::end - Raw2Feature::made_by));
     for (std::size_t i = 0; i < static_cast<std::size_t>(traits_.dof); ++i) {
       speed_[i] = number_at(body, Raw2Feature::speed, i);
     }

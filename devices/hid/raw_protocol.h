@@ -150,8 +150,6 @@ class RawProtocol final : public HidProtocol {
   const std::vector<Report>& stop_reports() const override { return stop_reports_; }
 
   const Extras& extras() const { return extras_; }
-  // Program or library that speaks for the device, as it says itself; empty: it does not.
-  const std::string& made_by() const { return made_by_; }
 
  private:
   using Command = std::array<std::uint8_t, kReportSize>;
@@ -166,7 +164,6 @@ class RawProtocol final : public HidProtocol {
   RawLayout layout_ = kRaw1;
   DeviceTraits traits_;
   std::array<double, kRaw2.joints> speed_{};  // largest of each joint [rad/s or m/s]; 0: not said
-  std::string made_by_;
   Extras extras_;
   std::optional<Positions> believed_;  // newest positions that can be [rad or m]
   std::uint32_t believed_sequence_ = 0;

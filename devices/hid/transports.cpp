@@ -13,9 +13,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "devices/hid/device_claim.h"
@@ -29,6 +31,9 @@ namespace {
 constexpr int kFirstPacket = 500;           // longest wait for the first packet [ms]
 constexpr int kFirstOfProgram = 40 * 1000;  // of a program that has to open its device first [ms]
 constexpr std::chrono::milliseconds kLongestEnd{3000};  // of a program, then it is killed
+// Longest silence of a program whose readings had begun; one whose library hangs ends by itself
+// before.
+constexpr std::chrono::milliseconds kLongestSilence{200};
 
 int connect_to(const std::string& path) {
   sockaddr_un address{};
@@ -129,13 +134,27 @@ class ProgramTransport final : public SocketTransport {
       throw HidError(std::string(first.begin() + 2, first.end()));
     }
     if (!came || first.empty()) throw HidError("the program that drives it does not answer");
+    described_ = true;
   }
   ~ProgramTransport() override {
     hang_up();
     child_->end_within(kLongestEnd);
   }
 
+  // A program that was stopped leaves its motors at what they were last told. Its end closes the
+  // device, which is then gone.
+  int read(std::span<std::uint8_t> report, int timeout_ms) noexcept override {
+    const int size = SocketTransport::read(report, timeout_ms);
+    const auto now = std::chrono::steady_clock::now();
+    if (size > 0 && described_) heard_ = now;
+    if (size != 0 || !heard_ || now - *heard_ <= kLongestSilence) return size;
+    child_->kill();
+    return -1;
+  }
+
  private:
+  bool described_ = false;
+  std::optional<std::chrono::steady_clock::time_point> heard_;  // a reading
   std::unique_ptr<Child> child_;
 };
 

@@ -19,6 +19,7 @@
 #include "devices/hid/raw_device.h"
 #include "devices/hid/raw_protocol.h"
 #include "devices/hid/transports.h"
+#include "devices/hid/vendor_kinds.h"
 
 namespace limpid {
 namespace {
@@ -29,18 +30,15 @@ using nlohmann::json;
 constexpr std::chrono::seconds kLongestList{15};
 constexpr std::size_t kMostText = 64 * 1024;
 
-constexpr std::array kKinds{DeviceKind{.key = "openhaptics",
-                                       .name = "OpenHaptics device",
-                                       .use = "its tip in three directions, pushes",
-                                       .pushes = true,
-                                       .arm = "openhaptics.urdf",
-                                       .service = true},
-                            DeviceKind{.key = "forcedimension",
-                                       .name = "Force Dimension device",
-                                       .use = "its tip in three directions, pushes",
-                                       .pushes = true,
-                                       .arm = "forcedimension.urdf",
-                                       .service = true}};
+#define KIND(key_, name_, maker, ...)                      \
+  DeviceKind{.key = #key_,                                 \
+             .name = name_ " device",                      \
+             .use = "its tip in three directions, pushes", \
+             .pushes = true,                               \
+             .arm = #key_ ".urdf",                         \
+             .service = true},
+constexpr std::array kKinds{LIMPID_VENDORS(KIND)};
+#undef KIND
 
 const DeviceKind* kind_of(const std::string& back_end) {
   const auto found =
@@ -89,6 +87,7 @@ std::optional<VendorLine> read_line(const std::string& text) {
   read.name = text_at(line, read.is_device ? "device" : "library");
   read.title = text_at(line, "title");
   read.missing = text_at(line, "missing");
+  read.version = text_at(line, "version");
   read.absent = line.value("absent", json(false)) == json(true);
   if (read.back_end.empty()) return std::nullopt;
   return read;
@@ -98,24 +97,40 @@ std::unique_ptr<Device> open_vendor_device(const FoundDevice& found, const PidSe
                                            const AskForPriority& ask, DeviceClaim claim) {
   try {
     const VendorName which = vendor_name(found.place.id).value();
+    auto transport = open_vendor(which.back_end, which.name, claim.descriptor());
     return std::make_unique<HidDevice>(
-        open_vendor(which.back_end, which.name), std::make_unique<RawProtocol>(),
-        HidPlace{found.place.name, found.place.id, ""}, ask, std::move(claim));
+        std::move(transport), std::make_unique<RawProtocol>(),
+        HidPlace{found.place.name, found.place.id, "", found.place.library}, ask, std::move(claim));
   } catch (const HidError& error) {
     throw HidError(fmt::format("{}: {}", found.place.name, error.what()));
   }
 }
 
-std::string vendor_claim_key(const FoundDevice& found) { return "vendor:" + found.place.id; }
+std::string claim_key(const FoundDevice& found) {
+  const VendorName which = vendor_name(found.place.id).value();
+  return vendor_claim_key(which.back_end, which.name);
+}
+
+// The library's own line among `lines`; null if there is none.
+const VendorLine* library_line(const std::vector<VendorLine>& lines, const std::string& back_end) {
+  const auto found = std::ranges::find_if(
+      lines, [&](const VendorLine& line) { return !line.is_device && line.back_end == back_end; });
+  return found == lines.end() ? nullptr : &*found;
+}
 
 FoundDevice found_device(const DeviceKind& kind, const std::string& name, const std::string& title,
-                         const std::string& missing) {
+                         const std::string& missing, const VendorLine* library) {
   const std::string id = fmt::format("{}:{}", kind.key, name);
-  return {{title, id, fmt::format("{} {} \"{}\"", kVendorProgram, kind.key, name)},
-          &kind,
-          missing,
-          open_vendor_device,
-          vendor_claim_key};
+  FoundDevice found{{title, id, fmt::format("{} {} \"{}\"", kVendorProgram, kind.key, name)},
+                    &kind,
+                    missing,
+                    open_vendor_device,
+                    claim_key};
+  if (library != nullptr) {
+    found.place.library = library->name;
+    found.version = library->version;
+  }
+  return found;
 }
 
 }  // namespace
@@ -144,18 +159,17 @@ std::vector<FoundDevice> list_vendor_devices(const std::vector<VendorLine>& line
   for (const VendorLine& line : lines) {
     const DeviceKind* const kind = kind_of(line.back_end);
     if (!line.is_device || kind == nullptr) continue;
-    found.push_back(found_device(*kind, line.name, line.title, line.missing));
+    found.push_back(found_device(*kind, line.name, line.title, line.missing,
+                                 library_line(lines, line.back_end)));
   }
   const auto name = vendor_name(wanted);
   if (!name || std::ranges::count(found, wanted, [](const auto& one) { return one.place.id; })) {
     return found;
   }
-  for (const VendorLine& line : lines) {
-    if (line.is_device || line.back_end != name->back_end) continue;
-    found.push_back(found_device(*kind_of(name->back_end), name->name,
-                                 fmt::format("{} {}", kind_of(name->back_end)->name, name->name),
-                                 line.missing));
-    break;
+  if (const VendorLine* const library = library_line(lines, name->back_end)) {
+    const DeviceKind& kind = *kind_of(name->back_end);
+    found.push_back(found_device(kind, name->name, fmt::format("{} {}", kind.name, name->name),
+                                 library->missing, library));
   }
   return found;
 }
@@ -165,14 +179,16 @@ const DeviceKind* vendor_kind(const std::string& id) {
   return name ? kind_of(name->back_end) : nullptr;
 }
 
-std::unique_ptr<HidTransport> open_vendor(const std::string& back_end, const std::string& name) {
+std::unique_ptr<HidTransport> open_vendor(const std::string& back_end, const std::string& name,
+                                          int claim) {
   std::array<int, 2> ends{-1, -1};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends.data()) != 0) {
     throw HidError("there are too many open files");
   }
-  constexpr int kThere = 3;
+  constexpr int kThere = 3, kClaim = 4;
   const Descriptor other_end(ends[1]);
-  const std::array<Given, 1> given{Given{*other_end, kThere}};
+  std::vector<Given> given{{*other_end, kThere}};
+  if (claim >= 0) given.push_back({claim, kClaim});
   const std::string program = own_program(kVendorProgram).string();
   auto child = std::make_unique<Child>(
       std::vector<std::string>{program, back_end, name, "--connection", std::to_string(kThere)},

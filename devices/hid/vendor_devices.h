@@ -19,10 +19,11 @@ inline constexpr const char* kVendorProgram = "limpid-vendor";
 struct VendorLine {
   std::string back_end;  // as in ids: BACKEND:NAME
   bool is_device = false;
-  std::string name;     // of the device; path of the library
-  std::string title;    // for people
-  std::string missing;  // why it cannot be used, and what to do; empty if it can
-  bool absent = false;  // the library is not installed at all
+  std::string name;          // of the device; path of the library
+  std::string title;         // for people
+  std::string missing;       // why it cannot be used, and what to do; empty if it can
+  bool absent = false;       // the library is not installed at all
+  std::string version = {};  // of the library; empty: it says it only of an open device
 };
 
 // Asks the program. Lines that make no sense are left out; none if it cannot be started.
@@ -37,7 +38,9 @@ std::vector<FoundDevice> list_vendor_devices(const std::vector<VendorLine>& line
 const DeviceKind* vendor_kind(const std::string& id);
 
 // Starts the program with a device and connects to it, which may take seconds. Throws HidError with
-// what it says. The program ends with the transport.
-std::unique_ptr<HidTransport> open_vendor(const std::string& back_end, const std::string& name);
+// what it says. The program ends with the transport. `claim`: a descriptor that it keeps as long as
+// it lives, so that nobody else gets the device before its motors are off; -1: none.
+std::unique_ptr<HidTransport> open_vendor(const std::string& back_end, const std::string& name,
+                                          int claim = -1);
 
 }  // namespace limpid

@@ -1,5 +1,6 @@
 // Back ends of limpid-vendor: the libraries of makers, by which it reaches their devices. A further
-// maker is a file with a VendorBackEnd and its line in the table of back_ends.cpp.
+// maker is a file with a VendorBackEnd and the function that makes it, and a line in
+// devices/hid/vendor_kinds.h.
 //
 // A library is loaded while the program runs. Nothing of it, header or text, is part of Limpid:
 // each back end declares the few functions that it calls.
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "devices/device.h"
+#include "devices/hid/vendor_kinds.h"
 
 namespace limpid {
 
@@ -34,6 +36,11 @@ struct VendorAbsent : VendorError {
 // Axes as Limpid has them: x forward, y to the left, z up.
 using TipVector = std::array<double, 3>;
 
+struct VendorLibrary {
+  std::string path;
+  std::string version;  // empty: it says none before a device is open
+};
+
 struct VendorListed {
   std::string name;     // by which it is opened
   std::string title;    // for people
@@ -43,7 +50,8 @@ struct VendorListed {
 // Properties of an open device: a tip that is moved and pushed in three directions.
 struct VendorTraits {
   std::string name;            // model and serial number
-  std::string made_by;         // the library and its version
+  std::string serial;          // empty: not known
+  std::string made_by;         // the library and its version, at most 28 characters
   TipVector lower{}, upper{};  // range [m]
   double resolution = 0;       // [m]
   double force = 0;            // largest along each axis [N]
@@ -76,9 +84,9 @@ class VendorBackEnd {
   VendorBackEnd& operator=(const VendorBackEnd&) = delete;
   virtual ~VendorBackEnd() = default;
 
-  // Loads the library; the other functions need it. Returns its path. All functions but end() and
-  // close() throw VendorError.
-  virtual std::string load() = 0;
+  // Loads the library; the other functions need it. All functions but end() and close() throw
+  // VendorError.
+  virtual VendorLibrary load() = 0;
   virtual std::vector<VendorListed> list(const VendorOptions& options) = 0;
   // Opens a device, which stays without force.
   virtual VendorTraits open(const std::string& name, const VendorOptions& options) = 0;
@@ -95,6 +103,8 @@ class VendorBackEnd {
   virtual void begin(Servo& servo);
   // Ends the frames; the last one has commanded no force, if it came.
   virtual void end() noexcept;
+  // Words about what the frames have shown of the device, once they have ended; empty: none.
+  virtual std::string remark() const { return {}; }
   // Leaves the device without force and closes it.
   virtual void close() noexcept = 0;
 
@@ -111,7 +121,8 @@ struct BackEndEntry {
 
 std::span<const BackEndEntry> back_ends();
 
-std::unique_ptr<VendorBackEnd> make_openhaptics();
-std::unique_ptr<VendorBackEnd> make_force_dimension();
+#define DECLARED(key, name, maker, ...) std::unique_ptr<VendorBackEnd> make_##key();
+LIMPID_VENDORS(DECLARED)
+#undef DECLARED
 
 }  // namespace limpid

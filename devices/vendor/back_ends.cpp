@@ -3,10 +3,9 @@
 namespace limpid {
 
 std::span<const BackEndEntry> back_ends() {
-  static const std::array<BackEndEntry, 2> all{{
-      {"openhaptics", "3D Systems", {0x2988}, make_openhaptics},
-      {"forcedimension", "Force Dimension", {0x1451}, make_force_dimension},
-  }};
+#define ENTRY(key, name, maker, ...) {#key, maker, {__VA_ARGS__}, make_##key},
+  static const std::vector<BackEndEntry> all{LIMPID_VENDORS(ENTRY)};
+#undef ENTRY
   return all;
 }
 

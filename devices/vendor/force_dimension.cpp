@@ -66,6 +66,7 @@ struct Functions {
   int (*dhdGetStatus)(int*, char);
   const char* (*dhdErrorGetLastStr)();
   void (*dhdEnableSimulator)(bool) = nullptr;  // newer libraries have it
+  void (*dhdGetSDKVersion)(int*, int*, int*, int*) = nullptr;
 };
 
 std::vector<std::string> places_of(const std::string& name) {
@@ -79,7 +80,7 @@ std::vector<std::string> places_of(const std::string& name) {
 
 class ForceDimension final : public VendorBackEnd {
  public:
-  std::string load() override {
+  VendorLibrary load() override {
     dhd_library_.load(places_of("libdhd.so.3"), kOwner);
     drd_library_.load(places_of("libdrd.so.3"), kOwner);
     // The second one may have all functions of the first, with a state of their own.
@@ -109,7 +110,8 @@ class ForceDimension final : public VendorBackEnd {
     find("dhdGetStatus", sdk_.dhdGetStatus);
     find("dhdErrorGetLastStr", sdk_.dhdErrorGetLastStr);
     drd_library_.find_if_any("dhdEnableSimulator", sdk_.dhdEnableSimulator);
-    return drd_library_.path();
+    dhd_library_.find_if_any("dhdGetSDKVersion", sdk_.dhdGetSDKVersion);
+    return {drd_library_.path(), version()};
   }
 
   std::vector<VendorListed> list(const VendorOptions& options) override {
@@ -148,8 +150,9 @@ class ForceDimension final : public VendorBackEnd {
     sdk_.dhdGetSerialNumber(&serial, id_);
     VendorTraits traits;
     traits.name = fmt::format("{} {}", system, serial);
+    if (serial != 0) traits.serial = std::to_string(serial);
     has_wrist_ = sdk_.dhdHasWrist(id_);
-    traits.made_by = "libdrd.so.3";
+    traits.made_by = fmt::format("libdrd.so.3 {}", version());
     traits.lower.fill(-model->radius);
     traits.upper.fill(model->radius);
     traits.resolution = kResolution;
@@ -194,19 +197,12 @@ class ForceDimension final : public VendorBackEnd {
     if (frames_++ % kStatusEvery != 0) return;
     std::array<int, kMostStatus> status{};
     demand(sdk_.dhdGetStatus(status.data(), id_), "it does not say how it is");
-    const int cause = status[kStatusForceOffCause];
-    reading.no_force = NoForce::none;
-    if (enabled_ && status[kStatusForce] == 0) {
-      reading.no_force =
-          cause > 0 && cause < kCauses ? static_cast<NoForce>(cause) : NoForce::other;
-    }
-    // Our own lateness: the next force switches the motors on again. Any other reason is left to
-    // the device and the person, whose button it may be.
-    if (reading.no_force == NoForce::watchdog) enabled_ = false;
+    reading.no_force = why_off(status[kStatusForce] != 0, status[kStatusForceOffCause]);
   }
 
   void write(const VendorForce& force) override {
-    if (force.enabled != enabled_) {
+    const bool kept_off = force.enabled && withheld_ != NoForce::none;
+    if (force.enabled != enabled_ && !kept_off) {
       demand(sdk_.dhdEnableForce(force.enabled ? kOn : kOff, id_), "its force cannot be switched");
       enabled_ = force.enabled;
     }
@@ -231,12 +227,35 @@ class ForceDimension final : public VendorBackEnd {
     reading.orientation = tool_orientation(Vec3(-1, -1, 1).asDiagonal(), turned);
   }
 
+  // The reason why the motors are off that were switched on. The watchdog's is our own lateness:
+  // the next force switches them on again. Any other one is left to the device and the person,
+  // whose button it may be: until the device has force again, nobody else switches its motors on.
+  NoForce why_off(bool on, int cause) {
+    if (on) withheld_ = NoForce::none;
+    if (on || !enabled_ || withheld_ != NoForce::none) return withheld_;
+    const NoForce why = cause > 0 && cause < kCauses ? static_cast<NoForce>(cause) : NoForce::other;
+    if (why == NoForce::watchdog) {
+      enabled_ = false;
+    } else {
+      withheld_ = why;
+    }
+    return why;
+  }
+
   template <class Function>
   void find_function(const char* name, Function& function) const {
     Function found = nullptr;
     drd_library_.find_if_any(name, found);
     if (found == nullptr) dhd_library_.find(name, found);
     function = found;
+  }
+
+  // Empty where the library has no function that says it.
+  std::string version() const {
+    if (sdk_.dhdGetSDKVersion == nullptr) return {};
+    int major = 0, minor = 0, release = 0, revision = 0;
+    sdk_.dhdGetSDKVersion(&major, &minor, &release, &revision);
+    return fmt::format("{}.{}.{}.{}", major, minor, release, revision);
   }
 
   void look_at_simulator(const VendorOptions& options) const {
@@ -269,12 +288,13 @@ class ForceDimension final : public VendorBackEnd {
   Functions sdk_{};
   char id_ = -1;
   bool opened_ = false, enabled_ = false, has_wrist_ = false;
-  double most_ = 0;  // [N]
+  NoForce withheld_ = NoForce::none;  // why the device has switched its motors off by itself
+  double most_ = 0;                   // [N]
   unsigned frames_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<VendorBackEnd> make_force_dimension() { return std::make_unique<ForceDimension>(); }
+std::unique_ptr<VendorBackEnd> make_forcedimension() { return std::make_unique<ForceDimension>(); }
 
 }  // namespace limpid

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <link.h>
 
+#include <filesystem>
+
 #include "devices/vendor/back_end.h"
 
 namespace limpid {
@@ -16,11 +18,15 @@ std::string not_found(const std::string& error) {
   return end == std::string::npos ? std::string() : error.substr(0, end);
 }
 
-// Debian's packages of libraries that makers' libraries need.
+// Words on how to install a library that makers' libraries need. One command is in quotes: the
+// window copies it. tests/system/test_vendor.py holds devices/README.md to these words.
 const char* how_to_install(const std::string& library) {
   if (library.starts_with("libncurses.so.5") || library.starts_with("libtinfo.so.5")) {
-    return "Debian 12 has it: 'sudo apt install libncurses5 libtinfo5'; Debian 13 does not have it "
-           "any more";
+    return "Debian 12 has it in libncurses5; Debian 13 no longer does, and takes the packages of "
+           "Debian 12: 'wget "
+           "https://deb.debian.org/debian/pool/main/n/ncurses/libtinfo5_6.4-4_amd64.deb "
+           "https://deb.debian.org/debian/pool/main/n/ncurses/libncurses5_6.4-4_amd64.deb && sudo "
+           "apt install ./libtinfo5_6.4-4_amd64.deb ./libncurses5_6.4-4_amd64.deb'";
   }
   if (library.starts_with("libusb-1.0")) return "'sudo apt install libusb-1.0-0'";
   return "it comes with the maker's software";
@@ -35,6 +41,9 @@ void Library::load(std::span<const std::string> names, const std::string& where)
     if (handle_ != nullptr) {
       link_map* map = nullptr;
       path_ = ::dlinfo(handle_, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr ? map->l_name : name;
+      std::error_code none;
+      const auto file = std::filesystem::canonical(path_, none);
+      if (!none) path_ = file.string();
       return;
     }
     const char* const said = ::dlerror();

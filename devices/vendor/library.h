@@ -17,6 +17,7 @@ class Library {
   // also of the libraries that it needs itself.
   void load(std::span<const std::string> names, const std::string& where);
 
+  // Path of its file, without symbolic links: their names often lack the version.
   const std::string& path() const { return path_; }
 
   // Gives a function of the library. Throws VendorError if it has none of this name.

@@ -25,6 +25,8 @@
 #include <vector>
 
 #include "core/base/descriptor.h"
+#include "devices/hid/device_claim.h"
+#include "devices/hid/hid_transport.h"
 #include "devices/hid/raw_device.h"
 #include "devices/vendor/vendor_server.h"
 
@@ -103,9 +105,12 @@ bool on_usb(const std::vector<std::uint16_t>& vendors) {
 void list_one(const BackEndEntry& entry, const VendorOptions& options, int to) {
   const auto device = entry.make();
   try {
-    const std::string library = device->load();
-    print_line(to,
-               {{"backend", entry.key}, {"library", library}, {"missing", ""}, {"absent", false}});
+    const VendorLibrary library = device->load();
+    print_line(to, {{"backend", entry.key},
+                    {"library", library.path},
+                    {"version", library.version},
+                    {"missing", ""},
+                    {"absent", false}});
     for (const VendorListed& each : device->list(options)) {
       print_line(to, {{"backend", entry.key},
                       {"device", each.name},
@@ -159,6 +164,14 @@ void find_zero(VendorBackEnd& device, const std::string& moves) {
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+DeviceClaim claimed(const std::string& name, const std::string& key) {
+  try {
+    return DeviceClaim(key);
+  } catch (const HidError& error) {
+    throw VendorError(fmt::format("{}: {}", name, error.what()));
+  }
+}
+
 void open_and_serve(const Words& words) {
   const auto found = std::ranges::find_if(
       back_ends(), [&](const BackEndEntry& entry) { return words.back_end == entry.key; });
@@ -168,10 +181,22 @@ void open_and_serve(const Words& words) {
   hold_signals();
   ::alarm(kLongestOpen);
   const auto device = found->make();
-  const std::string library = device->load();
+  const VendorLibrary library = device->load();
+  // Limpid holds the claim of a device that it starts this program for, and hands it over.
+  DeviceClaim by_name, by_serial;
+  if (words.place.connection < 0) {
+    by_name = claimed(words.name, vendor_claim_key(words.back_end, words.name));
+  }
   const VendorTraits traits = device->open(words.name, words.options);
-  std::fputs(fmt::format("limpid-vendor: {}, by {}\n", traits.name, library).c_str(), stderr);
+  std::fputs(
+      fmt::format("limpid-vendor: {}, by {} ({})\n", traits.name, traits.made_by, library.path)
+          .c_str(),
+      stderr);
   try {
+    // A device may have several names.
+    if (!traits.serial.empty()) {
+      by_serial = claimed(traits.name, "vendor-serial:" + words.back_end + ":" + traits.serial);
+    }
     if (const std::string moves = device->needs_calibration(); !moves.empty()) {
       if (!words.calibrate) {
         throw VendorError(fmt::format("{}. Then run: limpid-vendor {} {} --calibrate", moves,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -27,10 +28,10 @@ struct ErrorInfo {
 };
 
 constexpr Handle kNoDevice = 0xFFFFFFFF;
-constexpr unsigned kModel = 0x2501, kSerial = 0x2504, kCalibrationStyle = 0x2555;
+constexpr unsigned kVersion = 0x2500, kModel = 0x2501, kSerial = 0x2504, kCalibrationStyle = 0x2555;
 constexpr unsigned kCalibrated = 0x5000, kNeedsUpdate = 0x5001;  // else it needs a person
 constexpr unsigned kForceOutput = 0x4000;
-constexpr unsigned kPosition = 0x2050, kTransform = 0x2052;
+constexpr unsigned kPosition = 0x2050, kTransform = 0x2052, kJointAngles = 0x2100;
 constexpr unsigned kButtons = 0x2000, kSafetySwitch = 0x2001, kInkwell = 0x2002;
 constexpr unsigned kTemperatures = 0x2605, kMostForce = 0x2603, kWorkspace = 0x2551;
 constexpr unsigned kForce = 0x2700;
@@ -41,6 +42,7 @@ constexpr unsigned short kFirst = 65535;  // priority
 
 constexpr double kMetre = 1000;         // [mm]
 constexpr double kResolution = 5.5e-5;  // at the tip of an Omni [m]
+constexpr double kLink = 133.35;        // upper arm and forearm of an Omni and a Touch [mm]
 constexpr int kMostErrors = 16;         // taken in a frame
 constexpr int kMotors = 6;
 constexpr int kReasonStays = 50;  // frames for which a reason is told, so that it is seen
@@ -49,6 +51,7 @@ constexpr const char* kOwner =
     "the owner of the device gets it from 3D Systems: OpenHaptics for Linux, and the Touch Device "
     "Driver";
 constexpr const char* kDefault = "Default Device";
+constexpr const char* kLibrary = "libHD.so.3.4";
 
 // Functions of the library, by their names there.
 struct Functions {
@@ -91,10 +94,44 @@ std::set<std::string> configured() {
   return names;
 }
 
+// Place of the tip by the joint angles, from where the first two axes meet, in the library's axes
+// [mm]: turn to the left, the upper arm's rise, and the forearm from where it hangs.
+std::array<double, 3> tip_by_joints(const std::array<double, 3>& q) {
+  const double out = kLink * (std::cos(q[1]) + std::sin(q[2]));
+  const double up = kLink * (std::sin(q[1]) - std::cos(q[2]));
+  return {-std::sin(q[0]) * out, up, std::cos(q[0]) * out};
+}
+
+// Comparison of two readings of the tip that have different origins: how much their difference
+// changes, which is nothing if both are right.
+class TipsCompared {
+ public:
+  void add(const std::array<double, 3>& one, const std::array<double, 3>& other) {
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      const double off = one[i] - other[i];
+      least_[i] = frames_ > 0 ? std::min(least_[i], off) : off;
+      most_[i] = frames_ > 0 ? std::max(most_[i], off) : off;
+      came_from_[i] = frames_ > 0 ? std::min(came_from_[i], one[i]) : one[i];
+      came_to_[i] = frames_ > 0 ? std::max(came_to_[i], one[i]) : one[i];
+    }
+    ++frames_;
+  }
+  std::uint64_t frames() const { return frames_; }
+  double apart() const { return largest(least_, most_); }       // over all frames
+  double way() const { return largest(came_from_, came_to_); }  // of the first reading
+
+ private:
+  static double largest(const std::array<double, 3>& from, const std::array<double, 3>& to) {
+    return std::max({to[0] - from[0], to[1] - from[1], to[2] - from[2]});
+  }
+  std::array<double, 3> least_{}, most_{}, came_from_{}, came_to_{};
+  std::uint64_t frames_ = 0;
+};
+
 class OpenHaptics final : public VendorBackEnd {
  public:
-  std::string load() override {
-    const std::array<std::string, 2> names{"libHD.so.3.4", "libHD.so"};
+  VendorLibrary load() override {
+    const std::array<std::string, 2> names{kLibrary, "libHD.so"};
     library_.load(names, kOwner);
     const auto find = [&](const char* name, auto& function) { library_.find(name, function); };
     find("hdInitDevice", hd_.hdInitDevice);
@@ -116,7 +153,7 @@ class OpenHaptics final : public VendorBackEnd {
     find("hdUnschedule", hd_.hdUnschedule);
     find("hdStartScheduler", hd_.hdStartScheduler);
     find("hdStopScheduler", hd_.hdStopScheduler);
-    return library_.path();
+    return {library_.path(), {}};
   }
 
   // The devices that the driver was told of. Nobody asks the devices, as that would open them.
@@ -147,9 +184,11 @@ class OpenHaptics final : public VendorBackEnd {
     hd_.hdMakeCurrentDevice(device_);
     VendorTraits traits;
     const std::string model = text(kModel);
-    traits.name = fmt::format("{} {}", model, text(kSerial));
-    traits.made_by = "libHD.so.3.4";
+    traits.serial = text(kSerial);
+    traits.name = fmt::format("{} {}", model, traits.serial);
     has_switch_ = model.find("Touch X") != std::string::npos;
+    known_links_ = !has_switch_ && (model.find("Touch") != std::string::npos ||
+                                    model.find("Omni") != std::string::npos);
     hd_.hdGetIntegerv(kCalibrationStyle, &style_);
     // The least corner, then the greatest, in the library's axes.
     std::array<double, 6> room{};
@@ -163,6 +202,9 @@ class OpenHaptics final : public VendorBackEnd {
     traits.resolution = kResolution;
     hd_.hdGetDoublev(kMostForce, &traits.force);
     throw_errors("open");
+    const std::string version = text(kVersion);
+    traits.made_by = version.empty() ? kLibrary : fmt::format("{} {}", kLibrary, version);
+    take_errors();  // whoever does not know its version may still drive the device
     return traits;
   }
 
@@ -181,6 +223,11 @@ class OpenHaptics final : public VendorBackEnd {
     reading.calibrated = state == kCalibrated;
     std::array<double, 3> place{};
     hd_.hdGetDoublev(kPosition, place.data());
+    if (known_links_ && reading.calibrated) {
+      std::array<double, 3> angles{};
+      hd_.hdGetDoublev(kJointAngles, angles.data());
+      compared_.add(place, tip_by_joints(angles));
+    }
     reading.x = of_tip(place);
     for (double& each : reading.x) each /= kMetre;
     // Column by column.
@@ -227,6 +274,16 @@ class OpenHaptics final : public VendorBackEnd {
     scheduled_ = false;
     hd_.hdStopScheduler();
     hd_.hdUnschedule(task_);
+  }
+
+  // Nobody has seen yet whether a real Touch's joint angles are what they are said to be. Its
+  // position is what counts in any case.
+  std::string remark() const override {
+    if (compared_.frames() == 0) return {};
+    return fmt::format(
+        "its joint angles (two links of {} mm) and its position were up to {:.2f} mm apart while "
+        "it moved {:.0f} mm, in {} frames; Limpid uses the position",
+        kLink, compared_.apart(), compared_.way(), compared_.frames());
   }
 
   void close() noexcept override {
@@ -296,6 +353,8 @@ class OpenHaptics final : public VendorBackEnd {
   Functions hd_{};
   Handle device_ = kNoDevice;
   bool opened_ = false, scheduled_ = false, enabled_ = false, has_switch_ = false;
+  bool known_links_ = false;
+  TipsCompared compared_;
   int style_ = 0;
   unsigned long task_ = 0;
   Servo* servo_ = nullptr;

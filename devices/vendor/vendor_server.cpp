@@ -111,6 +111,9 @@ class Server {
     device.end();
     device.close();
     ::alarm(0);
+    if (const std::string remark = device.remark(); !remark.empty()) {
+      std::fputs(fmt::format("limpid-vendor: {}\n", remark).c_str(), stderr);
+    }
     if (!servo_.error().empty()) throw VendorError(servo_.error());
   }
 

@@ -88,7 +88,8 @@ class Characterize(SystemTest):
         for words, said in ((("nothing.urdf",), "nothing.urdf"), ((), "needed: an arm's file"),
                             (("omni.urdf", "--coupling", "tank"), "every law is measured"),
                             (("omni.urdf", "--set", "hand.stiffness=3"), "hand.stiffness: every law"),
-                            (("--device", "socket:none"), "socket:none: is not connected")):
+                            (("--device", "socket:none"), "socket:none: is not connected; nothing is. Plug it in: "
+                                                          "it says its encoders itself.")):
             with self.subTest(words=words):
                 result = limpid("characterize", *words, "--out", out)
                 self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
@@ -96,6 +97,20 @@ class Characterize(SystemTest):
                 self.assertFalse(out.exists())
         result = limpid("characterize", "omni.urdf", "--out", file / "below")
         self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+
+    def test_a_device_that_is_not_plugged_in_has_an_arm_that_can_be_named(self) -> None:
+        book = self.folder / "config/limpid/devices.toml"
+        book.parent.mkdir(parents=True)
+        for key in ("arm", "taken_for"):
+            book.write_text(f'[device."socket:played"]\n{key} = "/home/me/identified.urdf"\n')
+            result = limpid("characterize", "--device", "socket:played", "--out", self.folder / "out")
+            self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+            self.assertIn("socket:played: is not connected; nothing is. Plug it in", result.err)
+            self.assertIn("Without it: limpid characterize /home/me/identified.urdf --set "
+                          "device.encoder_step=STEP", result.err)
+        book.write_text('[device."socket:played"]\ntaken_for = "built-in"\n')
+        result = limpid("characterize", "--device", "socket:played", "--out", self.folder / "out")
+        self.assertNotIn("Without it", result.err)
 
     def test_ctrl_c_leaves_a_whole_message(self) -> None:
         out = self.folder / "stopped"

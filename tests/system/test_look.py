@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -21,6 +22,7 @@ import h5py
 import numpy as np
 
 from support import ASSETS, LIMPID, limpid
+from test_inverse3 import Service
 from vendor_link import environment, motors_in
 
 sys.path.insert(0, str(ASSETS / "python"))
@@ -210,11 +212,49 @@ class Look(unittest.TestCase):
         self.assertRegex(result.err, "space|full|written|recording")
 
 
+class OfAService(unittest.TestCase):
+    """An Inverse3 through a stand-in of its service, which says each force that it is asked for."""
+
+    def test_is_read_and_gets_no_force(self) -> None:
+        service = Service()
+        self.addCleanup(service.end)
+        service.tell("move 0.05 -0.12 0.2")
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder, "look.h5")
+            process = subprocess.Popen(
+                [LIMPID, "devices", "look", service.name, "--record", out, "--seconds", "3", "--json"],
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                env={**os.environ, "XDG_CONFIG_HOME": folder, "XDG_RUNTIME_DIR": folder})
+            self.addCleanup(process.kill)
+            service.wait(lambda line: line == "session")
+            while process.poll() is None:  # to and fro along the service's z, which is up
+                service.tell(f"move 0.05 -0.12 {0.2 + 0.03 * math.sin(4 * time.monotonic()):.4f}")
+                time.sleep(0.01)
+            text, said = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 0, said)
+            found = json.loads(text)
+            self.assertIn("it says so itself", found["arm_why"])
+            self.assertEqual((found["pushes"], found["force_given"]), (True, False))
+            self.assertGreater(found["readings"], 300)
+            spans = [joint["most"] - joint["least"] for joint in found["joints"]]
+            self.assertEqual([joint["unit"] for joint in found["joints"]], ["m"] * 3)
+            self.assertAlmostEqual(spans[2], 0.06, delta=2e-3)
+            self.assertLess(max(spans[:2]), 1e-6)
+            self.assertEqual(service.pushes(), [], "it was pushed")
+            service.tell("count")
+            messages = int(service.wait(lambda line: line.startswith("messages")).split()[1])
+            self.assertGreater(messages, 300, "nothing was sent at all")
+            with h5py.File(out) as file:
+                self.assertIn("device without force: ", str(file.attrs["source"]))
+                self.assertFalse(file["device/motor_torque"][...].any())
+
+
 class OfAMaker(unittest.TestCase):
     """Devices of makers with a library of their own; the stand-in keeps what its motors hold."""
 
     def test_is_read_and_its_motors_stay_off(self) -> None:
-        for device, library in (("openhaptics:Default Device", "libHD.so"), ("forcedimension:0", "libd")):
+        for device, library in (("openhaptics:Default Device", "libHD.so.3.4 3.40.0 (/"),
+                                ("forcedimension:0", "libdrd.so.3 3.17.1.20 (/")):
             with self.subTest(device=device), tempfile.TemporaryDirectory() as folder:
                 out = Path(folder, "look.h5")
                 done = subprocess.run(
@@ -224,7 +264,7 @@ class OfAMaker(unittest.TestCase):
                          "XDG_RUNTIME_DIR": folder})
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found = json.loads(done.stdout)
-                self.assertIn(library, found["library"])
+                self.assertIn(library, found["driven_by"])
                 self.assertIn("it says so itself", found["arm_why"])
                 self.assertFalse(any(any(held.force) or held.on for held in motors_in(folder)))
                 # A spring of 40 N/m, 0.1 kg and 3 N s/m under 0.6 N at 12 rad/s.

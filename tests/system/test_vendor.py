@@ -6,9 +6,13 @@ a real device does.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
+import os
 import re
+import select
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -16,7 +20,10 @@ import time
 import unittest
 from pathlib import Path
 
-from support import LIMPID
+import h5py
+import numpy as np
+
+from support import LIMPID, ROOT
 from vendor_link import (STAND_INS, VENDOR, Held, Link, Vendor, environment, motors_in, zero_after,
                          zero_after_the_last_force)
 
@@ -55,7 +62,17 @@ class Lists(unittest.TestCase):
         self.assertEqual({key: line["missing"] for key, line in libraries.items()},
                          {"openhaptics": "", "forcedimension": ""})
         self.assertEqual(Path(libraries["openhaptics"]["library"]).name, "libHD.so.3.4")
+        # OpenHaptics says its version only of an open device.
+        self.assertEqual({key: line["version"] for key, line in libraries.items()},
+                         {"openhaptics": "", "forcedimension": "3.17.1.20"})
         self.assertEqual(devices, {("openhaptics", "Left Device"), ("forcedimension", "0")})
+
+    def test_the_library_s_own_file_has_its_version(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copy(STAND_INS / "libHD.so.3.4", Path(folder, "libHD.so.3.4.0"))
+            Path(folder, "libHD.so.3.4").symlink_to("libHD.so.3.4.0")
+            line = next(line for line in listed(libraries=Path(folder)) if line["backend"] == "openhaptics")
+            self.assertEqual(line["library"], str(Path(folder, "libHD.so.3.4.0").resolve()))
 
     def test_what_is_missing_and_who_has_it(self) -> None:
         missing = {line["backend"]: line["missing"] for line in listed(libraries=None)
@@ -68,8 +85,15 @@ class Lists(unittest.TestCase):
     def test_which_library_the_library_needs(self) -> None:
         missing = next(line["missing"] for line in listed(libraries=STAND_INS / "needs_ncurses")
                        if line["backend"] == "openhaptics")
-        self.assertIn("needs libncurses.so.5", missing)
-        self.assertIn("Debian 13", missing)
+        self.assertIn("needs libncurses.so.5, which is not installed: ", missing)
+        # The window copies what stands between the quotes.
+        how, command, rest = missing.partition("not installed: ")[2].split("'")
+        self.assertEqual(rest, "")
+        for package in ("libtinfo5", "libncurses5"):
+            self.assertIn(f"ncurses/{package}_6.4-4_amd64.deb ", command + " ")
+            self.assertIn(f" ./{package}_6.4-4_amd64.deb", command.partition("apt install")[2])
+        told = " ".join((ROOT / "devices/README.md").read_text().split())
+        self.assertIn(how + command, told)
 
     def test_prints_of_a_library_stay_out_of_the_lines(self) -> None:
         for line in listed("prints"):
@@ -100,8 +124,8 @@ class Serves(unittest.TestCase):
     @on_both()
     def test_three_slides_within_the_range_and_force_of_the_device(self, device: tuple,
                                                                   vendor: Vendor) -> None:
-        expected = {TOUCH: ((-0.07, -0.16, -0.1), 3.3, "Touch S1", "libHD.so.3.4"),
-                    OMEGA: ((-0.075,) * 3, 10, "omega.3 12", "libdrd.so.3")}
+        expected = {TOUCH: ((-0.07, -0.16, -0.1), 3.3, "Touch S1", "libHD.so.3.4 3.40.0"),
+                    OMEGA: ((-0.075,) * 3, 10, "omega.3 12", "libdrd.so.3 3.17.1.20")}
         found = vendor.link().description
         lower, force, name, made_by = expected[device]
         self.assertEqual((found.joints, found.motors, found.watchdog), (3, True, 5))
@@ -111,6 +135,24 @@ class Serves(unittest.TestCase):
         for effort in found.effort:
             self.assertAlmostEqual(effort, force, 5)
         self.assertEqual((found.name, found.made_by), (name, made_by))
+
+    def test_a_library_that_does_not_say_its_version_drives_the_device(self) -> None:
+        with Vendor(*TOUCH, "no_version") as vendor:
+            link = vendor.link()
+            self.assertEqual(link.description.made_by, "libHD.so.3.4")
+            link.go_on(0.2)
+            self.assertFalse(link.gone)
+
+    def test_joint_angles_are_compared_with_the_position(self) -> None:
+        for faults, apart in (("sway:0.6", range(0, 1)), ("sway:0.6,bent", range(1, 100))):
+            with Vendor(*TOUCH, faults) as vendor:
+                vendor.link().go_on(1)
+                vendor.process.terminate()
+                said = self.ends(vendor, 0)
+                found = re.search(r"its joint angles .* up to ([\d.]+) mm apart while it moved (\d+) mm", said)
+                self.assertIsNotNone(found, said)
+                self.assertIn(int(float(found[1]) + 0.5), apart)
+                self.assertGreater(int(found[2]), 20)
 
     # The stand-in's spring is 40 N/m.
     @on_both()
@@ -161,6 +203,32 @@ class Serves(unittest.TestCase):
                 break
         print(f"{device[0]}: {what} {1e3 * min(times):.1f} to {1e3 * max(times):.1f} ms")
         return times
+
+    @on_both()
+    def test_what_the_hop_adds(self, device: tuple, vendor: Vendor) -> None:
+        """A reading's age when it arrives, and the time from a force's command until the motors hold it."""
+        link = vendor.pushed()
+        ages, held = [], []
+        for i in range(1500):
+            select.select([link.socket], [], [], 0.02)
+            arrived, before = time.monotonic(), len(link.readings)
+            link.listen()
+            ages += [arrived - link.newest.taken] if len(link.readings) == before + 1 else []
+            force = (1.0 + 1e-3 * (i % 7), 0.0, 0.0)
+            at = link.send(None if link.newest.cut else force)
+            held.append((at, own_axes(device, force)))
+        delays, begun = [], 0
+        for entry in vendor.motors():
+            for i, (at, force) in enumerate(held[begun:], begun):
+                if at < entry.time and math.dist(force, entry.force) < 1e-6:
+                    delays.append(entry.time - at)
+                    begun = i + 1
+                    break
+        for what, times in (("a reading is", ages), ("a force acts after", delays)):
+            self.assertGreater(len(times), 300)
+            middle, late, worst = (1e3 * np.quantile(times, part) for part in (0.5, 0.99, 1))
+            print(f"{device[0]}: {what} {middle:.2f} ms, 99 % {late:.2f}, at most {worst:.2f} ms")
+            self.assertLess(middle, 1.5, "more than a frame")
 
     @on_both()
     def test_no_force_5_ms_after_the_last_command(self, device: tuple, vendor: Vendor) -> None:
@@ -301,9 +369,22 @@ class Serves(unittest.TestCase):
         with Vendor(*OMEGA, "button_off@400") as vendor:
             link = vendor.pushed()
             self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 1))
-            before = len(vendor.motors())
-            link.go_on(0.5, (1.0, 0.0, 0.0))
-            self.assertFalse([held for held in vendor.motors()[before:] if held.on], "a person's button")
+            # Also after silence, in which the program has switched the motors off itself.
+            for silence in (0, 0.05):
+                time.sleep(silence)
+                before = len(vendor.motors())
+                link.go_on(0.5, (1.0, 0.0, 0.0))
+                self.assertFalse([held for held in vendor.motors()[before:] if held.on], "a person's button")
+                self.assertEqual(link.newest.no_force, 1)
+
+    def test_the_device_gives_the_force_back_that_its_button_took(self) -> None:
+        with Vendor(*OMEGA, "button_off@400,button_on@900") as vendor:
+            link = vendor.pushed()
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 1))
+            time.sleep(0.05)
+            self.assertTrue(link.go_on(20, (1.0, 0.0, 0.0), until=lambda r: r.no_force == 0))
+            link.go_on(0.2, (1.0, 0.0, 0.0))
+            self.assertTrue(any(any(held.force) for held in vendor.motors()[-50:]))
 
     @on_both("stop:20@1000")
     def test_after_a_pause_of_the_library_a_command_of_no_force_comes_first(self, device: tuple,
@@ -358,9 +439,7 @@ class Serves(unittest.TestCase):
         self.assertEqual(said, "")
 
 
-class InLimpid(unittest.TestCase):
-    """The whole way: listed, opened, armed and driven by Limpid."""
-
+class WithLimpid(unittest.TestCase):
     def setUp(self) -> None:
         self.folder = self.enterContext(tempfile.TemporaryDirectory())
         book = Path(self.folder, "config/limpid/devices.toml")
@@ -390,6 +469,10 @@ class InLimpid(unittest.TestCase):
             time.sleep(0.01)
         self.fail("the motors never push")
 
+
+class InLimpid(WithLimpid):
+    """The whole way: listed, opened, armed and driven by Limpid."""
+
     def test_devices_are_listed(self) -> None:
         Path(self.folder, ".3dsystems/config").mkdir(parents=True)
         Path(self.folder, ".3dsystems/config/Default Device.config").touch()
@@ -397,6 +480,9 @@ class InLimpid(unittest.TestCase):
         missing = {each["id"]: each["missing"] for each in listed}
         for device in BOTH:
             self.assertEqual(missing.get(":".join(device)), "", missing)
+        told, _ = self.done(self.start("", "devices"))
+        self.assertRegex(told, r"driven by /\S*/libHD.so.3.4\n")
+        self.assertRegex(told, r"driven by /\S*/libdrd.so.3, version 3\.17\.1\.20\n")
 
     def test_the_doctor_knows_the_libraries(self) -> None:
         out, _ = self.start("", "doctor", "--json").communicate(timeout=120)
@@ -405,6 +491,7 @@ class InLimpid(unittest.TestCase):
         for each in found:
             self.assertEqual(each["state"], "ok")
             self.assertIn("tests/vendor/lib", each["found"])
+        self.assertRegex(found[1]["found"], r"libdrd.so.3, version 3\.17\.1\.20$")
 
     def on_time(self, faults: str, device: tuple, *words: str | Path) -> str:
         """Leads a run; what it said. Again where this computer stood still, which takes the force away."""
@@ -419,7 +506,13 @@ class InLimpid(unittest.TestCase):
         for device in BOTH:
             with self.subTest(device=device[0]):
                 record = Path(self.folder, f"{device[0]}.h5")
-                self.on_time("sway:0.3", device, "--duration", "2", "--record", record, "--force")
+                said = self.on_time("sway:0.3", device, "--duration", "2", "--record", record, "--force")
+                library = {TOUCH: "libHD.so.3.4 3.40.0 (/", OMEGA: "libdrd.so.3 3.17.1.20 (/"}[device]
+                self.assertIn(f"is driven by {library}", said)
+                with h5py.File(record) as file:
+                    source = str(file.attrs["source"])
+                self.assertRegex(source, "^device: (Touch S1|omega.3 12), " + ":".join(device))
+                self.assertIn(f", by {library}", source)
                 every = motors_in(self.folder)
                 self.assertTrue([held for held in every if any(held.force)])
                 self.assertFalse(any(every[-1].force))
@@ -444,6 +537,30 @@ class InLimpid(unittest.TestCase):
                     print(f"{device[0]}: limpid killed {1e3 * zero:.1f} ms")
                     self.assertLess(zero, AT_ONCE + 2 * BUSY)
 
+    def test_the_device_is_gone_once_its_program_is_killed_or_stopped(self) -> None:
+        for device, which in ((device, which) for device in BOTH for which in (signal.SIGKILL, signal.SIGSTOP)):
+            with self.subTest(device=device[0], which=which.name):
+                process = self.start("sway:0.3", "run", "--live", ":".join(device), "--yes",
+                                     "--duration", "60")
+                self.pushes(process)
+                child = next(int(each) for thread in Path(f"/proc/{process.pid}/task").iterdir()
+                             for each in (thread / "children").read_text().split()
+                             if Path(f"/proc/{each}/comm").read_text().strip() == "limpid-vendor")
+                at = time.monotonic()
+                os.kill(child, which)
+                runs = lambda: Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+                with contextlib.suppress(FileNotFoundError):
+                    while runs():
+                        self.assertLess(time.monotonic() - at, 5, "it still has the device")
+                        time.sleep(1e-3)
+                took = time.monotonic() - at
+                print(f"{device[0]}: {which.name}, has ended after {1e3 * took:.0f} ms")
+                if which == signal.SIGSTOP:
+                    self.assertGreater(took, 0.15, "killed too soon")
+                _, said = process.communicate(timeout=60)
+                self.assertNotEqual(process.returncode, 0)
+                self.assertIn("the device is gone", said)
+
     def test_no_force_after_a_jump_that_the_device_cannot_make(self) -> None:
         for device in BOTH:
             with self.subTest(device=device[0]):
@@ -452,6 +569,69 @@ class InLimpid(unittest.TestCase):
                 self.assertFalse(any(motors_in(self.folder)[-1].force))
                 zero = zero_after_the_last_force(motors_in(self.folder))
                 print(f"{device[0]}: jump {1e3 * zero:.1f} ms after the last force")
+
+
+class HasOneOwner(WithLimpid):
+    """A second program that wants the device is told who has it, and the first one's force goes on."""
+
+    def refused(self, *words: str) -> str:
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([VENDOR, *words], capture_output=True, text=True, timeout=60,
+                                  env=environment(folder))
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertFalse([held for held in motors_in(folder) if held.on])
+            return done.stderr
+
+    def test_by_hand_and_by_hand(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]), Vendor(*device) as vendor:
+                vendor.pushed()
+                by = f"in use by process {vendor.process.pid} \\(limpid-vendor {device[0]}"
+                for words in (("--socket", f"{self.folder}/another"), ("--calibrate",)):
+                    self.assertRegex(self.refused(*device, *words), f"{device[1]}: {by}")
+
+    def test_by_another_name_of_the_same_device(self) -> None:
+        with Vendor(*TOUCH) as vendor:
+            vendor.pushed()
+            by = f"in use by process {vendor.process.pid} \\(limpid-vendor openhaptics"
+            self.assertRegex(self.refused(TOUCH[0], "Left Device", "--socket", f"{self.folder}/another"),
+                             f"Touch S1: {by}")
+
+    def test_by_hand_and_limpid(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]), Vendor(*device) as vendor:
+                link = vendor.pushed()
+                process = self.start("", "run", "--live", ":".join(device), "--yes", "--duration", "1")
+                _, said = process.communicate(timeout=60)
+                self.assertNotEqual(process.returncode, 0)
+                self.assertRegex(said, f"in use by process {vendor.process.pid} \\(limpid-vendor")
+                self.assertFalse([held for held in motors_in(self.folder) if held.on])
+                before = len(link.readings)
+                link.go_on(0.1)
+                self.assertGreater(len(link.readings), before)
+
+    def test_limpid_and_by_hand(self) -> None:
+        for device in BOTH:
+            with self.subTest(device=device[0]):
+                process = self.start("sway:0.3", "run", "--live", ":".join(device), "--yes",
+                                     "--duration", "60")
+                self.pushes(process)
+                said = self.refused(*device, "--socket", f"{self.folder}/another")
+                self.assertRegex(said, f"in use by process {process.pid} \\(limpid run --live")
+                self.assertIsNone(process.poll())
+                # Killed, it has the device until the motors are off; then others get it.
+                process.kill()
+                for _ in range(100):
+                    with Vendor(*device) as vendor:
+                        end = time.monotonic() + 10
+                        while not vendor.path.exists() and vendor.process.poll() is None:
+                            self.assertLess(time.monotonic(), end)
+                            time.sleep(1e-3)
+                        if vendor.process.poll() is None:
+                            break
+                else:
+                    self.fail("nobody gets the device")
+                self.assertFalse(motors_in(self.folder)[-1].on)
 
 
 class Asks(unittest.TestCase):

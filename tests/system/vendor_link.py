@@ -44,6 +44,7 @@ class Reading:
     no_force: int
     warmth: float
     orientation: tuple = (0.0, 0.0, 0.0, 0.0)
+    taken: float = 0.0  # of the monotonic clock [s]
 
     hand = property(lambda self: bool(self.status & 2))
     calibrated = property(lambda self: bool(self.status & 4))
@@ -120,10 +121,11 @@ class Link:
                 self.gone = True
                 return
             assert len(packet) == 128 and packet == sealed(packet[:124])
-            status, = struct.unpack_from("<B", packet, 3)
+            status, stamp = struct.unpack_from("<B4xQ", packet, 3)
             x = struct.unpack_from("<3f", packet, 16)
             answered, buttons, no_force, warmth, *orientation = struct.unpack_from("<IIB3xf4f", packet, 48)
-            self.newest = Reading(status, x, answered, buttons, no_force, warmth, tuple(orientation))
+            self.newest = Reading(status, x, answered, buttons, no_force, warmth, tuple(orientation),
+                                  1e-6 * stamp)
             self.readings.append(self.newest)
 
     def go_on(self, seconds: float, force: tuple | None = None, until=lambda reading: False,

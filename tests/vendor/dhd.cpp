@@ -38,7 +38,8 @@ struct Device {
     box = std::thread([this] {
       while (open) {
         if (watchdog > 0 && on && now() - commanded > watchdog) cut(3);
-        if (on && faults.due("button_off")) cut(1);
+        if (on && faults.due("button_off") && !faults.due("button_on")) cut(1);
+        if (faults.due_once("button_on")) give_back();
         sleep_ms(0.1);
       }
     });
@@ -47,6 +48,13 @@ struct Device {
     on = false;
     cause = why;
     arm.hold({}, false);
+  }
+  // The person's button on the device gives the force back, without the library.
+  void give_back() {
+    commanded = now();
+    cause = 0;
+    on = true;
+    arm.hold({}, true);
   }
   void meet() {
     if (faults.due("hang")) wait_for_ever();
@@ -84,6 +92,9 @@ int stand_in_find_zero() {
   return 0;
 }
 
+void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
+  *major = 3, *minor = 17, *release = 1, *revision = 20;
+}
 int dhdGetDeviceCount() { return device().faults.due("no_device") ? 0 : 1; }
 const char* dhdGetSystemName(char) {
   return device().faults.due("unknown_model") ? "epsilon" : "omega.3";

@@ -54,6 +54,18 @@ Library& library() {
 }
 [[maybe_unused]] const Library& loaded = library();
 
+// Angles of two links of 133.35 mm, from a place 168.35 mm behind the origin and 23.35 mm above it,
+// that put the tip there: the law of cosines. The forearm's angle is from where it hangs.
+void joints_at(const Three& tip, double* angles) {
+  constexpr double kBehind = 0.16835, kAbove = 0.02335, kLink = 0.13335;
+  const double out = std::hypot(tip[0], tip[2] + kBehind), up = tip[1] - kAbove;
+  const double rise = std::atan2(up, out);
+  const double open = std::acos(std::hypot(out, up) / (2 * kLink));
+  angles[0] = std::atan2(-tip[0], tip[2] + kBehind);
+  angles[1] = rise + open;
+  angles[2] = rise - open + std::atan2(1, 0);
+}
+
 }  // namespace
 
 extern "C" {
@@ -78,7 +90,13 @@ ErrorInfo hdGetError() {
   return {error, 0, kDevice};
 }
 
-const char* hdGetString(unsigned which) { return which == 0x2501 ? "Touch" : "S1"; }
+const char* hdGetString(unsigned which) {
+  if (which == 0x2501) return "Touch";
+  if (which != 0x2500) return "S1";
+  if (!library().faults.due("no_version")) return "3.40.0";
+  library().error = 0x100;
+  return nullptr;
+}
 
 void hdGetIntegerv(unsigned which, int* value) {
   *value = which == 0x2555 ? 4 : library().faults.due("button") ? 2 : 0;
@@ -97,6 +115,9 @@ void hdGetDoublev(unsigned which, double* values) {
       values[i] = kMetre * (x[i] + own.leap);
       if (own.faults.due("nan")) values[i] = std::numeric_limits<double>::quiet_NaN();
     }
+  } else if (which == 0x2100) {
+    joints_at(own.arm.place(), values);
+    if (own.faults.due("bent")) values[1] *= 0.9;
   } else if (which == 0x2052) {
     if (!own.faults.due("turned")) return;  // zeros say nothing
     // The pen points to the right: a quarter turn clockwise about the library's y, which is up,

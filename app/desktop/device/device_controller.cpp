@@ -158,8 +158,9 @@ void DeviceController::take_connected() {
     problem_.clear();
     notices_.say(
         traits.pushes
-            ? fmt::format("{} is in the loop. Take it in your hand, then F arms the force.",
-                          traits.name)
+            ? fmt::format("{} is in the loop{}. Take it in your hand, then F arms the force.",
+                          traits.name,
+                          traits.made_by.empty() ? "" : ", driven by " + traits.made_by)
             : fmt::format("{} leads the hand.", traits.name));
   } catch (const UncheckedError&) {
     unchecked_ = connecting_id_;
@@ -186,7 +187,13 @@ void DeviceController::start_check() {
   problem_.clear();
   check_failed_ = false;
   connecting_id_ = hub_.in_use();
-  check_ = live_.device_tasks().run(hub_.checking(progress_));
+  const auto run = [check = hub_.checking(progress_), progress = progress_,
+                    warmth = live_.loop().warmth_memory()] {
+    AxisCheck done = check();
+    warmth->add(progress->warmth, in_seconds(MonotonicTime{}.now()));
+    return done;
+  };
+  check_ = live_.device_tasks().run(run);
 }
 
 void DeviceController::follow_check() {

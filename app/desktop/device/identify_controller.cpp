@@ -87,11 +87,13 @@ void IdentifyController::move() {
   progress_ = std::make_shared<IdentifyProgress>();
   const auto run = [order = request_, with_load = bare_.has_value(), progress = progress_,
                     bench = bench_, open = simulated() ? nullptr : devices_.hub().opening(),
-                    ask = devices_.hub().ask()] {
+                    ask = devices_.hub().ask(), warmth = live_.loop().warmth_memory()] {
     if (!open) return move_simulated(bench, order, with_load, *progress);
     const std::unique_ptr<Device> device = open();
     progress->see();
-    return run_identification(*device, order.guess, order.plan, *progress, ask);
+    IdentifyRun done = run_identification(*device, order.guess, order.plan, *progress, ask);
+    warmth->add(done.warmth, in_seconds(MonotonicTime{}.now()));
+    return done;
   };
   moving_ = live_.device_tasks().run(run);
 }

@@ -256,7 +256,10 @@ void World::open_device(std::unique_ptr<Device> device) {
   if (!in_place) virtual_arm_ = present;
   const ArmDescription& arm = taken.arm;
   const bool same_arm = in_place && arm.urdf == present.urdf;
-  if (same_arm && same_limits(arm, present)) return d_.live.loop().plug(std::move(device));
+  const bool warmed_beside = d_.live.loop().warmth_memory()->added(arm.dof());
+  if (same_arm && same_limits(arm, present) && !warmed_beside) {
+    return d_.live.loop().plug(std::move(device));
+  }
   d_.playback.close();
   if (!same_arm) return change_arm(arm, std::move(device));
   const SceneEditor& editor = d_.document.editor();
@@ -532,7 +535,8 @@ void World::start_recording(fs::path file, bool replaces) {
   plan.arm = d_.live.stage().arm();
   plan.document = d_.document.editor().document();
   plan.document.toml = d_.document.toml();
-  plan.hand.source = d_.live.loop().device_in_place() ? "device" : "mouse";
+  const LiveLoop& loop = d_.live.loop();
+  plan.hand.source = loop.device_in_place() ? loop.device_source() : "mouse";
   plan.parameters = d_.live.loop().taken(d_.settings.parameters());
   const std::size_t lanes = d_.live.loop().device_in_place() ? 1 : d_.settings.lanes.count;
   for (std::size_t i = 1; i < lanes; ++i) {

@@ -114,6 +114,42 @@ TEST(AxisCheckRun, EndsAtAnOldReadingAndStopsTheDevice) {
   EXPECT_TRUE(device.stopped);
 }
 
+// The device notes when it was told which torque. Warmth by its definition: the torque's square
+// over the continuous one's, over the time constant, while it is still far from its end.
+TEST(AxisCheckRun, TellsByHowMuchTheMotorsWereWarmedUp) {
+  ArmDescription arm = stick();
+  constexpr double kContinuous = 0.02, kTime = 600;
+  arm.joints[0].continuous = kContinuous;
+  arm.joints[0].warming = kTime;
+  class Noting final : public Device {
+   public:
+    const DeviceTraits& traits() const override { return device_.traits(); }
+    bool read(DeviceReading& newest) noexcept override { return device_.read(newest); }
+    void write(std::span<const double> torque) noexcept override {
+      const auto now = std::chrono::steady_clock::now();
+      heat += std::chrono::duration<double>(now - since_).count() * told_ * told_;
+      since_ = now;
+      told_ = torque[0];
+      device_.write(torque);
+    }
+    void stop() noexcept override { device_.stop(); }
+    double heat = 0;  // [N^2 m^2 s]
+
+   private:
+    Yielding device_{{0.5, 0.5}};
+    std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+    double told_ = 0;
+  } device;
+  AxisCheckProgress progress;
+  progress.window_seen = std::chrono::steady_clock::now() + std::chrono::hours(1);
+  EXPECT_TRUE(run_axis_check(device, arm, {}, progress, {}).passed());
+  ASSERT_EQ(progress.warmth.size(), 2);
+  ASSERT_GT(device.heat, 0);
+  const double expected = device.heat / (kContinuous * kContinuous) / kTime;
+  EXPECT_NEAR(progress.warmth[0], expected, 0.2 * expected);
+  EXPECT_EQ(progress.warmth[1], 0) << "no model";
+}
+
 // The stick's tip is on a lever [m]: a torque tau is a force of tau over the lever.
 TEST(AxisCheckRun, PushesWithNoMoreThanTheForceThatIsSet) {
   const ArmDescription arm = stick();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "devices/files/urdf_file.h"
 #include "devices/identify/unlike_device.h"
 
@@ -40,6 +42,27 @@ TEST(IdentifyRun, KeepsWithinTheLimitsThatAreSetForTheDevice) {
   }
   EXPECT_LT(most, 0.4 * 1.05) << "a reading's change within the slew";
   EXPECT_GT(most, 0.1) << "it pushed";
+}
+
+// Each torque's share has decayed since it acted, by the theory of systems of first order.
+TEST(IdentifyRun, TellsByHowMuchTheMotorsWereWarmedUp) {
+  ArmDescription arm = omni();
+  constexpr double kContinuous = 0.05, kTime = 60, kTick = 1e-3;
+  arm.joints[1].continuous = kContinuous;
+  arm.joints[1].warming = kTime;
+  UnlikeDevice device(arm, {.encoder_step = 1e-4});
+  IdentifyProgress progress;
+  const IdentifyRun run = simulate_identification(device, arm, {}, progress);
+  ASSERT_EQ(run.end, ExcitationEnd::complete);
+  double expected = 0;
+  const Eigen::Index rows = run.record.rows();
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const double left = std::exp(-kTick * static_cast<double>(rows - k) / kTime);
+    expected += std::pow(run.record.torque(k, 1) / kContinuous, 2) * left * kTick / kTime;
+  }
+  ASSERT_GT(expected, 0.01);
+  EXPECT_NEAR(run.warmth[1], expected, 1e-3 * expected);
+  EXPECT_EQ(run.warmth[0], 0) << "no model";
 }
 
 // A device that has not sent a position.

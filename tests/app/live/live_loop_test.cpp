@@ -597,6 +597,8 @@ TEST(LiveLoop, KnowsThatTheMotorsOfADeviceThatComesBackAreStillWarm) {
     return RowLayout(3).in(std::span<const double>(loop.snapshot().row), Column::motor_warmth)[0];
   };
   EXPECT_EQ(open(), 0);
+  loop.warmth_memory()->add(Eigen::Vector3d(0.2, 0, 0), in_seconds(MonotonicTime{}.now()));
+  EXPECT_NEAR(open(), 0.2, 0.02) << "warmed up beside the loop";
   loop.arm();
   let_live(loop, 200);
   loop.update();
@@ -617,13 +619,29 @@ TEST(WarmthMemory, CoolsAndIsKeptByTheNumberOfJoints) {
   arm.joints[1].continuous = 0.1;
   arm.joints[1].warming = 60;
   WarmthMemory memory;
-  EXPECT_EQ(memory.left(arm, 5), Eigen::VectorXd(Eigen::Vector3d::Zero()));
+  EXPECT_EQ(memory.take(arm, 5), Eigen::VectorXd(Eigen::Vector3d::Zero()));
   memory.keep(Eigen::Vector3d(0, 0.8, 0.3), 5);
   memory.keep(Eigen::Vector2d(1, 1), 6);
-  const Eigen::VectorXd left = memory.left(arm, 65);
+  const Eigen::VectorXd left = memory.take(arm, 65);
   ASSERT_EQ(left.size(), 3);
   EXPECT_NEAR(left[1], 0.8 * std::exp(-1), 1e-12);
   EXPECT_EQ(left[2], 0) << "this arm has no model of the motor";
+}
+
+TEST(WarmthMemory, AddsWhatAMotionBesideTheLoopsWarmedUp) {
+  ArmDescription arm = test::omni();
+  arm.joints[1].continuous = 0.1;
+  arm.joints[1].warming = 60;
+  WarmthMemory memory;
+  memory.keep(Eigen::Vector3d(0, 0.4, 0), 0);
+  EXPECT_FALSE(memory.added(3));
+  memory.add(Eigen::Vector3d(0, 0.3, 0), 30);
+  memory.add(Eigen::Vector3d(0, 0.1, 0), 30);
+  memory.keep(Eigen::Vector3d(0, 0.4 * std::exp(-0.5), 0), 30);  // a loop that ends forgets none
+  EXPECT_TRUE(memory.added(3));
+  EXPECT_NEAR(memory.take(arm, 60)[1], 0.4 * std::exp(-1) + 0.4 * std::exp(-0.5), 1e-12);
+  EXPECT_FALSE(memory.added(3));
+  EXPECT_NEAR(memory.take(arm, 60)[1], 0.4 * std::exp(-1) + 0.4 * std::exp(-0.5), 1e-12);
 }
 
 // A SpaceMouse that leads the hand of the virtual arm.

@@ -7,6 +7,7 @@
 
 #include "app/run/summary.h"
 #include "core/coupling/laws.h"
+#include "tests/support/built_in.h"
 
 namespace limpid {
 namespace {
@@ -39,6 +40,31 @@ TEST(HeldBack, AreTicksInWhichTheAccountCutForce) {
 TEST(HeldBack, AreNoWallsWhereNoneIsTouchedOrTheLawHoldsNoneBack) {
   EXPECT_THAT(summary(CouplingKind::predictive, false), Not(HasSubstr("walls held back")));
   EXPECT_THAT(summary(CouplingKind::tank, true), Not(HasSubstr("walls held back")));
+}
+
+// An arm whose second motor has a model warms up by a hundredth in each tick of 2 ms.
+std::string warmed(bool has_model, double reported) {
+  ArmDescription arm = test::omni();
+  if (has_model) arm.joints[1].continuous = 0.1;
+  const RowLayout layout(3);
+  Summary summary(layout, arm);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+  for (int k = 0; k < 76; ++k) {
+    layout.in(std::span<double>(row), Column::time)[0] = 2e-3 * k;
+    layout.in(std::span<double>(row), Column::motor_warmth)[0] = reported;
+    layout.in(std::span<double>(row), Column::motor_warmth)[1] = 0.01 * k;
+    summary.add(row);
+  }
+  return summary.text();
+}
+
+TEST(HeldBack, IsTorqueOfMotorsThatAreMoreThanHalfAsWarmAsTheyMayBe) {
+  const std::string text = warmed(true, 0.9);
+  EXPECT_THAT(text,
+              HasSubstr("warmth of the motors     at most 75 % of what they bear for hours ("));
+  EXPECT_THAT(text, HasSubstr(test::omni().joints[1].name + "); less than the full torque for"));
+  EXPECT_THAT(text, HasSubstr("for 0.050 s")) << "ticks 51 to 75";
+  EXPECT_THAT(warmed(false, 0.9), Not(HasSubstr("warmth"))) << "the file limits no motor";
 }
 
 }  // namespace

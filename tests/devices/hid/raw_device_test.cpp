@@ -54,7 +54,7 @@ struct RawDeviceAndLimpid : testing::Test {
 TEST_F(RawDeviceAndLimpid, SayTheSameOfTheDevice) {
   const DeviceTraits& traits = protocol.traits();
   EXPECT_EQ(traits.name, "A device");
-  EXPECT_EQ(protocol.made_by(), "a library");
+  EXPECT_EQ(protocol.traits().made_by, "a library");
   EXPECT_EQ(traits.dof, 3);
   EXPECT_NEAR(traits.lower[2], -2, 1e-6);
   EXPECT_NEAR(traits.upper[2], 3, 1e-6);

@@ -55,7 +55,7 @@ TEST_F(OpenRaw2, KnowsWhatTheDeviceIs) {
   EXPECT_EQ(traits.dof, 2);
   EXPECT_TRUE(traits.pushes);
   EXPECT_EQ(traits.name, "V2");
-  EXPECT_EQ(protocol.made_by(), "f");
+  EXPECT_EQ(protocol.traits().made_by, "f");
   EXPECT_EQ(traits.slides, (std::vector<bool>{false, true}));
   EXPECT_NEAR(traits.upper.at(0), 1, 1e-6);
   EXPECT_NEAR(traits.upper.at(1), 2, 1e-6);

@@ -130,7 +130,7 @@ struct ASocketDeviceOfVersion2 : ASocketDevice {
 
 TEST_F(ASocketDeviceOfVersion2, GivesWayToItsTorqueAsASpringDoes) {
   Connection to(find().place.path);
-  EXPECT_EQ(to.protocol.made_by(), "limpid_device.py");
+  EXPECT_EQ(to.protocol.traits().made_by, "limpid_device.py");
   EXPECT_EQ(to.protocol.traits().slides, (std::vector<bool>{false, false}));
   const double torque[] = {0.1, -0.05};
   EXPECT_TRUE(comes([&] {
