@@ -33,6 +33,9 @@ struct RunPlan : Lane {
   HandPath hand;
   std::vector<double> hand_torque;  // N x n [N m], instead of a grip; empty: the hand's path leads
   std::vector<bool> force;          // armed at each row of a recording; empty: always
+  // Force that the motors are asked to make at the tip at each row, to measure the grip [N]; none
+  // from its end on.
+  std::vector<Vec3> excitation;
   std::uint64_t rows = 0;           // number of ticks
   std::uint64_t seed = 0;           // for everything random
   std::vector<Lane> beside;         // further lanes, at most kMostLanes - 1
