@@ -203,11 +203,11 @@ class LiveLoop {
   std::span<double> row(std::size_t lane);                              // a part of rows_
   bool lanes_run(std::size_t count) const;                              // the loop's
   void publish(const TickTiming& timing);
-  void take_in();                                  // the loop's
-  HandInput hand_input(const Controls& controls);  // the loop's
-  bool due(const Controls& controls);              // the loop's
+  void take_in();                                      // the loop's
+  HandInput hand_input(const Controls& controls);      // the loop's
+  bool due(const Controls& controls);                  // the loop's
   Vec3 excite(const Controls& controls, int periods);  // the loop's
-  HandInput follow_path();                         // the loop's
+  HandInput follow_path();                             // the loop's
   void begin(RigStart start, const Parameters& p);
   bool recorder_is_free();
 
@@ -258,8 +258,8 @@ class LiveLoop {
   GripProbe probe_;
   std::uint32_t probe_number_ = 0;  // of the newest one
   bool probing_ = false;
-  double probe_time_ = 0;            // since its begin [s]
-  Vec3 held_at_ = Vec3::Zero();      // by the virtual hand meanwhile [m]
+  double probe_time_ = 0;        // since its begin [s]
+  Vec3 held_at_ = Vec3::Zero();  // by the virtual hand meanwhile [m]
   Parameters parameters_;
   SafetyLimits limits_;
   RigStart home_;

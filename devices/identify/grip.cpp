@@ -22,18 +22,39 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t kMostMissing = 20;  // rows in one place that may be missing
 
-// Unknowns of the fit: the hand's, then factors on the device's friction, and what its inertia,
-// damping and delay differ by.
-enum Unknown : Eigen::Index { stiffness, damping, mass, friction, inertia, drag, delay, kUnknowns };
-using Gram = Eigen::Matrix<double, kUnknowns + 1, kUnknowns + 1>;  // the last column is what is fitted
+// Unknowns of the fit: the hand's, then by what the device's own friction, inertia, damping and
+// delay differ from what is known of them.
+enum Unknown : Eigen::Index {
+  stiffness,
+  damping,
+  mass,
+  friction,
+  lag,
+  inertia,
+  drag,
+  delay,
+  kUnknowns
+};
+constexpr Eigen::Index kOfHand = 3;
+using Gram =
+    Eigen::Matrix<double, kUnknowns + 1, kUnknowns + 1>;  // the last column is what is fitted
 
-constexpr int kGuard = 2;  // least distance from a line of a bin that has no part of it
-constexpr int kBeside = 8;  // largest distance of bins whose noise counts as a line's
+constexpr int kGuard = 2;           // least distance from a line of a bin that has no part of it
+constexpr int kBeside = 6;          // largest distance of bins whose noise counts as a line's
 constexpr double kModelled = 1e-3;  // part of each torque that no model of a device gets right
-constexpr double kSure = 2.2;       // standard deviations of 95 %, as the noise is estimated too
+constexpr double kFitted = 0.012;   // to either side, where a velocity is found [s]
+constexpr double kDrowned =
+    0.25;  // part of a line's power that is noise, from which it does not count
+constexpr double kRubbed = 0.1;        // part of the friction that no line has in common
+constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
+constexpr double kSure = 2.5;          // standard deviations of 95 %, as the noise is estimated too
 
-// What is known well enough: to a part of the value, or to a part of what the device itself has.
+// Bounds with which a value counts as known: a part of it; or, of a small value, as little as tells
+// nobody another wall. 0.15 N s/m are half of the damping of the lightest arm, 20 g a pen.
 constexpr double kPart = 0.15;
+constexpr double kLeastDamping = 0.15;  // [N s/m]
+constexpr double kLeastMass = 0.02;     // [kg]
+constexpr double kFarthest = 0.05;      // tip from its mean place; beyond it the arm is another [m]
 
 }  // namespace
 
@@ -85,7 +106,7 @@ void GripRecord::take(std::span<const double> row) {
 }
 
 DeviceTrust DeviceTrust::of(const ArmDescription& arm, bool real, double tick) {
-  if (!real) return {1e-6, 1e-6, 1e-6, 1e-3 * tick};
+  if (!real) return {1e-6, 1e-6, 0.03, 1e-3 * tick};
   if (arm.delay) return {0.03, 0.1, 0.15, 0.25 * tick};
   return {0.1, 0.3, 0.4, tick};
 }
@@ -129,9 +150,6 @@ class HeldDevice {
 
   double moved() const { return moved_; }
   bool rubs() const { return friction_.maxCoeff() > 0; }
-  // Mass and damping of the device itself at the tip, the mean over all directions [kg, N s/m].
-  const Eigen::MatrixXd& J() const { return J_; }
-  const Eigen::MatrixXd& M() const { return M_; }
 
   // The equations of all joints in a bin: a column for each unknown, and at last what they add up
   // to.
@@ -149,10 +167,11 @@ class HeldDevice {
     all.col(damping) = s * hand;
     all.col(mass) = s * s * hand;
     all.col(friction) = rub;
+    all.col(lag) = -s * rub;
     all.col(inertia) = s * s * (M_ * q);
     all.col(drag) = s * B_.cwiseProduct(q);
     all.col(delay) = s * tau;
-    all.col(kUnknowns) = tau - all.col(inertia) - all.col(drag) - K_ * q;
+    all.col(kUnknowns) = tau - rub - all.col(inertia) - all.col(drag) - K_ * q;
     return all;
   }
 
@@ -200,23 +219,29 @@ class HeldDevice {
     }
   }
 
-  // Finds the joints' friction from the direction in which they move. Over some samples a line is
-  // fitted to coarse readings.
+  // Finds the joints' friction from the direction in which they move. A cubic is fitted to
+  // coarse readings.
   void rub(double encoder_step) {
     rub_ = Eigen::MatrixXd::Zero(samples_, n_);
     if (!rubs()) return;
-    const auto half = std::max<Eigen::Index>(
-        1, std::llround((encoder_step > 0 ? 0.01 : 0.001) / T_));
-    double squares = 0;
-    for (Eigen::Index i = 1; i <= half; ++i) squares += 2.0 * static_cast<double>(i * i);
+    const auto half = std::llround(std::max(2.0, (encoder_step > 0 ? kFitted : 0) / T_));
+    double s2 = 0, s4 = 0, s6 = 0;
+    for (Eigen::Index i = 1; i <= half; ++i) {
+      const double square = static_cast<double>(i * i);
+      s2 += 2 * square;
+      s4 += 2 * square * square;
+      s6 += 2 * square * square * square;
+    }
+    const double all = s2 * s6 - s4 * s4;
+    const double noise = encoder_step * std::sqrt(s6 / all / 12) / T_ + 1e-6;
     for (Eigen::Index j = 0; j < n_; ++j) {
       for (Eigen::Index k = half; k + half < samples_; ++k) {
-        double slope = 0;
+        double v = 0;
         for (Eigen::Index i = 1; i <= half; ++i) {
-          slope += static_cast<double>(i) * (x_(k + i, j) - x_(k - i, j));
+          const double at = static_cast<double>(i);
+          v += (s6 * at - s4 * at * at * at) * (x_(k + i, j) - x_(k - i, j));
         }
-        const double v = slope / squares / T_;
-        const double noise = encoder_step / std::sqrt(12 * squares) / T_ + 1e-6;
+        v /= all * T_;
         rub_(k, j) = friction_[j] * v / std::sqrt(v * v + noise * noise);
       }
     }
@@ -279,8 +304,8 @@ class GripFit {
         if (apart) now.beside.push_back(device.equations(bin));
       }
     }
-    known_[friction] = 1;
     firm_[friction] = trust.friction;
+    firm_[lag] = kFrictionLag;
     firm_[inertia] = trust.inertia;
     firm_[drag] = trust.damping;
     firm_[delay] = trust.delay;
@@ -316,12 +341,20 @@ class GripFit {
       Eigen::VectorXd noise = Eigen::VectorXd::Zero(line.at.rows());
       const auto size = static_cast<double>(line.beside.size());
       for (const auto& bin : line.beside) noise += left(bin).cwiseAbs2() / size;
-      const double all = line.at.col(kUnknowns).squaredNorm() +
-                         line.at.col(inertia).squaredNorm();
+      const double all = line.at.col(kUnknowns).squaredNorm() + line.at.col(inertia).squaredNorm();
+      double at = line.at.col(stiffness).squaredNorm(), beside = 0;
+      for (const auto& bin : line.beside) beside += bin.col(stiffness).squaredNorm() / size;
+      if (beside > kDrowned * at) continue;
+      noise += kRubbed * kRubbed * line.at.col(friction).cwiseAbs2();
       noise.array() += kModelled * kModelled * all + 1e-300;
       const Eigen::VectorXd weight = noise.cwiseInverse();
       sums += gram(line.at, weight);
-      for (const auto& bin : line.beside) sums -= gram(bin, weight) / size;
+      // The hand's columns have noise, and what is fitted has the same.
+      for (const auto& bin : line.beside) {
+        const Gram noisy = gram(bin, weight) / size;
+        sums.topLeftCorner<kOfHand, kOfHand>() -= noisy.topLeftCorner<kOfHand, kOfHand>();
+        sums.topRightCorner<kOfHand, 1>() -= noisy.topRightCorner<kOfHand, 1>();
+      }
       misfit += left(line.at).cwiseAbs2().dot(weight);
       count += static_cast<double>(line.at.rows());
     }
@@ -332,11 +365,10 @@ class GripFit {
     for (Eigen::Index i = friction; i < kUnknowns; ++i) {
       const double firm = 1 / (firm_[i] * firm_[i]);
       H(i, i) += firm;
-      r[i] += firm * known_[i];
     }
     const Theta scale = H.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::LLT<Eigen::Matrix<double, kUnknowns, kUnknowns>> solver(
-        scale.asDiagonal() * H * scale.asDiagonal());
+    const Eigen::LLT<Eigen::Matrix<double, kUnknowns, kUnknowns>> solver(scale.asDiagonal() * H *
+                                                                         scale.asDiagonal());
     fine_ = solver.info() == Eigen::Success;
     if (!fine_) return;
     theta_ = scale.cwiseProduct(solver.solve(scale.cwiseProduct(r)));
@@ -347,35 +379,80 @@ class GripFit {
   }
 
   std::vector<Line> lines_;
-  Theta theta_ = Theta::Zero(), known_ = Theta::Zero(), firm_ = Theta::Zero();
+  Theta theta_ = Theta::Zero(), firm_ = Theta::Zero();
   Eigen::Matrix<double, kUnknowns, kUnknowns> covariance_;
   bool fine_ = false;
 };
 
 }  // namespace
 
+namespace {
+
+// Reason why a record cannot be judged; empty if it can.
+std::string unfit(const GripRecord& record) {
+  if (!record.begun()) return "the grip was not measured";
+  if (record.ended_by() != ForceState::on) {
+    return fmt::format("force went off after {:.1f} s, as {}: measure again", record.duration(),
+                       explain(record.ended_by()));
+  }
+  if (record.duration() < GripProbe::kSettle + GripProbe::kMeasured) {
+    return fmt::format("it ended after {:.1f} of {:.1f} s: measure again", record.duration(),
+                       GripProbe::kDuration);
+  }
+  if (record.torn()) return "the loop stood still meanwhile: measure again";
+  return {};
+}
+
+// Says how to come to know more.
+std::string advice(const Grip& grip, bool rubs) {
+  constexpr double kStill = 0.005;  // [m]
+  constexpr double kOften = 0.2;
+  std::string say = "hold on";
+  if (grip.moved > kStill) say += ", and still";
+  if (grip.touched > kOften) say += ", away from walls";
+  if (rubs) say += "; the device's friction hides a part of what the hand does";
+  return say;
+}
+
+std::string doubt(const Grip& grip, bool rubs) {
+  const auto wide = [](const Bounded& of, double least) {
+    return of.bound > std::max(kPart * of.value, least);
+  };
+  if (grip.moved > kFarthest) {
+    return fmt::format("the hand moved {:.0f} mm: hold still", 1e3 * grip.moved);
+  }
+  if (grip.stiffness.value < grip.stiffness.bound) {
+    return "no hand holds the device, or a very soft one: take hold of it";
+  }
+  const char* of = wide(grip.stiffness, 0)             ? "stiffness"
+                   : wide(grip.damping, kLeastDamping) ? "damping"
+                   : wide(grip.mass, kLeastMass)       ? "mass"
+                                                       : nullptr;
+  if (of == nullptr) return {};
+  return fmt::format("the bound of its {} is wide: {}", of, advice(grip, rubs));
+}
+
+}  // namespace
+
 Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord& record) {
   Grip grip;
   grip.work = record.work();
-  if (!record.begun()) {
-    grip.unknown = "the grip was not measured";
-    return grip;
-  }
-  if (record.duration() < GripProbe::kSettle + GripProbe::kMeasured) {
-    grip.unknown = "force went off";
-    return grip;
-  }
+  grip.unknown = unfit(record);
+  if (!grip.known()) return grip;
+  const auto touched = std::ranges::count(record.touched(), 1);
+  grip.touched = static_cast<double>(touched) / static_cast<double>(record.samples());
   const HeldDevice device(arm, p, record);
   grip.moved = device.moved();
   const GripFit fit(device, DeviceTrust::of(arm, record.real(), record.tick()));
   if (!fit.fine()) {
-    grip.unknown = "no fit";
+    grip.unknown = "the hand's own motion hides its answer: " + advice(grip, device.rubs());
     return grip;
   }
   grip.measured = true;
   grip.stiffness = fit[stiffness];
   grip.damping = fit[damping];
   grip.mass = fit[mass];
+  grip.unknown = doubt(grip, device.rubs());
   return grip;
 }
 

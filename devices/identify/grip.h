@@ -36,10 +36,10 @@ class GripRecord {
   std::size_t samples() const { return touched_.size(); }
   int dof() const { return layout_.dof(); }
   double tick() const { return T_; }
-  bool real() const { return real_; }             // not a simulated device
-  bool torn() const { return torn_; }             // too many rows are missing in one place
+  bool real() const { return real_; }                // not a simulated device
+  bool torn() const { return torn_; }                // too many rows are missing in one place
   ForceState ended_by() const { return ended_by_; }  // `on`: by itself
-  double work() const { return work_; }           // of the excitation [J]
+  double work() const { return work_; }              // of the excitation [J]
   // Measured positions [rad] and torque of the motors [N m], sample by sample.
   std::span<const double> x() const { return x_; }
   std::span<const double> torque() const { return torque_; }
@@ -66,12 +66,12 @@ struct Bounded {
 };
 
 struct Grip {
-  std::string unknown;       // why it is not known, and how to mend it; empty: it is known
-  bool measured = false;     // the values below were fitted
+  std::string unknown;               // why it is not known, and how to mend it; empty: it is known
+  bool measured = false;             // the values below were fitted
   Bounded stiffness, damping, mass;  // [N/m, N s/m, kg]
-  double moved = 0;    // farthest that the tip went from its mean place [m]
-  double touched = 0;  // share of the time with a contact [-]
-  double work = 0;     // of the excitation [J]
+  double moved = 0;                  // farthest that the tip went from its mean place [m]
+  double touched = 0;                // share of the time with a contact [-]
+  double work = 0;                   // of the excitation [J]
 
   bool known() const { return unknown.empty(); }
 };

@@ -12,13 +12,14 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kUsual = 0.12;        // root mean square along an axis [N]
-constexpr double kOverFriction = 2.5;  // part of the friction at the tip
+constexpr double kUsual = 0.1;         // root mean square along an axis [N]
+constexpr double kOverFriction = 2.4;  // part of the friction at the tip
 // Share of a motor's torque limit whose root mean square it bears for hours, if that is not known.
 constexpr double kBorne = 0.2;
-constexpr double kCrest = 3;      // peak of the sum over its root mean square, at most
-constexpr double kOfPeak = 0.75;  // share of a motor's torque limit for the peaks
-constexpr int kAxes = 3;
+constexpr double kCrest = 3;          // peak of the sum over its root mean square, at most
+constexpr double kOfPeak = 0.75;      // share of a motor's torque limit for the peaks
+constexpr double kChirp = 0.0328925;  // phases that keep the peaks of all three axes together low
+constexpr std::size_t kAxes = 3;
 constexpr double kOnEachAxis = static_cast<double>(GripProbe::kLines.size()) / kAxes;
 
 }  // namespace
@@ -47,10 +48,10 @@ Vec3 GripProbe::at(double time) const {
   const double edge = std::min(time, kDuration - time) / kFade;
   if (!(edge > 0)) return force;
   for (std::size_t line = 0; line < kLines.size(); ++line) {
-    const int axis = static_cast<int>(line) % kAxes, place = static_cast<int>(line) / kAxes;
-    // Schroeder's phases keep the peaks low.
-    const double phase = -pi * place * (place + 1) / kOnEachAxis;
-    force[axis] += sine(2 * pi * kLines[line] * time / kMeasured + phase);
+    const double periods = kLines[line];
+    const double phase = -pi * kChirp * periods * periods;
+    force[static_cast<Eigen::Index>(line % kAxes)] +=
+        sine(2 * pi * periods * time / kMeasured + phase);
   }
   const double amplitude = strength_ * std::sqrt(2 / kOnEachAxis);
   return std::min(edge, 1.0) * amplitude * force;

@@ -15,12 +15,12 @@ namespace limpid {
 
 class GripProbe {
  public:
-  static constexpr double kSettle = 1;   // until the tip's motion repeats itself [s]
+  static constexpr double kSettle = 1;    // until the tip's motion repeats itself [s]
   static constexpr double kMeasured = 8;  // time that is measured [s]
   static constexpr double kFade = 0.25;   // at either end [s]
   static constexpr double kDuration = kSettle + kMeasured + kFade;  // [s]
   // Periods of each sine in kMeasured: 2 to 25 Hz.
-  static constexpr std::array kLines{16,  25,  31,  41,  47,  57,  63,  72,  81,  87,  97,  104,
+  static constexpr std::array kLines{18,  25,  31,  41,  47,  57,  63,  72,  81,  87,  97,  104,
                                      111, 121, 127, 137, 144, 151, 161, 168, 175, 185, 191, 200};
 
   GripProbe() = default;
