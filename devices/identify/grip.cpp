@@ -22,30 +22,18 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t kMostMissing = 20;  // rows in one place that may be missing
 
-// Unknowns of the fit: the hand's, then by what the device's own friction, inertia, damping and
-// delay differ from what is known of them.
-enum Unknown : Eigen::Index {
-  stiffness,
-  damping,
-  mass,
-  friction,
-  lag,
-  inertia,
-  drag,
-  delay,
-  kUnknowns
-};
-constexpr Eigen::Index kOfHand = 3;
-using Gram =
-    Eigen::Matrix<double, kUnknowns + 1, kUnknowns + 1>;  // the last column is what is fitted
+// Columns of the equations: the hand's unknowns; those of the device that are fitted along, by what
+// they differ from what is known of them; what else of the device may differ.
+enum Term : Eigen::Index { stiffness, damping, mass, friction, lag, delay, inertia, drag, kTerms };
+constexpr Eigen::Index kOfHand = 3, kFitted = 6;
+using Gram = Eigen::Matrix<double, kTerms + 1, kTerms + 1>;  // the last column is what is fitted
 
 constexpr int kGuard = 2;           // least distance from a line of a bin that has no part of it
 constexpr int kBeside = 6;          // largest distance of bins whose noise counts as a line's
 constexpr double kModelled = 1e-3;  // part of each torque that no model of a device gets right
-constexpr double kFitted = 0.012;   // to either side, where a velocity is found [s]
-constexpr double kDrowned =
-    0.25;  // part of a line's power that is noise, from which it does not count
-constexpr double kRubbed = 0.1;        // part of the friction that no line has in common
+constexpr double kSpan = 0.012;     // to either side, where a velocity is found [s]
+constexpr double kDrowned = 0.25;  // share of noise in a line's power, from which it does not count
+constexpr double kRubbed = 0.1;    // part of the friction that no line has in common
 constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
 constexpr double kSure = 2.5;          // standard deviations of 95 %, as the noise is estimated too
 
@@ -58,7 +46,9 @@ constexpr double kFarthest = 0.05;      // tip from its mean place; beyond it th
 
 }  // namespace
 
-void GripRecord::add(std::span<const double> x, std::span<const double> torque, bool touched) {
+void GripRecord::add(std::span<const double> force, std::span<const double> x,
+                     std::span<const double> torque, bool touched) {
+  force_.insert(force_.end(), force.begin(), force.end());
   x_.insert(x_.end(), x.begin(), x.end());
   torque_.insert(torque_.end(), torque.begin(), torque.end());
   touched_.push_back(touched ? 1 : 0);
@@ -67,7 +57,6 @@ void GripRecord::add(std::span<const double> x, std::span<const double> torque, 
 void GripRecord::take(std::span<const double> row) {
   const auto excitation = layout_.in(row, Column::excitation);
   const bool on = std::ranges::any_of(excitation, [](double f) { return f != 0; });
-  const double energy = layout_.in(row, Column::energy_compensation)[0];
   if (!on) {
     if (begun() && !ended_) {
       ended_ = true;
@@ -91,18 +80,17 @@ void GripRecord::take(std::span<const double> row) {
     const auto missing = static_cast<std::size_t>(std::min(passed, 1.0 * kMostMissing));
     const std::vector<double> last(x_.end() - dof(), x_.end());
     const std::vector<double> held(torque_.end() - dof(), torque_.end());
+    const std::vector<double> force(force_.end() - 3, force_.end());
     std::vector<double> between(n);
     for (std::size_t i = 1; i <= missing; ++i) {
       const double part = static_cast<double>(i) / static_cast<double>(missing + 1);
       for (std::size_t j = 0; j < n; ++j) between[j] = last[j] + part * (x[j] - last[j]);
-      add(between, held, touched);
+      add(force, between, held, touched);
     }
-    if (energy > energy_ || time > time_) work_ += energy - energy_;
   }
-  energy_ = energy;
   time_ = time;
   real_ = std::isnan(layout_.in(row, Column::hand_torque)[0]);
-  add(x, torque, touched);
+  add(excitation, x, torque, touched);
 }
 
 DeviceTrust DeviceTrust::of(const ArmDescription& arm, bool real, double tick) {
@@ -124,7 +112,7 @@ class HeldDevice {
     const auto rows = static_cast<Eigen::Index>(record.samples());
     x_ = Eigen::Map<const Rows>(record.x().data(), rows, n_).middleRows(first, samples_);
     tau_ = Eigen::Map<const Rows>(record.torque().data(), rows, n_).middleRows(first, samples_);
-    const Eigen::VectorXd pose = x_.colwise().mean();
+    const Eigen::VectorXd pose = pose_ = x_.colwise().mean();
     Frames frames;
     Mat<kAnyDof> M;
     Jacobian<kAnyDof> J;
@@ -140,7 +128,7 @@ class HeldDevice {
     if (record.real() || p.weighs) gravity_ = gravity_of(p.down, arm.gravity);
     springy_ = record.real() || p.springy;
     delay_ = record.real() ? arm.delay.value_or(p.delay * T_) : 0;
-    note_motion(pose);
+    note_motion(pose, record.force().subspan(static_cast<std::size_t>(3 * first)));
     bend(pose);
     rub(p.encoder_step);
     x_.rowwise() -= pose.transpose();
@@ -149,6 +137,8 @@ class HeldDevice {
   }
 
   double moved() const { return moved_; }
+  double work() const { return work_; }
+  const Eigen::VectorXd& pose() const { return pose_; }
   bool rubs() const { return friction_.maxCoeff() > 0; }
 
   // The equations of all joints in a bin: a column for each unknown, and at last what they add up
@@ -162,7 +152,7 @@ class HeldDevice {
     const Complex held = (1.0 - std::exp(-s * T_)) / (s * T_) * std::exp(-s * delay_);
     const Eigen::VectorXcd tau = held * spectrum_[b].col(1);
     const Eigen::VectorXcd hand = J_.transpose() * (J_ * q);
-    Eigen::MatrixXcd all(n_, kUnknowns + 1);
+    Eigen::MatrixXcd all(n_, kTerms + 1);
     all.col(stiffness) = hand;
     all.col(damping) = s * hand;
     all.col(mass) = s * s * hand;
@@ -171,19 +161,22 @@ class HeldDevice {
     all.col(inertia) = s * s * (M_ * q);
     all.col(drag) = s * B_.cwiseProduct(q);
     all.col(delay) = s * tau;
-    all.col(kUnknowns) = tau - rub - all.col(inertia) - all.col(drag) - K_ * q;
+    all.col(kTerms) = tau - rub - all.col(inertia) - all.col(drag) - K_ * q;
     return all;
   }
 
  private:
   using Frames = Arm<kAnyDof>::Frames;
 
-  // Finds how far the tip went.
-  void note_motion(const Eigen::VectorXd& pose) {
-    constexpr Eigen::Index kStride = 10;
+  // Finds how far the tip went, and the work of the excitation.
+  void note_motion(const Eigen::VectorXd& pose, std::span<const double> force) {
     const Vec3 mean = model_.tip_at(pose);
-    for (Eigen::Index i = 0; i < samples_; i += kStride) {
-      moved_ = std::max(moved_, (model_.tip_at(x_.row(i).transpose()) - mean).norm());
+    Vec3 last = model_.tip_at(x_.row(0).transpose());
+    for (Eigen::Index i = 1; i < samples_; ++i) {
+      const Vec3 tip = model_.tip_at(x_.row(i).transpose());
+      moved_ = std::max(moved_, (tip - mean).norm());
+      work_ += (tip - last).dot(Vec3(&force[static_cast<std::size_t>(3 * (i - 1))]));
+      last = tip;
     }
   }
 
@@ -224,7 +217,7 @@ class HeldDevice {
   void rub(double encoder_step) {
     rub_ = Eigen::MatrixXd::Zero(samples_, n_);
     if (!rubs()) return;
-    const auto half = std::llround(std::max(2.0, (encoder_step > 0 ? kFitted : 0) / T_));
+    const auto half = std::llround(std::max(2.0, (encoder_step > 0 ? kSpan : 0) / T_));
     double s2 = 0, s4 = 0, s6 = 0;
     for (Eigen::Index i = 1; i <= half; ++i) {
       const double square = static_cast<double>(i * i);
@@ -284,10 +277,10 @@ class HeldDevice {
   Eigen::Index samples_ = 0;
   Eigen::MatrixXd x_, tau_, rub_;  // a row for each sample
   Eigen::MatrixXd M_, K_, J_;
-  Eigen::VectorXd B_, friction_;
+  Eigen::VectorXd pose_, B_, friction_;
   Vec3 gravity_ = Vec3::Zero();
   bool springy_ = false;
-  double delay_ = 0, moved_ = 0;
+  double delay_ = 0, moved_ = 0, work_ = 0;
   std::vector<Eigen::MatrixXcd> spectrum_;  // by bin: positions, torques, friction
 };
 
@@ -316,18 +309,20 @@ class GripFit {
 
   bool fine() const { return fine_; }
   Bounded operator[](Eigen::Index i) const {
-    return {theta_[i], kSure * std::sqrt(std::max(covariance_(i, i), 0.0))};
+    const double variance = std::max(covariance_(i, i), 0.0) + doubt_.row(i).squaredNorm();
+    return {theta_[i], kSure * std::sqrt(variance)};
   }
 
  private:
-  using Theta = Eigen::Matrix<double, kUnknowns, 1>;
+  using Theta = Eigen::Vector<double, kTerms>;
+  using Fitted = Eigen::Matrix<double, kFitted, kFitted>;
   struct Line {
     Eigen::MatrixXcd at;
     std::vector<Eigen::MatrixXcd> beside;  // noise
   };
 
   Eigen::VectorXcd left(const Eigen::MatrixXcd& of) const {
-    return of.col(kUnknowns) - of.leftCols(kUnknowns) * theta_.cast<Complex>();
+    return of.col(kTerms) - of.leftCols(kTerms) * theta_.cast<Complex>();
   }
   static Gram gram(const Eigen::MatrixXcd& of, const Eigen::VectorXd& weight) {
     return (of.adjoint() * weight.cast<Complex>().asDiagonal() * of).real();
@@ -341,7 +336,7 @@ class GripFit {
       Eigen::VectorXd noise = Eigen::VectorXd::Zero(line.at.rows());
       const auto size = static_cast<double>(line.beside.size());
       for (const auto& bin : line.beside) noise += left(bin).cwiseAbs2() / size;
-      const double all = line.at.col(kUnknowns).squaredNorm() + line.at.col(inertia).squaredNorm();
+      const double all = line.at.col(kTerms).squaredNorm() + line.at.col(inertia).squaredNorm();
       double at = line.at.col(stiffness).squaredNorm(), beside = 0;
       for (const auto& bin : line.beside) beside += bin.col(stiffness).squaredNorm() / size;
       if (beside > kDrowned * at) continue;
@@ -359,28 +354,29 @@ class GripFit {
       count += static_cast<double>(line.at.rows());
     }
     const double wrong = std::max(1.0, misfit / count);
-    Eigen::Matrix<double, kUnknowns, kUnknowns> H =
-        2 / wrong * sums.topLeftCorner<kUnknowns, kUnknowns>();
-    Theta r = 2 / wrong * sums.topRightCorner<kUnknowns, 1>();
-    for (Eigen::Index i = friction; i < kUnknowns; ++i) {
-      const double firm = 1 / (firm_[i] * firm_[i]);
-      H(i, i) += firm;
-    }
-    const Theta scale = H.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::LLT<Eigen::Matrix<double, kUnknowns, kUnknowns>> solver(scale.asDiagonal() * H *
-                                                                         scale.asDiagonal());
+    sums *= 2 / wrong;
+    Fitted H = sums.topLeftCorner<kFitted, kFitted>();
+    for (Eigen::Index i = kOfHand; i < kFitted; ++i) H(i, i) += 1 / (firm_[i] * firm_[i]);
+    const Eigen::Vector<double, kFitted> scale =
+        H.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::LLT<Fitted> solver(scale.asDiagonal() * H * scale.asDiagonal());
     fine_ = solver.info() == Eigen::Success;
     if (!fine_) return;
-    theta_ = scale.cwiseProduct(solver.solve(scale.cwiseProduct(r)));
-    const Eigen::Matrix<double, kUnknowns, kUnknowns> scaled =
-        solver.solve(Eigen::Matrix<double, kUnknowns, kUnknowns>::Identity());
+    const Fitted scaled = solver.solve(Fitted::Identity());
     covariance_ = scale.asDiagonal() * scaled * scale.asDiagonal();
+    theta_.head<kFitted>() = covariance_ * sums.topRightCorner<kFitted, 1>();
+    // A fit would take the device's own inertia and damping for the hand's, and that of the hand
+    // for the device's: only their doubt counts.
+    for (Eigen::Index i = kFitted; i < kTerms; ++i) {
+      doubt_.col(i - kFitted) = firm_[i] * (covariance_ * sums.col(i).head<kFitted>());
+    }
     fine_ = theta_.allFinite() && covariance_.allFinite();
   }
 
   std::vector<Line> lines_;
   Theta theta_ = Theta::Zero(), firm_ = Theta::Zero();
-  Eigen::Matrix<double, kUnknowns, kUnknowns> covariance_;
+  Fitted covariance_;
+  Eigen::Matrix<double, kFitted, kTerms - kFitted> doubt_;  // standard deviations
   bool fine_ = false;
 };
 
@@ -436,13 +432,14 @@ std::string doubt(const Grip& grip, bool rubs) {
 
 Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord& record) {
   Grip grip;
-  grip.work = record.work();
   grip.unknown = unfit(record);
   if (!grip.known()) return grip;
   const auto touched = std::ranges::count(record.touched(), 1);
   grip.touched = static_cast<double>(touched) / static_cast<double>(record.samples());
   const HeldDevice device(arm, p, record);
   grip.moved = device.moved();
+  grip.work = device.work();
+  grip.pose = device.pose();
   const GripFit fit(device, DeviceTrust::of(arm, record.real(), record.tick()));
   if (!fit.fine()) {
     grip.unknown = "the hand's own motion hides its answer: " + advice(grip, device.rubs());

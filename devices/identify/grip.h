@@ -7,8 +7,8 @@
 // weighted by the noise between the lines: what the hand does of its own, and the encoders' steps.
 // This noise is also in the lines; its part in the sums is taken off, so that it shifts nothing.
 //
-// The device's own inertia, damping, friction and delay are known to some part only. They are
-// fitted along, held to their values as firmly as they are known.
+// The device itself is known to some part only. Its friction and delay are fitted along, held to
+// what is known of them; the doubt about its inertia and damping is a part of the bounds.
 #pragma once
 
 #include <span>
@@ -39,20 +39,20 @@ class GripRecord {
   bool real() const { return real_; }                // not a simulated device
   bool torn() const { return torn_; }                // too many rows are missing in one place
   ForceState ended_by() const { return ended_by_; }  // `on`: by itself
-  double work() const { return work_; }              // of the excitation [J]
-  // Measured positions [rad] and torque of the motors [N m], sample by sample.
+  // Excitation [N], measured positions [rad] and torque of the motors [N m], sample by sample.
+  std::span<const double> force() const { return force_; }
   std::span<const double> x() const { return x_; }
   std::span<const double> torque() const { return torque_; }
   std::span<const char> touched() const { return touched_; }  // the tip had a contact
 
  private:
-  void add(std::span<const double> x, std::span<const double> torque, bool touched);
+  void add(std::span<const double> force, std::span<const double> x, std::span<const double> torque,
+           bool touched);
 
   RowLayout layout_;
   double T_, time_ = 0;
-  std::vector<double> x_, torque_;
+  std::vector<double> force_, x_, torque_;
   std::vector<char> touched_;
-  double work_ = 0, energy_ = 0;
   bool real_ = false, torn_ = false, ended_ = false;
   ForceState ended_by_ = ForceState::on;
 };
@@ -69,6 +69,7 @@ struct Grip {
   std::string unknown;               // why it is not known, and how to mend it; empty: it is known
   bool measured = false;             // the values below were fitted
   Bounded stiffness, damping, mass;  // [N/m, N s/m, kg]
+  Eigen::VectorXd pose;              // of the joints, the mean [rad]
   double moved = 0;                  // farthest that the tip went from its mean place [m]
   double touched = 0;                // share of the time with a contact [-]
   double work = 0;                   // of the excitation [J]
