@@ -235,6 +235,7 @@ void LiveLoop::start_over(const Parameters& p) {
   home_.armed = rig_->force().armed() && rig_->force().state() != Arming::tripped;
   rig_->start(p, home_);
   for (FurtherLane& lane : beside_) lane.begin_anew();
+  probing_ = false;
   hand_.reset(home_.target);
   led_ = false;  // else the guide would pull it back
   path_tick_ = 0;

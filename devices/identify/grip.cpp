@@ -32,6 +32,8 @@ constexpr int kGuard = 2;           // least distance from a line of a bin that 
 constexpr int kBeside = 6;          // largest distance of bins whose noise counts as a line's
 constexpr double kModelled = 1e-3;  // part of each torque that no model of a device gets right
 constexpr double kSpan = 0.012;     // to either side, where a velocity is found [s]
+constexpr double kSlow = 1;         // time over which the arm's pose is a mean [s]
+constexpr Eigen::Index kSpectra = 5;
 constexpr double kDrowned = 0.25;  // share of noise in a line's power, from which it does not count
 constexpr double kRubbed = 0.1;    // part of the friction that no line has in common
 constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
@@ -60,9 +62,7 @@ void GripRecord::take(std::span<const double> row) {
   if (!on) {
     if (begun() && !ended_) {
       ended_ = true;
-      const double whole = GripProbe::kDuration - 2 * T_;
-      const double state = layout_.in(row, Column::force_state)[0];
-      if (duration() < whole) ended_by_ = static_cast<ForceState>(std::max(state, 1.0));
+      ended_by_ = static_cast<ForceState>(layout_.in(row, Column::force_state)[0]);
     }
     return;
   }
@@ -110,17 +110,10 @@ class HeldDevice {
     samples_ = static_cast<Eigen::Index>(std::llround(GripProbe::kMeasured / T_));
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto rows = static_cast<Eigen::Index>(record.samples());
-    x_ = Eigen::Map<const Rows>(record.x().data(), rows, n_).middleRows(first, samples_);
+    const Eigen::Map<const Rows> all(record.x().data(), rows, n_);
+    x_ = all.middleRows(first, samples_);
     tau_ = Eigen::Map<const Rows>(record.torque().data(), rows, n_).middleRows(first, samples_);
     const Eigen::VectorXd pose = pose_ = x_.colwise().mean();
-    Frames frames;
-    Mat<kAnyDof> M;
-    Jacobian<kAnyDof> J;
-    model_.frames(pose, frames);
-    model_.inertia(frames, M);
-    model_.point_jacobian(frames, n_ - 1, model_.tip(frames), J);
-    M_ = M;
-    J_ = J;
     B_ = resolve<kAnyDof>(record.real() ? kFromArm : p.damping,
                           of_joints<kAnyDof>(arm, &Joint::damping));
     friction_ = resolve<kAnyDof>(record.real() ? kFromArm : p.friction,
@@ -133,6 +126,7 @@ class HeldDevice {
     rub(p.encoder_step);
     x_.rowwise() -= pose.transpose();
     tau_.rowwise() -= Eigen::RowVectorXd(tau_.colwise().mean());
+    lead_through(all, first);
     transform();
   }
 
@@ -148,17 +142,17 @@ class HeldDevice {
     const Complex s(0, w);
     const auto b = static_cast<std::size_t>(bin);
     const Eigen::VectorXcd q = spectrum_[b].col(0), rub = spectrum_[b].col(2);
+    const Eigen::VectorXcd hand = spectrum_[b].col(3), moved = spectrum_[b].col(4);
     // The torque is held for a tick, and late.
     const Complex held = (1.0 - std::exp(-s * T_)) / (s * T_) * std::exp(-s * delay_);
     const Eigen::VectorXcd tau = held * spectrum_[b].col(1);
-    const Eigen::VectorXcd hand = J_.transpose() * (J_ * q);
     Eigen::MatrixXcd all(n_, kTerms + 1);
     all.col(stiffness) = hand;
     all.col(damping) = s * hand;
     all.col(mass) = s * s * hand;
     all.col(friction) = rub;
     all.col(lag) = -s * rub;
-    all.col(inertia) = s * s * (M_ * q);
+    all.col(inertia) = s * s * moved;
     all.col(drag) = s * B_.cwiseProduct(q);
     all.col(delay) = s * tau;
     all.col(kTerms) = tau - rub - all.col(inertia) - all.col(drag) - K_ * q;
@@ -202,13 +196,59 @@ class HeldDevice {
     constexpr double kStep = 1e-4;  // [rad]
     const Eigen::VectorXd mean = tau_.colwise().mean();
     const Eigen::VectorXd left = steady(pose, Vec3::Zero()) - mean;
-    const Vec3 push = Eigen::MatrixXd(J_.transpose()).completeOrthogonalDecomposition().solve(left);
+    Eigen::MatrixXd levers(n_, 3);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      levers.col(axis) = steady(pose, Vec3::Zero()) - steady(pose, Vec3::Unit(axis));
+    }
+    const Vec3 push = levers.completeOrthogonalDecomposition().solve(left);
     K_.resize(n_, n_);
     for (Eigen::Index j = 0; j < n_; ++j) {
       Eigen::VectorXd up = pose, down = pose;
       up[j] += kStep;
       down[j] -= kStep;
       K_.col(j) = (steady(up, push) - steady(down, push)) / (2 * kStep);
+    }
+  }
+
+  // Inertia and squared Jacobian at a pose.
+  struct At {
+    Eigen::MatrixXd M, JJ;
+  };
+  At at(const Eigen::VectorXd& pose) const {
+    Frames frames;
+    Mat<kAnyDof> M;
+    Jacobian<kAnyDof> J;
+    model_.frames(pose, frames);
+    model_.inertia(frames, M);
+    model_.point_jacobian(frames, n_ - 1, model_.tip(frames), J);
+    return {M, J.transpose() * J};
+  }
+
+  // Finds J^T J q and M q, J and M those of the slow part of the motion: the hand may lead the arm
+  // elsewhere meanwhile. `all`: the record with what comes before and after.
+  template <class Rows>
+  void lead_through(const Rows& all, Eigen::Index first) {
+    hand_.resize(samples_, n_);
+    moving_.resize(samples_, n_);
+    const auto half = static_cast<Eigen::Index>(std::llround(kSlow / 2 / T_));
+    const auto mean_about = [&](Eigen::Index sample) {
+      const Eigen::Index from = std::max<Eigen::Index>(0, first + sample - half);
+      const Eigen::Index to = std::min(all.rows(), first + sample + half);
+      return at(all.middleRows(from, to - from).colwise().mean().transpose());
+    };
+    At before = mean_about(0);
+    for (Eigen::Index from = 0; from < samples_; from += half) {
+      const Eigen::Index count = std::min(half, samples_ - from);
+      const At after = mean_about(from + half);
+      const auto q = x_.middleRows(from, count);
+      const Eigen::VectorXd part =
+          Eigen::VectorXd::LinSpaced(half, 0, 1 - 1 / static_cast<double>(half)).head(count);
+      const auto between = [&](const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+        return Eigen::MatrixXd(q * one + part.asDiagonal() * (q * (other - one)));
+      };
+      hand_.middleRows(from, count) = between(before.JJ, after.JJ);
+      moving_.middleRows(from, count) = between(before.M, after.M);
+      before = after;
     }
   }
 
@@ -244,8 +284,8 @@ class HeldDevice {
   // window in which a line has no part beyond the next bins.
   void transform() {
     std::vector<Complex> turn(static_cast<std::size_t>(samples_));
-    Eigen::MatrixXd all(samples_, 3 * n_);
-    all << x_, tau_, rub_;
+    Eigen::MatrixXd all(samples_, kSpectra * n_);
+    all << x_, tau_, rub_, hand_, moving_;
     for (Eigen::Index i = 0; i < samples_; ++i) {
       const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(samples_);
       turn[static_cast<std::size_t>(i)] = std::polar(1.0, -angle);
@@ -262,8 +302,8 @@ class HeldDevice {
       }
       const Eigen::MatrixXd sums = all.transpose() * wave;
       Eigen::MatrixXcd& into = spectrum_[static_cast<std::size_t>(bin)];
-      into.resize(n_, 3);
-      for (Eigen::Index c = 0; c < 3; ++c) {
+      into.resize(n_, kSpectra);
+      for (Eigen::Index c = 0; c < kSpectra; ++c) {
         into.col(c).real() = sums.col(0).segment(c * n_, n_);
         into.col(c).imag() = sums.col(1).segment(c * n_, n_);
       }
@@ -275,13 +315,13 @@ class HeldDevice {
   double T_;
   Arm<kAnyDof> model_;
   Eigen::Index samples_ = 0;
-  Eigen::MatrixXd x_, tau_, rub_;  // a row for each sample
-  Eigen::MatrixXd M_, K_, J_;
+  Eigen::MatrixXd x_, tau_, rub_, hand_, moving_;  // a row for each sample
+  Eigen::MatrixXd K_;
   Eigen::VectorXd pose_, B_, friction_;
   Vec3 gravity_ = Vec3::Zero();
   bool springy_ = false;
   double delay_ = 0, moved_ = 0, work_ = 0;
-  std::vector<Eigen::MatrixXcd> spectrum_;  // by bin: positions, torques, friction
+  std::vector<Eigen::MatrixXcd> spectrum_;  // by bin: columns in the order of transform()
 };
 
 // Least squares over the lines.
@@ -387,13 +427,12 @@ namespace {
 // Reason why a record cannot be judged; empty if it can.
 std::string unfit(const GripRecord& record) {
   if (!record.begun()) return "the grip was not measured";
-  if (record.ended_by() != ForceState::on) {
-    return fmt::format("force went off after {:.1f} s, as {}: measure again", record.duration(),
-                       explain(record.ended_by()));
-  }
   if (record.duration() < GripProbe::kSettle + GripProbe::kMeasured) {
-    return fmt::format("it ended after {:.1f} of {:.1f} s: measure again", record.duration(),
-                       GripProbe::kDuration);
+    const std::string why = record.ended_by() != ForceState::on
+                                ? fmt::format(", as force went off: {}", explain(record.ended_by()))
+                                : "";
+    return fmt::format("it ended after {:.1f} of {:.4g} s{}. Measure again", record.duration(),
+                       GripProbe::kDuration, why);
   }
   if (record.torn()) return "the loop stood still meanwhile: measure again";
   return {};

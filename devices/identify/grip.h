@@ -38,7 +38,7 @@ class GripRecord {
   double tick() const { return T_; }
   bool real() const { return real_; }                // not a simulated device
   bool torn() const { return torn_; }                // too many rows are missing in one place
-  ForceState ended_by() const { return ended_by_; }  // `on`: by itself
+  ForceState ended_by() const { return ended_by_; }  // state of the force at its end
   // Excitation [N], measured positions [rad] and torque of the motors [N m], sample by sample.
   std::span<const double> force() const { return force_; }
   std::span<const double> x() const { return x_; }

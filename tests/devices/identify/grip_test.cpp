@@ -62,7 +62,7 @@ GripRecord exact_record(const ArmDescription& arm, const Hand& hand, double T, d
     Eigen::MatrixXcd Z = s * s * M.cast<Complex>();
     Z += (hand.stiffness + s * hand.damping + s * s * hand.mass) * JJ.cast<Complex>();
     for (int j = 0; j < n; ++j) Z(j, j) += s * arm.joints[static_cast<std::size_t>(j)].damping;
-    q.emplace_back(1e-3 * random.matrix(n, 1).col(0).cast<Complex>() * std::polar(1.0, 1.0 * line));
+    q.emplace_back(1e-6 * random.matrix(n, 1).col(0).cast<Complex>() * std::polar(1.0, 1.0 * line));
     tau.emplace_back(Z * q.back() / ((1.0 - std::exp(-s * T)) / (s * T) * std::exp(-s * late)));
   }
   const RowLayout layout(n);
@@ -97,9 +97,9 @@ TEST(Grip, OfAnExactImpedanceIsExact) {
     const Hand hand{740, 3.1, 0.12};
     const Grip grip = find_grip(arm, {}, exact_record(arm, hand, 0.001));
     EXPECT_TRUE(grip.known()) << grip.unknown;
-    EXPECT_NEAR(grip.stiffness.value, hand.stiffness, 1e-9 * hand.stiffness) << n;
-    EXPECT_NEAR(grip.damping.value, hand.damping, 1e-9 * hand.damping) << n;
-    EXPECT_NEAR(grip.mass.value, hand.mass, 1e-9 * hand.mass) << n;
+    EXPECT_NEAR(grip.stiffness.value, hand.stiffness, 1e-7 * hand.stiffness) << n;
+    EXPECT_NEAR(grip.damping.value, hand.damping, 1e-7 * hand.damping) << n;
+    EXPECT_NEAR(grip.mass.value, hand.mass, 1e-7 * hand.mass) << n;
   }
 }
 
@@ -233,7 +233,7 @@ TEST(Grip, IsNotKnownWhereForceWasCutMeanwhile) {
   of.cut = 4;
   const Grip grip = of.run();
   EXPECT_FALSE(grip.measured);
-  EXPECT_THAT(grip.unknown, testing::HasSubstr("force went off after 3.4 s"));
+  EXPECT_THAT(grip.unknown, testing::StartsWith("it ended after 3.4 of 9.25 s, as force went off"));
 }
 
 // The law's loop is in the torque that is measured: a wall makes no error.
