@@ -7,9 +7,11 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/in_hands_text.h"
+#include "app/cli/measured_text.h"
 #include "app/cli/options.h"
 #include "app/run/analysis.h"
 #include "app/run/provenance.h"
+#include "app/run/replay.h"
 #include "app/run/tip_limits.h"
 
 namespace limpid {
@@ -19,6 +21,7 @@ struct AnalyzeOptions {
   InputOptions input;
   std::optional<double> band, mass;
   std::vector<double> grip;  // from, to [N/m]; empty: none
+  std::string grip_of;       // session in which the grip was measured; empty: none
   bool json = false, all = false;
 };
 
@@ -140,33 +143,63 @@ nlohmann::ordered_json units() {
           {"tip.LAW.felt_damping", "N s/m"}};
 }
 
-std::optional<InHands> judged_in_hands(const AnalyzeOptions& options, const ArmDescription& arm,
-                                       const Parameters& p, const Analysis& a,
-                                       const std::optional<TipLimits>& tip) {
+// Arm, pose and settings to analyze.
+struct Analyzed {
+  ArmDescription arm;
+  SceneDocument document;
+  Parameters p;
+  Eigen::VectorXd pose;
+  std::optional<MeasuredHand> hand;
+};
+
+// Takes them from a session in which the grip was measured, with that grip.
+Analyzed of_session(const AnalyzeOptions& options) {
+  const Session session = read_session(options.grip_of);
+  const Parameters p = make_parameters(options.input, session_parameters(session, options.grip_of));
+  RunPlan plan = replay(session, options.grip_of, p);
+  Analyzed all{std::move(plan.arm), std::move(plan.document), p, {}, {}};
+  all.hand = judged(all.arm, p, all.document.scene, recorded_grip(session, options.grip_of));
+  const Grip& grip = all.hand->grip;
+  all.pose = grip.measured ? grip.pose : rest_pose(all.arm);
+  if (grip.known()) all.p = with_grip(p, grip);
+  return all;
+}
+
+Analyzed analyzed(const AnalyzeOptions& options) {
+  if (!options.grip_of.empty()) return of_session(options);
+  Analyzed all;
+  read_world(options.input, all.arm, all.document);
+  all.p = make_parameters(options.input, all.arm);
+  all.pose = rest_pose(all.arm);
+  return all;
+}
+
+std::optional<InHands> judged_in_hands(const AnalyzeOptions& options, const Analyzed& of,
+                                       const Analysis& a, const std::optional<TipLimits>& tip) {
+  if (of.hand) return of.hand->hands;
   if (options.grip.empty() || !tip) return std::nullopt;
   const HandRange range{options.grip[0], options.grip[1]};
   if (range.to < range.from) {
     throw UsageError(fmt::format("--grip {} {}: the second number is less than the first",
                                  range.from, range.to));
   }
-  return in_hands(arm, rest_pose(arm), p, a, *tip, range);
+  return in_hands(of.arm, of.pose, of.p, a, *tip, range);
 }
 
 int analyze_command(const AnalyzeOptions& options) {
-  ArmDescription arm;
-  SceneDocument document;
-  read_world(options.input, arm, document);
-  const Parameters p = make_parameters(options.input, arm);
+  const Analyzed of = analyzed(options);
+  const ArmDescription& arm = of.arm;
+  const Parameters& p = of.p;
   const std::optional<double> w_b =
       options.band ? std::optional(2 * std::numbers::pi * *options.band) : std::nullopt;
   const Analysis a =
-      options.mass ? analyze(*options.mass, arm, p, w_b) : analyze(arm, rest_pose(arm), p, w_b);
+      options.mass ? analyze(*options.mass, arm, p, w_b) : analyze(arm, of.pose, p, w_b);
   const std::string still = still_tip(arm);
   const std::optional<TipLimits> tip =
-      still.empty() ? std::optional(tip_limits(arm, rest_pose(arm), p, document.scene))
-                    : std::nullopt;
-  const std::optional<InHands> hands = judged_in_hands(options, arm, p, a, tip);
+      still.empty() ? std::optional(tip_limits(arm, of.pose, p, of.document.scene)) : std::nullopt;
+  const std::optional<InHands> hands = judged_in_hands(options, of, a, tip);
   if (!options.json) {
+    if (of.hand) print_measured(*of.hand);
     print(a, arm, p);
     if (options.mass) return 0;
     if (tip) print(*tip, p, options.all);
@@ -198,7 +231,11 @@ int analyze_command(const AnalyzeOptions& options) {
   json["measured"] = a.measured;
   if (!options.mass) json["tip"] = tip ? as_json(*tip, p) : nlohmann::ordered_json(nullptr);
   json["units"] = units();
-  if (!options.grip.empty()) {
+  if (of.hand) {
+    json["measured_grip"] = measured_json(*of.hand);
+    json["units"].update(measured_units());
+  }
+  if (!options.grip.empty() || of.hand) {
     json["grip"] = hands ? in_hands_json(*hands) : nlohmann::ordered_json(nullptr);
     if (hands) json["units"].update(in_hands_units());
   }
@@ -231,6 +268,19 @@ Command declare_analyze(CLI::App& app) {
           ->type_name("FROM TO")
           ->expected(2)
           ->excludes(mass);
+  command
+      ->add_option("--grip-of", options->grip_of,
+                   "a session in which the grip was measured (`limpid run --measure-grip`, or the "
+                   "window's Hand section): stiffness, damping and mass of that hand with their "
+                   "bounds, eta_min and stable walls in it; device, scene and settings are the "
+                   "session's")
+      ->type_name("SESSION.h5")
+      ->check(CLI::ExistingFile)
+      ->excludes(mass)
+      ->excludes(grip)
+      ->excludes("--device")
+      ->excludes("--tip")
+      ->excludes("--scene");
   require_above_zero(band, 1e6, "Hz");
   require_above_zero(grip, 1e6, "N/m");
   require_above_zero(mass, 1e6, "kg m^2");

@@ -194,6 +194,7 @@ bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveR
   try {
     whole = ask(task.instruction) && await_force();
     if (whole && recording) run_->record(std::move(recording));
+    if (whole && task.measure_grip) run_->measure_grip();
     whole = whole && lead(task, p.tick, row, off);
     lost = end();
   } catch (...) {

@@ -39,6 +39,7 @@ struct LiveTask {
   double seconds = 10;
   std::filesystem::path out = {};  // session of the task; empty: none
   bool force = false;              // may replace `out`
+  bool measure_grip = false;       // by an excitation from its begin on
 };
 
 class LiveBench {

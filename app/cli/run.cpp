@@ -14,6 +14,7 @@
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
+#include "app/cli/measured_text.h"
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/cli/still_picture.h"
@@ -28,6 +29,7 @@
 #include "app/run/simulate.h"
 #include "app/run/summary.h"
 #include "devices/files/config_file.h"
+#include "devices/identify/grip_probe.h"
 
 namespace limpid {
 namespace {
@@ -38,11 +40,22 @@ struct LiveRunOptions {
   LiveOptions live;
   InputOptions input;
   std::string record, picture;
-  bool force = false;
+  bool force = false, measure_grip = false;
 };
 
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "limpid: warning: {}\n", warning);
+}
+
+// Prints the grip that was measured in a run.
+void print_grip(const RunPlan& plan, const GripRecord& record) {
+  print_measured(judged(plan.arm, plan.parameters, plan.document.scene,
+                        find_grip(plan.arm, plan.parameters, record)));
+}
+
+[[noreturn]] void refuse_short_grip() {
+  throw UsageError(
+      fmt::format("--measure-grip: needs {:.4g} s; give --duration", grip_run_duration()));
 }
 
 int run_live(const LiveRunOptions& options) {
@@ -51,12 +64,19 @@ int run_live(const LiveRunOptions& options) {
   Summary summary(plan.layout(), plan.arm);
   RunWatch watch(plan.arm, plan.layout(), plan.parameters);
   const double seconds = options.input.duration.value_or(kLiveSeconds);
-  const LiveTask task{
-      fmt::format("Take hold of {}: {:.3g} s, as you like.", plan.arm.name, seconds), seconds,
-      options.record, options.force};
+  if (options.measure_grip && seconds < grip_run_duration()) refuse_short_grip();
+  LiveTask task{fmt::format("Take hold of {}: {:.3g} s, as you like.", plan.arm.name, seconds),
+                seconds, options.record, options.force};
+  if (options.measure_grip) {
+    task.instruction = fmt::format("Hold {} still, away from walls, as you will use it: {:.3g} s.",
+                                   plan.arm.name, seconds);
+    task.measure_grip = true;
+  }
+  GripRecord grip(plan.layout(), plan.parameters.tick);
   const bool whole = bench.carry_out(task, plan.parameters, [&](std::span<const double> row) {
     summary.add(row);
     watch.add(row);
+    grip.take(row);
   });
   if (summary.totals().rows == 0) {
     fmt::print(stderr, "limpid: stopped\n");
@@ -64,6 +84,7 @@ int run_live(const LiveRunOptions& options) {
   }
   if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable());
   fmt::print("{}", summary.text());
+  if (options.measure_grip) print_grip(plan, grip);
   if (!options.record.empty()) fmt::print("recorded in {}\n", options.record);
   print_warnings(watch.cautions());
   if (whole) return 0;
@@ -78,7 +99,7 @@ struct RunOptions {
   std::string record;
   std::string picture;
   bool force = false;
-  bool realtime = false, json = false;
+  bool realtime = false, json = false, measure_grip = false;
   // Settings of each further lane, as key=value; nothing: there is no such lane.
   std::array<std::optional<std::vector<std::string>>, kMostLanes - 1> beside;
   LiveOptions live;
@@ -147,6 +168,7 @@ class RunLog {
   RunLog(const RunPlan& plan, Recorder* recorder, bool waits)
       : stride_(static_cast<std::size_t>(plan.layout().stride())),
         runs_(plan.lanes(), Summary(plan.layout(), plan.arm)),
+        grip_(plan.layout(), plan.parameters.tick),
         recorder_(recorder),
         waits_(waits) {
     for (std::size_t i = 0; i < plan.lanes(); ++i) {
@@ -163,6 +185,7 @@ class RunLog {
     ++rows_;
     const bool was_wild = runs_[0].watch().wild();
     const bool memorable = runs_[0].add(rows.first(stride_));
+    grip_.take(rows.first(stride_));
     if (runs_[0].watch().wild() && !was_wild) stable_ = memorable_;
     for (std::size_t lane = 1; lane < runs_.size(); ++lane) {
       runs_[lane].add(rows.subspan(lane * stride_, stride_));
@@ -193,6 +216,7 @@ class RunLog {
     return all;
   }
   double time() const { return runs_[0].time(); }
+  const GripRecord& grip() const { return grip_; }  // as far as it was measured
   // Rows of all lanes when the first one's contact was strongest; of a run that became unstable,
   // before that.
   std::span<const double> memorable() const {
@@ -216,6 +240,7 @@ class RunLog {
   std::vector<Summary> runs_;
   std::deque<RunWatch> watches_;
   std::uint64_t rows_ = 0;
+  GripRecord grip_;
   std::vector<double> memorable_, stable_;  // stable_: before the present wild rows began
   Recorder* recorder_;
   bool waits_;
@@ -285,13 +310,19 @@ int live(const RunOptions& options) {
   }
   if (options.json) throw UsageError("--json: not together with --live");
   check_outputs(options);
-  return run_live({options.live, options.input, options.record, options.picture, options.force});
+  return run_live({options.live, options.input, options.record, options.picture, options.force,
+                   options.measure_grip});
 }
 
 void print_json(const RunOptions& options, const RunPlan& plan, const RunLog& log) {
   nlohmann::ordered_json json{
       {"provenance", provenance(settings_digest(plan.parameters), plan.seed)}};
   json.update(log.json());
+  if (options.measure_grip) {
+    const Grip grip = find_grip(plan.arm, plan.parameters, log.grip());
+    json["measured_grip"] =
+        measured_json(judged(plan.arm, plan.parameters, plan.document.scene, grip));
+  }
   json["recorded"] = nullptr;
   if (!options.record.empty()) json["recorded"] = options.record;
   fmt::print("{}\n", json.dump(2));
@@ -300,6 +331,7 @@ void print_json(const RunOptions& options, const RunPlan& plan, const RunLog& lo
 int run(const RunOptions& options) {
   if (options.live.device) return live(options);
   RunPlan plan = make_plan(options.input);
+  if (options.measure_grip && !measure_grip(plan)) refuse_short_grip();
   say_about(plan);
   if (options.input.seed && options.input.variation.value_or(0) == 0) {
     fmt::print(stderr,
@@ -330,6 +362,7 @@ int run(const RunOptions& options) {
     return report(options, end, recorder ? &*recorder : nullptr, log);
   }
   fmt::print("{}", log.text(plan));
+  if (options.measure_grip) print_grip(plan, log.grip());
   const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
   fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
   return report(options, end, recorder ? &*recorder : nullptr, log);
@@ -351,6 +384,12 @@ Command declare_run(CLI::App& app) {
   command->add_flag("--json", options->json,
                     "what came of it as one JSON object, instead of lines");
   command->add_flag("--realtime", options->realtime, "pace at the tick rate");
+  command->add_flag(
+      "--measure-grip", options->measure_grip,
+      fmt::format("measure how the hand holds the device: for {:.3g} s the motors add "
+                  "a small force; stiffness, damping and mass of the hand with "
+                  "their bounds, eta_min and walls in it",
+                  GripProbe::kDuration));
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     command
         ->add_option_function<std::vector<std::string>>(

@@ -37,6 +37,7 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
   for (auto& each : beside) each = std::make_unique<Rig>(arm, scene);
   close();
   rig_ = std::move(rig);
+  probe_ = GripProbe(arm);
   for (std::size_t i = 0; i < beside.size(); ++i) beside_[i].open(std::move(beside[i]));
   start.armed = virtual_armed_;
   begin(std::move(start), p);
@@ -47,6 +48,7 @@ void LiveLoop::open(const ArmDescription& arm, const Scene& scene, const Paramet
   auto rig = std::make_unique<Rig>(arm, scene, nullptr);
   close();
   rig_ = std::move(rig);
+  probe_ = GripProbe(arm);
   in_place_ = true;
   real_ = RealDevice::of(arm, 0);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
@@ -77,6 +79,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   hand_.reset(home_.target);
   guided_.reset(home_.target);
   led_ = false;
+  probing_ = false;
   known_arms_ = arms_.load();
   known_cuts_ = cuts_.load();
   beat_.store(MonotonicTime{}.now());
@@ -183,7 +186,26 @@ HandInput LiveLoop::hand_input(const Controls& controls) {
     goal = guided_.goal();
     grab = led_;
   }
+  if (probing_ && !grab) {
+    goal = held_at_;
+    grab = true;
+  }
   return hand_.step(grab, goal, tip, parameters_.hand_stiffness, T);
+}
+
+// Returns the force that measures the grip, over the tick that begins [N]. It ends with its time,
+// or for good once the whole force is no longer on.
+Vec3 LiveLoop::excite(const Controls& controls, int periods) {
+  if (std::exchange(probe_number_, controls.probe) != controls.probe) {
+    probing_ = controls.probe > 0;
+    probe_time_ = 0;
+    held_at_ = rig_->tip();
+  }
+  probing_ = probing_ && probe_time_ < GripProbe::kDuration &&
+             rig_->force().state() == Arming::on && !rig_->diverged();
+  if (!probing_) return Vec3::Zero();
+  const double now = std::exchange(probe_time_, probe_time_ + periods * parameters_.tick);
+  return probe_.at(now);
 }
 
 ForceRequest LiveLoop::wish() {
@@ -214,6 +236,7 @@ void LiveLoop::start_over(const Parameters& p) {
   home_.armed = rig_->force().armed() && rig_->force().state() != Arming::tripped;
   rig_->start(p, home_);
   for (FurtherLane& lane : beside_) lane.begin_anew();
+  probing_ = false;
   hand_.reset(home_.target);
   led_ = false;  // else the guide would pull it back
   path_tick_ = 0;
@@ -259,11 +282,13 @@ void LiveLoop::tick(const TickTiming& timing) {
     parameters_ = wanted;
     if (recording_to_ != nullptr) recording_to_->changed(parameters_);
   }
+  const Vec3 excitation = excite(controls, in_place_ ? timing.periods : 1);
   HandInput hand = hand_input(controls);
   hand.magnet = hand.magnet || controls.magnet;
   if (controls.pull.body >= 0) hand.pull = controls.pull;
   follow_recorder(hand.target);
-  const RigInput input = rig_input(timing, hand);
+  RigInput input = rig_input(timing, hand);
+  input.excitation = excitation;
   if (!in_place_) step_beside(controls, input);
   rig_->step(parameters_, input, row(kMainLane));
   const auto ended = std::chrono::steady_clock::now();
@@ -334,6 +359,8 @@ void LiveLoop::publish(const TickTiming& timing) {
   snapshot.force_state = rig_->force().why();
   snapshot.connected = connected_;
   snapshot.reading = guide_;
+  snapshot.probe = probe_number_;
+  snapshot.probing = probing_;
   snapshot.led = static_cast<double>(path_tick_) * parameters_.tick;
   snapshots_.publish();
 }

@@ -17,6 +17,7 @@
 #include "core/realtime/triple_buffer.h"
 #include "core/tick/as_taken.h"
 #include "devices/files/session/hand_file.h"
+#include "devices/identify/grip_probe.h"
 #include "devices/simulated/hands.h"
 #include "devices/simulated/rig.h"
 
@@ -33,6 +34,8 @@ struct Controls {
   bool magnet = false;       // picks up bodies
   BodyPull pull{};           // the mouse's pull on a body, instead of the arm
   std::uint32_t resets = 0;  // the loop starts over whenever this grows
+  // Number of the measurement of the grip that is wanted; 0: none. A new number begins it.
+  std::uint32_t probe = 0;
   // Time of a virtual arm: one tick in every `slow` of the loop's. Paused, the arm ticks only when
   // `steps` grows, at a start, or when force comes or goes.
   int slow = 1;
@@ -64,6 +67,9 @@ struct Snapshot {
   bool connected = false;  // the device that is plugged in answers
   DeviceReading reading;   // newest of the device
   double led = 0;          // time followed along the hand's path [s]
+  // Number of the last measurement of the grip, and whether its excitation still goes on.
+  std::uint32_t probe = 0;
+  bool probing = false;
 };
 
 // A path for the virtual arm's hand; without samples the controls lead the hand again.
@@ -201,10 +207,11 @@ class LiveLoop {
   std::span<double> row(std::size_t lane);                              // a part of rows_
   bool lanes_run(std::size_t count) const;                              // the loop's
   void publish(const TickTiming& timing);
-  void take_in();                                  // the loop's
-  HandInput hand_input(const Controls& controls);  // the loop's
-  bool due(const Controls& controls);              // the loop's
-  HandInput follow_path();                         // the loop's
+  void take_in();                                      // the loop's
+  HandInput hand_input(const Controls& controls);      // the loop's
+  bool due(const Controls& controls);                  // the loop's
+  Vec3 excite(const Controls& controls, int periods);  // the loop's
+  HandInput follow_path();                             // the loop's
   void begin(RigStart start, const Parameters& p);
   bool recorder_is_free();
 
@@ -253,6 +260,11 @@ class LiveLoop {
   LedPath* path_ = nullptr;
   std::size_t path_tick_ = 0;  // the next tick of path_
   bool path_runs_ = false;
+  GripProbe probe_;
+  std::uint32_t probe_number_ = 0;  // of the newest one
+  bool probing_ = false;
+  double probe_time_ = 0;        // since its begin [s]
+  Vec3 held_at_ = Vec3::Zero();  // by the virtual hand meanwhile [m]
   Parameters parameters_;
   SafetyLimits limits_;
   RigStart home_;

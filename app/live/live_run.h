@@ -17,6 +17,7 @@ class LiveRun {
 
   void arm() { session_.loop().arm(); }
   void cut() { session_.loop().cut(); }
+  void measure_grip() { ++session_.controls().probe; }
   void set(const Parameters& parameters) { session_.set(kMainLane, parameters); }
   // Settings as the loop takes them, see LiveLoop.
   Parameters taken(const Parameters& p) const { return session_.loop().taken(p); }

@@ -47,6 +47,7 @@ void LiveSession::open(const ArmDescription& arm, const Scene& scene, const Para
 void LiveSession::begin(const Parameters& p, const Vec3& home) {
   controls_.grab = controls_.magnet = controls_.paused = false;
   controls_.pull = {};
+  controls_.probe = 0;
   controls_.slow = 1;
   controls_.goal = home;
   set(kMainLane, p);

@@ -157,13 +157,18 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
     plan.note += "; its filter of encoder steps is no longer the program's, so the numbers differ";
   }
   plan.seed = session.info.seed;
-  // A real device has no measured hand torque: the observer's estimate acts in its place.
+  // A real device has no measured hand torque: the observer's estimate acts in its place. It has
+  // the excitation in it.
   const bool measured = !std::isnan(session.at(0, Column::hand_torque)[0]);
   for (std::size_t k = 0; k < session.size(); ++k) {
     const auto estimate = session.at(k, Column::hand_torque_estimate);
     if (!measured)
       plan.hand_torque.insert(plan.hand_torque.end(), estimate.begin(), estimate.end());
     plan.force.push_back(session.at(k, Column::force_wanted)[0] != 0);
+    const auto excitation = session.at(k, Column::excitation);
+    if (!measured || std::ranges::all_of(excitation, [](double f) { return f == 0; })) continue;
+    plan.excitation.resize(k + 1, Vec3::Zero());
+    plan.excitation[k] = Vec3(excitation[0], excitation[1], excitation[2]);
   }
 
   plan.changes = changes_again(session, where, session_parameters(session, where), chosen);

@@ -96,7 +96,8 @@ class Run {
       return false;
     }
     const auto k = static_cast<std::size_t>(end_.rows);
-    const RigInput input{hand(k), wish(k)};
+    RigInput input{hand(k), wish(k)};
+    if (k < plan_.excitation.size()) input.excitation = plan_.excitation[k];
     for (std::size_t i = 0; i < lanes_.size(); ++i) {
       changed_[i] = lanes_[i].apply_changes(end_.rows) ? &lanes_[i].parameters : nullptr;
       lanes_[i].step(input, wake_latency, std::span(rows_).subspan(i * stride(), stride()));

@@ -70,6 +70,7 @@ enum class Column : std::uint8_t {
   energy_pulled,
   tool_orientation,
   motor_warmth,
+  excitation,
   wake_latency,
   compute,
   count_,
@@ -178,9 +179,11 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::contact_force, "/contact/force", ColumnWidth::contacts, "N",
      "force on the proxy there, over the tick"},
     {Column::compensation_torque, "/device/compensation_torque", ColumnWidth::dof, "N m",
-     "for weight, springs and friction of the device, in addition to tau1"},
+     "for weight, springs and friction of the device, and to measure the grip, in addition to "
+     "tau1"},
     {Column::energy_compensation, "/energy/compensation", ColumnWidth::one, "J",
-     "what of E_c the motors gave for weight, springs and friction of the device"},
+     "what of E_c the motors gave for weight, springs and friction of the device, and to measure "
+     "the grip"},
     {Column::body_pose, "/objects/pose", ColumnWidth::poses, "m",
      "of each body: x, y, z of its centre of mass, and its rotation as a quaternion w, x, y, z "
      "[-]"},
@@ -219,6 +222,8 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::motor_warmth, "/device/warmth", ColumnWidth::dof, "-",
      "of each motor from 0 cold to 1 as warm as it may be: by the arm's model, or what the device "
      "says of its hottest one if that is more; 0 if neither is known"},
+    {Column::excitation, "/device/excitation", ColumnWidth::three, "N",
+     "force that the motors are asked to make at the tip, to measure the grip: x, y, z; 0 else"},
     {Column::wake_latency, "/timing/wake_latency", ColumnWidth::one, "s",
      "how late the tick began"},
     {Column::compute, "/timing/compute", ColumnWidth::one, "s", "how long the tick took"},

@@ -126,8 +126,10 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   write_bodies(row);
   proxy_.contacts().want_magnet(in.magnet);
   if (BodyWorld* world = proxy_.contacts().world()) world->pull(in.pull);
-  if (in.health.guarded) arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
-  const Vec<N> left = own_forces(p, at, T);
+  if (in.health.guarded || !in.excitation.isZero(0)) {
+    arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
+  }
+  const Vec<N> left = own_forces(p, at, in.excitation, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
   LawInput<N> now{in.measured,    v1,
                   device_,        f1_hat_,
@@ -156,11 +158,14 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   return tau1_;
 }
 
-// Sets the motors' torque for the device's own forces; returns the torque that is left to the law.
+// Sets the motors' torque for the device's own forces, and for the excitation, which to law and
+// observer is a push of the hand. Returns the torque that is left to the law.
 template <int N>
-Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, double T) {
+Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, const Vec3& excitation,
+                           double T) {
   const Vec<N> friction = resolve<N>(p.friction, arm_friction_);
   loads_ = compensation_.step(p, arm_, frames_, at.x, at.v, friction, p.encoder_step, T);
+  if (!excitation.isZero(0)) loads_ += J_.transpose() * excitation;
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }
 
@@ -277,6 +282,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
   put(Column::hand_torque_estimate, f1_hat_);
   put(Column::compensation_torque, loads_);
   put(Column::motor_warmth, warmth_.known());
+  std::copy_n(in.excitation.data(), 3, layout_.in(row, Column::excitation).begin());
   set(Column::force_wanted, gate_.armed() ? 1 : 0);
   set(Column::force_state, static_cast<double>(gate_.why()));
   set(Column::kind, static_cast<double>(p.kind));

@@ -27,7 +27,7 @@ struct EnergyBooks {
   double commanded = 0;     // [J]
   double total = 0;         // [J]
   double port = 0;          // of motors and own damping alone: given to the human [J]
-  double compensation = 0;  // of `commanded`: for the device's own forces [J]
+  double compensation = 0;  // of `commanded`: for the device's own forces and the excitation [J]
   double contact = 0;       // work of the contacts on the proxy [J]
 
   // tau1: motor torque held over the tick; dx: motion over it; b_d: the device's damping.
@@ -61,6 +61,8 @@ struct Reading {
   bool magnet = false;  // the tip is to hold a magnetic body near it
   BodyPull pull{};      // pull on a body from outside
   double warmth = 0;    // of the hottest motor, as the device says it [-]
+  // Force that the motors are to make at the tip besides, to measure the grip [N].
+  Vec3 excitation = Vec3::Zero();
 };
 
 // Start of a loop.
@@ -127,7 +129,8 @@ class Tick {
   double tip_force_left(bool guarded) const;
   void begin_anew(const Reading<N>& in);
   void bring_proxy(const Vec<N>& x, const Parameters& p);
-  Vec<N> own_forces(const Parameters& p, const DeviceEstimate<N>& at, double T);
+  Vec<N> own_forces(const Parameters& p, const DeviceEstimate<N>& at, const Vec3& excitation,
+                    double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
   void start_law(const LawStart<N>& at);
   void pass_on(const Parameters& p, const Reading<N>& in, ForceRequest wish, double put_out,

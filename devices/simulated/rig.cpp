@@ -123,6 +123,7 @@ Reading<N> Rig::Of<N>::read(const Parameters& p, const RigInput& now) noexcept {
   x_before = x;
   Reading<N> out{x, x, v, health, now.periods, now.dt, {}, now.hand.magnet, now.hand.pull};
   if (heard) out.warmth = static_cast<double>(reading.warmth);
+  out.excitation = now.excitation;
   if (const auto truth = device->truth()) {
     out.x = of_joints(truth->x);
     out.v = of_joints(truth->v);

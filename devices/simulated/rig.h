@@ -29,6 +29,8 @@ struct RigInput {
   int periods = 1;     // ticks since the step before
   double dt = 0;       // time that really passed since then [s]; 0: as long as it should be
   double silence = 0;  // time since the window last answered [s]
+  // Force that the motors are to make at the tip besides, to measure the grip [N].
+  Vec3 excitation = Vec3::Zero();
 };
 
 // A starting point of any size, e.g. the first row of a recording.

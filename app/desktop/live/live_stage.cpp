@@ -45,6 +45,7 @@ void LiveStage::open(ArmDescription arm, SceneDocument document, const MeshModel
                      const Parameters& p, double shown, std::unique_ptr<Device> device) {
   auto fresh = make_stage(std::move(arm), std::move(document), models, p, shown);
   const Vec3 rest = rest_tip(fresh->arm());
+  grip_.forget();
   if (device) {
     session_.open(fresh->arm(), fresh->document().scene, p, std::move(device));
   } else {
@@ -138,8 +139,10 @@ void LiveStage::update(std::span<const Parameters> lanes) {
   stage_->follow(lanes[kMainLane]);
   tell(session_.turn([this](LaneRows rows, std::uint64_t tick) {
     stage_->append(rows);
+    grip_.take(rows[kMainLane]);
     if (on_row) on_row(rows, tick);
   }));
+  grip_.update();
   follow_saving();
   set_marks();
   stage_->follow_energy(stage_->history.end());

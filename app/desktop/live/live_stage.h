@@ -11,6 +11,7 @@
 
 #include "app/base/tasks.h"
 #include "app/desktop/base/notices.h"
+#include "app/live/grip_meter.h"
 #include "app/live/live_session.h"
 #include "app/plot/plot_menu.h"
 #include "app/run/simulate.h"
@@ -42,6 +43,7 @@ class LiveStage {
   const LiveLoop& loop() const { return session_.loop(); }
   Controls& controls() { return session_.controls(); }
   const Controls& controls() const { return session_.controls(); }
+  GripMeter& grip() { return grip_; }
   Stage& stage() { return *stage_; }
   const Stage& stage() const { return *stage_; }
   std::span<const double> row() const { return rows().front(); }  // the newest row
@@ -124,6 +126,7 @@ class LiveStage {
   Notices& notices_;
   TaskQueue device_tasks_, file_tasks_;
   LiveSession session_;
+  GripMeter grip_{session_};
   std::unique_ptr<Stage> stage_;
   std::vector<PlotMark> changes_;  // marks whose time is not known yet
   bool was_diverged_ = false, was_running_ = false;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/desktop/coupling/analysis_panel.h"
+#include "app/desktop/coupling/grip_panel.h"
 #include "app/desktop/coupling/tick_panel.h"
 #include "app/desktop/coupling/timing_panel.h"
 #include "app/desktop/device/device_panel.h"
@@ -55,6 +56,8 @@ DrawSection hand_section(Desktop& d) {
     }
     ImGui::Checkbox("hold where released", &d.settings.hold_on_release);
     tooltip("When the mouse button is released the hand stays where it is instead of letting go.");
+    if (d.playback.on()) return;
+    draw_grip(d.live.grip(), d.live.stage().arm(), d.document.scene(), d.settings.parameters());
   };
 }
 

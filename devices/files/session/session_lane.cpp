@@ -82,6 +82,7 @@ std::optional<double> mostly(Column column) {
     case Column::pull_target:
     case Column::energy_pulled:
     case Column::motor_warmth:
+    case Column::excitation:
     case Column::compensation_torque:
     case Column::energy_compensation: return 0.0;
     default: return std::nullopt;

@@ -56,6 +56,7 @@ std::optional<double> default_of(Column column) {
     case Column::pull_target:
     case Column::energy_pulled:
     case Column::motor_warmth:
+    case Column::excitation:
     case Column::energy_ledger: return 0.0;
     // Unknown: what the human and objects were given, and whether something touched.
     case Column::tool_orientation:

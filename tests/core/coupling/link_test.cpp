@@ -368,7 +368,7 @@ TEST(Wave, GivesToAHandThatTurnsRoundInEachTickWhatDampersHeldForATickGive) {
       law->locate(p, {x, v, T, 0});
       proxy.catch_up();
       const LawInput<kAnyDof> in{x, v, device, zero, proxy.vbar(), T, frames, b, b, limit,
-                                 1, T,     0,      0};
+                                 1, T, 0,      0};
       tau = law->step(p, in, proxy);
       law->applied(tau);
     }

@@ -1,0 +1,77 @@
+#include "app/desktop/coupling/grip_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+
+namespace limpid {
+namespace {
+
+constexpr const char* kAbout =
+    "The motors add a small force for 9 s and see how the tip answers. Hold the device as you will "
+    "use it, still and away from walls. The virtual arm's hand holds still by itself.\n"
+    "Nothing begins before you press this. It ends by itself, or with the force.";
+
+void wrapped(const std::string& text, Rgb rgb) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(rgb));
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void draw_walls(const InHands& hands, CouplingKind kind) {
+  const SafeWalls& walls = hands.laws[static_cast<std::size_t>(kind)].in_range;
+  std::string text = "not known";
+  if (walls.up_to)
+    text = std::isinf(*walls.up_to) ? "all" : fmt::format("up to {:.0f} N/m", *walls.up_to);
+  read_out(
+      fmt::format("stable walls, {}", info(kind).key).c_str(), text, {},
+      fmt::format("Walls that are stable in this hand, within the bounds above: {}.", walls.why)
+          .c_str());
+}
+
+void draw_found(const MeasuredHand& found, Parameters& p) {
+  const Palette& colours = current_palette();
+  if (const std::string unknown = unknown_text(found.grip); !unknown.empty()) {
+    wrapped("The grip is " + unknown + ".", colours.broken);
+  }
+  for (const GripLine& line : grip_lines(found)) {
+    read_out(line.label.c_str(), line.value, {},
+             "With the bounds that hold for 95 of 100 grips; eta_min with its least and its most "
+             "within them");
+  }
+  if (!found.hands) return;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
+    if (kind == p.kind || !info(kind).for_comparison) draw_walls(*found.hands, kind);
+  }
+  if (noted_button("Take as the hand")) p = with_grip(p, found.grip);
+  tooltip(
+      "Sets grip stiffness, grip damping and hand mass to these values. The analysis uses them, "
+      "and so does the virtual arm's hand.");
+}
+
+}  // namespace
+
+void draw_grip(GripMeter& meter, const ArmDescription& arm, const Scene& scene, Parameters& p) {
+  if (meter.busy()) {
+    progress_bar(
+        meter.part(), 0,
+        meter.part() < 1 ? fmt::format("hold still: {:.0f} s", meter.time()) : "reckoning");
+    if (noted_button("Stop measuring")) meter.stop();
+    return;
+  }
+  const std::string why_not = meter.why_not();
+  ImGui::BeginDisabled(!why_not.empty());
+  if (noted_button("Measure the grip")) meter.begin(arm, scene);
+  ImGui::EndDisabled();
+  tooltip(why_not.empty() ? kAbout : (why_not + "\n" + kAbout).c_str());
+  if (const MeasuredHand* found = meter.found()) draw_found(*found, p);
+}
+
+}  // namespace limpid
