@@ -21,6 +21,7 @@ class WarmthMemory {
   // Adds what a motion beside the loops has warmed cold motors up by. Warmth is linear in the
   // square of the torque, so the next loop begins with the sum.
   void add(const Eigen::VectorXd& warmth, double now) {
+    if (!(warmth.array() > 0).any()) return;  // an arm without a model
     const std::lock_guard lock(mutex_);
     Kept& kept = beside_loops_.try_emplace(warmth.size(), Kept{0 * warmth, now}).first->second;
     kept = {kept.warmth + warmth, now};

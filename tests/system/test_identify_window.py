@@ -173,6 +173,39 @@ class AxesOfADevice(PaddleWindow):
         self.wait("why it has none", lambda s: s["device_panel"]["explains_force"])
 
 
+class WarmthOfADevice(AxesOfADevice):
+    test_are_checked_before_it_may_push_and_again_after_a_check_that_was_stopped = None
+
+    def prepare(self) -> None:
+        # A motor that bears next to nothing for hours, and is slow to get warm.
+        arm = self.home / "paddle.urdf"
+        model = '<limpid><warmth joint="paddle" continuous="0.005" time="600"/></limpid></robot>'
+        arm.write_text((ASSETS / "devices/paddle.urdf").read_text().replace("</robot>", model))
+        self.BOOK = f'taken_for = "{arm}"\n'
+        super().prepare()
+
+    def test_begins_with_what_the_check_and_an_identification_have_warmed_up(self) -> None:
+        end = time.monotonic() + 60  # a stall of 5 ms ends it
+        while "checked = true" not in self.book.read_text() and time.monotonic() < end:
+            self.begin_check()
+            self.wait("its end", lambda s: not s["device_panel"]["checking"]
+                      and (s["device_panel"]["check"] or s["identify"]["plugged"]))
+        self.wait("the device in the loop", lambda s: s["identify"]["plugged"] and s["device"])
+        by_check = self.wait("warmth", lambda s: s["warmth"] > 1e-9)["warmth"]
+        self.key("F7")
+        self.wait("the dialog", lambda s: s["dialog"] == "identify")
+        end = time.monotonic() + 60
+        while self.state()["warmth"] <= 1.01 * by_check and time.monotonic() < end:
+            self.key("Return")
+            self.go_on(4)  # until it sweeps
+            if self.state()["identify"]["phase"] == "moving":
+                self.key("Escape")
+            self.wait("its end", lambda s: s["identify"]["wrong"] != "")
+            self.wait("the device back", lambda s: s["identify"]["plugged"])
+            self.go_on(1.5)  # the age of a state is at most 1 s
+        self.assertGreater(self.state()["warmth"], 1.01 * by_check)
+
+
 class ArmOfADevice(PaddleWindow):
     BOOK = "checked = true\n"
     SIZE = (1600, 880)

@@ -634,7 +634,8 @@ TEST(WarmthMemory, AddsWhatAMotionBesideTheLoopsWarmedUp) {
   arm.joints[1].warming = 60;
   WarmthMemory memory;
   memory.keep(Eigen::Vector3d(0, 0.4, 0), 0);
-  EXPECT_FALSE(memory.added(3));
+  memory.add(Eigen::Vector3d(0, 0, 0), 0);
+  EXPECT_FALSE(memory.added(3)) << "nothing was warmed up";
   memory.add(Eigen::Vector3d(0, 0.3, 0), 30);
   memory.add(Eigen::Vector3d(0, 0.1, 0), 30);
   memory.keep(Eigen::Vector3d(0, 0.4 * std::exp(-0.5), 0), 30);  // a loop that ends forgets none
