@@ -34,10 +34,11 @@ constexpr double kModelled = 1e-3;  // part of each torque that no model of a de
 constexpr double kSpan = 0.012;     // to either side, where a velocity is found [s]
 constexpr double kSlow = 1;         // time over which the arm's pose is a mean [s]
 constexpr Eigen::Index kSpectra = 5;
-constexpr double kDrowned = 0.25;  // share of noise in a line's power, from which it does not count
-constexpr double kRubbed = 0.1;    // part of the friction that no line has in common
+constexpr double kDrowned = 0.1;  // share of noise in a line's power, from which it does not count
+constexpr double kRubbed = 0.1;   // part of the friction that no line has in common
 constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
-constexpr double kSure = 2.5;          // standard deviations of 95 %, as the noise is estimated too
+constexpr double kUnlike = 0.007;  // part of a value by which no hand is a spring, damper and mass
+constexpr double kSure = 2.5;      // standard deviations of 95 %, as the noise is estimated too
 
 // Bounds with which a value counts as known: a part of it; or, of a small value, as little as tells
 // nobody another wall. 0.15 N s/m are half of the damping of the lightest arm, 20 g a pen.
@@ -349,7 +350,8 @@ class GripFit {
 
   bool fine() const { return fine_; }
   Bounded operator[](Eigen::Index i) const {
-    const double variance = std::max(covariance_(i, i), 0.0) + doubt_.row(i).squaredNorm();
+    const double unlike = kUnlike * theta_[i];
+    const double variance = covariance_(i, i) + doubt_.row(i).squaredNorm() + unlike * unlike;
     return {theta_[i], kSure * std::sqrt(variance)};
   }
 
