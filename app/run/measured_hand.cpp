@@ -24,8 +24,10 @@ double eta_min_in(const ArmDescription& arm, Parameters p, const Grip& grip, dou
 
 // Decimals with which a bound has two digits.
 int decimals_of(double bound) {
-  if (!(bound > 0)) return 0;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(bound))), 0, 4);
+  constexpr int kMost = 4;
+  int decimals = 0;
+  for (; bound > 0 && bound < 10 && decimals < kMost; bound *= 10) ++decimals;
+  return decimals;
 }
 
 }  // namespace

@@ -38,9 +38,9 @@ bool measure_grip(RunPlan& plan);
 // Time that a run needs for it [s].
 double grip_run_duration();
 
-// "310 ± 12 N/m".
+// Returns "310 ± 12 N/m".
 std::string bounded_text(const Bounded& of, const char* unit);
-// What is known of a hand, line by line.
+// A line about a hand, for people.
 struct GripLine {
   std::string label, value;
 };

@@ -126,10 +126,7 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
   write_bodies(row);
   proxy_.contacts().want_magnet(in.magnet);
   if (BodyWorld* world = proxy_.contacts().world()) world->pull(in.pull);
-  if (in.health.guarded || !in.excitation.isZero(0)) {
-    arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
-  }
-  const Vec<N> left = own_forces(p, at, in.excitation, T);
+  const Vec<N> left = own_forces(p, at, in, T);
   const Vec<N> b_d_sure = in.health.guarded ? Vec<N>(0 * b_d_) : b_d_;
   LawInput<N> now{in.measured,    v1,
                   device_,        f1_hat_,
@@ -161,11 +158,15 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
 // Sets the motors' torque for the device's own forces, and for the excitation, which to law and
 // observer is a push of the hand. Returns the torque that is left to the law.
 template <int N>
-Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, const Vec3& excitation,
+Vec<N> Tick<N>::own_forces(const Parameters& p, const DeviceEstimate<N>& at, const Reading<N>& in,
                            double T) {
+  const bool excited = !in.excitation.isZero(0);
+  if (in.health.guarded || excited) {
+    arm_.point_jacobian(frames_, arm_.dof() - 1, arm_.tip(frames_), J_);
+  }
   const Vec<N> friction = resolve<N>(p.friction, arm_friction_);
   loads_ = compensation_.step(p, arm_, frames_, at.x, at.v, friction, p.encoder_step, T);
-  if (!excitation.isZero(0)) loads_ += J_.transpose() * excitation;
+  if (excited) loads_ += J_.transpose() * in.excitation;
   return (limit_ - loads_.cwiseAbs()).cwiseMax(kLeastForLaw * limit_);
 }
 

@@ -129,7 +129,7 @@ class Tick {
   double tip_force_left(bool guarded) const;
   void begin_anew(const Reading<N>& in);
   void bring_proxy(const Vec<N>& x, const Parameters& p);
-  Vec<N> own_forces(const Parameters& p, const DeviceEstimate<N>& at, const Vec3& excitation,
+  Vec<N> own_forces(const Parameters& p, const DeviceEstimate<N>& at, const Reading<N>& in,
                     double T);
   void switch_law(CouplingKind to, const Vec<N>& x1);
   void start_law(const LawStart<N>& at);

@@ -34,10 +34,11 @@ constexpr double kModelled = 1e-3;  // part of each torque that no model of a de
 constexpr double kSpan = 0.012;     // to either side, where a velocity is found [s]
 constexpr double kSlow = 1;         // time over which the arm's pose is a mean [s]
 constexpr Eigen::Index kSpectra = 5;
-constexpr double kDrowned = 0.25;  // share of noise in a line's power, from which it does not count
-constexpr double kRubbed = 0.1;    // part of the friction that no line has in common
+constexpr double kDrowned = 0.1;  // share of noise in a line's power, from which it does not count
+constexpr double kRubbed = 0.1;   // part of the friction that no line has in common
 constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
-constexpr double kSure = 2.5;          // standard deviations of 95 %, as the noise is estimated too
+constexpr double kUnlike = 0.007;  // part of a value by which no hand is a spring, damper and mass
+constexpr double kSure = 2.5;      // standard deviations of 95 %, as the noise is estimated too
 
 // Bounds with which a value counts as known: a part of it; or, of a small value, as little as tells
 // nobody another wall. 0.15 N s/m are half of the damping of the lightest arm, 20 g a pen.
@@ -45,61 +46,6 @@ constexpr double kPart = 0.15;
 constexpr double kLeastDamping = 0.15;  // [N s/m]
 constexpr double kLeastMass = 0.02;     // [kg]
 constexpr double kFarthest = 0.05;      // tip from its mean place; beyond it the arm is another [m]
-
-}  // namespace
-
-void GripRecord::add(std::span<const double> force, std::span<const double> x,
-                     std::span<const double> torque, bool touched) {
-  force_.insert(force_.end(), force.begin(), force.end());
-  x_.insert(x_.end(), x.begin(), x.end());
-  torque_.insert(torque_.end(), torque.begin(), torque.end());
-  touched_.push_back(touched ? 1 : 0);
-}
-
-void GripRecord::take(std::span<const double> row) {
-  const auto excitation = layout_.in(row, Column::excitation);
-  const bool on = std::ranges::any_of(excitation, [](double f) { return f != 0; });
-  if (!on) {
-    if (begun() && !ended_) {
-      ended_ = true;
-      ended_by_ = static_cast<ForceState>(layout_.in(row, Column::force_state)[0]);
-    }
-    return;
-  }
-  if (ended_) *this = GripRecord(layout_, T_);
-  const double time = layout_.in(row, Column::time)[0];
-  const auto x = layout_.in(row, Column::measured_position);
-  const auto torque = layout_.in(row, Column::motor_torque);
-  const auto pushed = layout_.in(row, Column::contact_torque);
-  const bool touched = std::ranges::any_of(pushed, [](double f) { return f != 0; });
-  if (begun()) {
-    // The motors held their torque while ticks were missed.
-    const auto n = static_cast<std::size_t>(dof());
-    const double passed = std::max(0.0, std::round((time - time_) / T_) - 1);
-    torn_ = torn_ || passed > kMostMissing;
-    const auto missing = static_cast<std::size_t>(std::min(passed, 1.0 * kMostMissing));
-    const std::vector<double> last(x_.end() - dof(), x_.end());
-    const std::vector<double> held(torque_.end() - dof(), torque_.end());
-    const std::vector<double> force(force_.end() - 3, force_.end());
-    std::vector<double> between(n);
-    for (std::size_t i = 1; i <= missing; ++i) {
-      const double part = static_cast<double>(i) / static_cast<double>(missing + 1);
-      for (std::size_t j = 0; j < n; ++j) between[j] = last[j] + part * (x[j] - last[j]);
-      add(force, between, held, touched);
-    }
-  }
-  time_ = time;
-  real_ = std::isnan(layout_.in(row, Column::hand_torque)[0]);
-  add(excitation, x, torque, touched);
-}
-
-DeviceTrust DeviceTrust::of(const ArmDescription& arm, bool real, double tick) {
-  if (!real) return {1e-6, 1e-6, 0.03, 1e-3 * tick};
-  if (arm.delay) return {0.03, 0.1, 0.15, 0.25 * tick};
-  return {0.1, 0.3, 0.4, tick};
-}
-
-namespace {
 
 // A device at the mean pose of a record, and the record's spectra.
 class HeldDevice {
@@ -349,7 +295,8 @@ class GripFit {
 
   bool fine() const { return fine_; }
   Bounded operator[](Eigen::Index i) const {
-    const double variance = std::max(covariance_(i, i), 0.0) + doubt_.row(i).squaredNorm();
+    const double unlike = kUnlike * theta_[i];
+    const double variance = covariance_(i, i) + doubt_.row(i).squaredNorm() + unlike * unlike;
     return {theta_[i], kSure * std::sqrt(variance)};
   }
 
@@ -420,10 +367,6 @@ class GripFit {
   bool fine_ = false;
 };
 
-}  // namespace
-
-namespace {
-
 // Reason why a record cannot be judged; empty if it can.
 std::string unfit(const GripRecord& record) {
   if (!record.begun()) return "the grip was not measured";
@@ -468,6 +411,57 @@ std::string doubt(const Grip& grip, bool rubs) {
 }
 
 }  // namespace
+
+void GripRecord::add(std::span<const double> force, std::span<const double> x,
+                     std::span<const double> torque, bool touched) {
+  force_.insert(force_.end(), force.begin(), force.end());
+  x_.insert(x_.end(), x.begin(), x.end());
+  torque_.insert(torque_.end(), torque.begin(), torque.end());
+  touched_.push_back(touched ? 1 : 0);
+}
+
+void GripRecord::take(std::span<const double> row) {
+  const auto excitation = layout_.in(row, Column::excitation);
+  const bool on = std::ranges::any_of(excitation, [](double f) { return f != 0; });
+  if (!on) {
+    if (begun() && !ended_) {
+      ended_ = true;
+      ended_by_ = static_cast<ForceState>(layout_.in(row, Column::force_state)[0]);
+    }
+    return;
+  }
+  if (ended_) *this = GripRecord(layout_, T_);
+  const double time = layout_.in(row, Column::time)[0];
+  const auto x = layout_.in(row, Column::measured_position);
+  const auto torque = layout_.in(row, Column::motor_torque);
+  const auto pushed = layout_.in(row, Column::contact_torque);
+  const bool touched = std::ranges::any_of(pushed, [](double f) { return f != 0; });
+  if (begun()) {
+    // The motors held their torque while ticks were missed.
+    const auto n = static_cast<std::size_t>(dof());
+    const double passed = std::max(0.0, std::round((time - time_) / T_) - 1);
+    torn_ = torn_ || passed > kMostMissing;
+    const auto missing = static_cast<std::size_t>(std::min(passed, 1.0 * kMostMissing));
+    const std::vector<double> last(x_.end() - dof(), x_.end());
+    const std::vector<double> held(torque_.end() - dof(), torque_.end());
+    const std::vector<double> force(force_.end() - 3, force_.end());
+    std::vector<double> between(n);
+    for (std::size_t i = 1; i <= missing; ++i) {
+      const double part = static_cast<double>(i) / static_cast<double>(missing + 1);
+      for (std::size_t j = 0; j < n; ++j) between[j] = last[j] + part * (x[j] - last[j]);
+      add(force, between, held, touched);
+    }
+  }
+  time_ = time;
+  real_ = std::isnan(layout_.in(row, Column::hand_torque)[0]);
+  add(excitation, x, torque, touched);
+}
+
+DeviceTrust DeviceTrust::of(const ArmDescription& arm, bool real, double tick) {
+  if (!real) return {1e-6, 1e-6, 0.03, 1e-3 * tick};
+  if (arm.delay) return {0.03, 0.1, 0.15, 0.25 * tick};
+  return {0.1, 0.3, 0.4, tick};
+}
 
 Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord& record) {
   Grip grip;

@@ -245,6 +245,40 @@ class Analyze(SystemTest):
                 self.assertEqual(found["fails_from"] is None, c >= 1)
                 self.assertAlmostEqual(found["least"], min(1, 2 * c - 1), delta=1e-6)
 
+    def test_the_grip_of_a_recording_is_that_of_its_hand_with_its_walls(self) -> None:
+        out = self.out()
+        hand = {"stiffness": 700.0, "damping": 2.5, "mass": 0.1}
+        words = [word for key, value in hand.items() for word in ("--set", f"hand.{key}={value}")]
+        run = limpid("run", "--measure-grip", "--duration", "10", *words, "--record", out, "--json")
+        self.assertEqual(run.status, 0, run.err)
+        found = self.analyze("--grip-of", out)
+        measured = found["measured_grip"]
+        self.assertEqual(measured, json.loads(run.out)["measured_grip"])
+        self.assertTrue(measured["known"])
+        for key, value in hand.items():
+            self.assertLess(abs(measured[key]["value"] - value), measured[key]["bound"], key)
+            self.assertLess(measured[key]["bound"], 0.15 * value, key)
+            self.assertIn(f"measured_grip.{key}.bound", found["units"])
+        k, b = measured["stiffness"], measured["damping"]
+        self.assertAlmostEqual(found["grip"]["from"], k["value"] - k["bound"])
+        self.assertAlmostEqual(found["grip"]["to"], k["value"] + k["bound"])
+        self.assertAlmostEqual(found["grip"]["damping"], b["value"] - b["bound"])
+        eta = measured["eta_min"]
+        self.assertTrue(eta["least"] <= eta["value"] <= eta["most"])
+        self.assertAlmostEqual(found["eta_min_compliant"], eta["value"])
+        self.assertIn("known", limpid("analyze", "--grip-of", out).out)
+
+    def test_without_a_measurement_the_grip_is_not_known(self) -> None:
+        out = self.out()
+        self.assertEqual(limpid("run", "--duration", "0.5", "--record", out).status, 0)
+        found = self.analyze("--grip-of", out)
+        self.assertEqual((found["measured_grip"]["known"], found["measured_grip"]["why_not"]),
+                         (False, "the grip was not measured"))  # fmt: skip
+        self.assertIsNone(found["grip"])
+        short = limpid("run", "--measure-grip", "--duration", "5")
+        self.assertEqual(short.status, 2)
+        self.assertIn("--duration", short.err)
+
     def test_without_json_it_speaks_to_people(self) -> None:
         result = limpid("analyze")
         self.assertEqual(result.status, 0, result.err)

@@ -35,7 +35,7 @@ void draw_walls(const InHands& hands, CouplingKind kind) {
           .c_str());
 }
 
-void draw_found(const MeasuredHand& found, Parameters& p) {
+void draw_found(const MeasuredHand& found, const Parameters& p) {
   const Palette& colours = current_palette();
   if (const std::string unknown = unknown_text(found.grip); !unknown.empty()) {
     wrapped("The grip is " + unknown + ".", colours.broken);
@@ -50,10 +50,6 @@ void draw_found(const MeasuredHand& found, Parameters& p) {
     const auto kind = static_cast<CouplingKind>(i);
     if (kind == p.kind || !info(kind).for_comparison) draw_walls(*found.hands, kind);
   }
-  if (noted_button("Take as the hand")) p = with_grip(p, found.grip);
-  tooltip(
-      "Sets grip stiffness, grip damping and hand mass to these values. The analysis uses them, "
-      "and so does the virtual arm's hand.");
 }
 
 }  // namespace
@@ -71,7 +67,17 @@ void draw_grip(GripMeter& meter, const ArmDescription& arm, const Scene& scene, 
   if (noted_button("Measure the grip")) meter.begin(arm, scene);
   ImGui::EndDisabled();
   tooltip(why_not.empty() ? kAbout : (why_not + "\n" + kAbout).c_str());
-  if (const MeasuredHand* found = meter.found()) draw_found(*found, p);
+  const MeasuredHand* found = meter.found();
+  if (found == nullptr) return;
+  if (found->grip.known()) {
+    constexpr const char* kTake = "Take as the hand";
+    flow(kTake);
+    if (noted_button(kTake)) p = with_grip(p, found->grip);
+    tooltip(
+        "Sets grip stiffness, grip damping and hand mass to these values. The analysis uses them, "
+        "and so does the virtual arm's hand.");
+  }
+  draw_found(*found, p);
 }
 
 }  // namespace limpid
