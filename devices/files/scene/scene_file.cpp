@@ -169,7 +169,7 @@ template <std::size_t... I>
 std::array<Shape, sizeof...(I)> every_shape(std::index_sequence<I...>) {
   return {Shape(std::in_place_index<I>)...};
 }
-const auto kShapes = every_shape(std::make_index_sequence<std::variant_size_v<Shape>>());
+const auto kShapesOfFiles = every_shape(std::make_index_sequence<std::variant_size_v<Shape>>());
 
 const char* table_of(const Shape& shape) {
   return std::visit([](const auto& s) { return form_of(s).table; }, shape);
@@ -177,7 +177,7 @@ const char* table_of(const Shape& shape) {
 
 void read_objects(const TomlTable& t, const ArmDescription& arm, const fs::path& base_dir,
                   const SceneFiles& files, SceneDocument& out) {
-  for (const Shape& shape : kShapes) {
+  for (const Shape& shape : kShapesOfFiles) {
     for (const TomlTable& each : t.tables(table_of(shape))) {
       Object& object = out.scene.objects.emplace_back(Object{.shape = shape});
       std::visit([&](auto& s) { read(each, arm, object, s); }, object.shape);
@@ -277,7 +277,7 @@ SceneDocument parse_scene(const std::string& text, const std::string& where,
   const toml::table table = parse_toml(text, where);
   const TomlTable t(table, where, "");
   std::vector<const char*> keys{"title", "about", "tip_radius"};
-  for (const Shape& shape : kShapes) keys.push_back(table_of(shape));
+  for (const Shape& shape : kShapesOfFiles) keys.push_back(table_of(shape));
   keys.insert(keys.end(), {"gravity", "body", "spring", "probe", "visual"});
   t.allow_only(keys);
   SceneDocument out;
