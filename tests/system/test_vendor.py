@@ -452,7 +452,7 @@ class WithLimpid(unittest.TestCase):
             [LIMPID, *words], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env={**environment(self.folder, faults), "XDG_CONFIG_HOME": f"{self.folder}/config",
                  "XDG_RUNTIME_DIR": self.folder})
-        self.addCleanup(process.communicate)
+        self.addCleanup(process.communicate, timeout=60)  # nothing that it started goes on
         self.addCleanup(process.kill)
         return process
 
