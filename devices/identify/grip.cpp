@@ -34,7 +34,6 @@ constexpr double kModelled = 1e-3;  // part of each torque that no model of a de
 constexpr double kSpan = 0.012;     // to either side, where a velocity is found [s]
 constexpr double kSlow = 1;         // time over which the arm's pose is a mean [s]
 constexpr Eigen::Index kSpectra = 5;
-constexpr double kDrowned = 0.1;  // share of noise in a line's power, from which it does not count
 constexpr double kRubbed = 0.1;   // part of the friction that no line has in common
 constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
 constexpr double kUnlike = 0.007;  // part of a value by which no hand is a spring, damper and mass
@@ -324,19 +323,10 @@ class GripFit {
       const auto size = static_cast<double>(line.beside.size());
       for (const auto& bin : line.beside) noise += left(bin).cwiseAbs2() / size;
       const double all = line.at.col(kTerms).squaredNorm() + line.at.col(inertia).squaredNorm();
-      double at = line.at.col(stiffness).squaredNorm(), beside = 0;
-      for (const auto& bin : line.beside) beside += bin.col(stiffness).squaredNorm() / size;
-      if (beside > kDrowned * at) continue;
       noise += kRubbed * kRubbed * line.at.col(friction).cwiseAbs2();
       noise.array() += kModelled * kModelled * all + 1e-300;
       const Eigen::VectorXd weight = noise.cwiseInverse();
       sums += gram(line.at, weight);
-      // The hand's columns have noise, and what is fitted has the same.
-      for (const auto& bin : line.beside) {
-        const Gram noisy = gram(bin, weight) / size;
-        sums.topLeftCorner<kOfHand, kOfHand>() -= noisy.topLeftCorner<kOfHand, kOfHand>();
-        sums.topRightCorner<kOfHand, 1>() -= noisy.topRightCorner<kOfHand, 1>();
-      }
       misfit += left(line.at).cwiseAbs2().dot(weight);
       count += static_cast<double>(line.at.rows());
     }
