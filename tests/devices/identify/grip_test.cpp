@@ -28,6 +28,7 @@ constexpr double kFloorDamping = 0.15, kFloorMass = 0.02;
 struct Hand {
   double stiffness, damping, mass;
   Vec3 uneven = Vec3::Ones();  // parts of these along x, y and z
+  double creep = 0;            // a further spring behind a damper, which yields below 10 Hz [N/m]
 };
 
 ArmDescription touch() { return read_urdf(test::assets_dir() / "devices/touch.urdf"); }
@@ -61,7 +62,8 @@ GripRecord exact_record(const ArmDescription& arm, const Hand& hand, double T, d
   for (const int line : GripProbe::kLines) {
     const Complex s(0, 2 * pi * line / GripProbe::kMeasured);
     Eigen::MatrixXcd Z = s * s * M.cast<Complex>();
-    Z += (hand.stiffness + s * hand.damping + s * s * hand.mass) * JJ.cast<Complex>();
+    const Complex creep = hand.creep * s / (s + 2 * pi * 10);
+    Z += (hand.stiffness + s * hand.damping + s * s * hand.mass + creep) * JJ.cast<Complex>();
     for (int j = 0; j < n; ++j) {
       const Joint& joint = arm.joints[static_cast<std::size_t>(j)];
       Z(j, j) += s * joint.damping + joint.spring;
@@ -140,6 +142,12 @@ TEST(Grip, OfAnUnevenHandHasTheBoundForIt) {
                               exact_record(test::omni(), {740, 3.1, 0.12, {0.8, 1, 1.2}}, 0.001));
   EXPECT_NEAR(grip.stiffness.value, 740, grip.stiffness.bound);
   EXPECT_THAT(grip.unknown, testing::StartsWith("the hand is not alike in all directions: 5"));
+}
+
+TEST(Grip, OfAHandThatIsNoSpringDamperAndMassHasTheBoundForIt) {
+  const Hand creeps{740, 3.1, 0.12, Vec3::Ones(), 700};
+  const Grip grip = find_grip(test::omni(), {}, exact_record(test::omni(), creeps, 0.001));
+  EXPECT_GT(grip.stiffness.bound, 0.04 * grip.stiffness.value);
 }
 
 TEST(Grip, BearsAFewMissingRowsAndNotALongStandstill) {
