@@ -109,9 +109,11 @@ std::vector<GripLine> grip_lines(const MeasuredHand& hand) {
         {"mass", bounded_text({1e3 * hand.grip.mass.value, 1e3 * hand.grip.mass.bound}, "g")});
   }
   if (hand.eta_min) {
-    lines.push_back(
-        {"eta_min in this hand", fmt::format("{:.2f} ({:.2f} to {:.2f})", hand.eta_min->value,
-                                             hand.eta_min->low, hand.eta_min->high)});
+    const auto& [value, low, high] = *hand.eta_min;
+    constexpr double kNone = 0.005;  // nothing that two decimals show
+    lines.push_back({"eta_min in this hand",
+                     high < kNone ? "0, every eta is stable"
+                                  : fmt::format("{:.2f} ({:.2f} to {:.2f})", value, low, high)});
   }
   return lines;
 }

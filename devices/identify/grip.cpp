@@ -9,6 +9,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <optional>
 
 #include "core/tick/compensation.h"
 #include "core/tick/tick.h"
@@ -34,8 +35,7 @@ constexpr double kModelled = 1e-3;  // part of each torque that no model of a de
 constexpr double kSpan = 0.012;     // to either side, where a velocity is found [s]
 constexpr double kSlow = 1;         // time over which the arm's pose is a mean [s]
 constexpr Eigen::Index kSpectra = 5;
-constexpr double kDrowned = 0.1;  // share of noise in a line's power, from which it does not count
-constexpr double kRubbed = 0.1;   // part of the friction that no line has in common
+constexpr double kRubbed = 0.1;        // part of the friction that no line has in common
 constexpr double kFrictionLag = 7e-4;  // of the friction where joints stick for a moment [s]
 constexpr double kUnlike = 0.007;  // part of a value by which no hand is a spring, damper and mass
 constexpr double kSure = 2.5;      // standard deviations of 95 %, as the noise is estimated too
@@ -270,11 +270,12 @@ class HeldDevice {
   std::vector<Eigen::MatrixXcd> spectrum_;  // by bin: columns in the order of transform()
 };
 
-// Least squares over the lines.
+// Least squares over the lines of one axis, or of all.
 class GripFit {
  public:
-  GripFit(const HeldDevice& device, const DeviceTrust& trust) {
+  GripFit(const HeldDevice& device, const DeviceTrust& trust, std::optional<int> axis = {}) {
     for (const int line : GripProbe::kLines) {
+      if (axis && GripProbe::axis_of(line) != *axis) continue;
       Line& now = lines_.emplace_back();
       now.at = device.equations(line);
       for (int bin = line - kBeside; bin <= line + kBeside; ++bin) {
@@ -324,19 +325,10 @@ class GripFit {
       const auto size = static_cast<double>(line.beside.size());
       for (const auto& bin : line.beside) noise += left(bin).cwiseAbs2() / size;
       const double all = line.at.col(kTerms).squaredNorm() + line.at.col(inertia).squaredNorm();
-      double at = line.at.col(stiffness).squaredNorm(), beside = 0;
-      for (const auto& bin : line.beside) beside += bin.col(stiffness).squaredNorm() / size;
-      if (beside > kDrowned * at) continue;
       noise += kRubbed * kRubbed * line.at.col(friction).cwiseAbs2();
       noise.array() += kModelled * kModelled * all + 1e-300;
       const Eigen::VectorXd weight = noise.cwiseInverse();
       sums += gram(line.at, weight);
-      // The hand's columns have noise, and what is fitted has the same.
-      for (const auto& bin : line.beside) {
-        const Gram noisy = gram(bin, weight) / size;
-        sums.topLeftCorner<kOfHand, kOfHand>() -= noisy.topLeftCorner<kOfHand, kOfHand>();
-        sums.topRightCorner<kOfHand, 1>() -= noisy.topRightCorner<kOfHand, 1>();
-      }
       misfit += left(line.at).cwiseAbs2().dot(weight);
       count += static_cast<double>(line.at.rows());
     }
@@ -392,10 +384,9 @@ std::string advice(const Grip& grip, bool rubs) {
   return say;
 }
 
+bool wide(const Bounded& of, double least) { return of.bound > std::max(kPart * of.value, least); }
+
 std::string doubt(const Grip& grip, bool rubs) {
-  const auto wide = [](const Bounded& of, double least) {
-    return of.bound > std::max(kPart * of.value, least);
-  };
   if (grip.moved > kFarthest) {
     return fmt::format("the hand moved {:.0f} mm: hold still", 1e3 * grip.moved);
   }
@@ -408,6 +399,36 @@ std::string doubt(const Grip& grip, bool rubs) {
                                                        : nullptr;
   if (of == nullptr) return {};
   return fmt::format("the bound of its {} is wide: {}", of, advice(grip, rubs));
+}
+
+// Widens the bounds by what the lines of each axis alone say otherwise, beyond their own bounds: no
+// hand is alike in all directions. Returns why the grip is not known then; empty: it still is.
+std::string spread(const HeldDevice& device, const DeviceTrust& trust, Grip& grip) {
+  struct Value {
+    Term term;
+    Bounded& of;
+    double least, more = 0;
+  };
+  std::array values{Value{stiffness, grip.stiffness, 0},
+                    Value{damping, grip.damping, kLeastDamping},
+                    Value{mass, grip.mass, kLeastMass}};
+  std::string along;
+  for (int axis = 0; axis < 3; ++axis) {
+    const GripFit alone(device, trust, axis);
+    if (!alone.fine()) continue;
+    for (Value& value : values) {
+      const Bounded found = alone[value.term];
+      value.more = std::max(value.more, std::abs(found.value - value.of.value) - found.bound);
+    }
+    along += fmt::format("{}{:.0f} N/m along {}", along.empty() ? "" : ", ", alone[stiffness].value,
+                         "xyz"[axis]);
+  }
+  bool uneven = false;
+  for (Value& value : values) {
+    value.of.bound += value.more;
+    uneven = uneven || wide(value.of, value.least);
+  }
+  return uneven ? "the hand is not alike in all directions: " + along : "";
 }
 
 }  // namespace
@@ -473,7 +494,8 @@ Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord&
   grip.moved = device.moved();
   grip.work = device.work();
   grip.pose = device.pose();
-  const GripFit fit(device, DeviceTrust::of(arm, record.real(), record.tick()));
+  const DeviceTrust trust = DeviceTrust::of(arm, record.real(), record.tick());
+  const GripFit fit(device, trust);
   if (!fit.fine()) {
     grip.unknown = "the hand's own motion hides its answer: " + advice(grip, device.rubs());
     return grip;
@@ -483,6 +505,8 @@ Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord&
   grip.damping = fit[damping];
   grip.mass = fit[mass];
   grip.unknown = doubt(grip, device.rubs());
+  const std::string uneven = spread(device, trust, grip);
+  if (grip.known()) grip.unknown = uneven;
   return grip;
 }
 

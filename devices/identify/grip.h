@@ -5,7 +5,6 @@
 // tau is all that the motors gave, the coupling law's torque too, so the law's loop and limits that
 // cut the excitation make no error. k, b and m are the least squares over the probe's lines,
 // weighted by the noise between the lines: what the hand does of its own, and the encoders' steps.
-// This noise is also in the lines; its part in the sums is taken off, so that it shifts nothing.
 //
 // The device itself is known to some part only. Its friction and delay are fitted along, held to
 // what is known of them; the doubt about its inertia and damping is a part of the bounds.

@@ -19,7 +19,7 @@ constexpr double kBorne = 0.2;
 constexpr double kCrest = 3;          // peak of the sum over its root mean square, at most
 constexpr double kOfPeak = 0.75;      // share of a motor's torque limit for the peaks
 constexpr double kChirp = 0.0328925;  // phases that keep the peaks of all three axes together low
-constexpr std::size_t kAxes = 3;
+constexpr int kAxes = 3;
 constexpr double kOnEachAxis = static_cast<double>(GripProbe::kLines.size()) / kAxes;
 
 }  // namespace
@@ -43,15 +43,19 @@ GripProbe::GripProbe(const ArmDescription& arm) {
   strength_ = std::min(std::max(kUsual, kOverFriction * friction), most);
 }
 
+int GripProbe::axis_of(int line) {
+  const auto place = std::ranges::find(kLines, line) - kLines.begin();
+  return static_cast<int>(place) % kAxes;
+}
+
 Vec3 GripProbe::at(double time) const {
   Vec3 force = Vec3::Zero();
   const double edge = std::min(time, kDuration - time) / kFade;
   if (!(edge > 0)) return force;
-  for (std::size_t line = 0; line < kLines.size(); ++line) {
-    const double periods = kLines[line];
+  for (const int line : kLines) {
+    const double periods = line;
     const double phase = -pi * kChirp * periods * periods;
-    force[static_cast<Eigen::Index>(line % kAxes)] +=
-        sine(2 * pi * periods * time / kMeasured + phase);
+    force[axis_of(line)] += sine(2 * pi * periods * time / kMeasured + phase);
   }
   const double amplitude = strength_ * std::sqrt(2 / kOnEachAxis);
   return std::min(edge, 1.0) * amplitude * force;

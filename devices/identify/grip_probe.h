@@ -23,6 +23,9 @@ class GripProbe {
   static constexpr std::array kLines{18,  25,  31,  41,  47,  57,  63,  72,  81,  87,  97,  104,
                                      111, 121, 127, 137, 144, 151, 161, 168, 175, 185, 191, 200};
 
+  // Axis of one of the lines: 0 x, 1 y, 2 z.
+  static int axis_of(int line);
+
   GripProbe() = default;
   // Chooses the force for an arm at its rest pose. It is small; where friction would hide it, it is
   // larger. It never asks more of a motor than that bears for hours.

@@ -112,6 +112,11 @@ TEST(MeasuredHand, GivesEtaMinAndWallsOfItsValuesAndWithinItsBounds) {
 }
 
 TEST(MeasuredHand, IsWrittenWithTwoDigitsOfItsBound) {
+  MeasuredHand hand;
+  hand.eta_min = {0.742, 0.701, 0.778};
+  EXPECT_EQ(grip_lines(hand).back().value, "0.74 (0.70 to 0.78)");
+  hand.eta_min = {1e-6, 0, 2e-4};
+  EXPECT_EQ(grip_lines(hand).back().value, "0, every eta is stable");
   EXPECT_EQ(bounded_text({312.4, 12.3}, "N/m"), "312 \xC2\xB1 12 N/m");
   EXPECT_EQ(bounded_text({3.14159, 0.0123}, "N s/m"), "3.142 \xC2\xB1 0.012 N s/m");
   EXPECT_EQ(bounded_text({3, 0}, "g"), "3 \xC2\xB1 0 g");

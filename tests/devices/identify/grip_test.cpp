@@ -27,6 +27,8 @@ constexpr double kFloorDamping = 0.15, kFloorMass = 0.02;
 
 struct Hand {
   double stiffness, damping, mass;
+  Vec3 uneven = Vec3::Ones();  // parts of these along x, y and z
+  double creep = 0;            // a further spring behind a damper, which yields below 10 Hz [N/m]
 };
 
 ArmDescription touch() { return read_urdf(test::assets_dir() / "devices/touch.urdf"); }
@@ -41,10 +43,11 @@ bool near(const Grip& grip, const Hand& truth) {
          within(grip.mass, truth.mass, kFloorMass);
 }
 
-// Rows of a motion q0 + q(t) of which every sine obeys the equations of motion in a hand; the
-// torque is held for a tick, and may be late.
+// Rows of a motion of which every sine is the answer to a push along the probe's axis, by the
+// equations of motion in a hand; the torque is held for a tick, and may be late.
+// `left_out`: rows that are missing.
 GripRecord exact_record(const ArmDescription& arm, const Hand& hand, double T, double late = 0,
-                        bool real = false) {
+                        bool real = false, const std::function<bool(int)>& left_out = {}) {
   const int n = arm.dof();
   Arm<kAnyDof> model(arm);
   Arm<kAnyDof>::Frames frames;
@@ -54,16 +57,23 @@ GripRecord exact_record(const ArmDescription& arm, const Hand& hand, double T, d
   model.frames(pose, frames);
   model.inertia(frames, M);
   model.point_jacobian(frames, n - 1, model.tip(frames), J);
-  const Eigen::MatrixXd JJ = J.transpose() * J;
-  test::Random random(7);
+  const Eigen::MatrixXd JJ = J.transpose() * hand.uneven.asDiagonal() * J;
   std::vector<Eigen::VectorXcd> q, tau;
   for (const int line : GripProbe::kLines) {
     const Complex s(0, 2 * pi * line / GripProbe::kMeasured);
     Eigen::MatrixXcd Z = s * s * M.cast<Complex>();
-    Z += (hand.stiffness + s * hand.damping + s * s * hand.mass) * JJ.cast<Complex>();
-    for (int j = 0; j < n; ++j) Z(j, j) += s * arm.joints[static_cast<std::size_t>(j)].damping;
-    q.emplace_back(1e-6 * random.matrix(n, 1).col(0).cast<Complex>() * std::polar(1.0, 1.0 * line));
-    tau.emplace_back(Z * q.back() / ((1.0 - std::exp(-s * T)) / (s * T) * std::exp(-s * late)));
+    const Complex creep = hand.creep * s / (s + 2 * pi * 10);
+    Z += (hand.stiffness + s * hand.damping + s * s * hand.mass + creep) * JJ.cast<Complex>();
+    for (int j = 0; j < n; ++j) {
+      const Joint& joint = arm.joints[static_cast<std::size_t>(j)];
+      Z(j, j) += s * joint.damping + joint.spring;
+    }
+    const Complex held = (1.0 - std::exp(-s * T)) / (s * T) * std::exp(-s * late);
+    const Eigen::VectorXcd push = 1e-4 *
+                                  J.row(GripProbe::axis_of(line)).transpose().cast<Complex>() *
+                                  std::polar(1.0, 1.0 * line);
+    tau.push_back(push);
+    q.emplace_back(Z.partialPivLu().solve(held * push));
   }
   const RowLayout layout(n);
   GripRecord record(layout, T);
@@ -72,7 +82,12 @@ GripRecord exact_record(const ArmDescription& arm, const Hand& hand, double T, d
     std::ranges::copy(values, layout.in(std::span(row), c).begin());
   };
   for (int k = 0; k * T < GripProbe::kDuration; ++k) {
-    Eigen::VectorXd x = pose, torque = Eigen::VectorXd::Zero(n);
+    if (left_out && left_out(k)) continue;
+    Eigen::VectorXd x = pose, torque(n);
+    for (int j = 0; j < n; ++j) {
+      const Joint& joint = arm.joints[static_cast<std::size_t>(j)];
+      torque[j] = joint.spring * pose[j] + joint.offset;
+    }
     for (std::size_t i = 0; i < q.size(); ++i) {
       const Complex at =
           std::polar(1.0, 2 * pi * GripProbe::kLines[i] * k * T / GripProbe::kMeasured);
@@ -93,9 +108,15 @@ TEST(Grip, OfAnExactImpedanceIsExact) {
   test::Random random(3);
   for (const int n : {3, 5, 7}) {
     ArmDescription arm = n == 3 ? test::omni() : random_arm(n, 11);
-    for (Joint& joint : arm.joints) joint.friction = joint.spring = joint.offset = 0;
+    for (Joint& joint : arm.joints) {
+      joint.friction = 0;
+      joint.spring = random.between(0.5, 2);
+      joint.offset = random.between(-0.2, 0.2);
+    }
+    Parameters p;
+    p.springy = true;
     const Hand hand{740, 3.1, 0.12};
-    const Grip grip = find_grip(arm, {}, exact_record(arm, hand, 0.001));
+    const Grip grip = find_grip(arm, p, exact_record(arm, hand, 0.001));
     EXPECT_TRUE(grip.known()) << grip.unknown;
     EXPECT_NEAR(grip.stiffness.value, hand.stiffness, 1e-7 * hand.stiffness) << n;
     EXPECT_NEAR(grip.damping.value, hand.damping, 1e-7 * hand.damping) << n;
@@ -113,6 +134,57 @@ TEST(Grip, TakesOffTheDelayOfARealDevice) {
   EXPECT_NEAR(grip.stiffness.value, hand.stiffness, 1e-3 * hand.stiffness);
   EXPECT_NEAR(grip.damping.value, hand.damping, 1e-3 * hand.damping);
   EXPECT_NEAR(grip.mass.value, hand.mass, 1e-3 * hand.mass);
+}
+
+// A hand that is 20 % softer along x and stiffer along z than its mean.
+TEST(Grip, OfAnUnevenHandHasTheBoundForIt) {
+  const Grip grip = find_grip(test::omni(), {},
+                              exact_record(test::omni(), {740, 3.1, 0.12, {0.8, 1, 1.2}}, 0.001));
+  EXPECT_NEAR(grip.stiffness.value, 740, grip.stiffness.bound);
+  EXPECT_THAT(grip.unknown, testing::StartsWith("the hand is not alike in all directions: 5"));
+}
+
+TEST(Grip, OfAHandThatIsNoSpringDamperAndMassHasTheBoundForIt) {
+  const Hand creeps{740, 3.1, 0.12, Vec3::Ones(), 700};
+  const Grip grip = find_grip(test::omni(), {}, exact_record(test::omni(), creeps, 0.001));
+  EXPECT_GT(grip.stiffness.bound, 0.04 * grip.stiffness.value);
+}
+
+TEST(Grip, BearsAFewMissingRowsAndNotALongStandstill) {
+  const ArmDescription arm = test::omni();
+  const Hand hand{740, 3.1, 0.12};
+  const auto few = [](int k) { return k % 1000 == 500 || k % 1000 == 501; };
+  const Grip grip = find_grip(arm, {}, exact_record(arm, hand, 0.001, 0, false, few));
+  EXPECT_TRUE(grip.known()) << grip.unknown;
+  EXPECT_NEAR(grip.stiffness.value, hand.stiffness, 2e-3 * hand.stiffness);
+  EXPECT_NEAR(grip.mass.value, hand.mass, 2e-3 * hand.mass);
+  const auto many = [](int k) { return k > 4000 && k < 4030; };
+  EXPECT_THAT(find_grip(arm, {}, exact_record(arm, hand, 0.001, 0, false, many)).unknown,
+              testing::HasSubstr("stood still"));
+}
+
+// Whoever measures twice means the second time.
+TEST(Grip, IsTheOneMeasuredLast) {
+  const RowLayout layout(3);
+  GripRecord record(layout, 0.001);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  const auto take = [&](double force, int rows) {
+    layout.in(std::span(row), Column::excitation)[1] = force;
+    for (int i = 0; i < rows; ++i) {
+      layout.in(std::span(row), Column::time)[0] += 0.001;
+      record.take(row);
+    }
+  };
+  take(0, 10);
+  EXPECT_FALSE(record.begun());
+  take(0.1, 50);
+  EXPECT_TRUE(record.begun());
+  EXPECT_FALSE(record.ended());
+  take(0, 10);
+  EXPECT_TRUE(record.ended());
+  take(0.2, 30);
+  EXPECT_FALSE(record.ended());
+  EXPECT_EQ(record.samples(), 30u);
 }
 
 // A simulated hand on an arm under a law, measured.
@@ -203,23 +275,43 @@ void expect_as_promised(const char* name, const Counts& counts, int grips) {
 }
 
 TEST(Grip, OfRandomHandsOnTheBuiltInArmIsRight) {
-  expect_as_promised("exact encoders", count(test::omni(), 0, 0, 40), 40);
-  expect_as_promised("encoder steps", count(test::omni(), kOmniStep, 0, 40), 40);
+  expect_as_promised("exact encoders", count(test::omni(), 0, 0, 24), 24);
+  expect_as_promised("encoder steps", count(test::omni(), kOmniStep, 0, 24), 24);
 }
 
 TEST(Grip, OfRandomHandsOnATouchWithFrictionIsRightOrNotKnown) {
-  expect_as_promised("touch", count(touch(), kOmniStep, 0, 40), 40);
+  expect_as_promised("touch", count(touch(), kOmniStep, 0, 24), 24);
+}
+
+// Twice the friction on an arm four times as heavy hides more, and the bounds say so.
+TEST(Grip, OfAnArmWithMuchFrictionIsRightOrNotKnown) {
+  const ArmDescription omega = read_urdf(test::assets_dir() / "devices/omega.urdf");
+  const Counts counts = count(omega, 1e-4, 0, 24);
+  EXPECT_EQ(counts.wrong, 0);
+  EXPECT_GE(counts.covered, 0.9 * 3 * 24);
+}
+
+TEST(Grip, SaysWhichOfItsValuesIsNotKnown) {
+  Measured of;
+  of.arm = touch();
+  of.p.hand_stiffness = 1950;
+  of.p.hand_damping = 0.6;
+  of.p.hand_mass_at_tip = 0.29;
+  of.p.encoder_step = kOmniStep;
+  const Grip grip = of.run();
+  EXPECT_TRUE(grip.measured);
+  EXPECT_THAT(grip.unknown, testing::StartsWith("the bound of its damping is wide"));
 }
 
 TEST(Grip, OfHandsThatMoveByThemselvesIsRightOrNotKnown) {
-  expect_as_promised("omni, 10 mm", count(test::omni(), kOmniStep, 0.01, 40), 40);
-  expect_as_promised("touch, 10 mm", count(touch(), kOmniStep, 0.01, 40), 40);
+  expect_as_promised("omni, 10 mm", count(test::omni(), kOmniStep, 0.01, 24), 24);
+  expect_as_promised("touch, 10 mm", count(touch(), kOmniStep, 0.01, 24), 24);
 }
 
 TEST(Grip, OfAHandThatGoesFarIsNotKnown) {
   Measured of;
   of.path = [](double time) { return Vec3(0, 0.08 * std::sin(pi * time), 0); };
-  EXPECT_THAT(of.run().unknown, testing::HasSubstr("hold still"));
+  EXPECT_THAT(of.run().unknown, testing::HasSubstr("the hand moved"));
 }
 
 TEST(Grip, OfNoHandIsNotKnown) {
@@ -249,8 +341,9 @@ TEST(Grip, IsTheHandsAloneWhileTheTipPressesOnAWall) {
     const Grip grip = of.run();
     EXPECT_GT(grip.touched, 0.99);
     EXPECT_TRUE(grip.known()) << grip.unknown;
-    EXPECT_TRUE(near(grip, {400, 3, 0.05}))
-        << grip.stiffness.value << " " << grip.damping.value << " " << grip.mass.value;
+    EXPECT_NEAR(grip.stiffness.value, 400, grip.stiffness.bound);
+    EXPECT_NEAR(grip.damping.value, 3, grip.damping.bound);
+    EXPECT_NEAR(grip.mass.value, 0.05, grip.mass.bound);
   }
 }
 

@@ -302,12 +302,12 @@ int record_until_it_fails(const fs::path& out) {
 TEST(FullDisk, IsAnErrorAndKeepsWhatWasFlushed) {
   // Each column takes room for eight seconds before the first takes more. A limit of length
   // therefore ends the recording with the last complete eight seconds.
-  for (const rlim_t bytes : {4'800'000, 10'000'001, 13'333'333}) {
+  for (const rlim_t bytes : {5'000'000, 10'000'001, 13'333'333}) {
     const test::TempDir dir;
     EXPECT_EQ(exit_status_with_limit(bytes, &record_until_it_fails, dir / "a.h5"), 0) << bytes;
     const auto left = read_session(dir / "a.h5.part");
-    // A row of three joints takes at most 86 numbers.
-    EXPECT_GT(left.size() + 9000, (bytes - 400'000) / (86 * 8)) << bytes;
+    // A row of three joints takes at most 89 numbers.
+    EXPECT_GT(left.size() + 9000, (bytes - 400'000) / (89 * 8)) << bytes;
     expect_sample(left);
     EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, left.size());
   }
