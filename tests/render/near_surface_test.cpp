@@ -70,5 +70,23 @@ TEST(NearSurface, ShadesWhereTheTipIsNear) {
   EXPECT_FALSE(state.shade);
 }
 
+// Bodies are where their poses say, each where its own does.
+TEST(NearSurface, IsOnTheBodyThatIsThere) {
+  Scene scene;
+  for (const double at : {0.0, 0.2}) {
+    Object ball{"ball", pose_at(Vec3(at, 0, 0)), Sphere{0.03}};
+    ball.body.emplace();
+    scene.add(ball);
+  }
+  const std::vector<Pose> bodies{pose_at(Vec3(0, 0.5, 0)), pose_at(Vec3(0.2, 0.5, 0))};
+  for (const Pose& body : bodies) {
+    const Vec3 at = body.translation() + Vec3(0, 0, 0.04);
+    const auto found = nearest_surface(scene, at, 0.02, bodies);
+    ASSERT_TRUE(found) << at.transpose();
+    EXPECT_NEAR(found->distance, 0.01, 1e-12);
+  }
+  EXPECT_FALSE(nearest_surface(scene, Vec3(0.2, 0, 0.04), 0.02, bodies)) << "it has left";
+}
+
 }  // namespace
 }  // namespace limpid

@@ -321,6 +321,22 @@ TEST_F(Dialog, OfAPersonTakesEnterForTheOnlyAnswer) {
   EXPECT_EQ(answer->choice, 0u);
 }
 
+// An answered question beside the picture stays a moment; one that is withdrawn does not.
+TEST_F(Dialog, OfAPersonGoesAtOnceWhenItIsWithdrawn) {
+  desktop->question.ask("Which?", {"left", "right"}, {.beside = true});
+  desktop->dialog.open("ask");
+  frames(6);
+  click("2   right");
+  ASSERT_TRUE(desktop->question.take());
+  const auto answered = std::chrono::steady_clock::now();
+  desktop->question.withdraw();
+  frames(2);
+  if (std::chrono::steady_clock::now() - answered > std::chrono::milliseconds(200)) {
+    GTEST_SKIP() << "this computer is too busy to tell";
+  }
+  EXPECT_EQ(desktop->dialog.name(), "");
+}
+
 TEST_F(Dialog, OfAPersonEndsWithItsTime) {
   desktop->question.ask("Quick!", {"a", "b"}, {.seconds = 0.2});
   desktop->dialog.open("ask");

@@ -9,6 +9,7 @@
 #include "tests/app/plot/imgui_frames.h"
 #include "tests/support/built_in.h"
 #include "tests/support/computer.h"
+#include "tests/support/drawn_text.h"
 
 namespace limpid {
 namespace {
@@ -124,6 +125,30 @@ TEST_F(AView, PullsTheArmFromNearItsTipAndTurnsElsewhere) {
   EXPECT_NE(camera_.eye(), eye);
   press(0, false);
   EXPECT_FALSE(asked_.clicked) << "it has turned the camera";
+}
+
+TEST_F(AView, NamesWhatTheMouseRestsOnWithItsMassUnlessThatIsItsName) {
+  SceneDocument document;
+  for (const char* name : {"die", "50 g"}) {
+    Object ball{name, pose_at(tip() + Vec3(0, name[0] == 'd' ? 0.1 : -0.1, 0)), Sphere{0.02}};
+    ball.body.emplace();
+    ball.body->mass = 0.05;
+    document.scene.add(ball);
+  }
+  objects_ = document.scene;
+  History history({.channels = TraceChannels(layout_).count(), .seconds = 1, .tick = 0.01});
+  stage_ = std::make_unique<Stage>(test::omni(), document, MeshModels{}, std::move(history), 1);
+  const auto named_at = [&](const Vec3& place) {
+    point(seen(place));
+    for (int k = 0; k < 40; ++k) draw();
+    std::string said;
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      if (each.window.starts_with("##Tooltip")) said += each.text;
+    }
+    return said;
+  };
+  EXPECT_EQ(named_at(tip() + Vec3(0, 0.1, 0)), "die, 50 g");
+  EXPECT_EQ(named_at(tip() + Vec3(0, -0.1, 0)), "50 g");
 }
 
 TEST_F(AView, PullsABodyWithCtrl) {

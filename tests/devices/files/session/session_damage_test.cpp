@@ -11,6 +11,7 @@
 #include "core/base/descriptor.h"
 #include "core/coupling/laws.h"
 #include "devices/files/session/hand_file.h"
+#include "devices/files/session/hdf5_reading.h"
 #include "devices/files/session/session.h"
 #include "devices/files/session/session_file.h"
 #include "devices/files/session/session_source.h"
@@ -23,7 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 using test::refusal;
 using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
+
+TEST(ReasonsOfHdf5, AreItsOwnWhereTheSystemHasNone) {
+  const hdf5::Quiet quiet;
+  EXPECT_LT(H5Dopen2(H5I_INVALID_HID, "rows", H5P_DEFAULT), 0);
+  EXPECT_THAT(hdf5::last_error(), AnyOf(HasSubstr("location"), HasSubstr("identifier")));
+}
 
 TEST(DamagedSession, IsRefusedWhereverItIsCut) {
   const test::TempDir dir;
