@@ -36,10 +36,10 @@ struct RunPlan : Lane {
   // Force that the motors are asked to make at the tip at each row, to measure the grip [N]; none
   // from its end on.
   std::vector<Vec3> excitation;
-  std::uint64_t rows = 0;           // number of ticks
-  std::uint64_t seed = 0;           // for everything random
-  std::vector<Lane> beside;         // further lanes, at most kMostLanes - 1
-  std::string note = {};  // for people: why rows of a re-run may differ from the recorded ones
+  std::uint64_t rows = 0;    // number of ticks
+  std::uint64_t seed = 0;    // for everything random
+  std::vector<Lane> beside;  // further lanes, at most kMostLanes - 1
+  std::string note = {};     // for people: why rows of a re-run may differ from the recorded ones
 
   std::size_t lanes() const { return 1 + beside.size(); }
   const Lane& lane(std::size_t i) const { return i == 0 ? *this : beside[i - 1]; }
