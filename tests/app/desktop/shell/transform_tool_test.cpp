@@ -33,7 +33,7 @@ TEST_F(ATransform, ByAKeyFollowsTheMouseUntilAClick) {
   EXPECT_TRUE(desktop->transform.follows()) << "no button was pressed";
   const Vec3 moved = at();
   EXPECT_GT((moved - before).norm(), 0.005);
-  click({middle().x + 60, middle().y});
+  click(ImVec2(middle().x + 60, middle().y));
   EXPECT_FALSE(desktop->transform.follows());
   point_at({middle().x + 120, middle().y});
   EXPECT_EQ(at(), moved);
