@@ -9,12 +9,12 @@
 
 namespace limpid {
 
-// Returns the channels that have each of these words in group, name, label, unit or key: first the
-// ones whose names have them, then in the order of kGroupOrder. What people look at most comes
-// first of all.
+// Returns the channels that have each of these words, or another word for it, in group, name,
+// label, unit or key. Channels whose names have them come first, then those that people look at
+// most.
 std::vector<const ChannelInfo*> meant_by(const std::string& words, const TraceChannels& channels);
 
-// What a channel that is dragged carries: its key.
+// Kind of a channel that is dragged; it carries the channel's key.
 constexpr const char* kDraggedChannel = "channel";
 
 class PlotChooser {

@@ -107,7 +107,7 @@ Triangles shape(const std::string& name) {
 }
 
 constexpr const char* kTouchedShapes[] = {"bumpy", "fine",  "torus",  "box",     "plate",
-                                   "field", "sheet", "folded", "slivers", "soup"};
+                                          "field", "sheet", "folded", "slivers", "soup"};
 constexpr double kSizes[] = {1e-3, 0.05, 10.0};  // [m]
 constexpr double kRadii[] = {0.0, 0.02, 0.5};    // relative to the size
 

@@ -10,7 +10,7 @@ namespace {
 
 using ParameterRows = ReadPanel;
 
-// Of what is the arm's own until somebody sets it, a slider shows the arm's value.
+// A slider shows the arm's value until somebody sets another one.
 TEST_F(ParameterRows, ShowTheArmsValuesWhereNothingIsSet) {
   const ArmDescription& arm = test::omni();
   const Joint& joint = arm.joints.front();
