@@ -185,7 +185,7 @@ Command declare_serve(CLI::App& app) {
       "Each line is one JSON object, and so is each answer: {\"id\": 1, \"do\": \"set\", "
       "\"values\": {\"coupling.eta\": 0.5}};\n{\"do\": \"hello\"} lists what can be asked. The "
       "Python package limpid speaks it. Only the user who\nstarts the program can connect. No "
-      "program can arm a real device through it, or raise a limit; the command cut is always "
+      "program can arm a real device through it, or raise a limit;\nthe command cut is always "
       "accepted.\n\n" +
       parameter_help());
   return [options] {

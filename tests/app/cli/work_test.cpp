@@ -216,7 +216,7 @@ TEST_F(Work, OfAVideoShowsTheSessionAsItIs) {
 TEST_F(Work, OfTheWindowIsCheckedBeforeItOpens) {
   EXPECT_THAT(refused({"--until-eof"}), HasSubstr("--until-eof: needs --listen"));
   EXPECT_THAT(refused({"none.txt"}),
-              HasSubstr("\"none.txt\": not expected: no command, and no file"));
+              HasSubstr("\"none.txt\": neither a command nor a file"));
   EXPECT_THAT(refused({"--scene", "none.toml"}), HasSubstr("none.toml"));
   EXPECT_THAT(refused({"--eta", "many"}), HasSubstr("coupling.eta"));
   EXPECT_EQ(run({"--ui-scale", "0.4"}).status, 2);
@@ -232,7 +232,7 @@ TEST_F(Work, OfDevicesListsThemWithTheVirtualArm) {
   EXPECT_EQ(told["devices"].empty(),
             text.find("no haptic device is plugged in\n") != std::string::npos);
   EXPECT_THAT(refused({"devices", "raw:1"}),
-              HasSubstr("raw:1: a device is named beside --arm only"));
+              HasSubstr("raw:1: a device can be named only together with --arm"));
   EXPECT_EQ(run({"devices", "--tip", "x"}).status, 2) << "of --arm";
   EXPECT_EQ(run({"devices", "--json", "--arm", "x"}).status, 2);
   EXPECT_THAT(refused({"devices", "--arm", "omni.urdf", "raw:1"}),

@@ -130,7 +130,7 @@ TEST_F(AView, PullsTheArmFromNearItsTipAndTurnsElsewhere) {
 TEST_F(AView, NamesWhatTheMouseRestsOnWithItsMassUnlessThatIsItsName) {
   SceneDocument document;
   for (const char* name : {"die", "50 g"}) {
-    Object ball{name, pose_at(tip() + Vec3(0, name[0] == 'd' ? 0.1 : -0.1, 0)), Sphere{0.02}};
+    Object ball{name, pose_at(tip() + Vec3(0, name[0] == 'd' ? 0.03 : -0.1, 0)), Sphere{0.01}};
     ball.body.emplace();
     ball.body->mass = 0.05;
     document.scene.add(ball);
@@ -147,7 +147,7 @@ TEST_F(AView, NamesWhatTheMouseRestsOnWithItsMassUnlessThatIsItsName) {
     }
     return said;
   };
-  EXPECT_EQ(named_at(tip() + Vec3(0, 0.1, 0)), "die, 50 g");
+  EXPECT_EQ(named_at(tip() + Vec3(0, 0.03, 0)), "die, 50 g");
   EXPECT_EQ(named_at(tip() + Vec3(0, -0.1, 0)), "50 g");
 }
 
