@@ -145,7 +145,7 @@ class Analyze(SystemTest):
             (["--coupling", "sfa"], None),
             (["--coupling", "wave", "--set", "link.delay=20"], None),  # b = b_v = b_d
             (["--coupling", "wave", "--set", "link.delay=20", "--set", "wave.b=0.004"], True),  # b_d/3
-            (["--coupling", "wave", "--set", "wave.b=0.006", "--set", "wave.matched=0"], True),  # b_d/2
+            (["--coupling", "wave", "--set", "wave.b=0.006", "--set", "wave.matched=false"], True),  # b_d/2
             (["--coupling", "tdpn", "--set", "link.delay=20"], None),
             (["--set", "link.delay=1", "--set", "coupling.k_vc=1"], None),
         ]
