@@ -316,7 +316,9 @@ Outcome approaches(TrialRunner& lab) {
   outcome.figure.title = "Stability approaches compared";
   outcome.figure.caption = fmt::format(
       "Taps at {} m/s, pressed with {} N or half of what the motors bear, held; grips of 300 and "
-      "3,000 N/m with 2 N s/m and without damping. Gains fitted to each arm, eta 1, tick 1 ms. "
+      "3,000 N/m with 2 N s/m and without damping. Gains fitted to each arm and its delay, eta 1, "
+      "tick "
+      "1 ms. "
       "Touch: encoders of 4.19e-4 rad, friction, 1 ms of delay; omega: 0.01 mm; Inverse3: 0.01 mm, "
       "1 ms; delays are known to the laws. Energy: most that the hand was given, at least 1e-4 mJ "
       "and at most 1 J shown. Stiffest wall: felt within {} % of that set and the tip above 20 Hz "
