@@ -35,7 +35,7 @@ class WarmthMemory {
   // cold if nothing was kept.
   Eigen::VectorXd take(const ArmDescription& arm, double now) {
     const std::lock_guard lock(mutex_);
-    const Eigen::VectorXd warmth = left(of_loops_, arm, now) + left(beside_loops_, arm, now);
+    Eigen::VectorXd warmth = left(of_loops_, arm, now) + left(beside_loops_, arm, now);
     beside_loops_.erase(arm.dof());
     of_loops_[arm.dof()] = {warmth, now};
     return warmth;

@@ -238,7 +238,7 @@ class HeldDevice {
       all.row(i) *= (1 - std::cos(angle)) / static_cast<double>(samples_);
     }
     const int last = GripProbe::kLines.back() + kBeside;
-    spectrum_.assign(static_cast<std::size_t>(last + 1), {});
+    spectrum_.assign(static_cast<std::size_t>(last) + 1, {});
     Eigen::MatrixX2d wave(samples_, 2);
     for (int bin = GripProbe::kLines.front() - kBeside; bin <= last; ++bin) {
       for (Eigen::Index i = 0; i < samples_; ++i) {

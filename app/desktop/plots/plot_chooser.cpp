@@ -112,8 +112,8 @@ std::vector<const ChannelInfo*> meant_by(const std::string& words, const TraceCh
     }
   }
   std::ranges::stable_sort(all, {}, [](const Found& f) { return std::pair(f.apart, f.place); });
-  std::vector<const ChannelInfo*> found;
-  for (const Found& each : all) found.push_back(each.channel);
+  std::vector<const ChannelInfo*> found(all.size());
+  std::ranges::transform(all, found.begin(), &Found::channel);
   return found;
 }
 
