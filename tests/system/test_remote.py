@@ -115,7 +115,7 @@ class TestServe(RemoteTest):
         times = [at for at, _ in session.marks]
         self.assertGreater(times[0], 0.2)
         self.assertGreater(times[1], times[0] + 0.15)
-        self.assertLess(times[1], session.time[-1])
+        self.assertLessEqual(times[1], session.time[-1])  # the end may come within its tick
 
     def test_a_recording_that_ends_by_itself_is_said_at_once_to_everybody(self) -> None:
         writes, listens = self.connect(), self.connect()
