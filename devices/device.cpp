@@ -13,7 +13,7 @@ const char* explain(NoForce reason) {
     case NoForce::button: return "its force is switched off by a button of its own";
     case NoForce::velocity: return "it moved faster than it allows itself";
     case NoForce::watchdog: return "its own watchdog has cut the force";
-    case NoForce::software: return "its software has cut the force";
+    case NoForce::software: return "the device's own software has switched its force off";
     case NoForce::connection: return "its connection was interrupted";
     case NoForce::dead_man: return "nobody holds its dead-man switch";
     case NoForce::warm: return "its motors are too warm";

@@ -137,7 +137,7 @@ void write_table(const InfoOptions& options, const Session& session) {
   const std::string beside = options.csv + "-metadata.json";
   const std::string wrong = try_write_atomically(beside, metadata_of(options, session.info));
   if (!wrong.empty()) throw FileError(wrong);
-  fmt::print(options.json ? stderr : stdout, "written as {}; where it is from: {}\n", options.csv,
+  fmt::print(options.json ? stderr : stdout, "written as {}; its sources: {}\n", options.csv,
              beside);
 }
 

@@ -224,8 +224,8 @@ Command declare_sweep(CLI::App& app) {
       ->check(CLI::Range(1u, kMostThreads));
   auto* shard =
       command->add_option("--shard", options->shard, "only the I-th of N parts")->type_name("I/N");
-  auto* gather =
-      command->add_flag("--gather", options->gather, "only put together what there is by now");
+  auto* gather = command->add_flag("--gather", options->gather,
+                                   "run nothing, only put together the results so far");
   auto* mpi = command->add_flag("--mpi", options->mpi, "the part of this rank under mpirun");
   auto* slurm = command->add_flag("--slurm", options->slurm, "as an array job of Slurm");
   for (auto* one : {shard, gather, mpi, slurm}) {

@@ -92,8 +92,8 @@ LibraryPlan read_plan(const LoopOptions& options, bool device) {
   if (device && std::isnan(asked.damping)) {
     if (!std::isnan(fit.damping)) {
       all.notes.push_back(fmt::format(
-          "the arm's joints have no damping: gains are fitted as if they had {:.3g} N m s/rad, the "
-          "account counts none; device.damping says what there is",
+          "the arm's joints have no damping: gains are fitted as if they had {:.3g} N m s/rad, and "
+          "the account of energy counts none; set the real value in device.damping",
           fit.damping));
     }
     fit.damping = kFromArm;

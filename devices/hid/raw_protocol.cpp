@@ -142,7 +142,7 @@ DeviceTraits read_traits_of_any_kind(Payload body) {
   }
   const bool any = std::ranges::any_of(traits.effort, [](double each) { return each > 0; });
   check(!traits.pushes || any, "it has motors, and no joint has one",
-        "one with motors must have a largest torque or force above 0");
+        "a device with motors must have a largest torque or force above 0");
   traits.name =
       printable(body.subspan(Raw2Feature::name, Raw2Feature::made_by - Raw2Feature::name));
   traits.made_by =

@@ -24,8 +24,8 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
   fs::path file = shipped_file(named, {kind}).value_or(named);
   if (!file.is_absolute() || !fs::exists(file)) {
     const std::string hint = shipped_hint(named, {kind});
-    throw keys.error(key, fmt::format("{} is not there{} allowed: a path from / on, or one that "
-                                      "came along with the program",
+    throw keys.error(key, fmt::format("{} is not there{} allowed: a whole path, beginning with /, "
+                                      "or a file that came with the program",
                                       shown(named), hint.empty() ? ";" : hint));
   }
   return file;

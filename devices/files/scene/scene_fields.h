@@ -45,7 +45,7 @@ inline constexpr std::array kBodyFields{
                 "The part of its speed that it keeps when it hits something. 0: none.", {0, 1}),
     Field<Body>("contact_stiffness", "Contact stiffness", &Body::contact_stiffness,
                 scene_limits::kStiffness,
-                "Against other objects; what the tip feels is the stiffness above."),
+                "In contacts with other objects. The tip feels the stiffness above."),
     Field<Body>("center", "Centre of mass", &Body::center, scene_limits::kPosition,
                 "From the object's own middle, along its own axes."),
     Field<Body>("inertia", "Inertia", &Body::inertia, scene_limits::kInertia,
