@@ -252,7 +252,7 @@ TEST_F(Commands, InfoTellsOfChangesAndMarks) {
 TEST_F(Commands, InfoWritesATableBesideWhereItIsFrom) {
   done({"run", "--duration", "0.05", "--record", "a.h5"});
   const std::string said = done({"info", "a.h5", "--csv", "a.csv"});
-  EXPECT_THAT(said, HasSubstr("written as a.csv; where it is from: a.csv-metadata.json\n"));
+  EXPECT_THAT(said, HasSubstr("written as a.csv; its sources: a.csv-metadata.json\n"));
   const std::vector<std::string> lines = lines_of(text_of("a.csv"));
   ASSERT_EQ(lines.size(), 51u);
   EXPECT_THAT(lines[0], StartsWith("time_s,"));

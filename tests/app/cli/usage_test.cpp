@@ -111,8 +111,9 @@ TEST_F(Usage, GuessesWhatIsNearlyRight) {
     EXPECT_THAT(refused({far}), Not(HasSubstr("did you mean")));
   }
   EXPECT_THAT(refused({"banana"}), HasSubstr("\"banana\": neither a command"));
-  EXPECT_THAT(refused({"run", "more", "words"}),
-              HasSubstr("\"more words\": not expected here; `limpid run --help` lists what is allowed"));
+  EXPECT_THAT(
+      refused({"run", "more", "words"}),
+      HasSubstr("\"more words\": not expected here; `limpid run --help` lists what is allowed"));
 }
 
 TEST_F(Usage, HasEveryOptionBehindItsCommand) {

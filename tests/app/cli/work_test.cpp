@@ -215,8 +215,7 @@ TEST_F(Work, OfAVideoShowsTheSessionAsItIs) {
 
 TEST_F(Work, OfTheWindowIsCheckedBeforeItOpens) {
   EXPECT_THAT(refused({"--until-eof"}), HasSubstr("--until-eof: needs --listen"));
-  EXPECT_THAT(refused({"none.txt"}),
-              HasSubstr("\"none.txt\": neither a command nor a file"));
+  EXPECT_THAT(refused({"none.txt"}), HasSubstr("\"none.txt\": neither a command nor a file"));
   EXPECT_THAT(refused({"--scene", "none.toml"}), HasSubstr("none.toml"));
   EXPECT_THAT(refused({"--eta", "many"}), HasSubstr("coupling.eta"));
   EXPECT_EQ(run({"--ui-scale", "0.4"}).status, 2);
