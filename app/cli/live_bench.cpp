@@ -129,13 +129,14 @@ bool LiveBench::ask(const std::string& instruction) {
                      [this] { return run_->pass(kGlance, interrupted); });
 }
 
-bool LiveBench::await_force() {
+// Waits for force; `full`: until it has faded in. Returns false if stopped.
+bool LiveBench::await_force(bool full) {
   run_->arm();
   std::string said;
   for (double waited = 0; waited < kLongestWait; waited += kGlance) {
     if (!run_->pass(kGlance, interrupted)) return false;
     const ForceState state = run_->now().force_state;
-    if (state == ForceState::on) return true;
+    if (full ? run_->now().arming == Arming::on : state == ForceState::on) return true;
     if (const std::string why = explain(state); why != said && waited > 0.5) {
       fmt::print(stderr, "limpid: waiting for force: {}\n", said = why);
     }
@@ -192,7 +193,7 @@ bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveR
   bool whole = false;
   std::uint64_t lost = 0;
   try {
-    whole = ask(task.instruction) && await_force();
+    whole = ask(task.instruction) && await_force(task.measure_grip);
     if (whole && recording) run_->record(std::move(recording));
     if (whole && task.measure_grip) run_->measure_grip();
     whole = whole && lead(task, p.tick, row, off);

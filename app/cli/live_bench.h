@@ -65,7 +65,7 @@ class LiveBench {
   };
 
   bool ask(const std::string& instruction);
-  bool await_force();
+  bool await_force(bool full);
   bool lead(const LiveTask& task, double T, const LiveRun::Row& row, WithoutForce& off);
   std::unique_ptr<Recorder> recorder(const LiveTask& task, const Parameters& p) const;
 

@@ -111,6 +111,21 @@ class Live(unittest.TestCase):
         self.assertEqual(result.status, 0, result.err)
         self.assertIn("device", limpid("info", out).out)
 
+    def test_measures_the_grip_once_the_whole_force_is_on(self) -> None:
+        import h5py
+        import numpy
+
+        self.plug()
+        out = self.folder / "grip.h5"
+        result = self.on_time("run", "--live", "--yes", "--duration", "10", "--measure-grip", "--record", out)
+        self.assertEqual(result.status, 0, result.err)
+        self.assertNotIn("was not measured", result.out, "it never began")
+        with h5py.File(out) as session:
+            pushed = numpy.any(session["device/excitation"][...] != 0, axis=1)
+            off = session["device/force_state"][...] != 0
+            self.assertLessEqual(numpy.count_nonzero(off & pushed), 1, "the tick in which it goes")
+        self.assertIn("the grip, measured", limpid("analyze", "--grip-of", out).out)
+
     def refused(self, *words: str | Path) -> str:
         """Message of the refused command, which has written nothing."""
         out = self.folder / "refused"

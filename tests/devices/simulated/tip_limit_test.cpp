@@ -222,5 +222,31 @@ TEST(TipLimit, MakesNoEnergyBetweenWalls) {
   EXPECT_EQ(with.unsettled, 0);
 }
 
+// The force that measures a grip: whatever is asked, a real device gets no more than the tip's
+// limit, nothing from the report of a cut on, and from nothing again when it is armed.
+TEST(TipLimit, HoldsForTheForceThatMeasuresAGrip) {
+  const ArmDescription arm = test::omni();
+  Parameters p;
+  p.kind = CouplingKind::predictive;
+  constexpr double kTip = 1.5;  // [N]
+  Pressed one(arm, Scene{}, p, kTip);
+  const Vec3 target = rest_tip(arm);
+  const Eigen::VectorXd rest = rest_pose(arm), zero = Eigen::VectorXd::Zero(3);
+  const RigStart at{rest, zero, rest, zero, zero, target};
+  one.start(at);
+  const auto told = [&](ForceRequest force) {
+    const Vec3 asked(-20, 14, 20);  // [N]
+    one.rig.step(p, {.hand = {target, 1}, .force = force, .excitation = asked}, one.rows.add());
+    return one.force_of(Vec<3>(one.device.told.data()), one.device.own.arm.x());
+  };
+  double most = 0;
+  for (int k = 0; k < 30; ++k) most = std::max(most, told(ForceRequest::as_it_is));
+  EXPECT_GT(most, 0.9 * kTip) << "it pushes";
+  EXPECT_LT(most, 1.01 * kTip);
+  EXPECT_EQ(told(ForceRequest::cut), 0);
+  for (int k = 0; k < 300; ++k) ASSERT_EQ(told(ForceRequest::as_it_is), 0) << k;
+  EXPECT_LT(told(ForceRequest::arm), 0.02 * kTip);
+}
+
 }  // namespace
 }  // namespace limpid
