@@ -47,10 +47,10 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "limpid: warning: {}\n", warning);
 }
 
-// Prints the grip that was measured in a run.
-void print_grip(const RunPlan& plan, const GripRecord& record) {
-  print_measured(judged(plan.arm, plan.parameters, plan.document.scene,
-                        find_grip(plan.arm, plan.parameters, record)));
+// The hand that was measured in a run.
+MeasuredHand measured(const RunPlan& plan, const GripRecord& record) {
+  return judged(plan.arm, plan.parameters, plan.document.scene,
+                find_grip(plan.arm, plan.parameters, record));
 }
 
 [[noreturn]] void refuse_short_grip() {
@@ -84,7 +84,7 @@ int run_live(const LiveRunOptions& options) {
   }
   if (!options.picture.empty()) save_picture(options.picture, plan, summary.memorable());
   fmt::print("{}", summary.text());
-  if (options.measure_grip) print_grip(plan, grip);
+  if (options.measure_grip) print_measured(measured(plan, grip));
   if (!options.record.empty()) fmt::print("recorded in {}\n", options.record);
   print_warnings(watch.cautions());
   if (whole) return 0;
@@ -318,11 +318,7 @@ void print_json(const RunOptions& options, const RunPlan& plan, const RunLog& lo
   nlohmann::ordered_json json{
       {"provenance", provenance(settings_digest(plan.parameters), plan.seed)}};
   json.update(log.json());
-  if (options.measure_grip) {
-    const Grip grip = find_grip(plan.arm, plan.parameters, log.grip());
-    json["measured_grip"] =
-        measured_json(judged(plan.arm, plan.parameters, plan.document.scene, grip));
-  }
+  if (options.measure_grip) json["measured_grip"] = measured_json(measured(plan, log.grip()));
   json["recorded"] = nullptr;
   if (!options.record.empty()) json["recorded"] = options.record;
   fmt::print("{}\n", json.dump(2));
@@ -362,7 +358,7 @@ int run(const RunOptions& options) {
     return report(options, end, recorder ? &*recorder : nullptr, log);
   }
   fmt::print("{}", log.text(plan));
-  if (options.measure_grip) print_grip(plan, log.grip());
+  if (options.measure_grip) print_measured(measured(plan, log.grip()));
   const double simulated = static_cast<double>(end.rows) * plan.parameters.tick;
   fmt::print("{:.3f} s in {:.3f} s, {:.0f} times real time\n", simulated, took, simulated / took);
   return report(options, end, recorder ? &*recorder : nullptr, log);

@@ -347,13 +347,19 @@ TEST(Grip, IsTheHandsAloneWhileTheTipPressesOnAWall) {
   }
 }
 
-// Whoever only reads a device and does not know its truth.
-TEST(Grip, OfAGuardedDeviceIsRight) {
+// A hand of 600 N/m, 4 N s/m and 0.1 kg on an arm without weight.
+Measured held_firmly() {
   Measured of;
   of.arm.gravity = Vec3::Zero();
   of.p.hand_stiffness = 600;
   of.p.hand_damping = 4;
   of.p.hand_mass_at_tip = 0.1;
+  return of;
+}
+
+// Whoever only reads a device and does not know its truth.
+TEST(Grip, OfAGuardedDeviceIsRight) {
+  Measured of = held_firmly();
   of.p.encoder_step = 1e-4;
   test::GuardedArm device(of.arm);
   of.device = &device;
@@ -366,11 +372,7 @@ TEST(Grip, OfAGuardedDeviceIsRight) {
 
 // An arm that is 8 % heavier, and damps 20 % more, than its file says.
 TEST(Grip, OfADeviceUnlikeItsFileIsWithinItsBounds) {
-  Measured of;
-  of.arm.gravity = Vec3::Zero();
-  of.p.hand_stiffness = 600;
-  of.p.hand_damping = 4;
-  of.p.hand_mass_at_tip = 0.1;
+  Measured of = held_firmly();
   ArmDescription unlike = of.arm;
   for (Link& link : unlike.links) {
     link.mass *= 1.08;
