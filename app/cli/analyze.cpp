@@ -10,6 +10,7 @@
 #include "app/cli/measured_text.h"
 #include "app/cli/options.h"
 #include "app/run/analysis.h"
+#include "app/run/fitted_gains.h"
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
 #include "app/run/tip_limits.h"
@@ -25,21 +26,14 @@ struct AnalyzeOptions {
   bool json = false, all = false;
 };
 
-// Laws that are told of: those of the panel's buttons and the one that is set, or all.
-std::vector<CouplingKind> laws_told(const Parameters& p, bool all) {
-  std::vector<CouplingKind> told;
-  for (std::uint8_t i = 0; i < kLaws; ++i) {
-    const auto kind = static_cast<CouplingKind>(i);
-    if (all || kind == p.kind || !info(kind).for_comparison) told.push_back(kind);
-  }
-  return told;
-}
-
 void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   const auto list = [](const std::vector<double>& values) {
     return fmt::format("{:.4g}", fmt::join(values, ", "));
   };
   fmt::print("rests on                   {}\n", basis_text(arm, p));
+  if (const std::string filed = readings_text(arm, p); !filed.empty()) {
+    fmt::print("readings                   {}; --readings takes the file's\n", filed);
+  }
   fmt::print("observer bandwidth w_f     {} rad/s\n", list(a.w_f));
   fmt::print("locked system w_c          {} rad/s\n", list(a.w_c));
   fmt::print("damping b = b_d + b_v      {:.4g} N m s/rad\n", a.b);
@@ -73,11 +67,11 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
 constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
 
 void print(const TipLimits& tip, const Parameters& p, bool all) {
-  const std::vector<CouplingKind> told = laws_told(p, all);
+  const std::vector<CouplingKind> told = laws_told(p.kind, all);
   fmt::print("\nat the tip: {:.3g} g, {:.3g} N s/m of its own damping\n", 1e3 * tip.tip.mass,
              tip.tip.damping);
   for (const CouplingKind kind : told) {
-    const TipLimits::Wall& wall = tip.walls[static_cast<std::size_t>(kind)];
+    const TipWall& wall = tip.wall(kind);
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
   }
   fmt::print(
@@ -94,7 +88,7 @@ void print(const TipLimits& tip, const Parameters& p, bool all) {
   for (const double f : kFelt) {
     fmt::print("{:>10} Hz              ", f);
     for (const CouplingKind kind : told) {
-      const FeltAtTip felt = felt_at_tip(tip, p, kind, f);
+      const FeltAtTip felt = felt_at_tip(kind, p, tip, f);
       fmt::print(" {:>8.2f} g {:>5.2f} N s/m", 1e3 * felt.mass, felt.damping);
     }
     fmt::print("\n");
@@ -113,7 +107,7 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     nlohmann::ordered_json law{{"wall", tip.walls[i].stiffness}, {"bound", tip.walls[i].bound}};
     for (const double f : kFelt) {
-      const FeltAtTip felt = felt_at_tip(tip, p, static_cast<CouplingKind>(i), f);
+      const FeltAtTip felt = felt_at_tip(static_cast<CouplingKind>(i), p, tip, f);
       law["felt_mass"].push_back(felt.mass);
       law["felt_damping"].push_back(felt.damping);
     }
@@ -203,7 +197,7 @@ int analyze_command(const AnalyzeOptions& options) {
     print(a, arm, p);
     if (options.mass) return 0;
     if (tip) print(*tip, p, options.all);
-    if (hands) print_in_hands(*hands, laws_told(p, options.all));
+    if (hands) print_in_hands(*hands, laws_told(p.kind, options.all));
     if (!tip) fmt::print("\n{}\n", still);
     return 0;
   }
@@ -250,6 +244,7 @@ Command declare_analyze(CLI::App& app) {
       "analyze", "eta_min, walls and what is felt under each law, without simulating");
   auto options = std::make_shared<AnalyzeOptions>();
   options->input.add_world(*command);
+  options->input.add_readings(*command);
   options->input.add_parameters(*command);
   auto* band =
       command->add_option("--band", options->band, "the human's bandwidth, for eta_min within it")

@@ -95,10 +95,10 @@ std::vector<LawRendered> measure(TrialRunner& lab, const Characterized& subject)
     all.push_back(under(subject, law.kind));
     const auto& [arm, p] = all.back();
     const TipLimits tip = tip_limits(arm, rest_pose(arm), p, {});
-    const TipLimits::Wall& wall = tip.walls[static_cast<std::size_t>(law.kind)];
+    const TipWall& wall = tip.wall(law.kind);
     laws.push_back({.kind = law.kind, .named = wall.stiffness, .bound = wall.bound});
     for (const double f : kFreeTold) {
-      const FeltAtTip felt = felt_at_tip(tip, p, law.kind, f);
+      const FeltAtTip felt = felt_at_tip(law.kind, p, tip, f);
       laws.back().free_named.push_back({f, felt.mass, felt.damping, 1});
       shaken.push_back(shaken_at_rest(all.back(), f));
     }
@@ -182,7 +182,7 @@ void judge_walls(const Characterized& subject, const LawRendered& law, std::vect
 }
 
 void judge_energy(const LawRendered& law, std::vector<Check>& checks) {
-  const std::string what = fmt::format("{}: most energy given [J]", name(law.kind));
+  const std::string what = fmt::format("{}: largest energy given to the hand [J]", name(law.kind));
   if (law.kind == CouplingKind::predictive || law.kind == CouplingKind::tank) {
     checks.push_back(at_most(what, law.most_given(), kGiven));
   }

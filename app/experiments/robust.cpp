@@ -113,8 +113,7 @@ class RobustBench {
   double named(const RobustCase& of) const {
     const ArmDescription& arm = arms_[of.arm];
     const TipLimits limits = tip_limits(arm, rest_pose(arm), of.parameters(arm), {});
-    return std::max(kSoftestTap,
-                    limits.walls[static_cast<std::size_t>(of.of_law().kind)].stiffness);
+    return std::max(kSoftestTap, limits.wall(of.of_law().kind).stiffness);
   }
   std::vector<RobustCame> tap(const std::vector<RobustTap>& taps);
   // Finds for each case the stiffest wall that is rendered well and gives at most kMayGive [N/m];

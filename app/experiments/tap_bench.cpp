@@ -160,7 +160,7 @@ double named_wall(const TapSetting& setting) {
   static const Eigen::VectorXd x = rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1;
   const Parameters p = TapBench(setting, kTapWall, kTapGrip, 1).parameters();
   const TipLimits limits = tip_limits(arm, x, p, {});
-  return limits.walls[static_cast<std::size_t>(p.kind)].stiffness;
+  return limits.wall(p.kind).stiffness;
 }
 
 bool well_rendered(const Touch& touch, bool exact_encoder) {

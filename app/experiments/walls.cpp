@@ -114,7 +114,7 @@ std::vector<Felts> tap_all(TrialRunner& lab) {
       WallFelt& felt = felts.back()[static_cast<std::size_t>(i)];
       const TipLimits limits = tip_limits(any.arm, any.x, wall_parameters(any.arm, step), {});
       felt.mass = any.mass;
-      felt.named = limits.walls[static_cast<std::size_t>(CouplingKind::predictive)].stiffness;
+      felt.named = limits.wall(CouplingKind::predictive).stiffness;
       if (!felt.has_wall()) continue;  // counted: see kNamed
       for (const WallsPlan::Grip& grip : any.grips()) {
         taps.push_back(any_tap(any, step, grip, felt.named));
@@ -180,12 +180,11 @@ void add_line(FigurePanel& panel, double value, const std::string& label) {
 std::vector<FigurePanel> draw(const std::vector<Felts>& felts) {
   FigurePanel named = against_mass(felts, "The wall that limpid analyze names", "stiffness [N/m]",
                                    {10, 30000}, [](const WallFelt& f) { return f.named; });
-  FigurePanel felt =
-      against_mass(felts, "Stiffness felt of it, by that set", "stiffness, of that set [-]",
-                   {0, 1.5}, [](const WallFelt& f) { return f.felt; });
-  FigurePanel rattle = against_mass(felts, "Force above 20 Hz while it is held, by what is allowed",
-                                    "rms force, of that allowed [-]", {1e-4, 100},
-                                    [](const WallFelt& f) { return f.rattle; });
+  FigurePanel felt = against_mass(felts, "Stiffness felt, divided by the set one", "felt / set [-]",
+                                  {0, 1.5}, [](const WallFelt& f) { return f.felt; });
+  FigurePanel rattle = against_mass(
+      felts, "Force above 20 Hz while it is held, divided by what is allowed",
+      "rms force, of that allowed [-]", {1e-4, 100}, [](const WallFelt& f) { return f.rattle; });
   FigurePanel given = against_mass(felts, "Most that the hand was given", "energy [mJ]",
                                    {1e-3, 1000}, [](const WallFelt& f) { return 1e3 * f.port; });
   named.log_y = rattle.log_y = given.log_y = true;
@@ -225,7 +224,7 @@ Outcome walls(TrialRunner& lab) {
   const std::vector<Felts> felts = tap_all(lab);
   Outcome outcome;
   using P = WallsPlan;
-  outcome.figure.title = "Walls of any arm, as stiff as limpid analyze names them";
+  outcome.figure.title = "Walls on any arm, with the stiffness that `limpid analyze` names";
   outcome.figure.caption = fmt::format(
       "Predictive coupling, eta = 1. {} random arms of 1 to {} joints and {} to {} kg, each in a "
       "pose of its own, its tip tapping a wall at {} m/s along the direction in which its dampers "

@@ -136,6 +136,15 @@ double device_delay(const ArmDescription& arm, const Parameters& p) {
   return simulated > known + p.tick / 2 ? simulated : known;
 }
 
+std::vector<CouplingKind> laws_told(CouplingKind chosen, bool all) {
+  std::vector<CouplingKind> told;
+  for (std::uint8_t i = 0; i < kLaws; ++i) {
+    const auto kind = static_cast<CouplingKind>(i);
+    if (all || kind == chosen || !info(kind).for_comparison) told.push_back(kind);
+  }
+  return told;
+}
+
 Condition3 condition3(const ArmDescription& arm, const Parameters& p) {
   const Eigen::VectorXd b_d = device_damping(arm, p);
   return condition3(p, p.tick, std::span(b_d.data(), static_cast<std::size_t>(b_d.size())),

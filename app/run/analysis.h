@@ -53,6 +53,9 @@ struct Passivity {
 // Judges the chosen law; `a` is the analysis of `p`.
 Passivity passivity(const Analysis& a, const Parameters& p);
 
+// Laws that are told of beside the chosen one: those with a button of their own, or all.
+std::vector<CouplingKind> laws_told(CouplingKind chosen, bool all = false);
+
 // Returns b_d of every joint: the setting, or the value of the arm's file [N m s/rad].
 Eigen::VectorXd device_damping(const ArmDescription& arm, const Parameters& p);
 // Returns the Coulomb friction of every joint, likewise [N m].

@@ -101,6 +101,25 @@ Parameters with_readings_of(const ArmDescription& arm, Parameters p) {
   return p;
 }
 
+std::string readings_text(const ArmDescription& arm, const Parameters& p) {
+  const Parameters filed = with_readings_of(arm, p);
+  if (filed.encoder_step == 0 && filed.device_delay == 0) return {};
+  if (filed.encoder_step == p.encoder_step && filed.device_delay == p.device_delay) return {};
+  const bool slides = arm.only_slides();
+  const auto told = [slides](const Parameters& of) {
+    const std::string step = of.encoder_step > 0
+                                 ? fmt::format("encoder steps of {:.3g} {}",
+                                               1000 * of.encoder_step * (slides ? kSlideUnit : 1),
+                                               slides ? "mm" : "mrad")
+                                 : "exact encoders";
+    const std::string delay =
+        of.device_delay > 0 ? fmt::format("a delay of {:.3g} ms", 1e3 * of.device_delay * of.tick)
+                            : "no delay";
+    return step + " and " + delay;
+  };
+  return fmt::format("its file says {}; these settings have {}", told(filed), told(p));
+}
+
 CompensationSettings suggested_compensation(const ArmDescription& arm) {
   CompensationSettings c;
   if (!arm.delay) return c;

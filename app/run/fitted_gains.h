@@ -27,6 +27,10 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, doub
 // Returns `p` with what the arm's file says of the device's readings: step of the encoders, and
 // delay in whole ticks, which the law knows.
 Parameters with_readings_of(const ArmDescription& arm, Parameters p);
+// Says how settings differ from that: "its file says encoder steps of 0.419 mrad and a delay of 1
+// ms; these settings have exact encoders and no delay"; empty if they do not, or if the file says
+// nothing. For arms that slide the steps are in mm.
+std::string readings_text(const ArmDescription& arm, const Parameters& p);
 
 // Returns which of its own forces an arm's motors should take off the hand. For an arm that was
 // identified: all that was found, and the usual share of its friction; else none.

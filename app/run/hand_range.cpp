@@ -40,7 +40,7 @@ class JudgedLaws {
     Parameters p = p_;
     p.kind = kind;
     LawInHands law;
-    law.in_any_hand = kind == CouplingKind::direct ? on_device(all) : passive_walls(p);
+    law.in_any_hand = info(kind).loop == LinearLoop::on_device ? on_device(all) : passive_walls(p);
     const bool every = law.in_any_hand.up_to == kEvery;
     law.in_range = every ? SafeWalls{kEvery, std::nullopt, "as in every hand"} : in_range(kind);
     law.two_port_why = unknown_two_port(kind);
@@ -70,16 +70,14 @@ class JudgedLaws {
   }
   // The hand of the range in which the softest wall is unstable.
   SafeWalls in_range(CouplingKind kind) const {
-    switch (kind) {
-      case CouplingKind::direct: break;
-      case CouplingKind::standard:
-      case CouplingKind::proposed:
-        if (p_.linked()) {
-          return {std::nullopt, std::nullopt, "it is not reckoned through a link"};
-        }
-        if (kind == CouplingKind::standard || p_.velocity == VelocitySource::raw) break;
-        return {std::nullopt, std::nullopt, "it is reckoned with raw velocities only"};
-      default: return {std::nullopt, std::nullopt, "it is not linear, and no bound is known"};
+    const LinearLoop loop = info(kind).loop;
+    const auto unknown = [](const char* why) { return SafeWalls{std::nullopt, std::nullopt, why}; };
+    if (loop == LinearLoop::none) return unknown("it is not linear, and no bound is known");
+    if (loop != LinearLoop::on_device && p_.linked()) {
+      return unknown("it is not reckoned through a link");
+    }
+    if (loop == LinearLoop::fed_forward && p_.velocity != VelocitySource::raw) {
+      return unknown("it is reckoned with raw velocities only");
     }
     SafeWalls found{kEvery, std::nullopt,
                     "the sampled loop of arm, hand and wall, with exact encoders"};
@@ -93,11 +91,12 @@ class JudgedLaws {
     for (const double hand : hands_) {
       const HeldArm held{at_.M + p_.hand_mass_at_tip * JJ,
                          Eigen::MatrixXd(b_d.asDiagonal()) + p_.hand_damping * JJ, hand * JJ,
-                         p_.tick, ticks_of(tip_.delay, p_.tick)};
+                         p_.tick, ticks_of(tip_.loop.delay, p_.tick)};
       const double wall = stable_up_to([&](double K) {
-        switch (kind) {
-          case CouplingKind::direct: return growth_on_device(held, K * across);
-          case CouplingKind::proposed: return growth_fed_forward(held, p_, forward, M2, K * across);
+        switch (loop) {
+          case LinearLoop::on_device: return growth_on_device(held, K * across);
+          case LinearLoop::fed_forward:
+            return growth_fed_forward(held, p_, forward, M2, K * across);
           default: return growth_behind_spring(held, p_, M2, K * across);
         }
       });
@@ -109,34 +108,33 @@ class JudgedLaws {
     return found;
   }
   std::string unknown_two_port(CouplingKind kind) const {
-    switch (kind) {
-      case CouplingKind::direct: return {};
-      case CouplingKind::standard:
+    switch (info(kind).loop) {
+      case LinearLoop::on_device: return {};
+      case LinearLoop::behind_spring:
         if (p_.link_jitter > 0 || p_.link_loss > 0) {
           return "not known: the criterion asks for a link whose delay does not change";
         }
         return {};
-      case CouplingKind::proposed:
+      case LinearLoop::fed_forward:
         return "not known: forces are fed forward; (25) is the condition on them";
-      case CouplingKind::tank:
-        return "not known: tanks cut what the spring gives, so that it is not linear";
-      default: return "not known: the law is not linear";
+      case LinearLoop::none: break;
     }
+    return "not known: the law is not linear";
   }
   void criterion(CouplingKind kind, LawInHands& law) const {
+    const bool on_device = info(kind).loop == LinearLoop::on_device;
     const Eigen::VectorXd b_d = device_damping(arm_, p_);
-    const SampledJoint joint{b_d.minCoeff(), p_.tick, ticks_of(tip_.delay, p_.tick), p_.link_delay};
+    const SampledJoint joint{b_d.minCoeff(), p_.tick, ticks_of(tip_.loop.delay, p_.tick),
+                             p_.link_delay};
     law.two_port = llewellyn(
         [&](double f) {
-          return kind == CouplingKind::direct ? device_two_port(joint, f)
-                                              : spring_two_port(p_, joint, f);
+          return on_device ? device_two_port(joint, f) : spring_two_port(p_, joint, f);
         },
         p_.tick);
     law.two_port_why = !law.two_port->fails_from
                            ? "every passive hand is stable on every passive contact"
-                       : kind == CouplingKind::direct
-                           ? "without a spring between, some wall is unstable in some hand"
-                           : "some contact is unstable in some hand";
+                       : on_device ? "without a spring between, some wall is unstable in some hand"
+                                   : "some contact is unstable in some hand";
   }
 
   const ArmDescription& arm_;
@@ -158,8 +156,8 @@ NamedBound abbott_okamura(const ArmDescription& arm, const ArmAt& at, const Para
                    "K <= min(2 b_d/T, 2 f_c/q), f_c the friction and q the encoders' step at the "
                    "tip",
                    std::nullopt};
-  if (tip.delay > 0) {
-    bound.rule += "; it is known without a delay only";
+  if (tip.loop.delay > 0) {
+    bound.rule += "; it is known only without a delay";
     return bound;
   }
   const double friction = (1 - p.friction_share) * friction_at_tip(at.J, device_friction(arm, p));

@@ -65,7 +65,7 @@ std::vector<std::string> scene_flaws(const Scene& scene, const ArmDescription& a
   std::vector<std::string> warnings;
   const Vec3 tip = tip_at_rest(arm);
   const TipLimits limits = tip_limits(arm, rest_pose(arm), p, scene);
-  const double stiffest = limits.walls[static_cast<std::size_t>(p.kind)].stiffness;
+  const double stiffest = limits.wall(p.kind).stiffness;
   for (const Object& object : scene.objects) {
     if (!has_surface(object)) continue;
     warn_of_friction(object, warnings);

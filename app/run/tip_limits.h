@@ -5,8 +5,7 @@
 #include <array>
 #include <string>
 
-#include "core/coupling/felt.h"
-#include "core/coupling/walls.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/dynamics/arm_description.h"
 #include "core/tick/parameters.h"
 #include "core/touch/scene.h"
@@ -18,22 +17,13 @@ std::string still_tip(const ArmDescription& arm);
 
 // Limits along the direction in which the arm's own dampers hold the tip least; walls of the
 // predictive coupling along the worst.
-struct TipLimits {
-  TipAlong tip;
-  double delay = 0;  // of the device, as used for walls [s]
-  // Stiffest wall that a coupling renders well, or that can be felt through it [N/m], and what
-  // bounds it.
-  struct Wall {
-    double stiffness;
-    std::string bound;
-  };
-  std::array<Wall, kLaws> walls;  // in the order of the laws
-  double every_hand;  // stiffest wall that a plain spring renders passively in every hand [N/m]
-  double scene;       // stiffest thing in the scene, 0 without any [N/m]
-  FeltJoint felt;     // the tip in free motion, in kg, N s/m, N/m
-  double w_f;         // of the observer at the tip [rad/s]
-  AddedMass added;    // of the predictive coupling: eta as the possible delay leaves it
-  int delay_most;     // possible delay [ticks]
+struct TipLimits : LawAtTip {
+  std::array<TipWall, kLaws> walls;  // in the order of the laws
+  double every_hand = 0;  // stiffest wall that a plain spring renders passively in every hand [N/m]
+  double scene = 0;       // stiffest thing in the scene, 0 without any [N/m]
+  int delay_most = 0;     // possible delay [ticks]
+
+  const TipWall& wall(CouplingKind kind) const { return walls[static_cast<std::size_t>(kind)]; }
 };
 
 // Finds the limits at configuration x [rad].
@@ -47,12 +37,5 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
 // Says what the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3
 // Hz, as the torque may be 3 ms late"; empty if it leaves all of it.
 std::string late_text(const TipLimits& limits, const Parameters& p);
-
-// Mass and damping felt in free motion at f [Hz].
-struct FeltAtTip {
-  double mass;     // [kg]
-  double damping;  // [N s/m]
-};
-FeltAtTip felt_at_tip(const TipLimits& limits, const Parameters& p, CouplingKind kind, double f);
 
 }  // namespace limpid

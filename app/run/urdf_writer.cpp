@@ -95,12 +95,11 @@ std::string own(const ArmDescription& arm) {
                            escaped(joint.name), std::min(joint.continuous, joint.effort) / unit,
                            joint.warming);
   }
-  const bool slides = std::ranges::all_of(
-      arm.joints, [](const Joint& j) { return j.kind == Joint::Kind::prismatic; });
   std::string readings;
   if (arm.encoder_step > 0 || arm.assumed_delay > 0) {
-    readings = fmt::format("    <readings step=\"{}\" delay=\"{}\"/>\n",
-                           arm.encoder_step * (slides ? kSlideUnit : 1), arm.assumed_delay);
+    readings =
+        fmt::format("    <readings step=\"{}\" delay=\"{}\"/>\n",
+                    arm.encoder_step * (arm.only_slides() ? kSlideUnit : 1), arm.assumed_delay);
   }
   const std::string delay = arm.delay ? fmt::format(" delay=\"{}\"", *arm.delay) : "";
   return fmt::format("  <limpid gravity=\"{}\"{}>\n{}{}{}  </limpid>\n", numbers(arm.gravity),

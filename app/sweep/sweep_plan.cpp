@@ -81,8 +81,7 @@ RunPlan tapping(const SweepPlan& plan, const Chosen& chosen, const RunPlan& worl
   tap.press = bearable_press(posed.arm, place, p, *plan.tap);
   tap.hold = plan.seconds > 0 ? plan.seconds : 1;
   const TipLimits limits = tip_limits(posed.arm, posed.x, p, {});
-  tap.wall = chosen.stiffness.value_or(
-      std::max(kSoftest, limits.walls[static_cast<std::size_t>(p.kind)].stiffness));
+  tap.wall = chosen.stiffness.value_or(std::max(kSoftest, limits.wall(p.kind).stiffness));
   RunPlan run = tap_plan(posed.arm, place, tap, p);
   run.seed = plan.seed;
   return run;

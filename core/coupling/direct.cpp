@@ -1,6 +1,7 @@
 #include "core/coupling/direct.h"
 
 #include "core/coupling/device_walls.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 
@@ -21,6 +22,13 @@ class Direct final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall DirectLaw::wall(const LawSettings&, const LawAtTip& at) {
+  return at.on_device(direct_wall(at.tip, at.loop),
+                      "the damping of arm and hand: (b_d + b_h)/(T/2 + delay)");
+}
+
+FeltAtTip DirectLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }
 
 template <int N>
 std::unique_ptr<Law<N>> DirectLaw::make() {

@@ -26,6 +26,7 @@ struct DirectLaw {
       .meaning = "the walls' springs act on the device itself, without a virtual mass.",
       .verdict = "What most programs do: walls as stiff as the hand damps.",
       .promise = Promise::none,
+      .loop = LinearLoop::on_device,
       .on_device = true,
       .for_comparison = true,
       .through_link = "the law renders walls on the device itself and has no link",
@@ -42,6 +43,9 @@ struct DirectLaw {
   // Makes the law.
   template <int N>
   static std::unique_ptr<Law<N>> make();
+  // The stiffest wall under the law, and what is felt in free motion at f [Hz].
+  static TipWall wall(const LawSettings& p, const LawAtTip& at);
+  static FeltAtTip felt(const LawSettings& p, const LawAtTip& at, double f);
 };
 
 }  // namespace limpid

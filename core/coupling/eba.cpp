@@ -5,6 +5,7 @@
 
 #include "core/coupling/device_port.h"
 #include "core/coupling/device_walls.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 
 namespace limpid {
@@ -76,6 +77,12 @@ class Eba final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall EbaLaw::wall(const LawSettings&, const LawAtTip& at) {
+  return {bounded_wall(at.tip, at.loop), "the arm's damping: 2 b_d/(T + delay)"};
+}
+
+FeltAtTip EbaLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }
 
 template <int N>
 std::unique_ptr<Law<N>> EbaLaw::make() {

@@ -9,6 +9,10 @@ namespace limpid {
 
 template <int N>
 class Law;
+struct LawSettings;
+struct LawAtTip;
+struct TipWall;
+struct FeltAtTip;
 
 inline constexpr int kMostDelay = 20;  // largest delay of a device [ticks]
 
@@ -24,12 +28,21 @@ enum class Promise : std::uint8_t {
   observer,    // what was given is taken back, as far as a damper can
 };
 
+// Loop that a law makes with arm, hand and wall where it is linear, in ticks.
+enum class LinearLoop : std::uint8_t {
+  none,           // it is not linear
+  on_device,      // the wall on the device itself
+  behind_spring,  // the wall behind the proxy, spring and damper
+  fed_forward     // the same, and torques fed forward
+};
+
 struct LawInfo {
   const char* key;      // in files and on the command line
   const char* label;    // on a button
   const char* meaning;  // in help and tooltips, a sentence after "KEY: "
   const char* verdict;  // judgement in a few words: how it feels, when it is safe
   Promise promise;
+  LinearLoop loop = LinearLoop::none;
   // The law scales free motion by eta: under the predictive law the inertia; under the proposed one
   // the damping, though (12) has it of the inertia.
   bool takes_eta = false;

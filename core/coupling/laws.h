@@ -1,5 +1,6 @@
 // The coupling laws: their list, their settings, and texts about all of them. A new law is a file
-// like direct.h that describes it, one like direct.cpp that does it, and its name in Laws.
+// like direct.h that describes it, one like direct.cpp that does it and tells its limits, and its
+// name in Laws.
 #pragma once
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 
 #include "core/coupling/device_port.h"
 #include "core/coupling/device_walls.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 
@@ -75,6 +76,13 @@ class Popc final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall PopcLaw::wall(const LawSettings& p, const LawAtTip& at) {
+  return at.on_device(braked_wall(at.tip, at.loop, p.popc_damping),
+                      "the damping of arm and hand, and its own damper, held for a tick");
+}
+
+FeltAtTip PopcLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }
 
 template <int N>
 std::unique_ptr<Law<N>> PopcLaw::make() {

@@ -1,5 +1,6 @@
 #include "core/coupling/proposed.h"
 
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 #include "core/coupling/spring_coupling.h"
@@ -31,6 +32,16 @@ class Proposed final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall ProposedLaw::wall(const LawSettings&, const LawAtTip& at) {
+  WallSetting loop = at.loop;
+  loop.delay += at.felt.trip;
+  return {proposed_wall(at.tip, loop), "the damping there is against the lag of the contact"};
+}
+
+FeltAtTip ProposedLaw::felt(const LawSettings& p, const LawAtTip& at, double f) {
+  return felt_mass(at.felt.proposed(f, p.eta, at.w_f), f);
+}
 
 template <int N>
 std::unique_ptr<Law<N>> ProposedLaw::make() {

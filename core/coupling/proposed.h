@@ -22,6 +22,7 @@ struct ProposedLaw {
       .meaning = "with feedforward of the observed human force and the contact force, (14)-(15).",
       .verdict = "The paper's: no drift; passive only above \xCE\xB7_min.",
       .promise = Promise::eta_min,
+      .loop = LinearLoop::fed_forward,
       .takes_eta = true,
       .observes = true,
       .through_link = "no bound is known for the feedforward",
@@ -47,6 +48,9 @@ struct ProposedLaw {
   // Makes the law.
   template <int N>
   static std::unique_ptr<Law<N>> make();
+  // The stiffest wall under the law, and what is felt in free motion at f [Hz].
+  static TipWall wall(const LawSettings& p, const LawAtTip& at);
+  static FeltAtTip felt(const LawSettings& p, const LawAtTip& at, double f);
 };
 
 }  // namespace limpid

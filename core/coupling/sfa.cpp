@@ -1,9 +1,12 @@
 #include "core/coupling/sfa.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 
 #include "core/coupling/device_walls.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 
@@ -117,6 +120,16 @@ class Sfa final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall SfaLaw::wall(const LawSettings& p, const LawAtTip& at) {
+  const double soft = p.sfa_soft * every_hands_wall(at.tip, at.loop.T, at.loop.delay);
+  return {soft,
+          fmt::format("its soft spring; in this grip, at rest, an increment leaves {:.2g} of what "
+                      "a rigid wall lacks",
+                      1 - p.sfa_step * soft / (soft + at.hand_stiffness))};
+}
+
+FeltAtTip SfaLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }
 
 template <int N>
 std::unique_ptr<Law<N>> SfaLaw::make() {

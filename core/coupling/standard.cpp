@@ -1,5 +1,6 @@
 #include "core/coupling/standard.h"
 
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/spring_coupling.h"
 
@@ -20,6 +21,18 @@ class Standard final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall StandardLaw::wall(const LawSettings& p, const LawAtTip& at) {
+  if (!at.condition3.known) return {0, "no bound is known, as packets are lost (link.loss)"};
+  if (!at.condition3.holds) {
+    return {0, "condition (3) is broken: it is not passive in free motion either"};
+  }
+  return at.through_spring(p.k_vc);
+}
+
+FeltAtTip StandardLaw::felt(const LawSettings&, const LawAtTip& at, double f) {
+  return at.behind_spring(f);
+}
 
 template <int N>
 std::unique_ptr<Law<N>> StandardLaw::make() {

@@ -18,6 +18,7 @@ struct StandardLaw {
       .meaning = "spring and damper alone, (1)-(2).",
       .verdict = "The usual one: hand and world drift apart.",
       .promise = Promise::condition3,
+      .loop = LinearLoop::behind_spring,
       .through_link = "passive where (3) holds",
       .sliders = kSliders,
   };
@@ -27,6 +28,9 @@ struct StandardLaw {
   // Makes the law.
   template <int N>
   static std::unique_ptr<Law<N>> make();
+  // The stiffest wall under the law, and what is felt in free motion at f [Hz].
+  static TipWall wall(const LawSettings& p, const LawAtTip& at);
+  static FeltAtTip felt(const LawSettings& p, const LawAtTip& at, double f);
 };
 
 }  // namespace limpid

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/coupling/device_tank.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 #include "core/coupling/spring_coupling.h"
@@ -163,6 +164,14 @@ LawReport Tank<N>::report() const {
 }
 
 }  // namespace
+
+TipWall TankLaw::wall(const LawSettings& p, const LawAtTip& at) {
+  return at.through_spring(p.k_vc);
+}
+
+FeltAtTip TankLaw::felt(const LawSettings&, const LawAtTip& at, double f) {
+  return at.behind_spring(f);
+}
 
 template <int N>
 std::unique_ptr<Law<N>> TankLaw::make() {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/coupling/device_port.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/ledger.h"
 #include "core/coupling/spring_coupling.h"
@@ -96,6 +97,16 @@ class Tdpn final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall TdpnLaw::wall(const LawSettings& p, const LawAtTip& at) {
+  TipWall wall = at.through_spring(p.k_vc);
+  if (at.link.linked()) wall.bound += "; falls with the link's delay";
+  return wall;
+}
+
+FeltAtTip TdpnLaw::felt(const LawSettings&, const LawAtTip& at, double f) {
+  return at.behind_spring(f);
+}
 
 template <int N>
 std::unique_ptr<Law<N>> TdpnLaw::make() {

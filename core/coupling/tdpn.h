@@ -59,6 +59,9 @@ struct TdpnLaw {
   // Makes the law.
   template <int N>
   static std::unique_ptr<Law<N>> make();
+  // The stiffest wall under the law, and what is felt in free motion at f [Hz].
+  static TipWall wall(const LawSettings& p, const LawAtTip& at);
+  static FeltAtTip felt(const LawSettings& p, const LawAtTip& at, double f);
 };
 
 }  // namespace limpid

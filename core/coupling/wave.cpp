@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/coupling/device_port.h"
+#include "core/coupling/law_at_tip.h"
 #include "core/coupling/laws.h"
 #include "core/coupling/played_waves.h"
 #include "core/coupling/spring_coupling.h"
@@ -96,6 +97,18 @@ class Wave final : public Law<N> {
 };
 
 }  // namespace
+
+TipWall WaveLaw::wall(const LawSettings& p, const LawAtTip& at) {
+  return {line_at_tip(at.tip, p.k_vc, p.line(), (at.link.oldest() + 0.5) * at.loop.T),
+          "felt through the spring k_vc and the line: 1/(1/k_vc + (link + T/2)/b)"};
+}
+
+FeltAtTip WaveLaw::felt(const LawSettings& p, const LawAtTip& at, double) {
+  // The line adds a mass where it is not matched, and its own damper.
+  const double line = p.line() / at.tip.lever2, b_v = at.felt.b_v;
+  const double mass = at.link.oldest() * at.loop.T * (line - b_v * b_v / line);
+  return {at.tip.mass + mass, at.tip.damping + b_v + (p.wave_matched ? line : 0)};
+}
 
 template <int N>
 std::unique_ptr<Law<N>> WaveLaw::make() {

@@ -63,6 +63,9 @@ struct WaveLaw {
   // Makes the law.
   template <int N>
   static std::unique_ptr<Law<N>> make();
+  // The stiffest wall under the law, and what is felt in free motion at f [Hz].
+  static TipWall wall(const LawSettings& p, const LawAtTip& at);
+  static FeltAtTip felt(const LawSettings& p, const LawAtTip& at, double f);
 };
 
 }  // namespace limpid

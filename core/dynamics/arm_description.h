@@ -86,6 +86,13 @@ struct ArmDescription {
 
   int dof() const { return static_cast<int>(joints.size()); }
   bool slides(std::size_t joint) const { return joints[joint].kind == Joint::Kind::prismatic; }
+  // All joints slide, so that a step of the encoders is a length.
+  bool only_slides() const {
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (!slides(i)) return false;
+    }
+    return true;
+  }
 };
 
 // Middle of each joint's limits, 0 where there are none [rad]. If the tip could not move in some

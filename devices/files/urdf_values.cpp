@@ -209,8 +209,7 @@ void read_warmth(const TiXmlElement& element, const UrdfPlaces& places, ArmDescr
 
 void read_readings(const TiXmlElement& element, const UrdfPlaces& places, ArmDescription& arm) {
   const Own own(element, places);
-  const bool slides = std::ranges::all_of(
-      arm.joints, [](const Joint& j) { return j.kind == Joint::Kind::prismatic; });
+  const bool slides = arm.only_slides();
   const double unit = slides ? kSlideUnit : 1;
   if (const auto step = own.number("step", 0, kMostEncoderStep * unit, slides ? "m" : "rad")) {
     arm.encoder_step = *step / unit;

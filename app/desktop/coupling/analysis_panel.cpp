@@ -43,19 +43,8 @@ std::vector<ChartPoint> over_frequency(const Value& value) {
   return curve;
 }
 
-CouplingKind law(std::size_t i) { return static_cast<CouplingKind>(i); }
-
-// Laws that are drawn: those with a button of their own, and the one in force.
-std::vector<std::size_t> drawn_laws(const Parameters& p) {
-  std::vector<std::size_t> drawn;
-  for (std::size_t i = 0; i < kLaws; ++i) {
-    if (law(i) == p.kind || !info(law(i)).for_comparison) drawn.push_back(i);
-  }
-  return drawn;
-}
-
-Rgb law_colour(const Palette& colours, std::size_t i, const Parameters& p) {
-  return law(i) == p.kind ? colours.text : mix(colours.muted, colours.panel, 0.35f);
+Rgb law_colour(const Palette& colours, CouplingKind kind, const Parameters& p) {
+  return kind == p.kind ? colours.text : mix(colours.muted, colours.panel, 0.35f);
 }
 
 std::string newtons_per_metre(double stiffness) {
@@ -98,7 +87,7 @@ void AnalysisPanel::draw(const Parameters& p, const ArmDescription& arm, const S
 // Draws one bar a law on a logarithmic axis, and the scene's stiffest wall across them.
 void AnalysisPanel::draw_walls(const Parameters& p) const {
   const Palette& colours = current_palette();
-  const std::vector<std::size_t> drawn = drawn_laws(p);
+  const std::vector<CouplingKind> drawn = laws_told(p.kind);
   const auto rows = static_cast<double>(drawn.size());
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   {
@@ -113,19 +102,19 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
     across(tip_.every_hand, colours.axis);
     if (tip_.scene > 0) across(tip_.scene, ink(colours, Ink::contact));
     double y = rows + 0.5;
-    for (const std::size_t i : drawn) {
+    for (const CouplingKind kind : drawn) {
+      const double stiffness = tip_.wall(kind).stiffness;
       y -= 1;
-      const ImVec2 end = chart.place({std::min(tip_.walls[i].stiffness, kStiffest), y});
-      const Rgb ink = law_colour(colours, i, p);
+      const ImVec2 end = chart.place({std::min(stiffness, kStiffest), y});
+      const Rgb ink = law_colour(colours, kind, p);
       draw.AddRectFilled({chart.inside().min.x, end.y - thick / 2}, {end.x, end.y + thick / 2},
                          colour(ink, 0.3f), 2);
-      const std::string label =
-          fmt::format("{} {}", info(law(i)).key, newtons_per_metre(tip_.walls[i].stiffness));
+      const std::string label = fmt::format("{} {}", info(kind).key, newtons_per_metre(stiffness));
       chart.text({chart.inside().min.x, end.y - 0.6f * font(Face::small)->FontSize}, label,
-                 colour(law(i) == p.kind ? colours.text : colours.muted));
+                 colour(kind == p.kind ? colours.text : colours.muted));
     }
   }
-  const TipLimits::Wall& mine = tip_.walls[static_cast<std::size_t>(p.kind)];
+  const TipWall& mine = tip_.wall(p.kind);
   tooltip(fmt::format("How stiff a wall each coupling renders well at this pose, along the tip's "
                       "least damped direction.\n{}: {:.0f} N/m, {}.\nGrey line: {:.0f} N/m, the "
                       "most that a plain spring can show and be passive in every hand "
@@ -136,26 +125,27 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
   if (tip_.scene <= 0) return;
   const bool soft = info(p.kind).knows_link() && !info(p.kind).observes;
   const bool over = !soft && tip_.scene > mine.stiffness;
-  read_out("stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
-           over ? fmt::format("Stiffer than what {} renders well here, {:.0f} N/m: {}.",
-                              info(p.kind).key, mine.stiffness, mine.bound)
-                : "",
-           soft ? "Felt softer than that: this coupling's spring is in between."
-                : "Within what this coupling renders well");
+  read_out(
+      "stiffest in this scene", fmt::format("{:.0f} N/m", tip_.scene),
+      over ? fmt::format("Too stiff: {} renders well only up to {:.0f} N/m here. The bound: {}.",
+                         info(p.kind).key, mine.stiffness, mine.bound)
+           : "",
+      soft ? "Felt softer than that: this coupling's spring is in between."
+           : "Within what this coupling renders well");
 }
 
 void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
   const Palette& colours = current_palette();
   const auto curve = [&](CouplingKind kind, auto part) {
-    return over_frequency([&](double f) { return part(felt_at_tip(tip_, p, kind, f)); });
+    return over_frequency([&](double f) { return part(felt_at_tip(kind, p, tip_, f)); });
   };
   const auto mass = [](const FeltAtTip& felt) { return kGram * felt.mass; };
   const auto damping = [](const FeltAtTip& felt) { return felt.damping; };
   const double natural = kGram * tip_.felt.m, wanted = p.eta * natural;
   const double least = tip_.felt.least_damping(p.eta, p.band);
   const auto draw_all = [&](const Chart& chart, auto part) {
-    for (const std::size_t i : drawn_laws(p)) {
-      if (law(i) != p.kind) chart.line(curve(law(i), part), colour(law_colour(colours, i, p)));
+    for (const CouplingKind kind : laws_told(p.kind)) {
+      if (kind != p.kind) chart.line(curve(kind, part), colour(law_colour(colours, kind, p)));
     }
     chart.line(curve(p.kind, part), colour(colours.text), 2.4f);
   };
@@ -191,7 +181,7 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
                "push on. model.delay_most says how late it may be.");
     }
   }
-  const FeltAtTip now = felt_at_tip(tip_, p, p.kind, band);
+  const FeltAtTip now = felt_at_tip(p.kind, p, tip_, band);
   read_out(fmt::format("felt at {:.3g} Hz", band).c_str(),
            fmt::format("{:.3g} g, {:.2g} N s/m", kGram * now.mass, now.damping), {},
            "Inertia and damping at the tip at the human's bandwidth");
@@ -225,9 +215,10 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
            {}, "Eigenvalues of M1 + M2 at this pose");
   std::complex<double> worst(-1e300, 0);
   for (const auto& pole : poles_) worst = pole.real() > worst.real() ? pole : worst;
-  read_out("slowest pole in the hand", pole_text(worst),
+  read_out("slowest pole in this grip", pole_text(worst),
            worst.real() > 0 ? "A pole in the right half plane: unstable while the hand holds." : "",
-           "Of the locked system held by the grip, in continuous time");
+           "For the locked system (hand, device and avatar as one) held by the grip, in continuous "
+           "time");
 }
 
 void AnalysisPanel::draw_nyquist(const Parameters& p) const {

@@ -112,7 +112,7 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
       loop.trace_dropped() + (loop.recording() ? loop.recorder()->dropped() : 0);
   if (dropped > 0) {
     read_out("ticks dropped", std::to_string(dropped),
-             "Ticks that found no room on their way to the plots or the recording.");
+             "Ticks that were lost because the buffer to the plots or the recording was full.");
   }
   read_out("picture quality", quality, {},
            "View > Picture quality. Automatic: as good as this computer draws smoothly");
@@ -161,18 +161,17 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
            {},
            "Time from a reading to the torque that answers it, beyond the tick. limpid identify "
            "measures it; until then the walls below assume no delay.");
-  const auto law = static_cast<std::size_t>(p.kind);
-  const TipLimits::Wall& wall = now_.walls[law];
+  const TipWall& wall = now_.wall(p.kind);
   const auto pair = [](double now, double prompt) {
     return fmt::format("{:.0f} of {:.0f} N/m", std::min(now, prompt), prompt);
   };
-  read_out("stiffest wall", pair(wall.stiffness, prompt_.walls[law].stiffness), {},
+  read_out("stiffest wall", pair(wall.stiffness, prompt_.wall(p.kind).stiffness), {},
            fmt::format("With this delay, of what {} would render without any. Bounded by {}.",
                        info(p.kind).key, wall.bound)
                .c_str());
   const double T = std::max(p.tick, pace.mean);
   read_out("passive in any hand",
-           pair(every_hands_wall(now_.tip, T, now_.delay), prompt_.every_hand), {},
+           pair(every_hands_wall(now_.tip, T, now_.loop.delay), prompt_.every_hand), {},
            "b_d / (T/2 + delay), T the longer of tick and readings: the stiffest wall that a "
            "plain spring can render and be passive in every hand");
 }

@@ -63,9 +63,7 @@ TEST(SceneFlaws, AreKineticFrictionAboveStaticFriction) {
 TEST(SceneFlaws, AreWallsStifferThanTheLawRenders) {
   const ArmDescription arm = test::omni();
   for (const auto kind : {CouplingKind::proposed, CouplingKind::predictive}) {
-    const double most = tip_limits(arm, rest_pose(arm), under(kind), {})
-                            .walls[static_cast<std::size_t>(kind)]
-                            .stiffness;
+    const double most = tip_limits(arm, rest_pose(arm), under(kind), {}).wall(kind).stiffness;
     Object plane = floor_at(-0.04);
     plane.material.stiffness = 0.99 * most;
     EXPECT_THAT(flaws(plane, kind), IsEmpty());

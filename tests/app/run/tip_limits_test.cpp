@@ -15,9 +15,7 @@ TipLimits limits(const Parameters& p, const Scene& scene = {}) {
   return tip_limits(arm, rest_pose(arm), p, scene);
 }
 
-double wall(const TipLimits& l, CouplingKind kind) {
-  return l.walls[static_cast<std::size_t>(kind)].stiffness;
-}
+double wall(const TipLimits& l, CouplingKind kind) { return l.wall(kind).stiffness; }
 
 // Expects a recommended stiffness that is stable, and cautious by a factor at most: up to the one
 // that `experiment zwidth` finds.
@@ -37,8 +35,7 @@ TEST(TipLimits, OfTheStandardLawAreNoneWhereItGivesEnergyAlready) {
   p.link_loss = 0.1;
   const TipLimits lossy = limits(p);
   EXPECT_EQ(wall(lossy, standard), 0);
-  EXPECT_NE(lossy.walls[static_cast<std::size_t>(standard)].bound.find("packets are lost"),
-            std::string::npos);
+  EXPECT_NE(lossy.wall(standard).bound.find("packets are lost"), std::string::npos);
   p.link_loss = 0;
   p.link_delay = 0;
   p.tick = 0.1;
@@ -73,10 +70,9 @@ TEST(TipLimits, OfThePredictiveLawCountStepsAndFriction) {
     Parameters p;
     p.encoder_step = step;
     p.friction = friction;
-    return tip_limits(arm, rest_pose(arm), p, {})
-        .walls[static_cast<std::size_t>(CouplingKind::predictive)];
+    return tip_limits(arm, rest_pose(arm), p, {}).wall(CouplingKind::predictive);
   };
-  const auto expect = [](const TipLimits::Wall& wall, double stiffness, const char* bound) {
+  const auto expect = [](const TipWall& wall, double stiffness, const char* bound) {
     EXPECT_NEAR(wall.stiffness / stiffness, 1, 0.1) << wall.bound;
     EXPECT_TRUE(wall.bound.starts_with(bound)) << wall.bound;
   };
@@ -121,7 +117,7 @@ TEST(TipLimits, ReckonWithTheDeviceAsItWasMeasured) {
   ArmDescription arm = test::omni();
   arm.delay = 0.0016;
   const TipLimits unknown = tip_limits(arm, rest_pose(arm), {}, {});
-  EXPECT_EQ(unknown.delay, 0.0016);
+  EXPECT_EQ(unknown.loop.delay, 0.0016);
   EXPECT_NEAR(unknown.every_hand, limits({}).every_hand * 0.5 / 2.1, 1e-9);
   const double foreseen = wall(unknown, CouplingKind::predictive);
   EXPECT_LE(foreseen, 1400) << "it does not reckon with it";
@@ -147,9 +143,9 @@ TEST(TipLimits, FeelInertiaAsEachLawMakesIt) {
   p.eta = 0.4;
   const TipLimits l = limits(p);
   const double m = l.felt.m;
-  EXPECT_NEAR(felt_at_tip(l, p, CouplingKind::predictive, 2).mass, 0.4 * m, 0.03 * m);
-  EXPECT_GT(felt_at_tip(l, p, CouplingKind::standard, 2).mass, 0.9 * m);
-  EXPECT_GT(felt_at_tip(l, p, CouplingKind::predictive, 0.5).damping,
+  EXPECT_NEAR(felt_at_tip(CouplingKind::predictive, p, l, 2).mass, 0.4 * m, 0.03 * m);
+  EXPECT_GT(felt_at_tip(CouplingKind::standard, p, l, 2).mass, 0.9 * m);
+  EXPECT_GT(felt_at_tip(CouplingKind::predictive, p, l, 0.5).damping,
             l.felt.least_damping(p.eta, p.band));
 }
 

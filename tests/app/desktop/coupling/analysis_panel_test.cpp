@@ -25,9 +25,7 @@ class AnalysisWords : public ReadPanel {
     return {pose_.data(), static_cast<std::size_t>(pose_.size())};
   }
   TipLimits limits() const { return tip_limits(arm_, pose_, p_, scene_); }
-  const TipLimits::Wall& wall(const TipLimits& l) const {
-    return l.walls[static_cast<std::size_t>(p_.kind)];
-  }
+  const TipWall& wall(const TipLimits& l) const { return l.wall(p_.kind); }
   void set_wall(double stiffness) {
     scene_ = {};
     scene_.add({.shape = Plane{}, .material = {stiffness}});
@@ -46,7 +44,7 @@ TEST_F(AnalysisWords, SayWhatIsFeltAtTheBand) {
     p_.kind = kind;
     p_.eta = 0.6;
     draw();
-    const FeltAtTip felt = felt_at_tip(limits(), p_, kind, 7);
+    const FeltAtTip felt = felt_at_tip(kind, p_, limits(), 7);
     EXPECT_EQ(value("felt at 7 Hz"),
               fmt::format("{:.3g} g, {:.2g} N s/m", 1e3 * felt.mass, felt.damping));
   }
@@ -79,7 +77,7 @@ TEST_F(AnalysisWords, MarkASceneThatIsTooStiffForTheLaw) {
   set_wall(std::ceil(1.1 * most));
   draw();
   EXPECT_TRUE(broken("stiffest in this scene"));
-  EXPECT_THAT(hint("stiffest in this scene"), HasSubstr("Stiffer than what proposed renders"));
+  EXPECT_THAT(hint("stiffest in this scene"), HasSubstr("Too stiff: proposed renders"));
   p_.kind = CouplingKind::tank;
   draw();
   EXPECT_FALSE(broken("stiffest in this scene")) << "felt through a spring, whatever it is";
@@ -106,7 +104,7 @@ TEST_F(AnalysisWords, SayTheLimitsOfEta) {
 TEST_F(AnalysisWords, MarkAPoleThatIsUnstable) {
   p_.kind = CouplingKind::proposed;
   draw();
-  EXPECT_FALSE(broken("slowest pole in the hand"));
+  EXPECT_FALSE(broken("slowest pole in this grip"));
   p_.eta = 0.05;
   p_.hand_stiffness = 3000;
   p_.hand_damping = 0;
@@ -114,8 +112,8 @@ TEST_F(AnalysisWords, MarkAPoleThatIsUnstable) {
   double worst = -HUGE_VAL;
   for (const auto& pole : handle_poles(arm_, pose_, p_)) worst = std::max(worst, pole.real());
   ASSERT_GT(worst, 0);
-  EXPECT_TRUE(broken("slowest pole in the hand"));
-  EXPECT_THAT(value("slowest pole in the hand"),
+  EXPECT_TRUE(broken("slowest pole in this grip"));
+  EXPECT_THAT(value("slowest pole in this grip"),
               testing::StartsWith(fmt::format("{:.1f} ", worst)));
 }
 

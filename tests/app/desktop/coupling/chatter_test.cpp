@@ -118,7 +118,7 @@ TEST(Chatter, IsNotSeenWhereHandsAreCalm) {
       plan.parameters.kind = kind;
       const TipLimits limits =
           tip_limits(plan.arm, rest_pose(plan.arm), plan.parameters, plan.document.scene);
-      const bool holds = limits.scene <= limits.walls[static_cast<std::size_t>(kind)].stiffness;
+      const bool holds = limits.scene <= limits.wall(kind).stiffness;
       if (kind == CouplingKind::proposed && !holds) continue;
       EXPECT_EQ(look_at(plan).first, -1) << scene << " " << info(kind).key;
     }
