@@ -70,6 +70,9 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
                                      : "gains        fitted: " + fit);
   const Analysis a = analyze(arm, rest, p, std::nullopt);
   report.facts.push_back("             for " + basis_text(arm, p));
+  if (const std::string filed = readings_text(arm, p); !filed.empty()) {
+    report.facts.push_back("readings     " + filed + "; --readings takes the file's");
+  }
   report.facts.push_back(
       fmt::format("             condition (3) {}; eta from {:.2f} on is passive (25)",
                   a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
@@ -275,6 +278,7 @@ Command declare_check(CLI::App& app) {
       ->type_name("ARM.urdf|SCENE.toml|MODEL")
       ->required();
   options->input.add_world(*command);
+  options->input.add_readings(*command);
   options->input.add_parameters(*command);
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(

@@ -182,6 +182,12 @@ void InputOptions::add_world(CLI::App& command) {
       ->type_name("FILE.toml");
 }
 
+void InputOptions::add_readings(CLI::App& command) {
+  command.add_flag("--readings", readings,
+                   "encoder steps and a known delay as the arm's file says, such as touch.urdf's; "
+                   "without it encoders are exact and prompt, unless set");
+}
+
 void InputOptions::add_hand(CLI::App& command) {
   command
       .add_option("--hand", hand,
@@ -232,7 +238,10 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
 }
 
 Parameters make_parameters(const InputOptions& options, const ArmDescription& arm) {
-  return make_parameters(options, fitted(arm, make_parameters(options)));
+  if (!options.readings) return make_parameters(options, fitted(arm, make_parameters(options)));
+  const Parameters chosen = make_parameters(options, with_readings_of(arm, {}));
+  const Parameters fit = fitted(arm, chosen, arm.delay.value_or(arm.assumed_delay));
+  return make_parameters(options, with_readings_of(arm, fit));
 }
 
 std::string device_named(const std::string& words) {
@@ -261,6 +270,11 @@ void read_world(const InputOptions& options, ArmDescription& arm, SceneDocument&
 RunPlan make_plan(const InputOptions& options) {
   RunPlan plan;
   if (is_session(options.hand)) {
+    if (options.readings) {
+      throw UsageError(
+          "--readings: a recorded session has settings of its own; --set device.encoder_step and "
+          "device.delay change them");
+    }
     plan = plan_from_session(options);
   } else {
     read_world(options, plan.arm, plan.document);

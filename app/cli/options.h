@@ -33,6 +33,7 @@ struct InputOptions {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;       // seed of the variations
   std::optional<std::uint64_t> variation;  // number of the hand's variation; 0: unchanged
+  bool readings = false;                   // of a virtual arm are as its file says
 
   // Whether an option of add_parameters() is given.
   bool set_parameters() const {
@@ -43,6 +44,8 @@ struct InputOptions {
   void add_parameters(CLI::App& command);
   // Declares --device, --tip and --scene.
   void add_world(CLI::App& command);
+  // Declares --readings.
+  void add_readings(CLI::App& command);
   // Declares --hand, --duration, --variation, --seed.
   void add_hand(CLI::App& command);
 };

@@ -264,7 +264,7 @@ int report(const RunOptions& options, const RunEnd& end, const Recorder* recorde
   if (recorder != nullptr) {
     if (!options.json) fmt::print("recorded {} ticks in {}\n", recorder->rows(), options.record);
     if (recorder->dropped() > 0) {
-      fmt::print(stderr, "limpid: {} ticks found no room and are missing from {}\n",
+      fmt::print(stderr, "limpid: {} ticks are missing from {}: the disk was too slow\n",
                  recorder->dropped(), options.record);
       return 1;
     }
@@ -296,6 +296,10 @@ void say_about(const RunPlan& plan) {
   if (!fit.empty()) {
     fmt::print(stderr, "limpid: gains fitted to the arm, except those that are set: {}\n", fit);
   }
+  if (const std::string filed = readings_text(plan.arm, plan.parameters);
+      !again && !filed.empty()) {
+    fmt::print(stderr, "limpid: note: {}: {}; --readings takes the file's\n", plan.arm.name, filed);
+  }
 }
 
 int live(const RunOptions& options) {
@@ -305,6 +309,8 @@ int live(const RunOptions& options) {
   };
   refuse(!options.input.hand.empty(), "--hand");
   refuse(options.input.variation.has_value(), "--variation");
+  if (options.input.readings)
+    throw UsageError("--readings: not together with --live; the device has its own");
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     refuse(options.beside[lane - 1].has_value(), lane_option(lane));
   }
@@ -403,6 +409,7 @@ Command declare_run(CLI::App& app) {
   }
   options->live.add(*command);
   options->input.add_world(*command);
+  options->input.add_readings(*command);
   options->input.add_hand(*command);
   options->input.add_parameters(*command);
   command->footer(

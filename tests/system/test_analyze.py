@@ -237,6 +237,18 @@ class Analyze(SystemTest):
         self.assertLess(grip["abbott_okamura"]["wall"], grip["colgate_schenkel"]["wall"])
         self.assertEqual(grip["direct"]["passive"]["wall"], grip["abbott_okamura"]["wall"])
 
+    def test_readings_are_exact_and_prompt_unless_the_arms_file_is_asked(self) -> None:
+        touch = ["--device", "touch.urdf"]
+        exact, real = self.analyze(*touch)["tip"], self.analyze(*touch, "--readings")["tip"]
+        self.assert_close(real["eba"]["wall"], exact["eba"]["wall"] / 2)  # 2 b_d/(T + delay)
+        self.assertAlmostEqual(real["standard"]["wall"], exact["standard"]["wall"] * 4 / 10, delta=2)  # k_vc by (3)
+        self.assertLess(real["predictive"]["wall"], exact["predictive"]["wall"] / 2)
+        fine = self.analyze(*touch, "--readings", "--set", "device.encoder_step=1e-6")["tip"]
+        self.assertGreater(fine["predictive"]["wall"], real["predictive"]["wall"], "what is set wins")
+        self.assertIn("encoder steps of 0.419 mrad and a delay of 1 ms", limpid("analyze", *touch).out)
+        self.assertNotIn("readings", limpid("analyze", *touch, "--readings").out)
+        self.assertNotIn("readings", limpid("analyze").out, "the built-in arm's file says nothing")
+
     def test_llewellyns_criterion_is_the_closed_form(self) -> None:
         for k_vc, b_v in ((10.0, 0.012), (14.0, 0.006), (20.0, 0.012)):
             with self.subTest(k_vc=k_vc):

@@ -35,6 +35,21 @@ TEST(FittedGains, AreThePapersForArmsThatTheySuit) {
   EXPECT_EQ(fitted(test::omni(), tick), Parameters{}) << "whatever is chosen";
 }
 
+TEST(FittedGains, SayHowReadingsDifferFromTheFiles) {
+  ArmDescription arm = test::omni();
+  EXPECT_EQ(readings_text(arm, {}), "") << "a file that says nothing";
+  arm.encoder_step = 4.19e-4;
+  arm.assumed_delay = 1e-3;
+  EXPECT_EQ(readings_text(arm, {}),
+            "its file says encoder steps of 0.419 mrad and a delay of 1 ms; these settings have "
+            "exact encoders and no delay");
+  EXPECT_EQ(readings_text(arm, with_readings_of(arm, {})), "");
+  for (Joint& joint : arm.joints) joint.kind = Joint::Kind::prismatic;
+  arm.encoder_step = 1e-4;  // of 0.1 m
+  arm.assumed_delay = 0;
+  EXPECT_THAT(readings_text(arm, {}), testing::HasSubstr("steps of 0.01 mm and no delay"));
+}
+
 TEST(FittedGains, KeepCondition3AndTheMarginOfEta) {
   for (const double damping : {0.0, 0.001, 0.5, 20.0}) {
     for (const double tick : {0.001, 0.00025, 0.004}) {
