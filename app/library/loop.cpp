@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "core/tick/as_taken.h"
+#include "core/tick/force_asked.h"
 #include "devices/files/session/session_units.h"
 #include "devices/simulated/rig.h"
 
@@ -88,7 +88,6 @@ struct Loop::State {
   State(LibraryPlan read, const LoopOptions& options);
 
   void begin(const RigStart& start);
-  ForceRequest wish() noexcept;
   void step(const RigInput& input) noexcept;
   void follow_recorder(const Vec3& target) noexcept;
   // Returns the settings as the loop takes them.
@@ -115,8 +114,7 @@ struct Loop::State {
   std::uint64_t ticks = 0;
   Clock::time_point before{};
   std::size_t wrong_count = 0;  // positions of the last reading, if they were not one a joint
-  std::atomic<std::uint32_t> arms{0}, cuts{0};
-  std::uint32_t known_arms = 0, known_cuts = 0;
+  ForceAsked force;
   std::unique_ptr<Recorder> recorder;
   bool recording = false;  // the recorder gets rows
 };
@@ -143,14 +141,6 @@ void Loop::State::begin(const RigStart& start) {
   rig->start(plan.parameters, start);
   rig->present(scratch);
   ticks = 0;
-}
-
-ForceRequest Loop::State::wish() noexcept {
-  const std::uint32_t asked = arms.load(std::memory_order_relaxed);
-  const std::uint32_t ended = cuts.load(std::memory_order_relaxed);
-  const bool arm = std::exchange(known_arms, asked) != asked;
-  const bool cut = std::exchange(known_cuts, ended) != ended;
-  return cut ? ForceRequest::cut : arm ? ForceRequest::arm : ForceRequest::as_it_is;
 }
 
 // Takes up a recording. It restarts the rig where it stands, so that its first row determines all
@@ -268,7 +258,7 @@ DeviceLoop::DeviceLoop(const LoopOptions& options, std::span<const double> posit
     : Loop(as_library([&] {
         // A device is no arm that happens to be the default.
         if (options.motors == Motors::real && options.arm.empty() && options.arm_text.empty()) {
-          throw LoopError("arm: is not given; a device with real motors needs its own");
+          throw LoopError("arm: is missing; a device with real motors needs its own arm");
         }
         auto state = std::make_unique<State>(read_plan(options, true), options);
         state->device.emplace(state->plan.arm, state->real);
@@ -291,7 +281,7 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   const double T = s.plan.parameters.tick;
   const double passed = elapsed > 0 ? elapsed : T;
   s.device->take(reading.position, reading.fresh, reading.hand, reading.fault, passed);
-  RigInput input{{s.rig->tip(), 1}, s.wish()};
+  RigInput input{{s.rig->tip(), 1}, s.force.take()};
   constexpr double kMostPeriods = 1e6;
   input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));
   input.dt = elapsed;
@@ -299,8 +289,8 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   return s.device->torque();
 }
 
-void DeviceLoop::arm() noexcept { state_->arms.fetch_add(1, std::memory_order_relaxed); }
-void DeviceLoop::cut() noexcept { state_->cuts.fetch_add(1, std::memory_order_relaxed); }
+void DeviceLoop::arm() noexcept { state_->force.arm(); }
+void DeviceLoop::cut() noexcept { state_->force.cut(); }
 bool DeviceLoop::armed() const noexcept { return state_->rig->force().armed(); }
 double DeviceLoop::force_share() const noexcept { return state_->rig->force().gain(); }
 std::string DeviceLoop::force_text() const {

@@ -80,8 +80,7 @@ void LiveLoop::begin(RigStart start, const Parameters& p) {
   guided_.reset(home_.target);
   led_ = false;
   probing_ = false;
-  known_arms_ = arms_.load();
-  known_cuts_ = cuts_.load();
+  force_.take();  // what was asked before has no meaning now
   beat_.store(MonotonicTime{}.now());
   thread_.start(
       nanoseconds(std::llround(p.tick * 1e9)), [this](const TickTiming& timing) { tick(timing); },
@@ -208,16 +207,8 @@ Vec3 LiveLoop::excite(const Controls& controls, int periods) {
   return probe_.at(now);
 }
 
-ForceRequest LiveLoop::wish() {
-  const std::uint32_t arms = arms_.load(std::memory_order_relaxed);
-  const std::uint32_t cuts = cuts_.load(std::memory_order_relaxed);
-  const bool arm = std::exchange(known_arms_, arms) != arms;
-  const bool cut = std::exchange(known_cuts_, cuts) != cuts;
-  return cut ? ForceRequest::cut : arm ? ForceRequest::arm : ForceRequest::as_it_is;
-}
-
 RigInput LiveLoop::rig_input(const TickTiming& timing, const HandInput& hand) {
-  RigInput input{hand, wish()};
+  RigInput input{hand, force_.take()};
   if (!in_place_) return input;
   input.periods = timing.periods;
   input.dt = timing.dt;
@@ -245,8 +236,7 @@ void LiveLoop::start_over(const Parameters& p) {
 
 // Whether the arm's next tick comes now; the time of a device cannot be stopped.
 bool LiveLoop::due(const Controls& controls) {
-  const bool asked =
-      controls.resets != resets_ || known_arms_ != arms_.load() || known_cuts_ != cuts_.load();
+  const bool asked = controls.resets != resets_ || force_.waits();
   if (in_place_ || asked) return true;
   if (!controls.paused) {
     steps_ = controls.steps;
@@ -370,7 +360,9 @@ void LiveLoop::record(std::unique_ptr<Recorder> recorder) {
     throw std::invalid_argument("the recording was begun for an arm of other joints");
   }
   if (in_place_ && recorder->lanes() > 1) {
-    throw std::invalid_argument("the recording was begun for several runs on a virtual arm");
+    throw std::invalid_argument(
+        "the recording was begun for several runs on a virtual arm, which a real device cannot "
+        "have");
   }
   recorder_ = std::move(recorder);
   stopping_ = false;

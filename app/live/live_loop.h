@@ -16,6 +16,7 @@
 #include "core/realtime/haptic_thread.h"
 #include "core/realtime/triple_buffer.h"
 #include "core/tick/as_taken.h"
+#include "core/tick/force_asked.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/identify/grip_probe.h"
 #include "devices/simulated/hands.h"
@@ -144,9 +145,9 @@ class LiveLoop {
   bool holds_device() const { return held_ > 0; }
 
   // Asks for force; nothing else does. Requests from before open() are forgotten.
-  void arm() { arms_.fetch_add(1, std::memory_order_relaxed); }
+  void arm() { force_.arm(); }
   // Cuts the force from the next tick on; wins over arm() within the same tick. For any thread.
-  void cut() { cuts_.fetch_add(1, std::memory_order_relaxed); }
+  void cut() { force_.cut(); }
 
   // Sets the controls, and shows that somebody is there: without calls for SafetyLimits::kSilence
   // the force of guarded motors fades.
@@ -202,7 +203,6 @@ class LiveLoop {
   void start_over(const Parameters& p);                                 // the loop's
   void follow_recorder(const Vec3& target);                             // the loop's
   RigInput rig_input(const TickTiming& timing, const HandInput& hand);  // the loop's
-  ForceRequest wish();                                                  // the loop's
   void step_beside(const Controls& controls, const RigInput& input);    // the loop's
   std::span<double> row(std::size_t lane);                              // a part of rows_
   bool lanes_run(std::size_t count) const;                              // the loop's
@@ -235,7 +235,7 @@ class LiveLoop {
   std::shared_ptr<WarmthMemory> warmth_ = std::make_shared<WarmthMemory>();  // of devices in place
 
   // Counted by the window, read by the loop.
-  std::atomic<std::uint32_t> arms_{0}, cuts_{0};
+  ForceAsked force_;
   std::atomic<nanoseconds> beat_{nanoseconds{0}};
 
   // The window offers a recorder, or withdraws the offer. Once taken, the recorder is the loop's,
@@ -269,7 +269,7 @@ class LiveLoop {
   SafetyLimits limits_;
   RigStart home_;
   RigStart rebase_;
-  std::uint32_t resets_ = 0, known_arms_ = 0, known_cuts_ = 0;
+  std::uint32_t resets_ = 0;
   std::uint32_t steps_ = 0;   // taken, or obsolete
   int slowed_ = 0;            // ticks of the loop since the last one of the arm
   std::vector<double> rows_;  // the newest rows of all lanes
