@@ -64,6 +64,13 @@ ImGuiKey imgui_key(int key) {
 
 }  // namespace
 
+void write_character(unsigned character) {
+  constexpr int kNumbers = ImGuiInputTextFlags_CharsDecimal | ImGuiInputTextFlags_CharsScientific;
+  const ImGuiInputTextState* text = ImGui::GetInputTextState(ImGui::GetActiveID());
+  const bool number = text != nullptr && (text->Flags & kNumbers) != 0;
+  ImGui::GetIO().AddInputCharacter(number && character == ',' ? '.' : character);
+}
+
 void lead_menus_by_keys(bool lead) {
   constexpr int kKeyboard = ImGuiConfigFlags_NavEnableKeyboard;
   int& flags = ImGui::GetIO().ConfigFlags;

@@ -10,6 +10,9 @@ namespace limpid {
 void begin_imgui_input();
 
 void show_key(int key, bool down);
+// Writes a character into the text that has the keys. A comma in a number is its decimal point, as
+// half of all keypads have it.
+void write_character(unsigned character);
 void show_modifiers(bool control, bool shift, bool alt);
 void show_mouse(const ImVec2& at);
 void show_mouse_button(int button, bool down);

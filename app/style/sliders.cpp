@@ -27,8 +27,8 @@ double slider_low(const FieldInfo& info) {
   return 1e-6 * info.slider_maximum;
 }
 
-void draw_track(const ImRect& track, const FieldInfo& info, double value, double usual, bool broken,
-                bool hovered, bool held) {
+void draw_track(const ImRect& track, const FieldInfo& info, double value, const SliderMarks& marks,
+                bool broken, bool hovered, bool held) {
   const Palette& p = current_palette();
   const float scale = current_scale();
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -40,11 +40,14 @@ void draw_track(const ImRect& track, const FieldInfo& info, double value, double
   list.AddRectFilled({track.Min.x, middle - r}, {track.Max.x, middle + r},
                      colour(hovered ? p.frame_active : p.frame_hovered), r);
   ImGui::RenderFrameBorder({track.Min.x, middle - r}, {track.Max.x, middle + r}, r);
-  if (!std::isnan(usual)) {
-    const float x = std::round(x_of(usual));
+  const auto mark = [&](double at, Rgb rgb) {
+    if (std::isnan(at)) return;
+    const float x = std::round(x_of(at));
     list.AddRectFilled({x - 0.75f * scale, middle - 6 * scale},
-                       {x + 0.75f * scale, middle + 6 * scale}, colour(p.muted));
-  }
+                       {x + 0.75f * scale, middle + 6 * scale}, colour(rgb));
+  };
+  mark(marks.usual, p.muted);
+  mark(marks.limit, p.broken);
   if (std::isnan(value)) return;
   const float x = x_of(value);
   const Rgb main = broken ? p.broken : held ? p.text : p.accent;
@@ -54,17 +57,41 @@ void draw_track(const ImRect& track, const FieldInfo& info, double value, double
   list.AddCircleFilled({x, middle}, (held ? 5.5f : 4.5f) * scale, colour(main), 24);
 }
 
-// Draws label and value above the track; shortens the value first if the panel is narrow.
-void draw_caption(const ImRect& box, const FieldInfo& info, double value, bool broken) {
+// Draws label and text above the track, the value or what is said in its place; shortens the text
+// first if the panel is narrow.
+void draw_caption(const ImRect& box, const FieldInfo& info, std::string text, Rgb rgb) {
   const Palette& p = current_palette();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText(box.Min, colour(p.text), info.caption);
   const float room = box.GetWidth() - ImGui::CalcTextSize(info.caption).x - ImGui::GetFontSize();
-  std::string text = with_unit(info, value);
   if (ImGui::CalcTextSize(text.c_str()).x > room) text = text.substr(0, text.find(' '));
   const float width = ImGui::CalcTextSize(text.c_str()).x;
-  const Rgb rgb = broken ? p.broken : std::isnan(value) ? p.muted : p.text;
   list.AddText({box.Max.x - width, box.Min.y}, colour(rgb), text.c_str());
+}
+
+// Says for a while which numbers are allowed, after another one was typed.
+class RangeReminder {
+ public:
+  explicit RangeReminder(ImGuiID id) : memory_(*ImGui::GetStateStorage()), since_(id + 3) {}
+
+  void look_at(const FieldInfo& info, double typed) {
+    const bool inside = typed >= info.least() && typed <= info.maximum;
+    memory_.SetFloat(since_, inside ? kNever : static_cast<float>(ImGui::GetTime()));
+  }
+  bool speaks() const {
+    const float since = memory_.GetFloat(since_, kNever);
+    return since != kNever && static_cast<float>(ImGui::GetTime()) - since < kSpeaks;
+  }
+
+ private:
+  static constexpr float kNever = -1, kSpeaks = 4;  // [s]
+
+  ImGuiStorage& memory_;
+  ImGuiID since_;
+};
+
+std::string range_text(const FieldInfo& info) {
+  return three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
 }
 
 // Reads a number with a point or a comma, and nothing else around it.
@@ -91,9 +118,10 @@ bool typing(const ImRect& box, ImGuiID id, const FieldInfo& info, bool begin, do
   const int length = std::snprintf(text.data(), text.size(), "%.6g", from);
   const std::string before(text.data(), static_cast<std::size_t>(length));
   ImGui::TempInputText(box, id, kSliderId, text.data(), static_cast<int>(text.size()),
-                       ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
+                       ImGuiInputTextFlags_AutoSelectAll);
   const bool done = !begin && !ImGui::TempInputIsActive(id);
   if (done && before != text.data()) changed = parse_number(text.data(), value);
+  if (changed) RangeReminder(id).look_at(info, value);
   return true;
 }
 
@@ -150,8 +178,7 @@ void show_tooltip(const FieldInfo& info, double usual, const char* broken) {
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   if (info.is_number()) {
-    const std::string range = three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
-    ImGui::Text("%s, %s", info.key, range.c_str());
+    ImGui::Text("%s, %s", info.key, range_text(info).c_str());
     ImGui::Text("%s: %s (right click). Double click to type.", of_paper(info) ? "Paper" : "Usual",
                 with_unit(info, usual).c_str());
   } else {
@@ -252,7 +279,7 @@ void draw_broken_frame(ImVec2 from, ImVec2 to) {
                                       ImGui::GetStyle().FrameRounding, 0, current_scale());
 }
 
-bool number_slider(const FieldInfo& info, double& value, double usual, bool broken) {
+bool number_slider(const FieldInfo& info, double& value, const SliderMarks& marks, bool broken) {
   ImGuiWindow* window = ImGui::GetCurrentWindow();
   const float text = ImGui::GetTextLineHeight();
   const float scale = current_scale();
@@ -287,11 +314,20 @@ bool number_slider(const FieldInfo& info, double& value, double usual, bool brok
     value = wanted;
   }
   if (over && io.MouseClicked[1]) {
-    changed = !(value == usual || (std::isnan(value) && std::isnan(usual)));
-    value = usual;
+    changed = !(value == marks.usual || (std::isnan(value) && std::isnan(marks.usual)));
+    value = marks.usual;
   }
-  draw_caption(box, info, value, broken);
-  draw_track(track, info, value, usual, broken, over, from_track);
+  const Palette& p = current_palette();
+  if (RangeReminder(id).speaks()) {
+    ImGui::GetWindowDrawList()->AddText(box.Min, colour(p.broken),
+                                        ("allowed: " + range_text(info)).c_str());
+  } else {
+    draw_caption(box, info, with_unit(info, value),
+                 broken              ? p.broken
+                 : std::isnan(value) ? p.muted
+                                     : p.text);
+  }
+  draw_track(track, info, value, marks, broken, over, from_track);
   if (broken) draw_broken_frame(box.Min, box.Max);
   ImGui::RenderNavHighlight(box, id);
   return changed;
@@ -299,7 +335,7 @@ bool number_slider(const FieldInfo& info, double& value, double usual, bool brok
 
 bool value_slider(const FieldInfo& info, double& value, double usual) {
   ImGui::PushID(info.key);
-  const bool changed = number_slider(info, value, usual, false);
+  const bool changed = number_slider(info, value, {usual}, false);
   if (changed) value = std::clamp(value, info.least(), info.maximum);
   ImGui::PopID();
   tooltip(info.meaning);
@@ -307,13 +343,13 @@ bool value_slider(const FieldInfo& info, double& value, double usual) {
 }
 
 bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double usual,
-                      const char* broken) {
+                      const char* broken, double limit) {
   ImGui::PushID(info.key);
   ImGui::BeginGroup();
   bool changed = false;
   double value = parameter_number(parameters, info);
   if (info.is_number()) {
-    changed = number_slider(info, value, usual, broken != nullptr);
+    changed = number_slider(info, value, {usual, limit}, broken != nullptr);
   } else if (info.kind == FieldInfo::Kind::choice) {
     changed = choices(info, value);
   } else {

@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <limits>
+
 #include "core/tick/parameters.h"
 
 namespace limpid {
@@ -16,9 +18,15 @@ double slider_value(const FieldInfo& info, double place);
 // it; `direction`: 1 up, -1 down. Held within the slider's range, as slider_value() is.
 double slider_step(const FieldInfo& info, double value, double usual, int direction);
 
+// Marks on a slider's track, NaN for none: the usual value, and a limit, which is red.
+struct SliderMarks {
+  double usual = std::numeric_limits<double>::quiet_NaN();
+  double limit = std::numeric_limits<double>::quiet_NaN();
+};
+
 // Draws a number as a slider at ImGui's cursor over the width left, below an ID of its own; returns
-// whether `value` was changed. `usual` is marked, and can be gone back to; `broken`: in red.
-bool number_slider(const FieldInfo& info, double& value, double usual, bool broken);
+// whether `value` was changed. A right click goes back to the usual value; `broken`: in red.
+bool number_slider(const FieldInfo& info, double& value, const SliderMarks& marks, bool broken);
 
 // Draws the frame round a widget whose value breaks a promise.
 void draw_broken_frame(ImVec2 from, ImVec2 to);
@@ -27,9 +35,10 @@ void draw_broken_frame(ImVec2 from, ImVec2 to);
 // returns whether it did. `usual` is marked on the slider and a right click goes back to it
 // (enumerations by number, bool as 0 or 1, kFromArm for the arm's own). A double click or
 // Ctrl+click takes typed numbers. `broken`: the promise that the value breaks, nullptr for none;
-// it is shown in red.
+// it is shown in red. `limit`: see SliderMarks.
 bool parameter_slider(const ParameterInfo& info, Parameters& parameters, double usual,
-                      const char* broken = nullptr);
+                      const char* broken = nullptr,
+                      double limit = std::numeric_limits<double>::quiet_NaN());
 
 // Draws the same for the number of another field, and its meaning as a tooltip.
 bool value_slider(const FieldInfo& info, double& value, double usual);

@@ -66,7 +66,7 @@ class Story(WindowTest):
         self.assertFalse(self.state()["told"])
         self.key("ctrl+o")
         self.wait("the dialog", lambda s: s["typing"])
-        self.type(str(self.home / "data/limpid/sessions/story.h5"))
+        self.type(str(self.home / "data/limpid/story/story.h5"))
         self.key("Return")
         self.wait("a sentence", lambda s: s["playing"] and s["told"])
         self.first_sentence()

@@ -8,16 +8,14 @@
 
 namespace limpid {
 
-void Chatter::start_over() {
-  const SampleIndex next = next_;
+void Chatter::start_over(SampleIndex next) {
   *this = Chatter();
   next_ = next;
 }
 
 void Chatter::follow(const History& history, SampleIndex end, int first, int dof, double k_vc) {
   if (end < next_ || k_vc != k_vc_ || history.first() > next_) {
-    next_ = std::max(end < next_ ? SampleIndex{0} : next_, history.first());
-    start_over();
+    start_over(std::max(end < next_ ? SampleIndex{0} : next_, history.first()));
     k_vc_ = k_vc;
   }
   const auto size = static_cast<SampleIndex>(std::lround(kStretch / history.tick()));

@@ -29,8 +29,8 @@ class Chatter {
   // `dof` joints, from `first` on those of this run. k_vc: the coupling's spring [N m/rad]; a
   // change of it starts over.
   void follow(const History& history, SampleIndex end, int first, int dof, double k_vc);
-  // Forgets all stretches so far.
-  void start_over();
+  // Forgets all stretches so far, and samples before `next`.
+  void start_over(SampleIndex next);
 
   // Returns whether the newest stretches chatter.
   bool there() const { return in_a_row_ >= kStretches; }

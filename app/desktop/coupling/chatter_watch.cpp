@@ -15,6 +15,7 @@ namespace limpid {
 namespace {
 
 constexpr auto kStays = std::chrono::seconds(30);
+constexpr auto kJustTouched = std::chrono::seconds(2);  // longer than chatter takes to be seen
 
 // Returns a value of two digits, which is enough for a slider.
 double rounded_down(double stiffness) {
@@ -37,16 +38,22 @@ void ChatterWatch::note_touch() {
   const SceneEditor& editor = document_.editor();
   const auto under = object_under({point + kOutside * out, -out}, editor.scene(), editor.models(),
                                   stage.rows().bodies(layout, live_.row()));
-  if (under) touched_ = under;
+  if (!under) return;
+  touched_ = under;
+  touched_at_ = Clock::now();
+}
+
+void ChatterWatch::judge_from_now() {
+  for (Chatter& each : chatter_) each.start_over(live_.stage().history.end());
 }
 
 std::optional<ChatterWatch::Wall> ChatterWatch::wall_of(const Parameters& p) const {
   const Scene& scene = document_.scene();
   if (!touched_ || *touched_ >= scene.objects.size()) return std::nullopt;
+  if (Clock::now() - touched_at_ > kJustTouched) return std::nullopt;
   const Object& object = scene.objects[*touched_];
   const ArmDescription& arm = live_.stage().arm();
-  const double holds =
-      tip_limits(arm, rest_pose(arm), p, scene).walls[static_cast<std::size_t>(p.kind)].stiffness;
+  const double holds = tip_limits(arm, rest_pose(arm), p, scene).wall(p.kind).stiffness;
   const double stiffness = object.material.stiffness;
   const double softer = std::min(holds > 0 ? holds : stiffness, stiffness / 2);
   return Wall{*touched_, object.name, stiffness, rounded_down(softer)};
@@ -64,14 +71,16 @@ void ChatterWatch::follow() {
   const int channels = stage.channels().count();
   for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
     Chatter& chatter = chatter_[lane];
-    if (lane >= settings_.lanes.count) {
-      chatter.start_over();
+    const Parameters& p = settings_.lanes.parameters[lane];
+    // Samples of other settings, or of passivity broken on purpose, say nothing of these.
+    if (lane >= settings_.lanes.count || passivity_broken(settings_) || !(p == judged_[lane])) {
+      judged_[lane] = p;
+      chatter.start_over(stage.history.end());
       continue;
     }
-    const Parameters& p = settings_.lanes.parameters[lane];
     chatter.follow(stage.history, stage.history.end(), static_cast<int>(lane) * channels,
                    stage.arm().dof(), p.k_vc);
-    if (!chatter.there() || passivity_broken(settings_)) continue;
+    if (!chatter.there()) continue;
     if (!found_) found_ = Found{lane, p, wall_of(p)};
     if (found_->lane == lane) seen_ = Clock::now();
   }
@@ -105,7 +114,7 @@ std::string ChatterWatch::text() const {
 void ChatterWatch::take_predictive() {
   settings_.lanes.parameters[found_->lane].kind = CouplingKind::predictive;
   forget();
-  for (Chatter& each : chatter_) each.start_over();
+  judge_from_now();
 }
 
 void ChatterWatch::soften_wall() {
@@ -115,7 +124,7 @@ void ChatterWatch::soften_wall() {
   object.material.stiffness = wall.softer;
   document_.editor().set(wall.place, std::move(object), "stiffness");
   forget();
-  for (Chatter& each : chatter_) each.start_over();
+  judge_from_now();
 }
 
 }  // namespace limpid

@@ -47,6 +47,7 @@ class ChatterWatch {
   using Clock = std::chrono::steady_clock;
 
   void note_touch();
+  void judge_from_now();
   std::optional<Wall> wall_of(const Parameters& p) const;
   bool is_over() const;
 
@@ -54,8 +55,10 @@ class ChatterWatch {
   LiveStage& live_;
   Document& document_;
   std::array<Chatter, kMostLanes> chatter_;
-  const Stage* of_ = nullptr;           // stage whose history was looked at
-  std::optional<std::size_t> touched_;  // object touched last
+  const Stage* of_ = nullptr;                  // stage whose history was looked at
+  std::array<Parameters, kMostLanes> judged_;  // settings under which each lane is judged
+  std::optional<std::size_t> touched_;         // object touched last
+  Clock::time_point touched_at_{};
   std::optional<Found> found_;
   Clock::time_point seen_{};
 };

@@ -68,15 +68,24 @@ std::string proxy_broken(const Parameters& p, const Analysis& a) {
       -a.condition3.proxy_margin, proxy_needs(p, a));
 }
 
-void slider(Parameters& p, const char* key, const std::string& broken = {}) {
+// `limit`: a value that is marked in red, beside the usual one; NaN: none.
+void slider(Parameters& p, const char* key, const std::string& broken = {},
+            double limit = std::numeric_limits<double>::quiet_NaN()) {
   const ParameterInfo& info = *find_parameter(key);
   Parameters shown = p;
   if (std::isnan(shown.felt_damping)) shown.felt_damping = p.damping_share(p.eta);
   if (parameter_slider(info, shown, parameter_number(Parameters{}, info),
-                       broken.empty() ? nullptr : broken.c_str())) {
+                       broken.empty() ? nullptr : broken.c_str(), limit)) {
     set_parameter_number(p, info, parameter_number(shown, info));
   }
   note_place(key);
+}
+
+// Marks the least eta where the law has one.
+void eta_slider(Parameters& p, const Analysis& a) {
+  const bool least = info(p.kind).promise == Promise::eta_min;
+  slider(p, "coupling.eta", eta_broken(p, a),
+         least ? a.eta_min : std::numeric_limits<double>::quiet_NaN());
 }
 
 void push_chosen(Rgb law) {
@@ -211,7 +220,6 @@ bool has_conditions(const LawInfo& law) {
 }
 
 void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
-  const std::string eta = eta_broken(p, a);
   // Condition (3) does not apply to the tanks, nor to laws that solve both sides together, unless
   // linked.
   const LawInfo& law = info(p.kind);
@@ -222,11 +230,11 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
     for (const std::string_view key : info(p.kind).sliders) {
       if (advanced(key) != which || of_link(key)) continue;
       const bool of_device = key == "coupling.k_vc" || key == "coupling.b_vc";
-      slider(p, key.data(),
-             key == "coupling.eta"   ? eta
-             : key == "coupling.b_v" ? proxy
-             : of_device             ? device
-                                     : std::string());
+      if (key == "coupling.eta") {
+        eta_slider(p, a);
+        continue;
+      }
+      slider(p, key.data(), key == "coupling.b_v" ? proxy : of_device ? device : std::string());
     }
   };
   draw(false);
@@ -428,13 +436,10 @@ OwnEnergy own_energy(const CouplingReading& now, const Parameters& p, const Anal
           at_fault};
 }
 
-// Draws E_c as in the plots, by its sources; only the coupling's own part is judged.
-void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
+// Draws the sources of E_c; only the coupling's own part is judged.
+void draw_givers(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   const EnergyAccount& energy = now.energy;
   const auto [own, broken, at_fault] = own_energy(now, p, a);
-  read_out("Energy given E_c", energy_text(now.energy_total), {},
-           "Energy that the coupling gave since the start, with the device's own damping, as in "
-           "the plots. The lines below say what gave it.");
   read_out(
       "The coupling's own", energy_text(own), broken,
       "The part of E_c that the coupling itself gave. It stays below zero while the coupling is "
@@ -455,6 +460,14 @@ void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis
         "fault of the coupling.");
 }
 
+// Draws E_c as in the plots, and its sources.
+void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
+  read_out("Energy given E_c", energy_text(now.energy_total), {},
+           "Energy that the coupling gave since the start, with the device's own damping, as in "
+           "the plots. The lines below say what gave it.");
+  draw_givers(now, p, a);
+}
+
 void draw_limited(const CouplingReading& now) {
   const std::vector<int>& joints = now.limited;
   if (!now.warm.empty()) ImGui::TextWrapped("%s", now.warm.c_str());
@@ -466,6 +479,11 @@ void draw_limited(const CouplingReading& now) {
   read_out("Motor at its limit", text, {},
            "The coupling asks for more torque than the motor can give, (section 3.1). Press less, "
            "or raise Device > Motors' largest torque.");
+  if (now.contact > 0) {
+    ImGui::TextWrapped(
+        "The hand presses harder than the motors can push, so hand and avatar drift "
+        "apart. Lift the hand a little.");
+  }
 }
 
 void draw_break(bool broken, const Act& act) {
@@ -486,7 +504,7 @@ void draw_break(bool broken, const Act& act) {
 void draw_eta(Parameters& p, const Analysis& a) {
   const auto& sliders = info(p.kind).sliders;
   if (std::ranges::find(sliders, std::string_view("coupling.eta")) == sliders.end()) return;
-  slider(p, "coupling.eta", eta_broken(p, a));
+  eta_slider(p, a);
 }
 
 // Draws whether the law is passive with these settings, in a word.
@@ -501,9 +519,29 @@ void draw_passive(const Parameters& p, const Analysis& a) {
            fmt::format("Why: {}.", found.by).c_str());
 }
 
+// Draws how far device and proxy are apart, and the scene's push on the proxy.
+void draw_apart(const CouplingReading& reading) {
+  read_out("Apart at the tip", fmt::format("{:.2f} mm", 1e3 * reading.gap), {},
+           "How far the tips of your device and of its avatar, the proxy, are apart.");
+  read_out("Apart in the joints",
+           fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
+           "Coordination error |x_E|: joint angles of the device minus those of the proxy. The "
+           "first plot shows it.");
+  read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
+           "How hard the scene pushes on the proxy. What hangs on the magnet does not count; f2 in "
+           "the plots has it.");
+}
+
+void draw_show(const char* label, const char* help, const Act& act) {
+  if (ImGui::Button(label, {ImGui::GetContentRegionAvail().x, 0})) act("view.everything");
+  note_place(label);
+  tooltip(help);
+}
+
 }  // namespace
 
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
+  draw_apart(reading);
   if (p.kind == CouplingKind::tank) {
     draw_tanks(reading);
   } else if (info(p.kind).keeps_ledger()) {
@@ -518,19 +556,17 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
 
 void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
                          const CouplingSituation& now) {
-  read_out("Apart at the tip", fmt::format("{:.2f} mm", 1e3 * reading.gap), {},
-           "How far the tips of your device and of its avatar, the proxy, are apart.");
-  read_out("Apart in the joints",
-           fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
-           "Coordination error |x_E|: joint angles of the device minus those of the proxy. The "
-           "first plot shows it.");
-  read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
-           "How hard the scene pushes on the proxy.");
-  const OwnEnergy energy = own_energy(reading, p, now.analysis);
-  read_out("Energy given E_c", energy_text(reading.energy_total), energy.broken,
+  draw_apart(reading);
+  read_out("Energy given E_c", energy_text(reading.energy_total),
+           own_energy(reading, p, now.analysis).broken,
            "What the coupling gave since the start. It stays below zero while the coupling is "
            "passive. The second plot shows it.");
   draw_passive(p, now.analysis);
+}
+
+void draw_simple_notes(const CouplingReading& reading, const Parameters& p,
+                       const CouplingSituation& now) {
+  if (reading.energy_total > kGivenEnergy) draw_givers(reading, p, now.analysis);
   draw_unsolved(reading);
   draw_limited(reading);
 }
@@ -543,15 +579,15 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
     draw_eta(p, now.analysis);
     draw_simple_reading(reading, p, now);
     if (!now.real) draw_break(now.broken, act);
-    if (ImGui::Button("Show all", {ImGui::GetContentRegionAvail().x, 0})) act("view.everything");
-    note_place("Show all");
-    tooltip("All settings and figures: gains, passivity, energy, analysis and timing (F8).");
+    draw_show("Show all", "All settings and figures: gains, passivity, energy, analysis (F8).",
+              act);
     return;
   }
   draw_sliders(p, now.analysis, now.arm);
   if (!now.real) draw_break(now.broken, act);
   if (has_conditions(info(p.kind))) draw_passivity(p, now.analysis, now.real);
   draw_reading(reading, p, now.analysis);
+  draw_show("Show less", "What a first hour needs (F8).", act);
 }
 
 void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,

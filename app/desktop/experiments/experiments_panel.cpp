@@ -220,6 +220,7 @@ void ExperimentsPanel::draw_list() {
       ImGui::TableNextColumn();
       draw_words(experiment);
       draw_state(experiment);
+      ImGui::Dummy({0, 0.4f * em});  // its lines stand closer to each other than to the next
       ImGui::PopID();
     }
     ImGui::EndTable();

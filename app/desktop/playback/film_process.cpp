@@ -90,7 +90,9 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  void interrupt() const { ::kill(id_, SIGINT); }
+  // SIGINT may be ignored: whoever starts Limpid by a script and `&` has it so, and children
+  // inherit it.
+  void interrupt() const { ::kill(id_, SIGTERM); }
   // Adds new output, if any comes soon; returns false at its end.
   bool read(std::string& text) const {
     pollfd ready{out_, POLLIN, 0};

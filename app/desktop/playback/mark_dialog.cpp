@@ -28,7 +28,7 @@ MarkAnswer MarkDialog::draw(bool& open, const std::string& when, const std::stri
   MarkAnswer answer;
   ImGui::SetNextItemWidth(-1);
   const bool entered = ImGui::InputTextWithHint(
-      "##text", "what is worth remembering here", &text_,
+      "##text", "a note about this moment", &text_,
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   const bool too_long = text_.size() > kMarkLength;
   ImGui::PushStyleColor(

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "app/base/folders.h"
 #include "app/desktop/base/settings.h"
 #include "app/desktop/playback/film_process.h"
 #include "devices/files/session/session_csv.h"
@@ -11,6 +12,13 @@
 namespace limpid {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// The story is nobody's recording: it is neither listed among them, nor what P plays.
+fs::path story_file() { return user_data_dir() / "story/story.h5"; }
+
+}  // namespace
 
 void Playback::open(const fs::path& file) {
   loading_.start(
@@ -20,7 +28,7 @@ void Playback::open(const fs::path& file) {
 
 void Playback::open_story() {
   left_.clear();
-  loading_.start("running the story", [out = sessions_dir() / "story.h5"](TaskProgress& progress) {
+  loading_.start("running the story", [out = story_file()](TaskProgress& progress) {
     return load_story(out, progress);
   });
 }
@@ -39,7 +47,7 @@ void Playback::close() {
 }
 
 void Playback::take_over() {
-  left_ = shown_->file();
+  last_ = left_ = shown_->file();
   left_at_ = shown_->player().time();
   notices_.say("The arm is yours. P gives it back to the story.");
   close();
@@ -88,9 +96,8 @@ void Playback::recover_leftovers(const fs::path& folder) {
     if (!entry.path().string().ends_with(".h5.part")) continue;
     try {
       const Recovered recovered = recover_session(entry.path(), false);
-      notices_.say(
-          fmt::format("Recovered {} ({} ticks) from a recording that was cut off. P plays it.",
-                      recovered.file.filename().string(), recovered.rows));
+      recovered_ = fmt::format("Recovered {} ({} ticks) from a recording that was cut off.",
+                               recovered.file.filename().string(), recovered.rows);
       last_ = recovered.file;
     } catch (const std::exception& e) {
       notices_.say(e.what(), true);
@@ -121,8 +128,9 @@ bool Playback::take_results() {
     PlayedSession fresh(std::move(**loaded));
     shown_.emplace(std::move(fresh));
     told_of_build_ = false;
-    last_ = shown_->file();
-    if (last_ == std::exchange(left_, {})) shown_->player().seek(left_at_);
+    recovered_.clear();
+    if (shown_->file() != story_file()) last_ = shown_->file();
+    if (shown_->file() == std::exchange(left_, {})) shown_->player().seek(left_at_);
     shown_->player().play();
     opened = true;
   }

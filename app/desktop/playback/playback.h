@@ -59,6 +59,9 @@ class Playback {
   void set_last(const std::filesystem::path& file) { last_ = file; }
   // Makes sessions of the recordings in a folder that were cut off.
   void recover_leftovers(const std::filesystem::path& folder);
+  // The last of them in words, until a session is played or it is forgotten.
+  const std::string& recovered() const { return recovered_; }
+  void forget_recovered() { recovered_.clear(); }
 
   // Does the work of a frame; to be called once a frame. Returns true when another session has
   // come.
@@ -72,6 +75,7 @@ class Playback {
   Notices& notices_;
   std::optional<PlayedSession> shown_;
   std::filesystem::path table_, film_, written_;
+  std::string recovered_;
   std::filesystem::path last_, left_;  // left_: a story that the user took over
   double left_at_ = 0;                 // time in that story [s]
   bool told_of_build_ = false;         // the notice that another build made the session was shown

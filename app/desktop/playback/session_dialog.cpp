@@ -16,22 +16,25 @@
 #include "app/style/theme.h"
 
 namespace limpid {
-namespace {
 
 namespace fs = std::filesystem;
 
-}  // namespace
-
-// Draws the recordings of a folder, newest names first; returns the one that was clicked.
+// Draws the recordings of a folder, newest names first; returns the one that was clicked. What is
+// typed, unless it is a path, is a part of their names.
 fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   heading(name);
   std::vector<fs::path> files;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
-    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+    const bool meant =
+        typed_.find('/') != std::string::npos ||
+        small_letters(entry.path().filename().string()).find(small_letters(typed_)) !=
+            std::string::npos;
+    if (entry.path().extension() == ".h5" && meant) files.push_back(entry.path());
   }
   std::ranges::sort(files, std::greater{});
-  if (files.empty()) ImGui::TextDisabled("none yet");
+  if (files.empty()) ImGui::TextDisabled("%s", typed_.empty() ? "none yet" : "none of that name");
+  if (first_.empty() && !files.empty()) first_ = files.front();
   fs::path chosen;
   for (const fs::path& file : files) {
     const double mib = static_cast<double>(fs::file_size(file, none)) / (1 << 20);
@@ -64,12 +67,12 @@ fs::path SessionDialog::draw(bool& open, bool& elsewhere) {
   if (!was_shown_) ImGui::SetKeyboardFocusHere();
   was_shown_ = true;
   fs::path chosen;
+  bool entered = false;
   const std::string before = typed_;
-  if (ImGui::InputTextWithHint("##path",
-                               "a recording, or a sweep's folder; dropping it here works too",
-                               &typed_, ImGuiInputTextFlags_EnterReturnsTrue) ||
+  if (ImGui::InputTextWithHint("##path", "a part of a name, a path, or a sweep's folder", &typed_,
+                               ImGuiInputTextFlags_EnterReturnsTrue) ||
       accepted()) {
-    chosen = expanded(typed_);
+    entered = true;
   }
   if (typed_ != before) {
     complaint_.clear();
@@ -79,13 +82,18 @@ fs::path SessionDialog::draw(bool& open, bool& elsewhere) {
     ImGui::TextColored(colour_vector(current_palette().broken), "%s", complaint_.c_str());
   }
   keys_.move(std::exchange(listed_, 0));
+  first_.clear();
   ImGui::BeginChild("sessions", {0, std::min(20 * em, 0.55f * room.y)});
   for (const auto& [name, dir] : {std::pair{"Yours", sessions_dir()},
                                   {"Shipped with Limpid", data_dir() / "assets/sessions"}}) {
     if (const fs::path clicked = list(name, dir); !clicked.empty()) chosen = clicked;
   }
   ImGui::EndChild();
-  if (ImGui::Button("Open (Enter)")) chosen = expanded(typed_);
+  entered = ImGui::Button("Open (Enter)") || entered;
+  if (entered && chosen.empty() && !typed_.empty()) {
+    const bool part = typed_.find('/') == std::string::npos && !first_.empty();
+    chosen = part ? first_ : expanded(typed_);
+  }
   ImGui::SameLine();
   close_button("Cancel (Esc)", open);
   ImGui::SameLine();

@@ -24,6 +24,7 @@ class SessionDialog {
   int listed_ = 0;  // number of items so far in this frame
   bool was_shown_ = false;
   std::string typed_, complaint_;
+  std::filesystem::path first_;  // in the lists
 };
 
 }  // namespace limpid

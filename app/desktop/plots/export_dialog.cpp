@@ -85,7 +85,8 @@ void ExportDialog::draw_stretch(const Stage& stage) {
   note_place("stretch");
 }
 
-void ExportDialog::draw_size() {
+// Asks for the size of each of these plots, which stand one above the other.
+void ExportDialog::draw_size(std::size_t plots) {
   const auto choice = [](const char* label, auto& value, auto one) {
     if (ImGui::RadioButton(label, value == one)) value = one;
     note_place(label);
@@ -103,14 +104,19 @@ void ExportDialog::draw_size() {
   ImGui::InputDouble("by", &order_.width, 0, 0, "%.0f mm");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
-  ImGui::InputDouble("printed", &order_.height, 0, 0, "%.0f mm");
+  ImGui::InputDouble(plots > 1 ? "each plot" : "printed", &order_.height, 0, 0, "%.0f mm");
+  const double height = static_cast<double>(plots) * order_.height;
+  if (plots > 1) {
+    ImGui::TextDisabled("%zu plots one above the other: %.0f by %.0f mm", plots, order_.width,
+                        height);
+  }
   if (order_.format != Format::png) return;
   ImGui::SetNextItemWidth(number);
   ImGui::InputInt("dpi", &order_.dpi, 0);
   const double inch = 25.4;
   ImGui::SameLine();
   ImGui::TextDisabled("%.0f x %.0f pixels", std::round(order_.width / inch * order_.dpi),
-                      std::round(order_.height / inch * order_.dpi));
+                      std::round(height / inch * order_.dpi));
 }
 
 // Returns which value is wrong, and what is allowed; empty: all are right.
@@ -155,7 +161,7 @@ std::optional<ExportOrder> ExportDialog::draw(bool& open, const Stage& stage, st
   ImGui::PushItemWidth(-6 * em);
   draw_what(stage, recorded);
   draw_stretch(stage);
-  if (is_drawn(order_.what)) draw_size();
+  if (is_drawn(order_.what)) draw_size(order_.what == What::figure ? stage.plots.size() : 1);
   // The name follows the choices until the user types another one.
   if (file_ == offered_) file_ = offered_ = offer(order_, stage, folder).string();
   const bool video = order_.what == What::video;

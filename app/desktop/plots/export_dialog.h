@@ -37,7 +37,7 @@ class ExportDialog {
  private:
   void draw_what(const Stage& stage, bool recorded);
   void draw_stretch(const Stage& stage);
-  void draw_size();
+  void draw_size(std::size_t plots);
   std::string why_not() const;
 
   ExportOrder order_;

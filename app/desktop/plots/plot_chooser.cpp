@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -18,12 +17,6 @@
 
 namespace limpid {
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool chosen(const PlotChoice& choice, const std::string& key) {
   return std::ranges::find(choice.channels, key) != choice.channels.end();
@@ -69,13 +62,13 @@ std::optional<int> apart_from_word(const ChannelInfo& channel, std::string_view 
        {"power", "energy"},
        {"effort", "torque"}}};
   const auto has = [](const std::string& text, std::string_view part) {
-    return lower(text).find(part) != std::string::npos;
+    return small_letters(text).find(part) != std::string::npos;
   };
   const auto anywhere = [&](std::string_view part) {
     return has(channel.group + " " + channel.unit + " " + channel.key, part);
   };
   const bool begins =
-      lower(channel.name).starts_with(word) || has(channel.name, " " + std::string(word));
+      small_letters(channel.name).starts_with(word) || has(channel.name, " " + std::string(word));
   if (begins) return 0;
   if (has(channel.name + " " + channel.label, word)) return 1;
   if (anywhere(word)) return 2;
@@ -89,7 +82,7 @@ std::optional<int> apart_from_word(const ChannelInfo& channel, std::string_view 
 // Returns the sum over all words; nothing if one is not in it.
 std::optional<int> apart_from(const ChannelInfo& channel, const std::string& words) {
   int apart = 0;
-  std::istringstream in(lower(words));
+  std::istringstream in(small_letters(words));
   for (std::string word; in >> word;) {
     const std::optional<int> of_word = apart_from_word(channel, word);
     if (!of_word) return std::nullopt;

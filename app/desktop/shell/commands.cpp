@@ -224,6 +224,10 @@ std::string nothing_written(const Desktop& d) {
   return d.exporter.written().empty() ? "Nothing was exported lately." : "";
 }
 
+std::string nothing_recovered(const Desktop& d) {
+  return d.playback.recovered().empty() ? "Nothing was recovered." : "";
+}
+
 std::string nothing_selected(const Desktop& d) {
   return d.document.editor().selected() ? "" : "Select an object of the scene first (Tab).";
 }
@@ -251,7 +255,8 @@ std::string cannot(const Desktop& d) {
 
 std::string why_no_more_runs(const Desktop& d) {
   const std::string why = d.live.why_lanes_are_fixed();
-  return why.empty() && d.settings.lanes.count == kMostLanes ? "Three runs are the most." : why;
+  return why.empty() && d.settings.lanes.count == kMostLanes ? "At most three runs are possible."
+                                                             : why;
 }
 
 std::string why_no_fewer_runs(const Desktop& d) {
@@ -301,7 +306,7 @@ constexpr Command row(const char* id, const char* text, const char* menu, const 
 // its commands in this order.
 constexpr std::array kCommands{
     row("force.cut", "Force off at once", nullptr, "Space",
-        "force off at once; in playback without a real device: play, pause",
+        "switches the force off at once; in playback without a real device: play or pause",
         [](Desktop& d) { d.cut_or_play(); }, {.reach = Reach::all_but_text, .blind = true}),
     row("window.escape", "Close what is open, or force off", nullptr, "Esc",
         "closes what is open, then the playback; with nothing open, and always on a real device, "
@@ -375,6 +380,8 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.exporter.open_written(); }, {.why_not = nothing_written}),
     row("export.show", "Show the exported file in its folder", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.show_written(); }, {.why_not = nothing_written}),
+    row("session.forget_recovered", "Hide the line about what was recovered", nullptr, nullptr,
+        nullptr, [](Desktop& d) { d.playback.forget_recovered(); }, {.why_not = nothing_recovered}),
     row("export.forget", "Hide the line about the export", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.exporter.forget(); }, {.why_not = nothing_written}),
     row("window.save_picture", "Save picture", "File", "F12", "save a picture of the window",
@@ -522,7 +529,7 @@ constexpr std::array kCommands{
         "end the last of several runs on the same hand", [](Desktop& d) { d.tuning.drop_lane(); },
         {.why_not = why_no_fewer_runs}),
     row("loop.pause", "Pause the simulation", "Session", "K",
-        "pause the simulation; paused: on by a tick, by ten",
+        "pauses the simulation; while paused: steps by one tick, by ten ticks",
         [](Desktop& d) { d.live.pause(!d.live.paused()); },
         {.why_not = time_fixed, .checked = [](const Desktop& d) { return d.live.paused(); }}),
     row("loop.step", "On by a tick", nullptr, "Right", "", [](Desktop& d) { d.live.step(1); },
@@ -532,13 +539,13 @@ constexpr std::array kCommands{
     row("session.tick_back", "Step back by a tick", nullptr, "Left", "in playback: step by a tick",
         [](Desktop& d) { player(d).step(-1); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
-    row("session.tick_on", "Step on by a tick", nullptr, "Right", "",
+    row("session.tick_on", "Step forward by one tick", nullptr, "Right", "",
         [](Desktop& d) { player(d).step(1); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
     row("session.step_back", "Step back by 0.1 s", nullptr, "Shift+Left",
         "in playback: step by 0.1 s", [](Desktop& d) { player(d).step(-100); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
-    row("session.step_on", "Step on by 0.1 s", nullptr, "Shift+Right", "",
+    row("session.step_on", "Step forward by 0.1 s", nullptr, "Shift+Right", "",
         [](Desktop& d) { player(d).step(100); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
     row("session.to_the_beginning", "To the beginning", nullptr, "Home",

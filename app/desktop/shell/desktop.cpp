@@ -435,6 +435,12 @@ std::vector<Banner> Desktop::banners() const {
                    .buttons = {{"End it (C)", "coupling.end_break"}}});
   }
   if (chatter.found() && !playback.on()) all.push_back(chatter_banner(chatter));
+  if (!playback.recovered().empty()) {
+    all.push_back(
+        {.id = "banner of the recovered",
+         .text = playback.recovered(),
+         .buttons = {{"Play (P)", "session.play"}, {"Close", "session.forget_recovered"}}});
+  }
   if (!exporter.written().empty()) {
     all.push_back({.id = "banner of the export",
                    .text = fmt::format("{} is in {}.", exporter.written().filename().string(),

@@ -286,8 +286,9 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
     if (now.everything) {
       draw_reading(reading, session.settings(), analysis);
     } else {
-      draw_simple_reading(reading, session.settings(),
-                          {.analysis = analysis, .arm = now.arm, .everything = false});
+      const CouplingSituation then{.analysis = analysis, .arm = now.arm, .everything = false};
+      draw_simple_reading(reading, session.settings(), then);
+      draw_simple_notes(reading, session.settings(), then);
     }
   }
   if (section("For the re-run (E)", true)) {

@@ -158,7 +158,7 @@ void KeyInput::take(const Event& event, int last) {
       set_down(event.key, false);
       break;
     case Kind::character:
-      if (!held_.stale(last)) ImGui::GetIO().AddInputCharacter(event.character);
+      if (!held_.stale(last)) write_character(event.character);
       break;
   }
 }

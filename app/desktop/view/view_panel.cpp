@@ -293,7 +293,8 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   const Palette& colours = current_palette();
   ImFont* face = font(Face::semibold);
   hinted_.reset();
-  const auto lines = hints(task_done_ ? std::string() : task_, scene.pad, settings);
+  auto lines = hints(task_done_ ? std::string() : task_, scene.pad, settings);
+  if (magnet_on_) lines.insert(lines.begin(), "The magnet is on. H lets go.");
   if (lines.empty()) return;
   const float size = face->FontSize * 1.15f, wrap = rect.width() - 3 * face->FontSize;
   const auto extent_of = [&](const std::string& line) {
@@ -331,6 +332,7 @@ void ViewPanel::follow_task(const ViewScene& scene, const ViewState& view) {
     task_done_ = false;
   }
   task_done_ = task_done_ || !view.contacts.empty() || pulling_;
+  magnet_on_ = view.magnet;
 }
 
 // Draws over the picture: the selected object's outline, words and numbers.

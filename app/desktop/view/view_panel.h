@@ -108,10 +108,11 @@ class ViewPanel {
   std::optional<ScreenRect> hinted_;  // place of the hints in the last frame
   std::string task_;                  // sentence of the scene that is shown
   bool task_done_ = false;            // something of it was touched since, or pulled on
-  std::optional<ScreenRect> drawn_;   // place of the view
-  bool dragging_ = false;             // drags the hand
-  bool pulls_ = false;                // the left button would take the hand here
-  bool pulling_ = false;              // pulls a body
+  bool magnet_on_ = false;
+  std::optional<ScreenRect> drawn_;  // place of the view
+  bool dragging_ = false;            // drags the hand
+  bool pulls_ = false;               // the left button would take the hand here
+  bool pulling_ = false;             // pulls a body
   std::array<std::optional<Eigen::Vector2d>, 2> pressed_{};  // places: left, right
   std::array<bool, 2> moved_{};                              // since pressed
   bool pushed_ = false;                                      // the wheel pushed the hand

@@ -5,13 +5,13 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
 #include <utility>
 
 #include "app/desktop/widgets/modal.h"
+#include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -20,11 +20,6 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string small_letters(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 constexpr std::size_t kMostPlaces = 10;
 

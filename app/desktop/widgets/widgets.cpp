@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,11 @@
 #include "app/style/words.h"
 
 namespace limpid {
+
+std::string small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 void splitter(const char* name, ScreenRect rect, bool vertical, double direction, double& size,
               double least, double most) {

@@ -10,6 +10,9 @@
 
 namespace limpid {
 
+// Returns the text with small letters, of those of ASCII.
+std::string small_letters(std::string text);
+
 // Draws a border between panels. Dragging it changes `size` by the mouse's motion along one axis,
 // in `direction`, between `least` and `most` [px at scale 1].
 void splitter(const char* name, ScreenRect rect, bool vertical, double direction, double& size,

@@ -49,7 +49,7 @@ int play(const std::vector<std::string>& words) {
   }
   if (how == "dies") raise(SIGKILL);
   if (how == "waits") {
-    std::signal(SIGINT, [](int) { interrupts = interrupts + 1; });
+    std::signal(SIGTERM, [](int) { interrupts = interrupts + 1; });
     say("0.25");
     const auto end = std::chrono::steady_clock::now() + 20s;
     while (interrupts == 0 && std::chrono::steady_clock::now() < end) {
@@ -88,7 +88,9 @@ TEST_F(AFilm, TellsHowFarItIs) {
   EXPECT_EQ(part_, 0.75);
 }
 
-TEST_F(AFilm, IsStoppedOnceAndClearsUp) {
+// Programs that a script begins with `&` ignore SIGINT, and so do their children.
+TEST_F(AFilm, IsStoppedOnceAndClearsUpAlsoWhereSigintIsIgnored) {
+  const auto usual = std::signal(SIGINT, SIG_IGN);
   bool made = true;
   std::thread film([&] { made = make("waits"); });
   const auto end = std::chrono::steady_clock::now() + 20s;
@@ -96,6 +98,7 @@ TEST_F(AFilm, IsStoppedOnceAndClearsUp) {
   EXPECT_EQ(part_, 0.25) << "it is told while it goes on";
   stop_ = true;
   film.join();
+  std::signal(SIGINT, usual);
   EXPECT_FALSE(made);
   EXPECT_EQ(written(), "1") << "interrupts, when it has cleared up";
 }

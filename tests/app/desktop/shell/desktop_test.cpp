@@ -638,8 +638,13 @@ TEST_F(ADesktop, OffersToPlayWhatItHasRecovered) {
   }
   ASSERT_TRUE(fs::exists(sessions / "cut.h5.part"));
   desktop->playback.recover_leftovers(sessions);
-  EXPECT_TRUE(said("Recovered cut.h5"));
   EXPECT_EQ(desktop->playback.last(), sessions / "cut.h5");
+  ASSERT_EQ(desktop->banners().size(), 1u);
+  EXPECT_THAT(desktop->banners()[0].text, testing::HasSubstr("Recovered cut.h5"));
+  run("session.play");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  EXPECT_EQ(desktop->playback.shown()->file(), sessions / "cut.h5");
+  EXPECT_TRUE(desktop->playback.recovered().empty()) << "it was played";
 }
 
 TEST_F(ADesktop, SaysThatALeftoverHasNothingToRecover) {
@@ -988,6 +993,22 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
     frames(150);
     EXPECT_FALSE(desktop->chatter.found()) << "it is mended: " << way;
     controls.grab = false;
+  }
+}
+
+// The loop's last ticks are those of passivity broken on purpose, which no law is to blame for.
+TEST_F(ADesktop, BlamesNoLawForPassivityThatWasBrokenOnPurpose) {
+  Controls& controls = desktop->live.controls();
+  controls.goal = Vec3(0.2, 0, 0.04);
+  controls.grab = true;
+  frames(50);
+  desktop->tuning.break_passivity();
+  const RowLayout& layout = desktop->live.stage().channels().layout();
+  ASSERT_TRUE(until([&] { return layout.in(desktop->live.row(), Column::energy_total)[0] > 0.1; }));
+  desktop->tuning.end_break();
+  for (int i = 0; i < 120; ++i) {
+    frames(1);
+    ASSERT_FALSE(desktop->chatter.found()) << "frame " << i << " after the repair";
   }
 }
 

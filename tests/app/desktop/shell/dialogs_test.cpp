@@ -9,6 +9,7 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
@@ -271,6 +272,18 @@ TEST_F(Dialog, OfSessionsListsWhatCameAlong) {
               HasSubstr("There is no table.h5 of a sweep in that folder."));
   click("Elsewhere...", "Open session");
   EXPECT_EQ(desktop->dialog.name(), "find session");
+}
+
+TEST_F(Dialog, OfSessionsFindsAPartOfAName) {
+  run("session.open");
+  frames(4);
+  EXPECT_THAT(words("Open session"), AllOf(HasSubstr("table.h5"), HasSubstr("stack.h5")));
+  write("STACK");
+  const std::string shown = words("Open session");
+  EXPECT_THAT(shown, AllOf(HasSubstr("stack.h5"), Not(HasSubstr("table.h5"))));
+  press(GLFW_KEY_ENTER);
+  EXPECT_TRUE(until([&] { return desktop->playback.on(); }));
+  EXPECT_EQ(desktop->playback.last().filename(), "stack.h5");
 }
 
 TEST_F(Dialog, OfTheGalleryOpensAScene) {
