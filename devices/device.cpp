@@ -39,7 +39,7 @@ std::string device_words(const DeviceReading& reading) {
     say(fmt::format("The device itself gives no force: {}.", explain(reading.no_force)));
   }
   if (static_cast<double>(reading.warmth) >= kWarmFrom) {
-    say(fmt::format("Its hottest motor is at {:.0f} % of the warmth that it bears.",
+    say(fmt::format("Its hottest motor is at {:.0f} % of its thermal limit.",
                     100 * reading.warmth));
   }
   return words;

@@ -74,7 +74,8 @@ double Spectrum::power() const { return power(step * static_cast<double>(density
 
 Spectrum welch(std::span<const double> signal, double rate, std::size_t segment) {
   if (segment < 2 || segment % 2 != 0 || signal.size() < segment) {
-    throw std::invalid_argument("welch: needs an even segment and a signal at least as long");
+    throw std::invalid_argument(
+        "welch: the segment's length must be even and not longer than the signal");
   }
   const std::vector<double> window = hann(segment);
   double window_power = 0;

@@ -99,7 +99,7 @@ int devices(bool json) {
 }  // namespace
 
 Command declare_devices(CLI::App& app) {
-  auto* command = app.add_subcommand("devices", "what is connected, what can drive it");
+  auto* command = app.add_subcommand("devices", "lists connected devices and the drivers for them");
   command->footer(
       "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
       "feedback,\nand devices that speak Limpid's open raw-HID protocol "

@@ -214,7 +214,7 @@ bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
     run = watched([&](IdentifyProgress& motion) { return mover(load, motion); });
     write_motion(run, fs::path(options.out) / file);
     if (run.end == ExcitationEnd::complete) return true;
-    fmt::print(stderr, "limpid: ended: {}; {} holds the motion until then\n",
+    fmt::print(stderr, "limpid: ended: {}; {} contains the motion up to that time\n",
                explain(run, options.order), (fs::path(options.out) / file).string());
     return false;
   };
@@ -308,7 +308,7 @@ Command declare_identify(CLI::App& app) {
       ->check(CLI::Range(0.05, 0.9));
   command
       ->add_option("--torque", options->order.plan.torque,
-                   "part of the motors' limits that is used")
+                   "share of the motors' torque limits that is used")
       ->check(CLI::Range(0.05, 1.0));
   auto* load =
       command

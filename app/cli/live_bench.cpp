@@ -203,8 +203,8 @@ bool LiveBench::carry_out(const LiveTask& task, const Parameters& p, const LiveR
     throw;
   }
   if (lost > 0) {
-    throw std::runtime_error(
-        fmt::format("{} ticks found no room and are missing from {}", lost, task.out.string()));
+    throw std::runtime_error(fmt::format("{} ticks are missing from {}: the disk was too slow",
+                                         lost, task.out.string()));
   }
   if (whole && run_->now().diverged) throw std::runtime_error("the coupling became unstable");
   if (whole) off.judge(task.seconds);

@@ -102,7 +102,7 @@ LookEnd record_look(Look& look, const LookOptions& options,
     const std::uint64_t lost = run.finish_recording();
     if (lost > 0 && end.wrong.empty()) {
       end.wrong =
-          fmt::format("{} ticks found no room and are missing from {}", lost, options.record);
+          fmt::format("{} ticks are missing from {}: the disk was too slow", lost, options.record);
     }
   } catch (const FileError& error) {
     end.wrong = error.what();

@@ -210,7 +210,8 @@ std::string measure_help() {
 }  // namespace
 
 Command declare_sweep(CLI::App& app) {
-  auto* command = app.add_subcommand("sweep", "many runs over a plan's axes, as one table");
+  auto* command =
+      app.add_subcommand("sweep", "runs all combinations of a plan's values and writes one table");
   auto options = std::make_shared<SweepOptions>();
   command->add_option("PLAN.toml", options->plan, "what is varied and what is measured")
       ->transform(or_shipped({"sweeps"}), "", "")

@@ -24,7 +24,7 @@ ArmDescription built_in(const DeviceTraits& traits) {
   constexpr std::array kBuiltIn{"paddle.urdf", "joystick.urdf", "omni.urdf"};
   if (std::ranges::find(traits.slides, true) != traits.slides.end()) {
     throw UnknownArmError(
-        fmt::format("{} has joints that slide, and no built-in arm has", traits.name));
+        fmt::format("{} has joints that slide; no built-in arm has such joints", traits.name));
   }
   if (traits.dof >= 1 && static_cast<std::size_t>(traits.dof) <= kBuiltIn.size()) {
     return shipped(kBuiltIn[static_cast<std::size_t>(traits.dof) - 1]);
@@ -106,10 +106,9 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
                    const ArmDescription* named) {
   std::string besides;
   if (!notes.arm.empty()) {
-    ArmDescription arm =
-        read_known(notes.arm, "",
-                   "the device was identified as that arm, and `limpid identify --forget` takes it "
-                   "for its usual one again");
+    ArmDescription arm = read_known(notes.arm, "",
+                                    "the device was identified as that arm; `limpid identify "
+                                    "--forget` gives it its usual arm again");
     if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
     if (arm.dof() != traits.dof) {
       add(besides,
@@ -143,7 +142,7 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
   }
   TakenArm last;
   try {
-    last = taken(built_in(traits), traits, fmt::format("a built-in one, until you {}", kSayWhich),
+    last = taken(built_in(traits), traits, fmt::format("the built-in arm, until you {}", kSayWhich),
                  besides);
   } catch (const FileError& error) {
     std::string why = besides;

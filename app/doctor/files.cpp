@@ -111,7 +111,8 @@ DoctorFindings look_at_files() {
       tool("gnuplot", "experiments and sweeps draw no figures", "gnuplot-nox"),
       writable("settings", user_config_dir(), "devices, layouts and presets are not remembered"),
       writable("data", user_data_dir(), "nothing is kept between starts"),
-      writable("cache", user_cache_dir(), "small pictures are drawn again each time"),
+      writable("cache", user_cache_dir(),
+               "thumbnails are not stored, so they are drawn again each time"),
       room(),
   };
 }

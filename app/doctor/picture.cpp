@@ -139,7 +139,9 @@ Finding window() {
 Finding file_dialog() {
   const auto version = file_portal_version();
   const std::string found =
-      version ? fmt::format("the desktop's own, by its portal (FileChooser {})", *version)
+      version ? fmt::format(
+                    "file dialogs of the desktop environment, through its portal (FileChooser {})",
+                    *version)
       : has_session_bus() ? "Limpid's own: the desktop has no portal for it"
                           : "Limpid's own: no session bus leads to the desktop";
   return {kPictureArea, "file dialog", State::fine, found, {}, {}};

@@ -163,7 +163,8 @@ void write_characterization(const Characterized& subject, const Characterization
   write_page(dir / "report.html", found.outcome.figure.title,
              "Measured on the virtual arm; no device was pushed.",
              numbers_section(subject) + walls_section(found) + free_section(found) +
-                 report_section(kCharacterize, "the same as pictures, and what is promised", dir));
+                 report_section(kCharacterize,
+                                "the same results as a figure, with the promised bounds", dir));
 }
 
 }  // namespace limpid

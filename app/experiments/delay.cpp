@@ -254,9 +254,8 @@ std::vector<FigurePanel> draw(const LateTable& table) {
   FigurePanel inertia = against_etas(
       table, fmt::format("Inertia felt up to {} Hz, off what is wanted", DelayPlan::kInertiaTo),
       "off it, by the larger of eta and 1 [-]", {-0.5, 0.5}, [](auto& f) { return f.inertia; });
-  FigurePanel felt =
-      against_etas(table, "Stiffness felt at the wall, by that set", "stiffness, of that set [-]",
-                   {0, 1.5}, [](auto& f) { return f.felt; });
+  FigurePanel felt = against_etas(table, "Stiffness felt at the wall, divided by the set one",
+                                  "felt / set [-]", {0, 1.5}, [](auto& f) { return f.felt; });
   for (const auto& [panel, wanted] : {std::pair(&inertia, 0.0), {&felt, 1.0}}) {
     add_bound(*panel, wanted + DelayPlan::kOff, "bounds");
     add_bound(*panel, wanted - DelayPlan::kOff, "");

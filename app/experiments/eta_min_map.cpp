@@ -38,10 +38,10 @@ std::string caption(const SweepPlan& plan) {
   without_proxy.parameters.b_v = 0;
   return fmt::format(
       "Built-in arm, full nonlinear loop at the paper's gains, tip {} m ahead; the hand jumps by "
-      "{:.0f} um along each axis and holds without damping; stable: the motion dies away within "
-      "{} s. Above k_vc / b_v = {:.0f} rad/s, in stiff grips, the proxy's damper is no longer felt "
-      "through the coupling's spring, and the limit rises from (25) towards (25) with b_d alone, "
-      "{:.2f}. There, ticks of 1 ms differ from the continuous theory.",
+      "{:.0f} um along each axis and holds without damping. Stable means that the motion dies away "
+      "within {} s. A stiff grip oscillates above k_vc / b_v = {:.0f} rad/s. There the coupling's "
+      "spring hides the proxy's damper, and the limit rises from the value of (25) towards that of "
+      "(25) with b_d alone, {:.2f}. In such grips ticks of 1 ms differ from the continuous theory.",
       plan.jump->at.x(), 1e6 * plan.jump->by.x(), plan.seconds,
       Parameters{}.k_vc / Parameters{}.b_v, eta_limit("pr", without_proxy));
 }

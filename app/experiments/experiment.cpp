@@ -114,7 +114,9 @@ constexpr std::array kExperiments{
                mass},
     Experiment{"click", "a button: its force felt over its travel", click},
     Experiment{"drop", "a body that falls on the tip, and the energy ledger", drop},
-    Experiment{"stack", "stacks of bodies: how far they sink, sweeps, energy", stack},
+    Experiment{"stack",
+               "stacks of bodies: how deep they sink into each other, sweeps of the solver, energy",
+               stack},
     Experiment{"bodies", "motion of bodies against closed forms, errors both ways", bodies},
 };
 

@@ -101,7 +101,7 @@ FigurePanel torque_panel(const Identification& identification, Eigen::Index join
                     .style = Series::Style::line,
                     .points = {{least, least}, {most, most}}};
   return {.title = name_of(identification, joint) + ": torque",
-          .x_label = "torque that what was found explains [mN m]",
+          .x_label = "torque explained by the identified model [mN m]",
           .y_label = "the motor's [mN m]",
           .series = {told, same}};
 }

@@ -42,9 +42,9 @@ Outcome inertia(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "The same free motion at three etas";
   outcome.figure.caption = fmt::format(
-      "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact. So slow a "
-      "motion takes mostly damping, which eta scales; what inertia is felt of faster ones is "
-      "measured by the experiment lightness.",
+      "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact. In so slow a "
+      "motion damping is most of the force, and eta scales it. The experiment `lightness` measures "
+      "the inertia felt in faster motions.",
       kGripStiffness, kGripDamping);
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Human torque |f1| and its estimate",

@@ -203,7 +203,7 @@ std::vector<FigurePanel> proposed_panels(const std::vector<LawAtEta>& laws) {
       over_frequency(papers, "Proposed and standard: damping felt", kDamping, &FeltMotion::damping);
   drag.log_y = true;
   drag.y_range = {0.003, 0.3};
-  FigurePanel slow = against_eta(laws, "Torque over speed at 0.5 Hz, by that at eta = 1",
+  FigurePanel slow = against_eta(laws, "Torque divided by speed at 0.5 Hz, relative to eta = 1",
                                  "|Z(eta)| / |Z(1)| [-]", [&](const LawAtEta& law) {
                                    const auto own = of(laws, law.kind);
                                    const auto one = std::ranges::find(own, 1.0, &LawAtEta::eta);
@@ -273,8 +273,9 @@ void judge_proposed(const std::vector<LawAtEta>& laws, std::vector<Check>& check
     if (law.eta == 1) continue;
     const double damping = law.at(kSlow).damping / one->at(kSlow).damping;
     checks.push_back(at_most(
-        fmt::format("proposed, eta = {}: damping felt at 0.5 Hz by that at eta = 1, off eta, of it",
-                    law.eta),
+        fmt::format(
+            "proposed, eta = {}: damping felt at 0.5 Hz, relative to eta = 1, off eta, of it",
+            law.eta),
         std::abs(damping / law.eta - 1), 0.05));
   }
   for (const LawAtEta& law : laws) {

@@ -251,10 +251,10 @@ std::vector<Check> judge(TrialRunner& lab, const std::vector<LinkCurve>& laws,
                least_of(laws[kFitted], 100, [](int) { return 1.0; }), kStiffest),
       at_least("tank, delays to 50 ms: stiffest wall [N/m]",
                least_of(laws[kTank], 50, [](int) { return 1.0; }), kStiffest),
-      at_least("standard: longest delay at which a tap rests, by that of theory", found / foretold,
-               0.75),
+      at_least("standard: longest delay at which a tap comes to rest, divided by theory's",
+               found / foretold, 0.75),
       at_most("the same, at most", found / foretold, 1.25),
-      at_least("proposed, delays to 2 ms: stiffest wall by that of theory",
+      at_least("proposed, delays to 2 ms: stiffest wall, divided by theory's",
                least_of(laws[kProposed], 2, [&](int d) { return theory.proposed(d); }), 1),
   };
 }

@@ -259,7 +259,7 @@ void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
     ratio[i] = result.end.diverged ? HUGE_VAL : estimate / human;
   });
   FigurePanel panel;
-  panel.title = "Largest estimate, of the largest true torque";
+  panel.title = "Largest estimated torque, divided by the largest true torque";
   panel.x_label = "alpha [N m s/rad]";
   panel.y_label = "max |f1_hat| / max |f1| [-]";
   panel.log_x = panel.log_y = true;
@@ -270,7 +270,7 @@ void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   double largest = 0;
   for (const double one : ratio) largest = worse(largest, one);
   outcome.checks.push_back(
-      at_most("largest estimate over largest torque, alpha 1e-5 to 1e3", largest, 1.1));
+      at_most("largest estimate divided by largest torque, alpha from 1e-5 to 1e3", largest, 1.1));
 }
 
 }  // namespace

@@ -201,9 +201,9 @@ Figure draw(const Runs& runs) {
   figure.title = "Energy that the coupling adds, over time";
   figure.caption = fmt::format(
       "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials "
-      "with their lowest and highest, paper's gains. Total counts the device's own damping, "
-      "commanded the motors and the proxy alone. Last panel: held still in an undamped grip of {} "
-      "N/m, whose smallest stable eta is {:.3f} by Routh and Hurwitz.",
+      "with their lowest and highest, paper's gains. The curve \"total\" includes the device's own "
+      "damping, the curve \"commanded\" only motors and proxy. Last panel: an undamped grip of {} "
+      "N/m holds the device still. Its smallest stable eta is {:.3f} by Routh and Hurwitz.",
       kTrialsOfACase, kStiffGrip, runs.limit);
   figure.columns = 2;
   const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};

@@ -260,8 +260,8 @@ Outcome switching(TrialRunner& lab) {
       at_least("proposed: the same, at least [J]", furthest(papers.gain), 1e-6),
       at_least("switching while pressing: laws that were handed over to, to the end", steps.arrived,
                kOrder.size() - 1),
-      at_most("switching while pressing: largest change of a motor's torque in a tick on the way "
-              "to the other law's [N m]",
+      at_most("switching while pressing: largest change of a motor's torque in a tick during the "
+              "transition to the other law [N m]",
               steps.on_the_way, 0.0065),
       at_most("switching while pressing: the same, once it is there [N m]", steps.there, 0.05),
       at_most("switching while pressing: recorded energies off torques times motions [J]",

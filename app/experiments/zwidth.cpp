@@ -115,12 +115,11 @@ std::vector<FigurePanel> empty_panels() {
                        .y_range = std::pair(0.8 * kSoftest, 1.5 * kStiffest)};
   };
   std::vector<FigurePanel> panels{
-      panel("Against eta", "eta [-]", 0.1, 10),
-      panel("Against the tick, eta = 1", "tick [ms]", 0.1, 10),
-      panel("Against the step of the encoders, eta = 1", "encoder step [mrad]", 0.009, 1.1),
-      panel("Against the mass of the hand, eta = 1", "mass of the hand at the tip [kg]", 0.018,
-            1.1),
-      panel("Against the device's delay, eta = 1", "delay [ms]", -0.2, 6.2),
+      panel("Over eta", "eta [-]", 0.1, 10),
+      panel("Over the tick, eta = 1", "tick [ms]", 0.1, 10),
+      panel("Over the encoders' resolution, eta = 1", "encoder step [mrad]", 0.009, 1.1),
+      panel("Over the hand's mass, eta = 1", "mass of the hand at the tip [kg]", 0.018, 1.1),
+      panel("Over the device's delay, eta = 1", "delay [ms]", -0.2, 6.2),
       panel(fmt::format("With the arm's own motors, pressed with {} N", kOwnPress), "eta [-]", 0.1,
             10)};
   panels[4].log_x = false;
@@ -267,9 +266,9 @@ void judge_named(const Found& found, std::vector<Check>& checks) {
       {12, "delays to 6 ms, known, encoders of 1e-4 rad"},
       {13, "delays to 6 ms, not known"}};
   for (const auto& [curve, which] : kCurves) {
-    checks.push_back(
-        at_least(fmt::format("predictive, {}: stiffest wall by that which analyze names", which),
-                 found.least_of_named(curve), finest));
+    checks.push_back(at_least(
+        fmt::format("predictive, {}: stiffest wall, divided by the one that analyze names", which),
+        found.least_of_named(curve), finest));
   }
 }
 

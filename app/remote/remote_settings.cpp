@@ -72,7 +72,8 @@ void set_by_remote(Parameters& p, const std::string& key, const json& value,
 void set_values(Parameters& p, const Keys& keys, const Parameters& highest) {
   const json& values = keys.of("values");
   if (!values.is_object() || values.size() > kMostSettings) {
-    throw keys.error("values", shown(values) + " is not allowed; allowed: an object of settings");
+    throw keys.error("values",
+                     shown(values) + " is not allowed; allowed: a JSON object with settings");
   }
   Parameters all = p;
   for (const auto& [key, value] : values.items()) set_by_remote(all, key, value, highest);

@@ -301,8 +301,8 @@ void StoryHand::read_points(const TomlTable& step, double begins, double ends) {
     const std::uint32_t line = each.source().begin.line;
     if (!(t > before && begins + t < ends)) {
       throw FileError(
-          fmt::format("{}:{}: step.hand: {} s after {} s; allowed: increasing, and before the step "
-                      "ends at {} s",
+          fmt::format("{}:{}: step.hand: the time {} s follows {} s; allowed: times that increase, "
+                      "before the step ends at {} s",
                       where_, line, t, std::max(before, 0.0), ends - begins));
     }
     if (before < 0 && t > 0) {

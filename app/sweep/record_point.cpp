@@ -51,7 +51,7 @@ std::string differences(const SweepPlan& plan, const std::vector<double>& again,
   for (std::size_t i = 0; i < again.size() && i < row.size(); ++i) {
     const bool same = again[i] == row[i] || (std::isnan(again[i]) && std::isnan(row[i]));
     if (same) continue;
-    text += fmt::format("{}{} is {:.6g}, in the table {:.6g}", text.empty() ? "" : "; ",
+    text += fmt::format("{}{} is {:.6g}, but the table says {:.6g}", text.empty() ? "" : "; ",
                         plan.measures[i]->name, again[i], row[i]);
   }
   return text;

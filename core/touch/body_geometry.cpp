@@ -309,7 +309,8 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   p.algorithm->processCollision(&on_a, &on_b, info, &result);
   btManifoldArray all;
   p.algorithm->getAllContactManifolds(all);
-  if (all.size() != 1) throw std::logic_error("a pair of shapes without a place for its contacts");
+  if (all.size() != 1)
+    throw std::logic_error("no room was made for the contacts of a pair of shapes");
   p.manifold = all[0];
   p.manifold->clearManifold();
   const double near = std::min(kNear, 0.1 * std::min(a.least, b.least));

@@ -157,7 +157,9 @@ FoundDevice entry(const InverseName& name, bool only, const std::string& missing
 }
 
 constexpr DeviceKind kSocketKind{
-    .key = "socket", .name = "device on a socket", .use = "its own joints, pushes if it says so"};
+    .key = "socket",
+    .name = "device on a socket",
+    .use = "has joints of its own; gives force if its description says so"};
 
 // Returns whether somebody listens on a socket; a program that has ended leaves its socket behind.
 // The kernel's error tells, if a connection of another type is asked for; the program does not

@@ -26,7 +26,9 @@ std::unique_ptr<HidProtocol> pid(const ReportDescriptor& descriptor, const PidSe
 }
 
 constexpr std::array<HidProtocolEntry, 3> kProtocols{{
-    {{.key = "raw", .name = "raw HID haptic device", .use = "its own joints, pushes if it says so"},
+    {{.key = "raw",
+      .name = "raw HID haptic device",
+      .use = "has joints of its own; gives force if its description says so"},
      RawProtocol::describes,
      none,
      raw},

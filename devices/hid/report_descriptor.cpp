@@ -87,7 +87,7 @@ class Parser {
   }
 
   void open_collection(const ReportItem& item) {
-    if (collections_.size() == kMaxDepth) refuse(item, "too many collections in each other");
+    if (collections_.size() == kMaxDepth) refuse(item, "collections are nested too deeply");
     const Usage usage = locals_.usages.empty() ? 0 : full(locals_.usages.front());
     if (collections_.empty()) descriptor_.applications.push_back(usage);
     collections_.push_back(usage);

@@ -497,7 +497,7 @@ Grip find_grip(const ArmDescription& arm, const Parameters& p, const GripRecord&
   const DeviceTrust trust = DeviceTrust::of(arm, record.real(), record.tick());
   const GripFit fit(device, trust);
   if (!fit.fine()) {
-    grip.unknown = "the hand's own motion hides its answer: " + advice(grip, device.rubs());
+    grip.unknown = "the hand's own motion hides the arm's answer: " + advice(grip, device.rubs());
     return grip;
   }
   grip.measured = true;

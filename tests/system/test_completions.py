@@ -110,7 +110,7 @@ class Fish(Tab):
     def test_what_they_are(self) -> None:
         script = f"source {SCRIPTS / 'limpid.fish'}; complete -C 'limpid devi'"
         self.assertEqual(self.ask("fish", "--no-config", "-c", script),
-                         ["devices\twhat is connected, what can drive it"])  # fmt: skip
+                         ["devices\tlists connected devices and the drivers for them"])  # fmt: skip
 
 
 @unittest.skipIf(shutil.which("zsh") is None, "zsh is not installed")

@@ -122,7 +122,7 @@ class Window(WindowTest):
         self.key("ctrl+b")
         self.wait("three runs", lambda s: s["shown_lanes"] == 3)
         self.key("ctrl+b")
-        self.wait_for_notice("Three runs are the most")
+        self.wait_for_notice("At most three runs")
         x, y = self.hold_tip()
         self.key("r")
         self.wait("recording", lambda s: s["recording"])

@@ -141,8 +141,8 @@ bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
     return false;
   }
   if (notes.torque_scale != 1) {
-    read_out("motors", fmt::format("give {:.3f} of what they are told", notes.torque_scale), {},
-             "Measured with a load at the tip; what they are told is scaled by it.");
+    read_out("motors", fmt::format("give {:.3f} of the commanded torque", notes.torque_scale), {},
+             "Measured with a load at the tip. Commands to the motors are scaled by it.");
   }
   const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
   tooltip("Moves it by itself and finds inertia, friction, weight and delay.");

@@ -146,9 +146,9 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
   ImGui::SameLine();
   changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
   tooltip(
-      "For a motor that pushes the wrong way, which the check of the axes finds by itself. The "
-      "axes "
-      "are checked again then: with the wrong sign the loop is unstable.");
+      "Reverses a motor that pushes the wrong way. The check of the axes finds such a motor by "
+      "itself. After a change here the axes are checked again: with the wrong sign the loop is "
+      "unstable.");
   ImGui::SameLine();
   if (ImGui::SmallButton("zero here")) {
     axis.zero += angle / axis.factor();

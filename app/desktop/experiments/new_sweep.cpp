@@ -253,11 +253,10 @@ SweepDraft NewSweepDialog::draft(const SweepBasis& basis) {
   const std::string text = plan_text(draft);
   if (text != checked_) {
     checked_ = text;
-    complaint_ = points() > kMostRuns
-                     ? fmt::format(
-                           "{} runs are too many for the window, which makes up to {}. "
-                           "`limpid sweep` takes any number.",
-                           points(), kMostRuns)
+    complaint_ = points() > kMostRuns ? fmt::format(
+                                            "{} runs are too many: the window can do at most {}. "
+                                            "`limpid sweep` has no such limit.",
+                                            points(), kMostRuns)
                  : points() == 0 ? "Choose at least one word of each list."
                                  : wrong_with(text);
   }

@@ -103,8 +103,10 @@ std::string LiveStage::why_no_magnet() const {
 
 void LiveStage::toggle_magnet() {
   controls().magnet = !controls().magnet && why_no_magnet().empty();
-  notices_.say(controls().magnet ? "The magnet is on: what the tip touches hangs on it. H lets go."
-                                 : "The magnet is off.");
+  notices_.say(
+      controls().magnet
+          ? "The magnet is on. An object that the tip touches sticks to it. Press H to let it go."
+          : "The magnet is off.");
 }
 
 void LiveStage::start_over() {

@@ -102,12 +102,12 @@ std::string_view edit_limits(BodyJoint& joint) {
                        "from",
                        "From",
                        "From",
-                       "The stop on the side against the axis."};
+                       "The end stop in the negative direction of the axis."};
   const FieldInfo to{{low + kApart, far, false, kTravel.unit},
                      "to",
                      "To",
                      "To",
-                     "The stop on the side of the axis."};
+                     "The end stop in the positive direction of the axis."};
   if (edit_value(from, low, 0, turns(joint))) {
     joint.low = low;
     what = from.key;
@@ -125,7 +125,7 @@ std::string_view edit_force(JointForce& force, bool turns) {
   if (const auto detent = edit_fields(kDetentFields, force, turns); !detent.empty()) what = detent;
   if (!force.travel.empty()) {
     read_out("force over travel", fmt::format("{} points", force.travel.size()), {},
-             "From the scene's file; it adds to spring and detent.");
+             "The scene's file sets it. This force is added to those of spring and detent.");
   }
   return what;
 }

@@ -36,7 +36,7 @@ constexpr std::array kAfter{
          "drag pans, wheel zooms, double click fits, Shift+drag selects a stretch: its mean, rms "
          "and "
          "limits; right click chooses and saves"},
-    Hint{"sliders", "double click to type, right click for the usual value"},
+    Hint{"sliders", "double click to type, right click for the default value"},
 };
 
 // Group of the help, with the beginnings of its commands' ids; groups have this order in the help.

@@ -58,7 +58,7 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
                      "A program has set law, settings or scene. Yours come back when it ends."});
   }
   if (!pace.empty()) {
-    parts.push_back({pace, colours.accent, "The simulation; the loop itself goes on as usual"});
+    parts.push_back({pace, colours.accent, "Only the simulation; the control loop keeps running."});
   }
   parts.push_back({stopped ? "loop stopped" : fmt::format("{:.0f} Hz", status.rate),
                    stopped ? colours.broken : colours.muted, status.failure});

@@ -11,7 +11,7 @@ namespace limpid {
 
 inline constexpr std::array kMaterialFields{
     Field<Material>("stiffness", "Stiffness", &Material::stiffness, scene_limits::kStiffness,
-                    "How hard it pushes back. Double click to type, right click for the usual "
+                    "How hard it pushes back. Double click to type, right click for the default "
                     "value. A hard surface is felt as hard as the coupling lets through.",
                     {1, 1e4, true}, {.needed = true}),
     Field<Material>("damping", "Damping", &Material::damping, scene_limits::kDamping,

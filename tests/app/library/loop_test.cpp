@@ -413,7 +413,7 @@ TEST(Loops, SayWhatIsNotAllowed) {
   EXPECT_THAT(refusal([] {
                 DeviceLoop(LoopOptions{}, std::array{0.0, 0.6, -1.1});
               }),
-              HasSubstr("arm: is not given"))
+              HasSubstr("arm: is missing"))
       << "real motors are nobody's default arm";
 
   DeviceLoop loop(slide(), std::array{0.0});

@@ -118,7 +118,7 @@ TEST(StoryScripts, RefuseTimesThatAreNotInOrder) {
   expect_refused(with("time = 2.5", "time = 0"), "s.toml:4: step.time");
   expect_refused(with("seconds = 5", "seconds = 2"), "s.toml:9: step.time");
   expect_refused(with("[1, 0.19, 0.02, 0]", "[2.5, 0.19, 0.02, 0]"), "before the step ends");
-  expect_refused(with("[1, 0.19, 0.02, 0]", "[0, 0.19, 0.02, 0]"), "increasing");
+  expect_refused(with("[1, 0.19, 0.02, 0]", "[0, 0.19, 0.02, 0]"), "times that increase");
 }
 
 TEST(StoryScripts, RefuseAHandThatTheArmCannotFollow) {

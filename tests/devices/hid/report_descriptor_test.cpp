@@ -229,7 +229,7 @@ TEST(ReportDescriptor, RefusesWhatMakesNoSense) {
   contains(Bytes(5000, 0xC0), "4096 at most");
   Bytes deep;
   for (int i = 0; i < 100; ++i) deep = deep + Bytes{0xA1, 0x01};
-  contains(deep, "in each other");
+  contains(deep, "nested too deeply");
   contains(Bytes(100, 0xA4), "too many pushes");
   Bytes many{0x75, 0x01, 0x95, 0xFF, 0x05, 0x09, 0x09, 0x01};
   for (int i = 0; i < 10; ++i) many = many + Bytes{0x19, 0x01, 0x29, 0xFF, 0x81, 0x02};

@@ -58,7 +58,7 @@ TEST_F(DeviceFields, ShowAnglesInDegreesAndSlidesInMillimetres) {
 TEST_F(DeviceFields, TurnAnAxisRoundItsTorqueOrBoth) {
   draw();
   EXPECT_THAT(hint("invert"), HasSubstr("Turns the axis round, its torque with it."));
-  EXPECT_THAT(hint("reverse force"), HasSubstr("are checked again then"));
+  EXPECT_THAT(hint("reverse force"), HasSubstr("After a change here the axes are checked again"));
   click_on("invert", 1);
   EXPECT_TRUE(anew_);
   EXPECT_FALSE(notes_.axes[0].inverted);
