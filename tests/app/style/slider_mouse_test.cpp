@@ -84,6 +84,11 @@ TEST_F(SliderMouse, DoubleClickToTypeLeavesTheValueAlone) {
   EXPECT_EQ(changes, 1);
 }
 
+TEST_F(SliderMouse, ACommaThatIsTypedIsTheDecimalPoint) {
+  type("0,25");
+  EXPECT_EQ(parameters.eta, 0.25);
+}
+
 TEST_F(SliderMouse, WhatIsTypedBeyondTheLimitsIsTheLimit) {
   const ParameterInfo& eta = *find_parameter("coupling.eta");
   for (const bool other : {false, true}) {
