@@ -46,6 +46,8 @@ constexpr std::array kKeys{
     Key{GLFW_KEY_Z, ImGuiKey_Z},
 };
 
+ImGuiID number_item = 0;  // that had the keys last
+
 #if IMGUI_VERSION_NUM >= 18900
 // Returns ImGui's key, also for the digits that Limpid asks for.
 ImGuiKey imgui_key(int key) {
@@ -65,10 +67,12 @@ ImGuiKey imgui_key(int key) {
 }  // namespace
 
 void write_character(unsigned character) {
-  constexpr int kNumbers = ImGuiInputTextFlags_CharsDecimal | ImGuiInputTextFlags_CharsScientific;
-  const ImGuiInputTextState* text = ImGui::GetInputTextState(ImGui::GetActiveID());
-  const bool number = text != nullptr && (text->Flags & kNumbers) != 0;
+  const bool number = ImGui::GetActiveID() != 0 && ImGui::GetActiveID() == number_item;
   ImGui::GetIO().AddInputCharacter(number && character == ',' ? '.' : character);
+}
+
+void note_number_item() {
+  if (ImGui::IsItemActive()) number_item = ImGui::GetActiveID();
 }
 
 void lead_menus_by_keys(bool lead) {

@@ -11,8 +11,10 @@ void begin_imgui_input();
 
 void show_key(int key, bool down);
 // Writes a character into the text that has the keys. A comma in a number is its decimal point, as
-// half of all keypads have it.
+// half of all keypads have it: ImGui would drop it, and 0,6 be 6.
 void write_character(unsigned character);
+// Says that the last item takes numbers. Comes after each of ImGui's own fields of numbers.
+void note_number_item();
 void show_modifiers(bool control, bool shift, bool alt);
 void show_mouse(const ImVec2& at);
 void show_mouse_button(int button, bool down);

@@ -9,6 +9,7 @@
 
 #include "app/desktop/widgets/chart.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/imgui_input.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
@@ -196,6 +197,7 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
     band = hertz;
     due_ = 0;
   }
+  note_number_item();
   tooltip("The human's bandwidth: eta_min counts only the frequencies below it.");
   const auto limit = [&](const char* label, double value, const char* help) {
     read_out(label, fmt::format("{:.3f}", value), {}, help);

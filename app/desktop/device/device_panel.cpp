@@ -9,6 +9,7 @@
 #include "app/desktop/widgets/parameter_rows.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/fitted_gains.h"
+#include "app/style/imgui_input.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -119,6 +120,7 @@ bool settled_slider(const Field<Owner>& field, Owner& owner, float letters) {
       std::isfinite(value)) {  // "nan" can be typed
     set_number(field, owner, static_cast<double>(value) / shown);
   }
+  note_number_item();
   const bool settled = ImGui::IsItemDeactivatedAfterEdit();
   tooltip(field.meaning);
   return settled;

@@ -8,6 +8,7 @@
 #include "app/base/open_elsewhere.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/imgui_input.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -39,6 +40,7 @@ void part_slider(const char* label, double& part, float least, float most, const
                          ImGuiSliderFlags_AlwaysClamp)) {
     part = static_cast<double>(per_cent) / 100;
   }
+  note_number_item();
   tooltip(help);
 }
 
@@ -171,6 +173,7 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
     ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
     ImGui::SliderFloat(kLoad, &load_, static_cast<float>(1e3 * kLeastLoad), 300, "%.0f g",
                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    note_number_item();
     note_place(kLoad);
   }
   ImGui::Spacing();

@@ -12,6 +12,7 @@
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
 #include "app/run/shipped_files.h"
+#include "app/style/imgui_input.h"
 #include "app/style/theme.h"
 #include "app/sweep/read_axes.h"
 
@@ -170,6 +171,7 @@ void NewSweepDialog::draw_values(Axis& axis, const char* id) {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(5 * em);
     ImGui::InputDouble("##number", &value, 0, 0, "%.6g");
+    note_number_item();
     ImGui::PopID();
     note_place(fmt::format("{} {}", id, what).c_str());
     ImGui::SameLine();
@@ -185,6 +187,7 @@ void NewSweepDialog::draw_values(Axis& axis, const char* id) {
   if (ImGui::InputInt("values", &count, 0)) {
     axis.draft.count = static_cast<std::uint64_t>(std::clamp(count, 2, 1000));
   }
+  note_number_item();
   note_place(fmt::format("{} count", id).c_str());
   if (axis.draft.from > 0) {
     ImGui::Checkbox("spaced evenly in ratio", &axis.draft.logarithmic);
@@ -292,6 +295,7 @@ void NewSweepDialog::draw(bool& open, const SweepBasis& basis, SweepController& 
     label("Length", "Of each run; 0: as long as the hand's path");
     ImGui::SetNextItemWidth(5 * em);
     ImGui::InputDouble("s, 0: as the hand", &seconds_, 0, 0, "%.3g");
+    note_number_item();
     ImGui::EndTable();
   }
   draw_end(basis, controller);

@@ -10,6 +10,7 @@
 
 #include "app/desktop/base/settings.h"
 #include "app/desktop/widgets/modal.h"
+#include "app/style/imgui_input.h"
 #include "app/style/words.h"
 
 namespace limpid {
@@ -81,6 +82,7 @@ void VideoDialog::draw_span(const PlayedSession& session) {
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize() - button - gap);
     ImGui::InputDouble("##time", &value, 0.1, 1, "%.2f s");
+    note_number_item();
     ImGui::SameLine();
     if (ImGui::Button(here)) value = session.player().time();
     tooltip(help);

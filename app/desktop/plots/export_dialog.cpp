@@ -11,6 +11,7 @@
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/path_dialog.h"
 #include "app/plot/plot_menu.h"
+#include "app/style/imgui_input.h"
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
@@ -102,9 +103,11 @@ void ExportDialog::draw_size(std::size_t plots) {
   const float number = 7 * ImGui::GetFontSize();
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble("by", &order_.width, 0, 0, "%.0f mm");
+  note_number_item();
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble(plots > 1 ? "each plot" : "printed", &order_.height, 0, 0, "%.0f mm");
+  note_number_item();
   const double height = static_cast<double>(plots) * order_.height;
   if (plots > 1) {
     ImGui::TextDisabled("%zu plots one above the other: %.0f by %.0f mm", plots, order_.width,
@@ -113,6 +116,7 @@ void ExportDialog::draw_size(std::size_t plots) {
   if (order_.format != Format::png) return;
   ImGui::SetNextItemWidth(number);
   ImGui::InputInt("dpi", &order_.dpi, 0);
+  note_number_item();
   const double inch = 25.4;
   ImGui::SameLine();
   ImGui::TextDisabled("%.0f x %.0f pixels", std::round(order_.width / inch * order_.dpi),

@@ -11,6 +11,7 @@
 #include "app/desktop/scene/object_signs.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/imgui_input.h"
 #include "app/style/palette.h"
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
@@ -37,6 +38,7 @@ bool drag3(const char* label, Vec3& values, double speed, double least, double m
   const bool changed =
       ImGui::DragScalarN("##v", ImGuiDataType_Double, values.data(), 3, static_cast<float>(speed),
                          &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+  note_number_item();
   note_place(label);
   ImGui::PopID();
   tooltip(help);
@@ -186,6 +188,7 @@ bool drag_number(const char* label, double& value, double speed, double least, d
   const bool changed =
       ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,
                         &most, format, ImGuiSliderFlags_AlwaysClamp);
+  note_number_item();
   note_place(label);
   ImGui::PopID();
   tooltip(help);

@@ -15,13 +15,14 @@ namespace {
 class WrittenFields : public ImGuiFrames {
  protected:
   // Draws both fields; the keys go to the one that is named.
-  void draw(const char* focus = nullptr) {
+  void draw(std::string_view focus = {}) {
     frame(
         [&] {
           ImGui::Begin("panel");
-          if (focus == std::string_view("number")) ImGui::SetKeyboardFocusHere();
+          if (focus == "number") ImGui::SetKeyboardFocusHere();
           ImGui::InputDouble("number", &number, 0, 0, "%.3f");
-          if (focus == std::string_view("text")) ImGui::SetKeyboardFocusHere();
+          note_number_item();
+          if (focus == "text") ImGui::SetKeyboardFocusHere();
           ImGui::InputText("text", &text);
           ImGui::End();
         },
