@@ -10,6 +10,7 @@
 #include "render/mesh_shapes.h"
 #include "render/scene_view.h"
 #include "tests/support/computer.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -86,7 +87,7 @@ class SteadyPicture : public testing::Test {
   }
 
   ArmDescription arm_ = two_links();
-  std::optional<OffscreenContext> context_;
+  std::optional<test::FaultlessContext> context_;
   std::optional<SceneView> view_;
   Camera camera_;
   ViewState state_;
