@@ -3,6 +3,7 @@
 
 #include "render/gl/frame_target.h"
 #include "render/gl/offscreen.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -20,7 +21,7 @@ void fill(int x, int y, int width, int height, float grey) {
 // Pixels of a picture of one sample a pixel, filled by `draw`, after the finish.
 template <class Draw>
 std::vector<unsigned char> finished(Draw&& draw) {
-  const OffscreenContext context(kSize, kSize);
+  const test::FaultlessContext context(kSize, kSize);
   GLint framebuffer = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
   FrameTarget target(LIMPID_SOURCE_DIR "/shaders");
@@ -65,7 +66,7 @@ TEST(Finish, SmoothsTheStepsOfAnEdge) {
 
 // A part of the next frame is cleared and drawn; the rest is the last frame's.
 TEST(Finish, KeepsThePictureOutsideOfWhatChanges) {
-  const OffscreenContext context(kSize, kSize);
+  const test::FaultlessContext context(kSize, kSize);
   GLint framebuffer = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer);
   FrameTarget target(LIMPID_SOURCE_DIR "/shaders");

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "render/gl/line_batch.h"
-#include "render/gl/offscreen.h"
 #include "render/lit_pass.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -285,7 +285,7 @@ TEST(Trails, FadeTowardsWhereTheTipWas) {
   const double unknown = std::nan("");
   state.proxy.trail = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, Vec3::Constant(unknown),
                        {4, 0, 0}, {5, 0, 0}};
-  const OffscreenContext context(8, 8);  // a batch owns names of OpenGL
+  const test::FaultlessContext context(8, 8);  // a batch owns names of OpenGL
   LineBatch batch;
   add_trails(state, batch);
   const auto& lines = batch.lines();
@@ -303,7 +303,7 @@ TEST(Trails, FadeTowardsWhereTheTipWas) {
 
 // The proxy's dot and trail are lighter on a dark ground, so that they are seen there.
 TEST(LinesOfAPicture, SuitTheGround) {
-  const OffscreenContext context(16, 16);
+  const test::FaultlessContext context(16, 16);
   ViewState state;
   state.show_error = true;
   state.device.links = state.proxy.links = {Pose::Identity()};

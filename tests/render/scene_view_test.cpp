@@ -12,6 +12,7 @@
 #include "render/mesh_shapes.h"
 #include "render/theme.h"
 #include "tests/support/computer.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -63,7 +64,7 @@ class Picture : public testing::Test {
   }
 
   ArmDescription arm_ = two_links();
-  std::optional<OffscreenContext> context_;
+  std::optional<test::FaultlessContext> context_;
   std::optional<SceneView> view_;
   Camera camera_;
   ViewState state_;

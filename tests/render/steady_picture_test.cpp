@@ -10,6 +10,7 @@
 #include "render/mesh_shapes.h"
 #include "render/scene_view.h"
 #include "tests/support/computer.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -86,7 +87,7 @@ class SteadyPicture : public testing::Test {
   }
 
   ArmDescription arm_ = two_links();
-  std::optional<OffscreenContext> context_;
+  std::optional<test::FaultlessContext> context_;
   std::optional<SceneView> view_;
   Camera camera_;
   ViewState state_;
@@ -173,7 +174,25 @@ class MovingObjects : public SteadyPicture {
     cube.rotate(Eigen::AngleAxisd(0.3 * step, Vec3::UnitZ()));
     state_.bodies = {cube, pose_at(kModel + Vec3(0, 0.01 * step, 0.01 * (step % 3)))};
   }
+  // Looks from above at the objects alone.
+  void look_at_shadows() {
+    state_.proxy.links.clear();
+    state_.device.links.clear();
+    state_.show_error = state_.show_grid = state_.show_trail = false;
+    camera_.look(Camera::View::top);
+    camera_.frame(view_->bounds());
+    camera_.finish();
+  }
+  int light(const Vec3& place) {
+    const Eigen::Vector2i pixel = camera_.project(place).value().cast<int>();
+    const auto at = 4 * static_cast<std::size_t>(pixel.y() * kWidth + pixel.x());
+    return int{pixels()[at]};
+  }
   const Vec3 kModel{0.1, -0.1, -0.08};
+  // The light comes from (-0.30, -0.55, 1): the shadow of a cube a decimetre above the table is
+  // moved so far.
+  const Vec3 kCube{0.2, -0.15, -0.02}, kShadow = kCube + Vec3(0.03, 0.055, -0.1);
+  const Vec3 kAway{0.1, 0, 0};
 };
 
 TEST_F(MovingObjects, AreNotDrawnAgainWhileTheySleep) {
@@ -217,28 +236,29 @@ TEST_F(MovingObjects, AreTheSameDrawnInPartsOrAtOnce) {
 
 TEST_F(MovingObjects, TakeTheirShadowsWithThem) {
   view_->set_quality(Quality::level(0));
-  state_.proxy.links.clear();
-  state_.device.links.clear();
-  state_.show_error = state_.show_grid = state_.show_trail = false;
-  camera_.look(Camera::View::top);
-  camera_.frame(view_->bounds());
-  camera_.finish();
-  // The light comes from (-0.30, -0.55, 1): the shadow of a cube a decimetre above the table is
-  // moved so far.
-  const Vec3 cube(0.2, -0.15, -0.02), shadow = cube + Vec3(0.03, 0.055, -0.1);
-  const Vec3 away(0.1, 0, 0);
-  const auto light = [&](const Vec3& place) {
-    const Eigen::Vector2i pixel = camera_.project(place).value().cast<int>();
-    const auto at = 4 * static_cast<std::size_t>(pixel.y() * kWidth + pixel.x());
-    return int{pixels()[at]};
-  };
-  state_.bodies[0] = pose_at(cube);
+  look_at_shadows();
+  state_.bodies[0] = pose_at(kCube);
   draw();
-  const int dark = light(shadow), open = light(shadow + away);
-  state_.bodies[0] = pose_at(cube + away);
+  const int dark = light(kShadow), open = light(kShadow + kAway);
+  state_.bodies[0] = pose_at(kCube + kAway);
   draw();
-  EXPECT_LT(dark + 10, light(shadow));
-  EXPECT_LT(light(shadow + away) + 10, open);
+  EXPECT_LT(dark + 10, light(kShadow));
+  EXPECT_LT(light(kShadow + kAway) + 10, open);
+}
+
+TEST_F(MovingObjects, HaveShadowsWhereTheQualityHasThem) {
+  look_at_shadows();
+  state_.bodies[0] = pose_at(kCube);
+  for (const int texels : {0, 2048, 0, 512}) {
+    view_->set_quality({.msaa = 1, .shadow_size = texels, .soft = false});
+    draw();
+    const int darker = light(kShadow + kAway) - light(kShadow);
+    if (texels > 0) {
+      EXPECT_GT(darker, 10) << texels;
+    } else {
+      EXPECT_NEAR(darker, 0, 2);
+    }
+  }
 }
 
 // Without a pose in the row, or with one that is not a number, an object is at its place in the

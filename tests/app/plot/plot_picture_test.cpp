@@ -6,6 +6,7 @@
 
 #include "app/plot/plot.h"
 #include "tests/app/plot/imgui_frames.h"
+#include "tests/support/drawn_ink.h"
 #include "tests/support/drawn_text.h"
 
 namespace limpid {
@@ -58,24 +59,7 @@ class APicture : public ImGuiFrames {
   // Tells whether a triangle of this colour, however faint, covers a place.
   static bool inked(ImVec2 at, Rgb rgb) {
     const ImU32 wanted = colour(rgb) & ~IM_COL32_A_MASK;
-    const ImDrawData& data = *ImGui::GetDrawData();
-    for (int n = 0; n < data.CmdListsCount; ++n) {
-      const ImDrawList& list = *data.CmdLists[n];
-      for (const ImDrawCmd& command : list.CmdBuffer) {
-        for (unsigned i = command.IdxOffset; i < command.IdxOffset + command.ElemCount; i += 3) {
-          std::array<ImVec2, 3> p;
-          bool same = true;
-          for (unsigned k = 0; k < 3; ++k) {
-            const ImDrawVert& v = list.VtxBuffer[static_cast<int>(
-                list.IdxBuffer[static_cast<int>(i + k)] + command.VtxOffset)];
-            p[k] = v.pos;
-            same = same && (v.col & ~IM_COL32_A_MASK) == wanted;
-          }
-          if (same && ImTriangleContainsPoint(p[0], p[1], p[2], at)) return true;
-        }
-      }
-    }
-    return false;
+    return test::inked(at, [&](ImU32 ink) { return (ink & ~IM_COL32_A_MASK) == wanted; });
   }
   // The highest corner of this colour within the area of the curves.
   ImVec2 highest_of(Rgb rgb) const {
@@ -252,6 +236,26 @@ TEST_F(APicture, TintsAndNamesTheStretchesOfABand) {
   EXPECT_FALSE(inked({x_of(8.1), y}, tint));
   ASSERT_TRUE(find("contact"));
   EXPECT_NEAR(find("contact")->min.x, x_of(4), 6);
+}
+
+TEST_F(APicture, TintsTheSelectedStretchAsFarAsItIsInSight) {
+  fill(1, [](int, double t) { return wave(t); });
+  const Rgb tint = current_palette().accent;
+  const auto tinted = [&](double t) { return inked({x_of(t), y_of(4.9)}, tint); };
+  group_.select(PlotRange{.start = 3, .stop = 9});
+  draw();
+  for (const double t : {2.9, 9.1}) EXPECT_FALSE(tinted(t)) << t;
+  for (const double t : {3.1, 6.0, 8.9}) EXPECT_TRUE(tinted(t)) << t;
+  group_.zoom(0.4, 10);
+  draw();
+  ASSERT_NEAR(picture_->start, 6, 0.1);
+  for (const double t : {6.1, 8.9}) EXPECT_TRUE(tinted(t)) << t;
+  EXPECT_FALSE(tinted(9.1));
+  group_.select(PlotRange{.start = 3, .stop = 5});
+  draw();
+  for (float x = 0.25f; x < area().width(); x += 0.5f) {
+    ASSERT_FALSE(inked({area().min.x + x, y_of(4.9)}, tint)) << x;
+  }
 }
 
 TEST_F(APicture, OverAnotherChannelHasPairsOfValues) {

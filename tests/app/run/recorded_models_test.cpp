@@ -12,6 +12,7 @@
 #include "tests/devices/files/test_files.h"
 #include "tests/render/model/gltf_builder.h"
 #include "tests/support/computer.h"
+#include "tests/support/faultless_context.h"
 #include "tests/support/test_session.h"
 
 namespace limpid {
@@ -61,7 +62,7 @@ void expect_same(const Model& a, const Model& b) {
 std::vector<unsigned char> picture_of(const RunPlan& plan) {
   constexpr int kWidth = 160, kHeight = 100;
   if (!test::has_offscreen_pictures()) return {};
-  const OffscreenContext context(kWidth, kHeight);
+  const test::FaultlessContext context(kWidth, kHeight);
   SceneView view(test::assets_dir() / "../shaders", plan.arm, plan.document.scene,
                  visual_pictures(plan.document));
   view.set_meshes(mesh_pictures(plan.document.scene, plan.models));

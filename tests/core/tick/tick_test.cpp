@@ -224,6 +224,41 @@ TEST(Tick, CutsTheForceForGoodWhenTheLoopIsNoLongerFinite) {
   EXPECT_FALSE(tick.diverged());
 }
 
+class TickOfALaw : public testing::TestWithParam<std::size_t> {};
+INSTANTIATE_TEST_SUITE_P(Laws, TickOfALaw, testing::Range(std::size_t{0}, std::size_t{kLaws}),
+                         [](const auto& law) { return std::string(kLawKeys[law.param]); });
+
+// A start elsewhere: neither the way there nor torques that are still on their way belong to it.
+TEST_P(TickOfALaw, BeginsAnewAsIfItHadNeverRun) {
+  const ArmDescription arm = random_arm(3, 132);
+  Parameters p;
+  p.kind = static_cast<CouplingKind>(GetParam());
+  p.delay = 2;
+  Scene scene;
+  scene.add({.shape = JointStop{0, 0.1, 1}, .material = {20}});  // held off all the time
+  const auto run_from = [&](Tick<3>& tick, std::size_t first) {
+    tick.start(p, Start<3>::at_rest(led(3, first, p.tick)));
+    Rows rows(tick.layout());
+    for (std::size_t k = first; k < first + 100; ++k) {
+      const Vec<3> x = led(3, k, p.tick);
+      tick.run(p, {x, x, Vec<3>::Zero()}, ForceRequest::as_it_is, rows.add());
+    }
+    return rows;
+  };
+  Tick<3> used(arm, scene);
+  run_from(used, 0);
+  for (const std::size_t first : {300, 500, 700, 900, 1100, 1300}) {
+    Tick<3> fresh(arm, scene);
+    const Rows again = run_from(used, first), once = run_from(fresh, first);
+    for (std::size_t k = 0; k < once.size(); ++k) {
+      for (std::size_t i = 0; i < once.row(k).size(); ++i) {
+        const double a = again.row(k)[i], b = once.row(k)[i];
+        ASSERT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << k << ", " << i;
+      }
+    }
+  }
+}
+
 TEST(Tick, OfThreeJointsIsTheSameWithFixedAndWithAnySize) {
   const ArmDescription arm = random_arm(3, 126);
   const Parameters p;

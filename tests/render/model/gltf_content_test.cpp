@@ -186,6 +186,17 @@ TEST(GltfContent, ReadsAMaterialWithItsTextures) {
   EXPECT_EQ(colors.rgba, (Bytes{255, 0, 0, 255}));
 }
 
+// A file may ask for any height; beyond ten times nothing is seen but noise.
+TEST(GltfContent, TakesBumpsUpToTenTimesTheirHeight) {
+  for (const auto& [asked, taken] :
+       {std::pair("9.5", 9.5f), {"15", 10.0f}, {"1e30", 10.0f}, {"-9.5", -9.5f}, {"-15", -10.0f}}) {
+    GltfBuilder file = textured_square();
+    file.more +=
+        R"(,"materials":[{"normalTexture":{"index":0,"scale":)" + std::string(asked) + "}}]";
+    EXPECT_FLOAT_EQ(parse_gltf(file.binary(), "part.glb").parts[0].material.bump, taken) << asked;
+  }
+}
+
 TEST(GltfContent, MovesTextureCoordinates) {
   GltfBuilder file = textured_square();
   file.more += R"(,"extensionsRequired":["KHR_texture_transform"],"materials":[{)"

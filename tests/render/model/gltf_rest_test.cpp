@@ -45,6 +45,29 @@ TEST(GltfRest, LeavesMorphTargetsOutWithoutWeights) {
   EXPECT_TRUE(places(morphed(R"({"mesh":0})"))[1].isApprox(Vector3f(1, 0, 0)));
 }
 
+// What a target of weight 0 holds does not count, not even where it is no place at all.
+TEST(GltfRest, LeavesOutAMorphTargetOfWeightZero) {
+  GltfBuilder file = corner();
+  const int nowhere =
+      file.accessor(file.view(std::vector<float>(9, std::nanf(""))), 5126, "VEC3", 3);
+  const int shorter = file.accessor(file.view(std::vector<float>(6, 1.0f)), 5126, "VEC3", 2);
+  file.primitive = R"(,"targets":[{"POSITION":)" + std::to_string(nowhere) + R"(},{"POSITION":)" +
+                   std::to_string(shorter) + "}]";
+  file.nodes = R"({"mesh":0,"weights":[0,0]})";
+  const auto at = places(file);
+  EXPECT_EQ(at[1], Vector3f(1, 0, 0));
+  EXPECT_EQ(at[2], Vector3f(0, 1, 0));
+}
+
+// JSON has no number for infinity, and a float holds less than a number of JSON may be.
+TEST(GltfRest, RefusesAMorphTargetsWeightBeyondAllBounds) {
+  for (const char* weight : {"1e999", "-1e999", "1e300"}) {
+    EXPECT_THROW(places(morphed(R"({"mesh":0,"weights":[)" + std::string(weight) + "]}")),
+                 std::runtime_error)
+        << weight;
+  }
+}
+
 TEST(GltfRest, RefusesAMorphTargetThatDoesNotMatchItsMesh) {
   const auto refusal = [](std::size_t count, const char* type, std::size_t numbers) -> std::string {
     GltfBuilder file = corner();

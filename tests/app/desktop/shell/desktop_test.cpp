@@ -18,10 +18,10 @@
 #include "app/desktop/shell/commands.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
-#include "render/gl/offscreen.h"
 #include "tests/support/built_in.h"
 #include "tests/support/computer.h"
 #include "tests/support/device_traits.h"
+#include "tests/support/faultless_context.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_session.h"
 #include "tests/support/wired_device.h"
@@ -40,7 +40,7 @@ struct ADesktop : testing::Test {
     setenv("XDG_DATA_HOME", (dir / "data").c_str(), 1);
     setenv("XDG_CONFIG_HOME", (dir / "config").c_str(), 1);
     if (!test::has_offscreen_pictures()) GTEST_SKIP() << "no EGL here";
-    context = std::make_unique<OffscreenContext>(64, 64);
+    context = std::make_unique<test::FaultlessContext>(64, 64);
     desktop = std::make_unique<Desktop>(Settings{}, AskForPriority{});
     desktop->world.open_given("", "", "");
     frames(3);
@@ -127,7 +127,7 @@ struct ADesktop : testing::Test {
   }
 
   const test::TempDir dir;
-  std::unique_ptr<OffscreenContext> context;
+  std::unique_ptr<test::FaultlessContext> context;
   std::unique_ptr<Desktop> desktop;
 };
 

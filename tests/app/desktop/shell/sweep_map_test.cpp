@@ -5,6 +5,7 @@
 
 #include "tests/app/desktop/shell/whole_window.h"
 #include "tests/app/sweep/plans.h"
+#include "tests/support/drawn_ink.h"
 
 namespace limpid {
 namespace {
@@ -105,6 +106,22 @@ TEST_F(MapOfASweep, SaysThePointUnderTheMouse) {
   away();
   EXPECT_FALSE(desktop->sweep.on_screen->pointed_at);
   EXPECT_EQ(pointed(), "");
+}
+
+// A point is marked where its values are on the axes: in the middle of its cell.
+TEST_F(MapOfASweep, MarksItsPointsWhereTheirValuesAre) {
+  open(test::sweep_plan(dir, kMapPlan));
+  const auto marked = [](ImVec2 at) {
+    return test::inked(at, [](ImU32 ink) { return ink == IM_COL32(0, 0, 0, 255); });
+  };
+  for (int x = 0; x < 2; ++x) {
+    for (int y = 0; y < 3; ++y) {
+      const ImVec2 middle = cell(x, 2, y, 3);
+      EXPECT_TRUE(marked(middle)) << x << ", " << y;
+      EXPECT_FALSE(marked({middle.x + 8, middle.y})) << x << ", " << y;
+      EXPECT_FALSE(marked({middle.x, middle.y + 8})) << x << ", " << y;
+    }
+  }
 }
 
 TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {

@@ -18,9 +18,9 @@
 #include "app/desktop/shell/frame.h"
 #include "app/style/imgui_gl.h"
 #include "app/style/imgui_input.h"
-#include "render/gl/offscreen.h"
 #include "tests/support/computer.h"
 #include "tests/support/drawn_text.h"
+#include "tests/support/faultless_context.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -32,7 +32,7 @@ class WholeWindow : public testing::Test {
     setenv("XDG_CONFIG_HOME", (dir / "config").c_str(), 1);
     setenv("XDG_CACHE_HOME", (dir / "cache").c_str(), 1);
     if (!test::has_offscreen_pictures()) GTEST_SKIP() << "no EGL here";
-    context = std::make_unique<OffscreenContext>(64, 64);
+    context = std::make_unique<test::FaultlessContext>(64, 64);
     imgui = std::make_unique<ImGuiGl>();
     begin_imgui_input();
     ImGuiGl::set_up(Theme::dark, 1);
@@ -154,7 +154,7 @@ class WholeWindow : public testing::Test {
 
   const test::TempDir dir;
   int width = 1440, height = 900;
-  std::unique_ptr<OffscreenContext> context;
+  std::unique_ptr<test::FaultlessContext> context;
   std::unique_ptr<ImGuiGl> imgui;
   std::unique_ptr<Desktop> desktop;
   std::unique_ptr<Frame> frame;

@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "core/dynamics/arm.h"
-#include "render/gl/offscreen.h"
 #include "tests/app/plot/imgui_frames.h"
 #include "tests/support/built_in.h"
 #include "tests/support/computer.h"
 #include "tests/support/drawn_text.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -65,7 +65,7 @@ class AView : public ImGuiFrames {
 
   const RowLayout layout_{3};
   std::vector<double> row_ = std::vector<double>(static_cast<std::size_t>(layout_.stride()), 0.0);
-  std::optional<OffscreenContext> context_;
+  std::optional<test::FaultlessContext> context_;
   std::unique_ptr<Stage> stage_;
   ViewPanel panel_;
   Camera camera_;
