@@ -1,4 +1,4 @@
-// By itself: the headers of Epoxy and of GLFW do not go together.
+// Epoxy's header and GLFW's do not go together, so this is a source by itself.
 #include "tests/support/faultless_context.h"
 
 #include <epoxy/gl.h>

@@ -303,6 +303,26 @@ class Live(unittest.TestCase):
                 loop.open(scene="proximal.toml")
             loop.open(scene="free.toml")
 
+    def test_refuses_a_device_without_motors(self) -> None:
+        program = ("import sys, time; sys.path.insert(0, sys.argv[1]); from limpid_device import LimpidDevice\n"
+                   "device = LimpidDevice('still', [-1] * 3, [1] * 3, [0.0] * 3, version=2, slides=[False] * 3)\n"
+                   "while True:\n"
+                   "    device.exchange([0.0, 0.0, 1.0])\n"
+                   "    time.sleep(1e-3)\n")
+        device = subprocess.Popen([sys.executable, "-c", program, ASSETS / "python"])
+        self.addCleanup(device.wait)
+        self.addCleanup(device.kill)
+        for _ in range(600):
+            if "socket:still" in limpid("devices").out:
+                break
+            time.sleep(0.1)
+        for words in (("run", "--yes"), ("serve", "x")):
+            with self.subTest(words=words):
+                result = limpid(*words, "--live", "socket:still", "--device", ASSETS / "devices/omni.urdf",
+                                timeout=30)
+                self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
+                self.assertIn("still: has no motors", result.err)
+
     def test_serve_leaves_the_hand_to_a_person(self) -> None:
         result = limpid("serve", "x", "--live", "socket:replay", "--hand", ASSETS / "hands/touch.csv")
         self.assertEqual(result.status, 2)

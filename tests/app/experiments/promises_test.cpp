@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
 #include "app/experiments/experiment.h"
+#include "app/experiments/passivity.h"
 #include "tests/support/temp_dir.h"
 
 namespace limpid {
@@ -131,6 +133,35 @@ INSTANTIATE_TEST_SUITE_P(Of, Promises,
                                          "lightness", "approaches", "switching", "friction",
                                          "delay", "walls", "mass", "click", "drop", "stack"),
                          [](const auto& one) { return std::string(one.param); });
+
+// Recordings below a folder, and when each was written.
+std::map<std::string, fs::file_time_type> recordings(const fs::path& dir) {
+  std::map<std::string, fs::file_time_type> all;
+  for (const fs::directory_entry& each : fs::recursive_directory_iterator(dir)) {
+    if (each.path().extension() == ".h5") {
+      all[fs::relative(each.path(), dir).string()] = each.last_write_time();
+    }
+  }
+  return all;
+}
+
+// `passivity` keeps the trials that `spectrum` reads, and none of those that nothing else reads.
+TEST(PromisesOfExperiments, LeaveTheTrialsThatOthersRead) {
+  const test::TempDir temp;
+  TrialRunner::Options options;
+  options.dir = temp / ".";
+  TrialRunner first("passivity", options), second("spectrum", options);
+  called("passivity").run(first);
+  const auto left = recordings(options.dir);
+  for (std::size_t i = 0; i < kTrialsOfACase; ++i) {
+    for (const PassivityCase& one : passivity_cases()) {
+      EXPECT_TRUE(left.contains(fmt::format("passivity/{}-{}.h5", one.file_name, i))) << one.name;
+    }
+    EXPECT_FALSE(left.contains(fmt::format("passivity/eta-0.4-{}.h5", i))) << i;
+  }
+  called("spectrum").run(second);
+  EXPECT_EQ(recordings(options.dir), left) << "it ran some again";
+}
 
 TEST(PromisesOfExperiments, AreMadeByEachOfThem) {
   std::set<std::string> promised, known;

@@ -228,7 +228,7 @@ class TickOfALaw : public testing::TestWithParam<std::size_t> {};
 INSTANTIATE_TEST_SUITE_P(Laws, TickOfALaw, testing::Range(std::size_t{0}, std::size_t{kLaws}),
                          [](const auto& law) { return std::string(kLawKeys[law.param]); });
 
-// A start elsewhere: neither the way there nor torques that are still on their way belong to it.
+// A start elsewhere knows neither the way there nor torques that are still on their way.
 TEST_P(TickOfALaw, BeginsAnewAsIfItHadNeverRun) {
   const ArmDescription arm = random_arm(3, 132);
   Parameters p;

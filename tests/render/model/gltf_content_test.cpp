@@ -186,7 +186,7 @@ TEST(GltfContent, ReadsAMaterialWithItsTextures) {
   EXPECT_EQ(colors.rgba, (Bytes{255, 0, 0, 255}));
 }
 
-// A file may ask for any height; beyond ten times nothing is seen but noise.
+// A file may ask for any height; a picture takes ten times the height at most.
 TEST(GltfContent, TakesBumpsUpToTenTimesTheirHeight) {
   for (const auto& [asked, taken] :
        {std::pair("9.5", 9.5f), {"15", 10.0f}, {"1e30", 10.0f}, {"-9.5", -9.5f}, {"-15", -10.0f}}) {

@@ -45,7 +45,7 @@ TEST(GltfRest, LeavesMorphTargetsOutWithoutWeights) {
   EXPECT_TRUE(places(morphed(R"({"mesh":0})"))[1].isApprox(Vector3f(1, 0, 0)));
 }
 
-// What a target of weight 0 holds does not count, not even where it is no place at all.
+// A target of weight 0 does not count, not even where it holds no places at all.
 TEST(GltfRest, LeavesOutAMorphTargetOfWeightZero) {
   GltfBuilder file = corner();
   const int nowhere =
