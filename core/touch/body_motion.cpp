@@ -13,9 +13,6 @@ namespace {
 // which they end. A body of a kilohertz tick that spins by 300 rad/s takes ten.
 constexpr int kMostTurns = 20;
 constexpr double kSameSpin = 1e-11;
-// Turning by the square of this in a tick, differently, is no other turning [rad]; nor is one by
-// more than the second, for which no response settles.
-constexpr double kSameTurn2 = 1e-6, kTooFar = 2;
 
 Mat3 turn(const Vec3& axis, double angle) {
   const SineCosine at = sine_cosine(angle);
@@ -177,9 +174,8 @@ Vec3 BodyMotion::set_impedance(const Vec3& own, const Vec3& torque, double T) {
   return pull;
 }
 
-bool BodyMotion::turns_otherwise(double T) const {
-  const double turn = T * o_.norm();
-  return !on_joint() && turn < kTooFar && turn * T * (o_ - around_).norm() > kSameTurn2;
+double BodyMotion::turns_otherwise(double T) const {
+  return on_joint() ? 0 : T * T * o_.norm() * (o_ - around_).norm();
 }
 
 void BodyMotion::turn_again(double T) {

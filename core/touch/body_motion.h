@@ -42,9 +42,9 @@ class BodyMotion {
   Lever lever(const Vec3& point, double T) const;
   // The same by the mean spin that the forces so far lead to: the middle of both places.
   Lever middle(const Vec3& point, double T) const;
-  // True if the spin that the forces lead to is another one than levers and response were found
-  // with.
-  bool turns_otherwise(double T) const;
+  // The angle by which it turns in the tick, times the one by which that differs from what levers
+  // and response were found with [rad^2].
+  double turns_otherwise(double T) const;
   // Finds the response anew, by the mean spin and the torques of the forces so far. Once they no
   // longer change, the angular momentum is kept as well as the energy.
   void turn_again(double T);

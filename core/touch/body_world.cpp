@@ -29,7 +29,11 @@ constexpr int kMostMeetings = 8;     // of a quick body in a tick
 constexpr int kMostPartings = 100;   // sweeps over contacts that part
 constexpr double kSameSpeed = 1e-9;  // change of speed at which they end [m/s]
 constexpr int kMostRounds = 4;       // rounds of sweeps for forces that make energy
-constexpr int kMostTurnings = 5;     // rounds of them for bodies that turn by far in a tick
+// Rounds of sweeps for bodies that turn by far in a tick. Their turning counts as assumed if the
+// way in a tick and its error, multiplied, are less than the first of these; by more than the
+// second none is assumed [rad^2].
+constexpr int kMostTurnings = 5;
+constexpr double kSameTurn2 = 2.5e-5, kTooFar2 = 1;
 
 }  // namespace
 
@@ -306,36 +310,43 @@ void BodyWorld::add_forces(const std::vector<double>& more) {
 }
 
 // Finds the response of bodies on joints anew, and the joints' levers, where they turn otherwise
-// than was assumed. True if any does.
-bool BodyWorld::turn_again(bool touched) {
-  bool any = false;
+// than was assumed, by `before` at most. Returns by how much; zero: nothing is done [rad^2].
+double BodyWorld::turn_again(bool touched, double before) {
+  double most = 0;
   for (int i = 0; i < count(); ++i) {
-    const bool turns =
-        linked_[at(i)] != 0 && in_turn(i, i, touched) && bodies_[i].turns_otherwise(bodies_.T);
-    turned_[at(i)] = turns ? 1 : 0;
-    if (turns) bodies_[i].turn_again(bodies_.T);
-    any = any || turns;
+    const bool turns = linked_[at(i)] != 0 && in_turn(i, i, touched);
+    const double otherwise = turns ? bodies_[i].turns_otherwise(bodies_.T) : 0;
+    turned_[at(i)] = otherwise > kSameTurn2 ? 1 : 0;
+    most = std::max(most, otherwise);
   }
-  if (!any) return false;
+  if (most <= kSameTurn2 || most > before) return 0;
   const auto turned = [&](int body) {
     return body != BodyContact::kStill && turned_[at(body)] != 0;
   };
+  for (int i = 0; i < count(); ++i) {
+    if (turned(i)) bodies_[i].turn_again(bodies_.T);
+  }
   for (JointLink& link : constraints_.joint_links) {
     if (turned(link.a) || turned(link.b)) link.turn(bodies_);
   }
   for (JointBetween& joint : constraints_.joints_between) {
     if (turned(joint.a) || turned(joint.b)) joint.turn(bodies_);
   }
-  return true;
+  return most;
 }
 
+// Ends where bodies turn as was assumed, or where that comes no nearer.
 void BodyWorld::sweep_turning(bool touched, double enough, int most) {
   sweep(touched, enough, most);
-  for (int i = 0; i < kMostTurnings && turn_again(touched); ++i) sweep(touched, enough, most);
+  double otherwise = kTooFar2;
+  for (int i = 0; i < kMostTurnings; ++i) {
+    otherwise = turn_again(touched, otherwise);
+    if (otherwise == 0) return;
+    sweep(touched, enough, most);
+  }
 }
 
 double BodyWorld::sweep(bool touched, double enough, int most) {
-  turn_again(touched);
   double last2 = 0;
   for (int i = 1;; ++i) {
     const std::size_t numbers = forces(before_);
@@ -441,7 +452,7 @@ void BodyWorld::hold_what_is_made_up() {
   for_each_of(constraints_.all(), [&](auto& c) {
     if (c.off() || !(moves(c.a) || moves(c.b))) return;
     const int island = root(moves(c.a) ? c.a : c.b);
-    if (made_[at(island)] > right_ && stands(island)) c.hold(bodies_);
+    if (!(made_[at(island)] <= right_) && stands(island)) c.hold(bodies_);
   });
 }
 

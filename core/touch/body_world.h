@@ -120,7 +120,7 @@ class BodyWorld {
   void wake(int body);
   void wake_neighbours();
   void find_islands();
-  bool turn_again(bool touched);
+  double turn_again(bool touched, double before);
   void sweep_turning(bool touched, double enough, int most);
   int root(int body);
   void join(int a, int b);
