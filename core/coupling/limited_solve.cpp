@@ -30,8 +30,8 @@ void hold(Mat<N>& slope, const Vec<N>& torque, const Vec<N>& limit) {
 
 template <int N>
 Motion<N> LimitedSolve<N>::residual(ContactSolve<N>& contacts, double T, const Motion<N>& m,
-                                    Mat<N>* slope) {
-  f2 = contacts.push(m.u, T, slope);
+                                    Mat<N>* slope, Slope how) {
+  f2 = contacts.push(m.u, T, slope, how);
   wanted_ = tE.at(m) + on_f2 * f2;
   p = clip<N>(wanted_, limit);
   given = p + tL.at(m);
@@ -57,7 +57,8 @@ bool LimitedSolve<N>::solve(ContactSolve<N>& contacts, double T, Motion<N>& m) {
   const Eigen::Index n = limit.size();
   Mat<N> f2_on_u = Mat<N>::Zero(n, n);
   for (steps = 0; steps < kMostSteps; ++steps) {
-    const Motion<N> off = residual(contacts, T, m, &f2_on_u);
+    const Slope how = steps < kQuickSteps ? Slope::quick : Slope::whole;
+    const Motion<N> off = residual(contacts, T, m, &f2_on_u, how);
     const Slopes J = slopes(f2_on_u);
     const Motion<N> step = J.solve(off);
     const double far = size(step);
@@ -65,12 +66,12 @@ bool LimitedSolve<N>::solve(ContactSolve<N>& contacts, double T, Motion<N>& m) {
     const Motion<N> from = m;
     if (far <= kEnough * (1 + size(from))) {
       m = {from.w - step.w, from.u - step.u};
-      residual(contacts, T, m, nullptr);
+      residual(contacts, T, m);
       return true;
     }
     for (double by = 1; by >= kShortest; by /= 2) {
       m = {from.w - by * step.w, from.u - by * step.u};
-      if (size(J.solve(residual(contacts, T, m, nullptr))) <= (1 - by / 4) * far) break;
+      if (size(J.solve(residual(contacts, T, m))) <= (1 - by / 4) * far) break;
     }
   }
   return false;
@@ -80,7 +81,7 @@ template <int N>
 void LimitedSolve<N>::stand_still(ContactSolve<N>& contacts, double T, Motion<N>& m) {
   m.u.setZero(limit.size());
   m.w = limpid::solve<N>(D0, drive);
-  residual(contacts, T, m, nullptr);
+  residual(contacts, T, m);
   m.w = limpid::solve<N>(D0, Vec<N>(drive + authority * tau1));
 }
 

@@ -35,7 +35,9 @@ struct LimitedSolve {
   Vec<N> given;        // p + tL, before the motors' limit cuts it to tau1 [N m]
   int steps = 0;       // steps of Newton's method
 
-  static constexpr int kMostSteps = 10;
+  // Most steps, and those with a slope that is quickly found: most solves end within these, and
+  // those that do not come nearer with it slowly or not at all.
+  static constexpr int kMostSteps = 10, kQuickSteps = 4;
 
   // Newton's method from m, each step shortened until it leads nearer; at a kink of the law the
   // present piece is used. True if it ended at a solution, to 1e-9 of the motion. Contacts:
@@ -50,7 +52,8 @@ struct LimitedSolve {
   bool at_limit() const { return (p.cwiseAbs().array() >= limit.array()).any(); }
 
  private:
-  Motion<N> residual(ContactSolve<N>& contacts, double T, const Motion<N>& m, Mat<N>* slope);
+  Motion<N> residual(ContactSolve<N>& contacts, double T, const Motion<N>& m,
+                     Mat<N>* slope = nullptr, Slope how = Slope::quick);
   using Slopes = CoupledSystem<N, Factor>;  // Factor: with friction the proxy's block need not be
                                             // positive definite
   Slopes slopes(const Mat<N>& f2_on_u) const;

@@ -111,7 +111,7 @@ void BodyMotion::place() {
 
 void BodyMotion::begin(double T, bool pressed) {
   theta_ = pressed ? pressed_theta_ : 0.5;
-  spin_ = spin();
+  spin_ = around_ = spin();
   if (on_joint()) {
     const double M = reflected_ / (theta_ * T);
     a_ = 1 / (M + joint_.damping);
@@ -139,27 +139,14 @@ void BodyMotion::begin(double T, bool pressed) {
 // torques are not known yet: the last tick's are turned in place of them, which needs no energy.
 void BodyMotion::begin_turning(double T) {
   const Mat3& R = pose_.linear();
-  const Vec3 start = I_ * w_ / (theta_ * T);
   const bool hangs = kind_ == Kind::ball;
   const Vec3 arm = hangs ? Vec3(c_ - joint_.point) : Vec3(Vec3::Zero());
   const Vec3 W = hangs ? Vec3(m_ * (R.transpose() * gravity_)) : Vec3(Vec3::Zero());
   Vec3 own = w_ + 0.5 * T * (inverse_ * ((I_ * w_).cross(w_) + arm.cross(W)));
   Mat3 A;
   for (int turn = 0; turn < kMostTurns; ++turn) {
-    A = I_ / (theta_ * T) - skew(I_ * own + 0.5 * T * torque_);
-    Vec3 pull = start;
-    if (hangs) {
-      const Mat3 half = 0.5 * T * skew(own);
-      const Vec3 middle = (Mat3::Identity() - half).inverse() * arm;  // half of both places
-      const Vec3 torque = middle.cross(W);
-      const Mat3 to_middle = Mat3::Identity() - half;
-      const Mat3 more =
-          0.5 * T * (to_middle * skew(W) * skew(middle) + skew(torque));  // by the spin
-      A -= more;
-      pull += to_middle * torque - more * own;
-    }
-    impedance_ = A;
-    A = A.inverse().eval();
+    const Vec3 pull = set_impedance(own, torque_, T);
+    A = impedance_.inverse().eval();
     const Vec3 before = own;
     own = A * pull;
     if ((own - before).squaredNorm() <= kSameSpin * kSameSpin * own.squaredNorm()) break;
@@ -169,9 +156,48 @@ void BodyMotion::begin_turning(double T) {
   Ai_ = R * A * R.transpose();
 }
 
+// Sets the impedance around a mean spin `own` and a torque, both in the body's frame; returns the
+// torque without others.
+Vec3 BodyMotion::set_impedance(const Vec3& own, const Vec3& torque, double T) {
+  const Mat3& R = pose_.linear();
+  impedance_ = I_ / (theta_ * T) - skew(I_ * own + 0.5 * T * torque);
+  Vec3 pull = I_ * w_ / (theta_ * T);
+  if (kind_ != Kind::ball) return pull;
+  const Vec3 arm = c_ - joint_.point, W = m_ * (R.transpose() * gravity_);
+  const Mat3 half = 0.5 * T * skew(own);
+  const Vec3 middle = (Mat3::Identity() - half).inverse() * arm;  // half of both places
+  const Vec3 weight = middle.cross(W);
+  const Mat3 to_middle = Mat3::Identity() - half;
+  const Mat3 more = 0.5 * T * (to_middle * skew(W) * skew(middle) + skew(weight));  // by the spin
+  impedance_ -= more;
+  pull += to_middle * weight - more * own;
+  return pull;
+}
+
+double BodyMotion::turns_otherwise(double T) const {
+  return on_joint() ? 0 : T * T * o_.norm() * (o_ - around_).norm();
+}
+
+void BodyMotion::turn_again(double T) {
+  const Mat3& R = pose_.linear();
+  const Vec3 own = R.transpose() * o_, torque = impedance_ * (own - own_);
+  const Vec3 pull = set_impedance(own, torque, T);
+  const Mat3 A = impedance_.inverse();
+  own_ = A * pull;
+  o_ = R * (own_ + A * torque);
+  Ai_ = R * A * R.transpose();
+  around_ = o_;
+}
+
 BodyMotion::Lever BodyMotion::lever(const Vec3& point, double T) const {
   const Vec3 arm = point - p_;
   return arm + 0.5 * T * spin_.cross(arm);
+}
+
+// The mean m of an arm's two places in the tick fulfils m = arm + h x m.
+BodyMotion::Lever BodyMotion::middle(const Vec3& point, double T) const {
+  const Vec3 arm = point - p_, h = 0.5 * T * o_;
+  return (arm + h.cross(arm) + h * h.dot(arm)) / (1 + h.squaredNorm());
 }
 
 BodyMotion::Lever BodyMotion::rolling(const Vec3& point, const Vec3& center, const Vec3& axis,
@@ -293,6 +319,11 @@ void BodyMotion::finish(double T) {
   pose_.translation() = p_ - pose_.linear() * turns_about();
   v_ += (u_ - v_) / theta_;
   w_ += (own - w_) / theta_;
+}
+
+void BodyMotion::limit_spin(double T) {
+  const double turn = T * w_.norm();
+  if (turn > kMostTurn) w_ *= kMostTurn / turn;
 }
 
 void BodyMotion::halt() {

@@ -40,6 +40,14 @@ class BodyMotion {
   // forces.
   void begin(double T, bool pressed);
   Lever lever(const Vec3& point, double T) const;
+  // The same by the mean spin that the forces so far lead to: the middle of both places.
+  Lever middle(const Vec3& point, double T) const;
+  // The angle by which it turns in the tick, times the one by which that differs from what levers
+  // and response were found with [rad^2].
+  double turns_otherwise(double T) const;
+  // Finds the response anew, by the mean spin and the torques of the forces so far. Once they no
+  // longer change, the angular momentum is kept as well as the energy.
+  void turn_again(double T);
   // Lever of the point where a round part of the body rolls: the part turns about its centre [m]
   // and the axis, zero for a ball, and the point does not turn along.
   Lever rolling(const Vec3& point, const Vec3& center, const Vec3& axis, double T) const;
@@ -75,6 +83,9 @@ class BodyMotion {
   const JointPotential& potential() const { return potential_; }
   // Ends the tick.
   void finish(double T);
+  // Bodies of mechanisms turn at most by this angle in a tick [rad].
+  static constexpr double kMostTurn = 1;
+  void limit_spin(double T);
   void halt();  // at rest from now on
   // Between ticks: velocity of the body's point there [m/s], its response along a unit n to an
   // impulse there [1/kg], and such an impulse [N s].
@@ -119,6 +130,7 @@ class BodyMotion {
   void add_weight();
   void place();
   void begin_turning(double T);
+  Vec3 set_impedance(const Vec3& own, const Vec3& torque, double T);
   // The point where it turns about, in the object's frame [m].
   const Vec3& turns_about() const { return kind_ == Kind::ball ? joint_.point : c_; }
 
@@ -143,6 +155,7 @@ class BodyMotion {
   // State of the tick.
   Vec3 u_, o_;     // mean velocities, world
   Vec3 spin_;      // at the start, world
+  Vec3 around_;    // spin that levers and response were found with, world
   double im_ = 0;  // theta T / m
   Mat3 Ai_;
   Vec3 own_;        // mean spin under weight alone, in the body's frame

@@ -29,6 +29,11 @@ constexpr int kMostMeetings = 8;     // of a quick body in a tick
 constexpr int kMostPartings = 100;   // sweeps over contacts that part
 constexpr double kSameSpeed = 1e-9;  // change of speed at which they end [m/s]
 constexpr int kMostRounds = 4;       // rounds of sweeps for forces that make energy
+// Rounds of sweeps for bodies that turn by far in a tick. Their turning counts as assumed if the
+// way in a tick and its error, multiplied, are less than the first of these; by more than the
+// second none is assumed [rad^2].
+constexpr int kMostTurnings = 5;
+constexpr double kSameTurn2 = 2.5e-5, kTooFar2 = 1;
 
 }  // namespace
 
@@ -51,6 +56,8 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
   const std::size_t n = names_.size();
   touched_.assign(n, 0);
   tied_.assign(n, 0);
+  linked_.assign(n, 0);
+  turned_.assign(n, 0);
   for (int i = 0; i < count(); ++i) {
     const Body& body = bodies_.about[at(i)];
     tied_[at(i)] = body.joint ? 1 : 0;
@@ -74,6 +81,8 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
     right_ = std::min(right_, kMade * motion.mass());
   }
   add_links(scene);
+  for (const JointLink& link : constraints_.joint_links)
+    linked_[at(link.a)] = linked_[at(link.b)] = 1;
   for_each_of(constraints_.lasting(), [&](const auto& c) {
     for (const int body : {int{c.a}, int{c.b}}) {
       if (body != BodyContact::kStill) tied_[at(body)] = 1;
@@ -300,6 +309,43 @@ void BodyWorld::add_forces(const std::vector<double>& more) {
   });
 }
 
+// Finds the response of bodies on joints anew, and the joints' levers, where they turn otherwise
+// than was assumed, by `before` at most. Returns by how much; zero: nothing is done [rad^2].
+double BodyWorld::turn_again(bool touched, double before) {
+  double most = 0;
+  for (int i = 0; i < count(); ++i) {
+    const bool turns = linked_[at(i)] != 0 && in_turn(i, i, touched);
+    const double otherwise = turns ? bodies_[i].turns_otherwise(bodies_.T) : 0;
+    turned_[at(i)] = otherwise > kSameTurn2 ? 1 : 0;
+    most = std::max(most, otherwise);
+  }
+  if (most <= kSameTurn2 || most > before) return 0;
+  const auto turned = [&](int body) {
+    return body != BodyContact::kStill && turned_[at(body)] != 0;
+  };
+  for (int i = 0; i < count(); ++i) {
+    if (turned(i)) bodies_[i].turn_again(bodies_.T);
+  }
+  for (JointLink& link : constraints_.joint_links) {
+    if (turned(link.a) || turned(link.b)) link.turn(bodies_);
+  }
+  for (JointBetween& joint : constraints_.joints_between) {
+    if (turned(joint.a) || turned(joint.b)) joint.turn(bodies_);
+  }
+  return most;
+}
+
+// Ends where bodies turn as was assumed, or where that comes no nearer.
+void BodyWorld::sweep_turning(bool touched, double enough, int most) {
+  sweep(touched, enough, most);
+  double otherwise = kTooFar2;
+  for (int i = 0; i < kMostTurnings; ++i) {
+    otherwise = turn_again(touched, otherwise);
+    if (otherwise == 0) return;
+    sweep(touched, enough, most);
+  }
+}
+
 double BodyWorld::sweep(bool touched, double enough, int most) {
   double last2 = 0;
   for (int i = 1;; ++i) {
@@ -345,10 +391,10 @@ void BodyWorld::hold_touched() {
 }
 
 void BodyWorld::settle() {
-  sweep(true, kEnough, kMostSweeps);
+  sweep_turning(true, kEnough, kMostSweeps);
   const auto many =
       static_cast<int>(kMostRowsSwept / std::max<std::size_t>(1, constraints_.pairs.size()));
-  sweep(false, enough_else_, std::clamp(many, kFewSweeps, kManySweeps));
+  sweep_turning(false, enough_else_, std::clamp(many, kFewSweeps, kManySweeps));
   settle_what_makes_energy();
 }
 
@@ -406,7 +452,7 @@ void BodyWorld::hold_what_is_made_up() {
   for_each_of(constraints_.all(), [&](auto& c) {
     if (c.off() || !(moves(c.a) || moves(c.b))) return;
     const int island = root(moves(c.a) ? c.a : c.b);
-    if (made_[at(island)] > right_ && stands(island)) c.hold(bodies_);
+    if (!(made_[at(island)] <= right_) && stands(island)) c.hold(bodies_);
   });
 }
 
@@ -426,6 +472,7 @@ void BodyWorld::finish() {
       passing_.push_back(i);
     }
     body.finish(bodies_.T);
+    if (linked_[at(i)] != 0) body.limit_spin(bodies_.T);
     if (!body.finite()) body.reset();
     if (const double by = slower_[at(root(i))]; by != 1) body.slow_down(by);
     geometry_.place(i, pose(i));

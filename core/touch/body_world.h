@@ -120,6 +120,8 @@ class BodyWorld {
   void wake(int body);
   void wake_neighbours();
   void find_islands();
+  double turn_again(bool touched, double before);
+  void sweep_turning(bool touched, double enough, int most);
   int root(int body);
   void join(int a, int b);
   bool in_turn(int a, int b, bool touched);
@@ -145,6 +147,8 @@ class BodyWorld {
   std::vector<std::uint8_t> touched_;
   std::vector<double> stops_in_;            // time in which a contact's spring stops a body [s]
   std::vector<std::uint8_t> tied_;          // a joint or a spring holds it
+  std::vector<std::uint8_t> linked_;        // a joint with another body holds it
+  std::vector<std::uint8_t> turned_;        // its response was found anew
   std::vector<std::uint8_t> quiet_island_;  // by the island's root
   std::vector<int> quiet_;                  // ticks
   std::vector<Pose> quiet_at_;              // poses since then: centre of mass [m], turning

@@ -185,13 +185,13 @@ void ContactSolve<N>::hold_bodies() {
 }
 
 template <int N>
-Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope) {
+Vec<N> ContactSolve<N>::push(const Vec<N>& u, double T, Mat<N>* slope, Slope how) {
   if (slope != nullptr) slope->setZero();
   for (Row& row : rows()) {
     const Vec3 v = row.speed(u) - row.body_free;
     // Friction also moves a body along the normal; the last friction is used.
     const Vec3 own = row.world != nullptr ? Vec3(v + row.W_body * row.rubbed) : v;
-    Mat3 on_v = std::visit([&](const auto* c) { return c->push(row, T, own); }, row.source);
+    Mat3 on_v = std::visit([&](const auto* c) { return c->push(row, T, own, how); }, row.source);
     rub(row, T, v, on_v);
     if (slope == nullptr || on_v.isZero(0)) continue;
     for (int i = 0; i < row.axes; ++i) {

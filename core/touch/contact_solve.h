@@ -43,8 +43,8 @@ class ContactSolve {
   void hold_bodies();
   // Returns the torque [N m] of the forces over a tick in which the proxy moves with the mean
   // velocity u [rad/s]; f2() and finish() refer to the last call. `slope`: derivative over u [N m
-  // s/rad], on the present piece of the forces' laws; may be null.
-  Vec<N> push(const Vec<N>& u, double T, Mat<N>* slope);
+  // s/rad], on the present piece of the forces' laws; may be null. `how` it is found.
+  Vec<N> push(const Vec<N>& u, double T, Mat<N>* slope, Slope how = Slope::quick);
   // After push() for the same u: the springs where the tick ends, not their mean over it, with the
   // materials' dampers and with friction.
   HeldContacts<N> held(const Vec<N>& u, double T) const;

@@ -92,10 +92,16 @@ double HeldJoint::sweep(double T, const Vec3& speed) {
     damping = -joint.damping * (free + W * friction);
     return (friction - rubbed).norm() + (damping - before).norm();
   }
-  const double w = along.dot(answer * along), left = damped(0, 0);
-  AlongJoint now{place, left * (along.dot(speed) - w * along.dot(damping)), left * w};
+  const double w = along.dot(answer * along), left = damped(0, 0), before_it = forces.sum();
+  const double undamped = along.dot(speed) - w * along.dot(damping);
+  AlongJoint now{place, left * undamped, left * w};
   const double change = sweep_joint(joint, potential, T, now, forces);
   damping = -joint.damping * now.speed * along;
+  if (turns() && T * std::abs(now.speed) > BodyMotion::kMostTurn) {
+    const double most = std::copysign(BodyMotion::kMostTurn / T, now.speed);
+    if (potential.any()) potential.over_a_tick(place, T * most, 0, forces.potential);
+    damping = (most - undamped - w * (forces.sum() - before_it)) / w * along;
+  }
   return change + (damping - before).norm();
 }
 

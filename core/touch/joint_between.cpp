@@ -25,6 +25,22 @@ void JointBetween::prepare(Bodies& bodies) {
   const Vec3 at = bodies[a].center();
   end_a = bodies.end_at(a, at);
   end_b = bodies.end_at(b, at);
+  find_answer(bodies);
+  push(bodies, joint.force());
+}
+
+void JointBetween::turn(Bodies& bodies) {
+  push(bodies, -joint.force());
+  if (joint.turns() && bodies.moves(b)) {
+    const BodyMotion& motion = bodies[b];
+    const Vec3 now = bodies.directed(b, axis);
+    joint.along = motion.middle(motion.turns_at() + now, bodies.T).normalized();
+  }
+  find_answer(bodies);
+  push(bodies, joint.force());
+}
+
+void JointBetween::find_answer(const Bodies& bodies) {
   JointSide one, two;
   if (bodies.moves(a)) one.answer = bodies[a].answer();
   if (bodies.moves(b)) two.answer = bodies[b].answer();
@@ -38,7 +54,6 @@ void JointBetween::prepare(Bodies& bodies) {
   }
   answer = joint_answer(joint.turns(), one, two, {holds.data(), links.size()});
   joint.start(answer.response);
-  push(bodies, joint.force());
 }
 
 // Solves its links, and then its own force with the links' forces that follow from it: one after

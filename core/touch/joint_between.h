@@ -26,6 +26,7 @@ struct JointBetween {
   static constexpr bool kWakes = false;  // its links do
   bool off() const { return false; }
   void prepare(Bodies& bodies);
+  void turn(Bodies& bodies);  // after its links
   double solve(Bodies& bodies);
   Vec3 forces() const { return joint.numbers(); }
   double made(const Bodies& bodies) const { return joint.made(bodies.T, speed(bodies)); }
@@ -42,6 +43,7 @@ struct JointBetween {
   void read(const double* from) { joint.read(from); }
 
  private:
+  void find_answer(const Bodies& bodies);
   Vec3 speed(const Bodies& bodies) const;  // of a relative to b: of the joint's point, or angular
   void push(Bodies& bodies, const Vec3& force) const;
   double add_to_links(Bodies& bodies, const JointAnswer::Numbers& more);  // the largest change [N]

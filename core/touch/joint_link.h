@@ -24,6 +24,9 @@ struct JointLink : HeldForce {
 
   static constexpr bool kWakes = true;
   void prepare(Bodies& bodies);
+  // Takes the places of its points in the middle of the tick anew, for bodies that turn by far. A
+  // rail keeps them.
+  void turn(Bodies& bodies);
   double made(const Bodies& bodies) const {
     const Vec3 way = bodies.T * (held * force.speed(bodies));
     return way.dot(force.on_a + point.K * (point.stretch + way / 2));

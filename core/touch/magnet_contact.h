@@ -65,7 +65,7 @@ struct MagnetContact {
     row.apply(change, motion);
     return change.norm();
   }
-  Mat3 push(ContactRow<N>& row, double T, const Vec3& v) const {
+  Mat3 push(ContactRow<N>& row, double T, const Vec3& v, Slope) const {
     const double K = row.material.stiffness, k = K * T / 2 + row.B;
     Mat3 slope = -k * (Mat3::Identity() + k * row.W_body).inverse();
     row.push = slope / k * (K * stretch + k * v);

@@ -113,15 +113,16 @@ struct MeshContact {
     const Vec3 normal = size > 0 ? Vec3(row.push / size) : Vec3::UnitX();
     return change.norm() + row.rub(T, normal, size, motion);
   }
-  Mat3 push(ContactRow<N>& row, double T, const Vec3& v) const {
+  Mat3 push(ContactRow<N>& row, double T, const Vec3& v, Slope slope) const {
     const double K = row.material.stiffness;
     Mat3 on_D;
     if (row.world == nullptr) {
-      row.push = room_push(touch, {K, row.B, T, center, T * v, Mat3::Zero()}, on_D);
+      row.push = room_push(touch, {K, row.B, T, center, T * v, Mat3::Zero()}, slope, on_D);
       return T * on_D;
     }
     room_force(touch, {K, row.B, T, center, T * v, T * row.W_body}, row.push);
-    room_push(touch, {K, row.B, T, center, T * (v + row.W_body * row.push), Mat3::Zero()}, on_D);
+    room_push(touch, {K, row.B, T, center, T * (v + row.W_body * row.push), Mat3::Zero()}, slope,
+              on_D);
     return T * (Mat3::Identity() - T * on_D * row.W_body).inverse() * on_D;
   }
   Vec3 spring_after(const ContactRow<N>& row, const Vec3& moved) const {

@@ -7,6 +7,7 @@ namespace limpid {
 namespace {
 
 constexpr int kMostSteps = 10;    // steps of Newton's method; two or three are usual
+constexpr double kStep = 1e-6;    // of a difference, relative to the segment
 constexpr int kFinest = 1 << 10;  // parts of a segment: finest search for changes of planes
 
 // State of the room at a point of the segment.
@@ -21,6 +22,7 @@ struct Mean {
   Vec3 pull = Vec3::Zero();    // [m]
   Mat3 damped = Mat3::Zero();  // factor of the damper on a velocity [-]
   Mat3 later = Mat3::Zero();   // slope of the pull's mean over the segment's end [-]
+  bool one_plane = true;       // holds all of it, or none: then the damper's factor is constant
 };
 
 class Segment {
@@ -73,11 +75,13 @@ class Segment {
       const int half = (first + last) / 2;
       const Held middle = at(0.5 * (s0 + s1));
       if (!(a.by == b.by && a.by == middle.by)) {
+        m.one_plane = false;
         add(first, half, a, middle, m);
         add(half, last, middle, b, m);
         return;
       }
     }
+    m.one_plane = m.one_plane && a.by == b.by && a.by.count <= 1;
     m.pull += 0.5 * (s1 - s0) * (a.pull + b.pull);
     for (const Held* h : {&a, &b}) {
       m.damped += 0.5 * (s1 - s0) * damper(*h);
@@ -92,6 +96,18 @@ class Segment {
 Mean mean_of(const MeshTouch& touch, const Vec3& center, const Vec3& D) {
   if (!touch.held()) return Segment(touch.space(), center, D).mean();
   return {touch.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
+}
+
+// Slope of the damper's way, m.damped D, over D. By differences, where planes share the damper.
+Mat3 damped_on(const MeshTouch& touch, const Vec3& center, const Vec3& D, const Mean& m) {
+  const double step = kStep * D.norm();
+  if (m.one_plane || !(step > 0)) return m.damped;
+  Mat3 slope;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 there = D + step * Vec3::Unit(i);
+    slope.col(i) = (mean_of(touch, center, there).damped * there - m.damped * D) / step;
+  }
+  return slope;
 }
 
 }  // namespace
@@ -112,13 +128,16 @@ void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
   if (F.dot(pull) <= 0) F.setZero();  // walls do not stick
 }
 
-Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D) {
+Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Slope slope, Mat3& on_D) {
   const double b = tick.B / tick.T;
   const Mean m = mean_of(touch, tick.center, tick.a);
   const Vec3 F = tick.K * m.pull - b * (m.damped * tick.a);
   const bool pushes = F.dot(m.pull) > 0;
-  on_D = pushes ? Mat3(-tick.K * m.later - b * m.damped) : Mat3(Mat3::Zero());
-  return pushes ? F : Vec3(Vec3::Zero());
+  on_D.setZero();
+  if (!pushes) return Vec3::Zero();
+  const bool whole = slope == Slope::whole;
+  on_D = -tick.K * m.later - b * (whole ? damped_on(touch, tick.center, tick.a, m) : m.damped);
+  return F;
 }
 
 }  // namespace limpid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/touch/mesh_touch.h"
+#include "core/touch/wall_force.h"
 
 namespace limpid {
 
@@ -20,8 +21,7 @@ struct RoomTick {
 // does exactly the work that the potential loses. `F`: in, a first guess; out, the force.
 void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F);
 
-// The force of room_force() for a known D = a, and its slope over D [N/m], with the damper's
-// directions fixed.
-Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Mat3& on_D);
+// The force of room_force() for a known D = a, and its slope over D [N/m].
+Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Slope slope, Mat3& on_D);
 
 }  // namespace limpid

@@ -111,7 +111,7 @@ struct Contact {
   }
   // The force without friction for a motion v along the row's axes, which excludes the force's
   // effect on its own body; returns the slope over v.
-  Mat3 push(ContactRow<N>& row, double T, const Vec3& v) const {
+  Mat3 push(ContactRow<N>& row, double T, const Vec3& v, Slope) const {
     Mat3 slope = Mat3::Zero();
     const double K = row.material.stiffness, a = -T * v.x(), c = T * row.W_body(0, 0);
     WallPush F = wall_push({K, row.B, T, depth, a, 0});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/math/sizes.h"
 
@@ -11,6 +12,10 @@ namespace limpid {
 
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
+
+// The slope of a force over a motion: with the damper's directions fixed, which is quickly found,
+// or as it is where they change along the way.
+enum class Slope : std::uint8_t { quick, whole };
 
 // Coulomb friction as a spring with an anchor that slips, implicit and dissipative. Returns the
 // tangential force l = disc[-K_t (z + T (b + W l))] [N], disc the projection on the disc of this

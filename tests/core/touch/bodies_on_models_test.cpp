@@ -26,19 +26,19 @@ Object level_model(Random& random, int parts, double friction) {
   return floor;
 }
 
-struct Slope {
+struct Incline {
   Vec3 moved = Vec3::Zero();         // [m]
   Vec3 acceleration = Vec3::Zero();  // over the second half [m/s^2]
   Vec3 end = Vec3::Zero();           // [m]
 };
 
-Slope run_down(const Scene& scene, int ticks) {
+Incline run_down(const Scene& scene, int ticks) {
   BodyWorld world(scene);
   const Vec3 start = world.pose(0).translation();
   test::run(world, ticks / 2);
   const Vec3 half = world.pose(0).translation();
   test::run(world, ticks / 2);
-  Slope slope;
+  Incline slope;
   slope.end = world.pose(0).translation();
   slope.moved = slope.end - start;
   // From rest: x = a t^2 / 2 in each half.
@@ -57,7 +57,7 @@ TEST(BodiesOnModels, BallsRollAsOnAPlane) {
     const double r = random.between(0.008, 0.02);
     const Vec3 at(-0.1, random.between(-0.05, 0.05), r);
     scene.add(test::body("ball", Sphere{r}, 0.05, at, 0.6));
-    const Slope s = run_down(scene, 600);
+    const Incline s = run_down(scene, 600);
     EXPECT_NEAR(s.acceleration.x(), 5.0 / 7, 0.02 * 5 / 7);
     EXPECT_NEAR(s.moved.y(), 0, 1e-3 * s.moved.x());  // a millimetre in a metre
     EXPECT_NEAR(s.end.z(), r, 1e-4);
@@ -74,7 +74,7 @@ TEST(BodiesOnModels, BallsRollOverCornersAsOnAPlane) {
     floor.material = {1000, 0, 0.6, 0.6};
     scene.add(floor);
     scene.add(test::body("ball", Sphere{0.01}, 0.05, Vec3(-0.09, 0, 0.01), 0.6));
-    const Slope s = run_down(scene, 600);
+    const Incline s = run_down(scene, 600);
     EXPECT_NEAR(s.acceleration.x(), 5.0 / 7, 0.01 * 5 / 7);
     EXPECT_NEAR(s.moved.y(), 0, 1e-4 * s.moved.x());
     EXPECT_NEAR(s.end.z(), 0.01, 3e-5);
@@ -91,7 +91,7 @@ TEST(BodiesOnModels, CubesSlideAsOnAPlane) {
     scene.add(level_model(random, parts, 0.2));
     const Vec3 at(-0.2, random.between(-0.05, 0.05), 0.02);
     scene.add(test::body("cube", Box{Vec3::Constant(0.04)}, 0.1, at, 0.2));
-    const Slope s = run_down(scene, 400);
+    const Incline s = run_down(scene, 400);
     const double a = 9.81 * (std::sin(steep) - 0.2 * std::cos(steep));
     EXPECT_NEAR(s.acceleration.x(), a, 0.02 * a);
     EXPECT_NEAR(s.moved.y(), 0, 1e-3 * s.moved.x());
@@ -106,7 +106,7 @@ TEST(BodiesOnModels, CubesRestAsOnAPlane) {
     Scene scene;
     scene.add(level_model(random, parts, 0.5));
     scene.add(test::body("cube", Box{Vec3::Constant(0.04)}, 0.1, Vec3(0.01, 0.02, 0.02)));
-    const Slope s = run_down(scene, 2000);
+    const Incline s = run_down(scene, 2000);
     EXPECT_NEAR(s.end.z(), 0.02 - 0.1 * 9.81 / (4 * 20000), 2e-6);
     EXPECT_LT(s.moved.head<2>().norm(), 1e-5);
   }

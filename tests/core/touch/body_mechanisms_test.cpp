@@ -163,10 +163,10 @@ double apart(const Scene& scene, int links, const BodyWorld& world) {
   return most;
 }
 
-// Runs a mechanism for a second: bodies that were set going, pushed now and then at some point,
-// with a ball flung at one of them. Returns whether it stood still in any tick, its forces not
-// found.
-bool stood_still_while_right(unsigned seed) {
+// Runs a mechanism for a second: bodies that were set going, with up to `spin` about each axis
+// [rad/s], pushed now and then at some point, with a ball flung at one of them. Returns whether it
+// stood still in any tick, its forces not found.
+bool stood_still_while_right(unsigned seed, double spin) {
   SCOPED_TRACE(seed);
   Random random(seed);
   Scene scene = mechanism(random);
@@ -176,7 +176,7 @@ bool stood_still_while_right(unsigned seed) {
   scene.add(body("ball", Sphere{0.01}, random.log_between(1e-3, 0.1), target + far));
   BodyWorld world(scene);
   for (int i = 0; i < links; ++i) {
-    if (random.between(0, 1) < 0.5) world.set_speed(i, random.point(1), random.point(10));
+    if (random.between(0, 1) < 0.5) world.set_speed(i, random.point(1), random.point(spin));
   }
   EXPECT_LT(run(world, 300), 1e-6);  // lets go what joints forbid
   const Vec3 before = world.speed(links), after = -random.between(5, 20) * far;
@@ -204,14 +204,21 @@ bool stood_still_while_right(unsigned seed) {
 
 TEST(BodyMechanisms, GainNothingAndHoldTogether) {
   int stood = 0;
-  for (unsigned seed = 0; seed < 40; ++seed) stood += stood_still_while_right(7000 + seed) ? 1 : 0;
+  for (unsigned seed = 0; seed < 40; ++seed)
+    stood += stood_still_while_right(7000 + seed, 10) ? 1 : 0;
   EXPECT_LE(stood, 2);
+}
+
+// Some of them stand still at first, as their forces are not found: joints forbid what they were
+// set going with.
+TEST(BodyMechanisms, GainNothingAndHoldTogetherWhereTheyTurnByFarInATick) {
+  for (unsigned seed = 0; seed < 40; ++seed) stood_still_while_right(seed, 300);
 }
 
 // A run takes minutes: core_tests --gtest_also_run_disabled_tests --gtest_filter='*AThousand*'.
 TEST(BodyMechanisms, DISABLED_AThousandGainNothingAndHoldTogether) {
   int stood = 0;
-  for (unsigned seed = 0; seed < 1000; ++seed) stood += stood_still_while_right(seed) ? 1 : 0;
+  for (unsigned seed = 0; seed < 1000; ++seed) stood += stood_still_while_right(seed, 10) ? 1 : 0;
   EXPECT_LE(stood, 20);
 }
 

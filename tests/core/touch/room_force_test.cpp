@@ -211,6 +211,43 @@ TEST(RoomForce, OfOnePlaneIsAWalls) {
   EXPECT_GT(changed, 500);
 }
 
+// Slope of the force over the motion by differences to both sides.
+Mat3 by_differences(const MeshTouch& touch, RoomTick t) {
+  const Vec3 way = t.a;
+  const double step = 1e-4 * way.norm();
+  Mat3 slope, unused;
+  for (int i = 0; i < 3; ++i) {
+    t.a = way + step * Vec3::Unit(i);
+    const Vec3 there = room_push(touch, t, Slope::quick, unused);
+    t.a = way - step * Vec3::Unit(i);
+    slope.col(i) = (there - room_push(touch, t, Slope::quick, unused)) / (2 * step);
+  }
+  return slope;
+}
+
+// The damper's directions change with the way where planes come or go along it, or share it.
+TEST(RoomForce, HasTheSlopeOfItsDifferencesWhereverPlanesHold) {
+  Random random(31);
+  int changing = 0, wrong = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Pit pit = i % 2 == 0 ? groove(random.between(0.2, 1)) : corner(random);
+    const Vec3 c = Vec3(0, 0, random.between(0.5, 1) * kRadius) + random.point(0.3 * kRadius);
+    const MeshTouch touch = touch_at(pit, c);
+    RoomTick t = some_tick(random, c);
+    t.W.setZero();
+    t.B = random.between(0.1, 1) * t.K * T;
+    Mat3 whole, quick;
+    const Vec3 F = room_push(touch, t, Slope::whole, whole);
+    room_push(touch, t, Slope::quick, quick);
+    if (F.norm() < 1e-3) continue;
+    const Mat3 right = by_differences(touch, t);
+    wrong += (whole - right).norm() > 0.05 * right.norm() ? 1 : 0;
+    changing += (quick - right).norm() > 0.1 * right.norm() ? 1 : 0;
+  }
+  EXPECT_LE(wrong, 5);  // a difference goes over where a part of the way ends
+  EXPECT_GT(changing, 20);
+}
+
 TEST(RoomForce, DampsAlongAGroovesFacesAndNotAcrossItsCrease) {
   // Two faces that rise by an angle share the depth h beneath the crease: each has h cos(angle),
   // and 1/(2 cos^2(angle)) of that is its own. So they damp up and down as one wall and sideways by
