@@ -338,6 +338,7 @@ double BodyWorld::turn_again(bool touched, double before) {
 // Ends where bodies turn as was assumed, or where that comes no nearer.
 void BodyWorld::sweep_turning(bool touched, double enough, int most) {
   sweep(touched, enough, most);
+  if (constraints_.joint_links.empty()) return;
   double otherwise = kTooFar2;
   for (int i = 0; i < kMostTurnings; ++i) {
     otherwise = turn_again(touched, otherwise);
