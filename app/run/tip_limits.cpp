@@ -32,7 +32,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
             p.hand_damping,
             p.hand_mass_at_tip,
             device_delay(description, p)};
-  l.link = p;
+  l.link = static_cast<const LinkSettings&>(p);
   l.condition3 = condition3(description, p);
   l.encoder_step = p.encoder_step;
   l.friction = (1 - p.friction_share) * friction_at_tip(arm.J, device_friction(description, p));
