@@ -142,7 +142,7 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
   }
   TakenArm last;
   try {
-    last = taken(built_in(traits), traits, fmt::format("the built-in arm, until you {}", kSayWhich),
+    last = taken(built_in(traits), traits, fmt::format("a built-in arm, until you {}", kSayWhich),
                  besides);
   } catch (const FileError& error) {
     std::string why = besides;
@@ -167,9 +167,9 @@ std::string arm_words(const DeviceNotes& notes, const DeviceKind& kind) {
   if (kind.leads_hand) return {};
   if (!notes.arm.empty()) return "arm: as it was identified, " + notes.arm;
   if (has_own(&kind)) return fmt::format("arm: its own, {}", kind.arm);
-  if (notes.taken_for == kBuiltInArm) return "arm: a built-in one, as was said";
+  if (notes.taken_for == kBuiltInArm) return "arm: a built-in arm, as was said";
   if (!notes.taken_for.empty()) return fmt::format("arm: {}, as was said", notes.taken_for);
-  return "arm: a built-in one, with little force, until you say which arm it is: "
+  return "arm: a built-in arm, with little force, until you say which arm it is: "
          "limpid devices ID --arm FILE.urdf";
 }
 

@@ -131,7 +131,7 @@ void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
 Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Slope slope, Mat3& on_D) {
   const double b = tick.B / tick.T;
   const Mean m = mean_of(touch, tick.center, tick.a);
-  const Vec3 F = tick.K * m.pull - b * (m.damped * tick.a);
+  Vec3 F = tick.K * m.pull - b * (m.damped * tick.a);
   const bool pushes = F.dot(m.pull) > 0;
   on_D.setZero();
   if (!pushes) return Vec3::Zero();

@@ -265,7 +265,7 @@ class Doctor(WithABus):
     def test_says_which_dialog_opens(self) -> None:
         self.assertIn("Limpid's own: the desktop has no portal", self.found())
         self.portal(how="wait")
-        self.assertTrue(re.search(r"the desktop's own.*FileChooser 4", self.found()))
+        self.assertTrue(re.search(r"the desktop environment.*FileChooser 4", self.found()))
         del self.environment["DBUS_SESSION_BUS_ADDRESS"]
         self.assertIn("Limpid's own: no session bus", self.found())
 

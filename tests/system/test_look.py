@@ -98,7 +98,7 @@ class Look(unittest.TestCase):
                 self.assertIn("it never pushes", self.said)
                 self.assertEqual((found["joints"][0]["name"], found["pushes"], found["axes_checked"]),
                                  ("turret", True, False))
-                self.assertIn("a built-in one", found["arm_why"])
+                self.assertIn("a built-in arm", found["arm_why"])
                 for joint, (least, most) in zip(found["joints"], ((0, 0.7), (-1.5, -0.5), (1, 2))):
                     self.assertAlmostEqual(joint["least"], least, delta=STEP)
                     self.assertAlmostEqual(joint["most"], most, delta=STEP)

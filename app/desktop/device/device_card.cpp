@@ -83,7 +83,7 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
   bool file = false;
   if (asks) {
     ImGui::TextWrapped(
-        "Which arm is it? Until you say so it is a built-in one, with little force.");
+        "Which arm is it? Until you say so it is a built-in arm, with little force.");
     tooltip(
         "Of more than three joints there is no built-in one: then there is no force until you say "
         "which it is.");
