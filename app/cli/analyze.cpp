@@ -275,7 +275,8 @@ Command declare_analyze(CLI::App& app) {
       ->excludes(grip)
       ->excludes("--device")
       ->excludes("--tip")
-      ->excludes("--scene");
+      ->excludes("--scene")
+      ->excludes("--readings");
   require_above_zero(band, 1e6, "Hz");
   require_above_zero(grip, 1e6, "N/m");
   require_above_zero(mass, 1e6, "kg m^2");

@@ -238,9 +238,10 @@ Parameters make_parameters(const InputOptions& options, Parameters base) {
 }
 
 Parameters make_parameters(const InputOptions& options, const ArmDescription& arm) {
-  if (!options.readings) return make_parameters(options, fitted(arm, make_parameters(options)));
-  const Parameters chosen = make_parameters(options, with_readings_of(arm, {}));
-  const Parameters fit = fitted(arm, chosen, arm.delay.value_or(arm.assumed_delay));
+  const Parameters asked = make_parameters(options);
+  if (!options.readings) return make_parameters(options, fitted(arm, asked));
+  Parameters fit = fitted(arm, asked, arm.delay.value_or(arm.assumed_delay));
+  fit.tick = asked.tick;  // the delay is in whole ticks
   return make_parameters(options, with_readings_of(arm, fit));
 }
 

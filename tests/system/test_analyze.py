@@ -245,6 +245,9 @@ class Analyze(SystemTest):
         self.assertLess(real["predictive"]["wall"], exact["predictive"]["wall"] / 2)
         fine = self.analyze(*touch, "--readings", "--set", "device.encoder_step=1e-6")["tip"]
         self.assertGreater(fine["predictive"]["wall"], real["predictive"]["wall"], "what is set wins")
+        half = [self.analyze(*touch, "--set", "loop.tick=5e-4", *words)["tip"]["eba"]["wall"]
+                for words in ((), ("--readings",))]
+        self.assert_close(half[1], half[0] / 3)  # a delay of two such ticks
         self.assertIn("encoder steps of 0.419 mrad and a delay of 1 ms", limpid("analyze", *touch).out)
         self.assertNotIn("readings", limpid("analyze", *touch, "--readings").out)
         self.assertNotIn("readings", limpid("analyze").out, "the built-in arm's file says nothing")

@@ -260,8 +260,9 @@ Answer WindowRemote::stop() {
     }
     if (d_.live.closing()) return std::nullopt;
     const Recorded& last = d_.live.last_recording();
-    if (!last.complete)
-      throw RemoteError(last_complaint("it could not be completed and has stopped"));
+    if (!last.complete) {
+      throw RemoteError(last_complaint("stop: the recording could not be completed"));
+    }
     return json{{"file", last.file.string()}, {"rows", last.rows}, {"dropped", last.dropped}};
   });
 }
