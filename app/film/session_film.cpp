@@ -155,7 +155,7 @@ class Shown {
   }
   void name_rerun() {
     const double law = session_.layout.in(row_again(0), Column::kind)[0];
-    stage_.name_runs({{"", again_.name}, false, {-1, static_cast<int>(law)}});
+    stage_.name_runs({{again_.recorded, again_.name}, false, {-1, static_cast<int>(law)}});
   }
 
   Moment see(std::size_t k) {

@@ -33,7 +33,10 @@ RerunRows run_once_more(const Session& session, const std::string& where, const 
     again.rows.insert(again.rows.end(), last.begin(), last.end());
   }
   const std::array both{session_parameters(session, where), chosen};
-  again.name = "re-run: " + lane_names(both)[1];
+  const std::vector<std::string> names = lane_names(both);
+  again.name = "re-run: " + names[1];
+  // A setting that changed on the way is not the name of the whole recording.
+  again.recorded = session.changes.empty() ? "recorded: " + names[0] : "recorded";
   again.note = plan.note;
   return again;
 }

@@ -17,6 +17,7 @@ struct RerunRows {
   LargeVector<double> rows;  // as many as the session's; none if it was stopped
   RunEnd end;                // after a divergence the last row is repeated
   std::string name;          // "re-run: predictive", by what was changed
+  std::string recorded;      // "recorded: standard", the first run's name beside it
   std::string note;          // why it may differ from the recording; for people
 };
 

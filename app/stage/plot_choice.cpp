@@ -247,7 +247,9 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     const std::string name = names.name(run);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
       Curve curve = run > 0 ? of_run(run, firsts[i], i, channels, names) : firsts[i];
-      if (!name.empty()) curve.label = firsts.size() == 1 ? name : name + " " + curve.label;
+      const bool recorded = run == 0 && !names.beside;
+      if (!name.empty() && firsts.size() == 1) curve.label = name;
+      if (!name.empty() && firsts.size() > 1 && !recorded) curve.label = name + " " + curve.label;
       spec.curves.push_back(std::move(curve));
     }
   }

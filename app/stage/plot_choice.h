@@ -32,7 +32,8 @@ std::vector<PlotChoice> simple_plots();
 // Names of several runs, in front of their curves' labels.
 struct RunNames {
   std::vector<std::string> names;  // fewer than two for a single run
-  bool beside = false;             // all run at once; else the second is a re-run of the first
+  bool beside = false;             // all run at once; else the second is a re-run of the first,
+                                   // whose several curves in a plot are named as without it
   std::vector<int> laws = {};      // numbers of the laws of runs at once; -1: unknown
 
   bool several() const { return names.size() > 1; }

@@ -158,9 +158,10 @@ void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
     draw_all(chart, mass);
   }
   tooltip(
-      fmt::format("Each coupling at eta {:.3g} in free motion; thick: {}. Dashed: eta times the "
-                  "natural {:.3g} g. From theory, without the encoder's steps.",
-                  p.eta, info(p.kind).key, natural)
+      fmt::format(
+          "Each coupling at \xCE\xB7 {:.3g} in free motion; thick: {}. Dashed: \xCE\xB7 times the "
+          "natural {:.3g} g. From theory, without the encoder's steps.",
+          p.eta, info(p.kind).key, natural)
           .c_str());
   {
     const double own = tip_.felt.b_d + tip_.felt.b_v;
@@ -198,7 +199,7 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
     due_ = 0;
   }
   note_number_item();
-  tooltip("The human's bandwidth: eta_min counts only the frequencies below it.");
+  tooltip("The human's bandwidth: \xCE\xB7_min counts only the frequencies below it.");
   const auto limit = [&](const char* label, double value, const char* help) {
     read_out(label, fmt::format("{:.3f}", value), {}, help);
   };

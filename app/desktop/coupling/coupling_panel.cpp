@@ -22,8 +22,9 @@ namespace {
 std::string eta_broken(const Parameters& p, const Analysis& a) {
   if (!info(p.kind).observes || a.above_eta_min) return {};
   return fmt::format(
-      "eta {:.3g} is below eta_min {:.3f} of (25): the locked system is not passive.\nRaise eta by "
-      "{:.3f}, lower alpha, or raise b_v.",
+      "\xCE\xB7 {:.3g} is below \xCE\xB7_min {:.3f} of (25): the locked system is not "
+      "passive.\nRaise \xCE\xB7 by "
+      "{:.3f}, lower \xCE\xB1, or raise b_v.",
       p.eta, a.eta_min, a.eta_min - p.eta);
 }
 
@@ -184,7 +185,8 @@ void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   const char* const help =
       "From the arm's damping b_d, its delay and the link's: k_vc, b_vc, b_v so that condition (3) "
       "just holds, "
-      "alpha so that eta_min is the paper's. An arm whose file says no damping gets one that suits "
+      "\xCE\xB1 so that \xCE\xB7_min is the paper's. An arm whose file says no damping gets one "
+      "that suits "
       "its inertia.";
   if (fit == p) {
     read_out("Gains for this arm", text.empty() ? "the paper's" : "fitted", {}, help);
@@ -252,15 +254,15 @@ void draw_sliders(Parameters& p, const Analysis& a, const ArmDescription& arm) {
 void draw_observer(const Parameters& p, const Analysis& a) {
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
-           "alpha / m, (18), for each mode of the inertia in the rest pose");
+           "\xCE\xB1 / m, (18), for each mode of the inertia in the rest pose");
   read_out("Least passive inertia \xCE\xB7_min",
            fmt::format("{:.3f}  {}", a.eta_min, a.above_eta_min ? "ok" : "broken"),
-           eta_broken(p, a), "w_f / (w_c + w_f) with b = b_d + b_v, (25)");
+           eta_broken(p, a), "\xCF\x89_f / (\xCF\x89_c + \xCF\x89_f) with b = b_d + b_v, (25)");
   const std::string unstable =
       p.eta < a.eta_min_compliant
           ? fmt::format(
-                "eta {:.3g} is below {:.3f}, the limit of this grip: the loop is "
-                "unstable while the hand holds. Raise eta or soften the grip.",
+                "\xCE\xB7 {:.3g} is below {:.3f}, the limit of this grip: the loop is "
+                "unstable while the hand holds. Raise \xCE\xB7 or soften the grip.",
                 p.eta, a.eta_min_compliant)
           : std::string();
   read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_compliant), unstable,

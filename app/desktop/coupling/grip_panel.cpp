@@ -41,9 +41,10 @@ void draw_found(const MeasuredHand& found, const Parameters& p) {
     wrapped("The grip is " + unknown + ".", colours.broken);
   }
   for (const GripLine& line : grip_lines(found)) {
-    read_out(line.label.c_str(), line.value, {},
-             "With the bounds that hold for 95 of 100 grips; eta_min with its least and its most "
-             "within them");
+    read_out(
+        line.label.c_str(), line.value, {},
+        "With the bounds that hold for 95 of 100 grips; \xCE\xB7_min with its least and its most "
+        "within them");
   }
   if (!found.hands) return;
   for (std::uint8_t i = 0; i < kLaws; ++i) {

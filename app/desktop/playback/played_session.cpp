@@ -160,7 +160,7 @@ void PlayedSession::show(Rerun again) {
   stage_ = make_stage(std::move(again.history));
   const RowLayout& layout = player_.session().layout;
   const std::span<const double> rows(again.run.rows);
-  RunNames names{{"", again.run.name}, false};
+  RunNames names{{again.run.recorded, again.run.name}, false};
   if (!rows.empty()) {
     const auto first = rows.first(static_cast<std::size_t>(layout.stride()));
     names.laws = {-1, static_cast<int>(layout.in(first, Column::kind)[0])};

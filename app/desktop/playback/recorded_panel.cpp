@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/palette.h"
@@ -50,6 +51,20 @@ void row(const RecordedSetting& setting) {
   for (const std::string& value : setting.values) cell(value, colours.text);
 }
 
+// Returns the width of the widest word of all values.
+float widest_word(const std::vector<RecordedSetting>& settings) {
+  float most = 0;
+  for (const RecordedSetting& setting : settings) {
+    for (const std::string& value : setting.values) {
+      std::istringstream words(value);
+      for (std::string word; words >> word;) {
+        most = std::max(most, ImGui::CalcTextSize(word.c_str()).x);
+      }
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
 std::vector<RecordedSetting> recorded_settings(std::span<const Parameters> lanes, bool everything) {
@@ -67,17 +82,23 @@ void draw_recorded(PlayedSession& session, bool everything) {
   std::vector<Parameters> lanes = session.lane_settings();
   if (session.has_rerun()) lanes.resize(1);
   const int columns = 1 + static_cast<int>(lanes.size());
+  const std::vector<RecordedSetting> settings = recorded_settings(lanes, everything);
+  constexpr float kOfName = 1.4f;  // width of the first column, in those of a value
+  const float share =
+      ImGui::GetContentRegionAvail().x / (kOfName + static_cast<float>(columns - 1));
+  const float padding = 2 * ImGui::GetStyle().CellPadding.x;
+  const float width = std::max(share - padding, widest_word(settings) + 1);
   if (!ImGui::BeginTable("recorded", columns, ImGuiTableFlags_BordersInnerH)) return;
-  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 1.4f);
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch);
   for (int i = 1; i < columns; ++i) {
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthFixed, width);
   }
   for (const std::vector<Fact>& facts : {session.facts(), session.verdict()}) {
     for (const Fact& fact : facts) {
       row({fact.name, std::vector<std::string>(lanes.size(), fact.value)});
     }
   }
-  for (const RecordedSetting& setting : recorded_settings(lanes, everything)) row(setting);
+  for (const RecordedSetting& setting : settings) row(setting);
   ImGui::EndTable();
 }
 

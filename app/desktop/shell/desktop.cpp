@@ -286,7 +286,8 @@ void Desktop::update(double dt) {
   if (live.became_unstable()) {
     cut_force();
     notices.say(
-        "The loop became unstable; force is off. Choose a larger eta or a smaller alpha, start "
+        "The loop became unstable; force is off. Choose a larger \xCE\xB7 or a smaller \xCE\xB1, "
+        "start "
         "over (Backspace), then F.",
         true);
   }

@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-const RunNames kTwin{{"standard", "predictive"}, true}, kRerun{{"", "re-run"}, false},
+const RunNames kTwin{{"standard", "predictive"}, true}, kRerun{{"recorded", "re-run"}, false},
     kThree{{"standard", "predictive", "proposed"}, true, {0, 2, 1}};
 
 class PlotChoiceOfJoints : public testing::TestWithParam<int> {};
@@ -147,6 +147,19 @@ TEST(PlotChoice, DrawsARerunInItsLawsColour) {
   const PlotSpec spec = plot_spec(default_plots()[0], channels, names);
   EXPECT_EQ(colour_of(kLightPalette, spec.curves[1]), law_ink(kLightPalette, 2));
   EXPECT_NE(colour_of(kLightPalette, spec.curves[0]), law_ink(kLightPalette, 2));
+}
+
+// A plot of one thing is about the runs, a plot of several about the things.
+TEST(PlotChoice, NamesTheRecordedRunBesideARerun) {
+  const TraceChannels channels{RowLayout(3)};
+  const PlotSpec one = plot_spec(default_plots()[0], channels, kRerun);
+  ASSERT_EQ(one.curves.size(), 2U);
+  EXPECT_EQ(one.curves[0].label, "recorded");
+  EXPECT_EQ(one.curves[1].label, "re-run");
+  const PlotSpec three = plot_spec(default_plots()[2], channels, kRerun);
+  const PlotSpec alone = plot_spec(default_plots()[2], channels, {});
+  EXPECT_EQ(three.curves[0].label, alone.curves[0].label);
+  EXPECT_EQ(three.curves[3].label, "re-run " + alone.curves[0].label);
 }
 
 TEST(PlotChoice, PutsRingsOnTheCurvesOfARerun) {
