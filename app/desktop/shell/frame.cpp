@@ -67,8 +67,7 @@ void Frame::draw() {
   part([&] {
     const std::string_view open = desktop_.dialog.name();
     if (open == "sweep" || open == "ask") return;  // it would cover these
-    const bool hinted = desktop_.shown.rows().size() < 2;
-    if (story_asked_for(desktop_.playback, settings, at.view, hinted)) act_("help.story");
+    if (story_asked_for(desktop_.playback, settings, at.view, view_.hinted())) act_("help.story");
   });
   // Modal dialogs come last: ImGui fails on windows that appear after them in their first frame.
   dialogs_.draw(true, at.view);

@@ -224,12 +224,12 @@ void YourTurn::draw(Settings& settings, ScreenRect view, const Crowd& crowd) {
 }
 
 bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
-                     bool hinted) {
+                     const std::optional<ScreenRect>& hinted) {
   if (settings.hint_seen || playback.on() || playback.loading()) return false;
-  // The button is above the hint's lines, or above the tab that folds the plots.
-  const float above = (hinted ? 8 : 1.5f) * font(Face::semibold)->FontSize;
-  ImGui::SetNextWindowPos({(view.min.x + view.max.x) / 2, view.max.y - above}, ImGuiCond_Always,
-                          {0.5f, 1});
+  // The tab that folds the plots is at the foot.
+  const bool below = hinted && hinted->min.y > (view.min.y + view.max.y) / 2;
+  const float foot = below ? hinted->min.y : view.max.y - 1.5f * font(Face::semibold)->FontSize;
+  ImGui::SetNextWindowPos({(view.min.x + view.max.x) / 2, foot}, ImGuiCond_Always, {0.5f, 1});
   ImGui::Begin("story", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |

@@ -54,10 +54,10 @@ class YourTurn {
   ImVec2 size_{};  // of the last frame
 };
 
-// Draws the button for the story of a first start, above its hint if `hinted`. Returns true when it
-// is pressed.
+// Draws the button for the story of a first start, above the hints if they are at the foot. Returns
+// true when it is pressed.
 bool story_asked_for(const Playback& playback, const Settings& settings, ScreenRect view,
-                     bool hinted);
+                     const std::optional<ScreenRect>& hinted);
 // Returns true when the user reaches into the picture of a story, to take over the hand.
 bool story_taken_over(const Playback& playback, ScreenRect view);
 

@@ -300,10 +300,16 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   const auto extent_of = [&](const std::string& line) {
     return face->CalcTextSizeA(size, 1e9f, wrap, line.c_str());
   };
+  constexpr float kMostHigh = 0.4f;  // part of the picture; later lines wait for earlier ones
   float widest = 0, high = 0;
-  for (const std::string& line : lines) {
-    widest = std::max(widest, extent_of(line).x);
-    high += extent_of(line).y + 0.5f * size;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const ImVec2 extent = extent_of(lines[i]);
+    if (i > 0 && high + extent.y > kMostHigh * rect.height()) {
+      lines.resize(i);
+      break;
+    }
+    widest = std::max(widest, extent.x);
+    high += extent.y + 0.5f * size;
   }
   const float middle = (rect.min.x + rect.max.x) / 2;
   const auto at = [&](float top) {

@@ -72,6 +72,8 @@ class ViewPanel {
   // Returns what cards over the pictures should not cover, as drawn last: tips, what is acted on,
   // objects that move.
   const Crowd& crowd() const { return crowd_; }
+  // Returns the place of the hints of a first start in the last frame, if there were any.
+  const std::optional<ScreenRect>& hinted() const { return hinted_; }
 
  private:
   void see_crowd(const ViewScene& scene, const ViewState& view, std::span<const ViewState> beside,
