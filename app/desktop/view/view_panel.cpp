@@ -102,13 +102,17 @@ PictureLegend legend_of(const ViewState& view, const ViewScene& scene) {
   return legend;
 }
 
-// Returns what to do in the scene, with the key that picks things up.
+// Returns what to do in the scene, and how to take hold of what moves in it.
 std::string task_of(const SceneDocument& document) {
-  std::string task = document.about;
+  const std::vector<Object>& objects = document.scene.objects;
+  const auto moves = [](const Object& object) { return object.body.has_value(); };
   const auto magnetic = [](const Object& object) { return object.body && object.body->magnet; };
-  if (std::ranges::any_of(document.scene.objects, magnetic)) {
-    task += task.empty() ? "H switches the magnet at the tip." : " (H: the magnet)";
-  }
+  std::string task = document.about;
+  const auto add = [&](const char* sentence) {
+    task += (task.empty() ? "" : " ") + std::string(sentence);
+  };
+  if (std::ranges::any_of(objects, magnetic)) add("H switches the magnet at the tip.");
+  if (std::ranges::any_of(objects, moves)) add("Ctrl+drag pulls an object.");
   return task;
 }
 

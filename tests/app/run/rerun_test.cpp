@@ -45,7 +45,7 @@ TEST_F(ARerun, HasTheRowsOfTheRecordingUntilSomethingIsChanged) {
   const RerunRows other = run_once_more(session_, "a.h5", chosen, stop, at);
   EXPECT_NE(other.rows[of_last], session_.rows[of_last]);
   EXPECT_EQ(other.name, "re-run: standard");
-  EXPECT_EQ(other.recorded, "recorded: predictive");
+  EXPECT_EQ(other.recorded, std::string("recorded: ") + name(before_.kind));
   const std::atomic<bool> stopped = true;
   EXPECT_TRUE(run_once_more(session_, "a.h5", chosen, stopped, at).rows.empty());
 }
