@@ -40,6 +40,7 @@ TEST_F(ARerun, HasTheRowsOfTheRecordingUntilSomethingIsChanged) {
   const auto of_last = last + static_cast<std::size_t>(device);
   EXPECT_EQ(same.rows[of_last], session_.rows[of_last]);
   EXPECT_EQ(part, 1);
+  EXPECT_EQ(same.name, "re-run: as recorded");
   Parameters chosen = before_;
   set_parameter(chosen, "coupling.kind", std::string("standard"));
   const RerunRows other = run_once_more(session_, "a.h5", chosen, stop, at);
