@@ -290,11 +290,24 @@ void LiveLoop::tick(const TickTiming& timing) {
   publish(timing);
 }
 
+// Steps all further lanes. One that joins waits until the first is steady; then all lanes begin
+// anew where they stand, so that they count time and energy from the same tick.
 void LiveLoop::step_beside(const Controls& controls, const RigInput& input) {
+  const auto joins = [&](std::size_t i) {
+    return i < controls.lane_count && !beside_[i - 1].runs();
+  };
+  bool any = false;
+  for (std::size_t i = 1; i < kMostLanes; ++i) any = any || joins(i);
+  const bool waits = any && !rig_->steady();
+  if (any && !waits && recording_to_ == nullptr) {
+    rig_->restart_here(parameters_, rebase_, input.hand.target);
+    for (FurtherLane& lane : beside_) lane.restart_here(input.hand.target);
+  }
   for (std::size_t i = 1; i < kMostLanes; ++i) {
     FurtherLane& lane = beside_[i - 1];
     const bool recorded = recording_to_ != nullptr && i < recording_to_->lanes();
-    lane.step(recorded || i < controls.lane_count, controls.lanes[i], *rig_, input, row(i));
+    const bool on = i < controls.lane_count && !(waits && joins(i));
+    lane.step(recorded || on, controls.lanes[i], *rig_, input, row(i));
     if (lane.changed() && recorded) recording_to_->changed(lane.parameters(), i);
   }
 }

@@ -509,9 +509,16 @@ void draw_eta(Parameters& p, const Analysis& a) {
   eta_slider(p, a);
 }
 
-// Draws whether the law is passive with these settings, in a word.
-void draw_passive(const Parameters& p, const Analysis& a) {
+// Draws whether the law is passive with these settings, in a word. What was measured outweighs what
+// theory says: it has no encoder steps.
+void draw_passive(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   const Passivity found = passivity(a, p);
+  const OwnEnergy measured = own_energy(now, p, a);
+  if (!measured.broken.empty() && found.passive != false) {
+    const std::string theory =
+        found.passive ? fmt::format("\nTheory says yes: {}.", found.by) : std::string();
+    return read_out("Passive", "no, as measured", measured.broken + theory, "");
+  }
   if (!found.passive) return read_out("Passive", "not known", {}, found.by.c_str());
   const std::string broken =
       *found.passive
@@ -563,7 +570,7 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
            own_energy(reading, p, now.analysis).broken,
            "What the coupling gave since the start. It stays below zero while the coupling is "
            "passive. The second plot shows it.");
-  draw_passive(p, now.analysis);
+  draw_passive(reading, p, now.analysis);
 }
 
 void draw_simple_notes(const CouplingReading& reading, const Parameters& p,
@@ -583,6 +590,7 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
     if (!now.real) draw_break(now.broken, act);
     draw_show("Show all", "All settings and figures: gains, passivity, energy, analysis (F8).",
               act);
+    draw_simple_notes(reading, p, now);
     return;
   }
   draw_sliders(p, now.analysis, now.arm);

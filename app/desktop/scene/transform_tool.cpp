@@ -56,7 +56,7 @@ void TransformTool::give_up(Document& document) {
 }
 
 bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const Camera& camera,
-                         ScreenRect view) {
+                         ScreenRect view, bool on_tip) {
   const auto selected = document.editor().selected();
   if (transform_ && selected != place_) transform_.reset();
   const ImGuiIO& io = ImGui::GetIO();
@@ -78,7 +78,7 @@ bool TransformTool::draw(Document& document, std::span<const Pose> bodies, const
   if (!transform_ && can(kind_, now)) {
     const Transform shown(kind_, now, document.editor().models()[*selected].get());
     const Handle nearest = draw_handles(shown, camera, view, list);
-    const bool free = view.contains(io.MousePos) && !io.WantCaptureMouse && !io.KeyAlt;
+    const bool free = view.contains(io.MousePos) && !io.WantCaptureMouse && !io.KeyAlt && !on_tip;
     over_ = free && nearest.apart < kHandleReach * current_scale();
     hot_ = nearest.axis;
     if (over_) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);

@@ -32,8 +32,9 @@ class TransformTool {
 
   // Draws the tool; to be called once a frame, before the view uses the mouse. Returns true if the
   // mouse belongs to a handle. `bodies`: frames of the scene's moving objects, in their order.
-  bool draw(Document& document, std::span<const Pose> bodies, const Camera& camera,
-            ScreenRect view);
+  // `on_tip`: the mouse is at the arm's tip, which a drag pulls rather than a handle.
+  bool draw(Document& document, std::span<const Pose> bodies, const Camera& camera, ScreenRect view,
+            bool on_tip = false);
 
  private:
   struct Handle {

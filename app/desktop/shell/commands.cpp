@@ -49,6 +49,7 @@ void show_or_close(Desktop& d, const char* dialog) {
 
 void show_sweep(Desktop& d) {
   const bool there = d.sweep.sweep() != nullptr || d.sweep.loading();
+  if (!there) d.tuning.end_break();  // its settings are not the present ones of a sweep
   show_or_close(d, there ? "sweep" : "new sweep");
 }
 

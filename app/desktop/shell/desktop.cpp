@@ -412,6 +412,9 @@ bool Desktop::close_one() {
     playback.cancel_loading();
   } else if (dialog.kind() == nullptr && !now.text && shown.stage().group.range()) {
     shown.stage().group.select(std::nullopt);
+  } else if (dialog.kind() == nullptr && !now.text && !playback.on() &&
+             document.editor().selected()) {
+    document.editor().select(std::nullopt);
   } else if (dialog.kind() == nullptr) {
     return now.text;
   } else if (!now.text || dialog.kind()->keys != DialogKind::Keys::view) {

@@ -196,8 +196,12 @@ std::vector<Pose> Frame::bodies_of(const Stage& stage, std::span<const double> r
 }
 
 bool Frame::draw_handles(const ViewScene& scene, ScreenRect rect) {
-  return desktop_.transform.draw(desktop_.document, bodies_of(scene.stage, scene.row),
-                                 desktop_.shown.camera, rect);
+  const Camera& camera = desktop_.shown.camera;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool on_tip =
+      ViewPanel::near_tip(scene, camera, {mouse.x - rect.min.x, mouse.y - rect.min.y});
+  return desktop_.transform.draw(desktop_.document, bodies_of(scene.stage, scene.row), camera, rect,
+                                 on_tip);
 }
 
 void Frame::select_under(const Ray& ray, const ViewScene& scene) {

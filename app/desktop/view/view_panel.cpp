@@ -121,7 +121,7 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
                                const Settings& settings) {
   const std::pair<FirstStep, std::string> all[] = {
       {FirstStep::pull, pad.empty()
-                            ? "Drag the arm by its tip: your hand pulls it onto the table."
+                            ? "Drag the arm by its tip onto the table, and further down to press."
                             : "Left stick of " + pad + ": your hand pulls the arm onto the table."},
       {FirstStep::push, pad.empty()
                             ? "Wheel while dragging: nearer and farther."
@@ -323,6 +323,8 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   const float foot = rect.max.y - 20 * current_scale() - high + 0.5f * size;
   const std::array places{at(foot),
                           at(std::max(rect.min.y + scene.words, legend_box(rect).max.y) + size)};
+  if (hinted_in_ != std::pair(rect.width(), rect.height())) hint_place_.forget();
+  hinted_in_ = {rect.width(), rect.height()};
   hinted_ = hint_place_.choose(places, around_);
   float line_y = hinted_->min.y;
   for (const std::string& line : lines) {
@@ -391,7 +393,8 @@ bool ViewPanel::differs(const ViewScene& scene, const Camera& camera, const Sett
 }
 
 bool ViewPanel::near_tip(const ViewScene& scene, const Camera& camera,
-                         const Eigen::Vector2d& pixel) const {
+                         const Eigen::Vector2d& pixel) {
+  if (scene.recorded) return false;
   const Stage& stage = scene.stage;
   const RowLayout& layout = stage.channels().layout();
   const auto near = [&](Column c) {
@@ -419,7 +422,7 @@ ViewRequest ViewPanel::handle_mouse(const ViewScene& scene, Camera& camera, Cont
   const bool free = !ImGui::IsAnyMouseDown() || ImGui::IsMouseClicked(ImGuiMouseButton_Left);
   const bool on_body = pull_body(scene, camera, controls, rect, pixel, over);
   if (free) {
-    pulls_ = over && !io.KeyAlt && !io.KeyCtrl && !scene.recorded && near_tip(scene, camera, pixel);
+    pulls_ = over && !io.KeyAlt && !io.KeyCtrl && near_tip(scene, camera, pixel);
   }
   if (pulls_) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 

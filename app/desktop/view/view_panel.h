@@ -72,6 +72,8 @@ class ViewPanel {
   // Returns what cards over the pictures should not cover, as drawn last: tips, what is acted on,
   // objects that move.
   const Crowd& crowd() const { return crowd_; }
+  // Returns whether a drag from this pixel of the view pulls the hand.
+  static bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel);
   // Returns the place of the hints of a first start in the last frame, if there were any.
   const std::optional<ScreenRect>& hinted() const { return hinted_; }
 
@@ -92,7 +94,6 @@ class ViewPanel {
                  const Eigen::Vector2d& pixel, bool over);
   void stay(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
   Vec3 dragged_to(const Camera& camera, const Eigen::Vector2d& pixel);
-  bool near_tip(const ViewScene& scene, const Camera& camera, const Eigen::Vector2d& pixel) const;
   void hold(const Camera& camera, ScreenRect rect, const Vec3& point, const Eigen::Vector2d& pixel);
   void drag_hand(const ViewScene& scene, const Camera& camera, Controls& controls, ScreenRect rect,
                  const Eigen::Vector2d& pixel);
@@ -107,9 +108,10 @@ class ViewPanel {
   Magnifier magnifier_;
   Crowd crowd_, around_;  // without and with the cards
   FreePlace hint_place_;
-  std::optional<ScreenRect> hinted_;  // place of the hints in the last frame
-  std::string task_;                  // sentence of the scene that is shown
-  bool task_done_ = false;            // something of it was touched since, or pulled on
+  std::pair<float, float> hinted_in_;  // size of the picture that the place was chosen in [px]
+  std::optional<ScreenRect> hinted_;   // place of the hints in the last frame
+  std::string task_;                   // sentence of the scene that is shown
+  bool task_done_ = false;             // something of it was touched since, or pulled on
   bool magnet_on_ = false;
   std::optional<ScreenRect> drawn_;  // place of the view
   bool dragging_ = false;            // drags the hand
