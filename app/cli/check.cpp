@@ -206,10 +206,13 @@ CheckReport on_scene(const std::string& file, const InputOptions& input) {
     const auto* mesh = std::get_if<Mesh>(&objects[i].shape);
     if (mesh != nullptr) list_mesh(objects[i].name, *mesh, *loaded.models[i], report);
   }
+  const Parameters p = law_to_check(input, arm);
   BodyReport bodies = report_on_bodies(loaded.document.scene, arm);
   std::ranges::move(bodies.facts, std::back_inserter(report.facts));
   std::ranges::move(bodies.warnings, std::back_inserter(report.warnings));
-  std::ranges::move(scene_flaws(loaded.document.scene, arm, law_to_check(input, arm)),
+  std::ranges::move(quick_mechanisms(loaded.document.scene, p.tick),
+                    std::back_inserter(report.warnings));
+  std::ranges::move(scene_flaws(loaded.document.scene, arm, p),
                     std::back_inserter(report.warnings));
   return report;
 }

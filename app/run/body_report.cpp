@@ -9,6 +9,7 @@
 
 #include "core/dynamics/farthest_tip.h"
 #include "core/touch/body_geometry.h"
+#include "core/touch/body_motion.h"
 #include "core/touch/contacts.h"
 #include "core/touch/mass_properties.h"
 #include "core/touch/triangle_mesh.h"
@@ -133,6 +134,35 @@ void warn(const Object& object, const Scene& scene, const ArmDescription& arm, B
   if (object.body->inertia) warn_of_inertia(object, *object.body->inertia, report);
 }
 
+// Returns the energy of a spring at the start [J].
+double drawn_energy(const BodySpring& spring, const Scene& scene) {
+  const auto at = [&](std::size_t end) -> Vec3 {  // in the world
+    const auto body = std::ranges::find(scene.objects, spring.between[end], &Object::name);
+    if (spring.between[end].empty() || body == scene.objects.end()) return spring.points[end];
+    return body->pose * spring.points[end];
+  };
+  const double drawn = (at(0) - at(1)).norm() - spring.length;
+  return spring.stiffness * drawn * drawn / 2;
+}
+
+// The same of the spring in an object's joint.
+double drawn_energy(const Object& object) {
+  if (!object.body || !object.body->joint) return 0;
+  const JointForce& force = object.body->joint->force;
+  return force.spring * force.rest * force.rest / 2;
+}
+
+bool hangs_on(const Object& object, const Object& other) {
+  return object.body && object.body->joint && object.body->joint->to == other.name;
+}
+
+bool in_a_mechanism(const Object& object, const Scene& scene) {
+  const auto& joint = object.body->joint;
+  if (joint && (!joint->to.empty() || joint->kind == BodyJoint::Kind::ball)) return true;
+  return std::ranges::any_of(scene.objects,
+                             [&](const Object& other) { return hangs_on(other, object); });
+}
+
 }  // namespace
 
 bool possible_inertia(const Vec3& inertia) {
@@ -155,23 +185,35 @@ double beyond_reach(const Object& object, const Scene& scene, const ArmDescripti
 }
 
 double spring_energy(const Scene& scene) {
-  // Ends of a spring in the world, at the start.
-  const auto at = [&](const BodySpring& spring, std::size_t end) -> Vec3 {
-    const auto body = std::ranges::find(scene.objects, spring.between[end], &Object::name);
-    if (spring.between[end].empty() || body == scene.objects.end()) return spring.points[end];
-    return body->pose * spring.points[end];
-  };
   double energy = 0;
-  for (const BodySpring& spring : scene.springs) {
-    const double drawn = (at(spring, 0) - at(spring, 1)).norm() - spring.length;
-    energy += spring.stiffness * drawn * drawn / 2;
-  }
-  for (const Object& object : scene.objects) {
-    if (!object.body || !object.body->joint) continue;
-    const JointForce& force = object.body->joint->force;
-    energy += force.spring * force.rest * force.rest / 2;
-  }
+  for (const BodySpring& spring : scene.springs) energy += drawn_energy(spring, scene);
+  for (const Object& object : scene.objects) energy += drawn_energy(object);
   return energy;
+}
+
+std::vector<std::string> quick_mechanisms(const Scene& scene, double tick) {
+  std::vector<std::string> warnings;
+  for (const Object& object : scene.objects) {
+    if (!object.body || !in_a_mechanism(object, scene)) continue;
+    double energy = drawn_energy(object);
+    for (const Object& other : scene.objects) {
+      if (hangs_on(other, object)) energy += drawn_energy(other);
+    }
+    for (const BodySpring& spring : scene.springs) {
+      if (std::ranges::count(spring.between, object.name) > 0) {
+        energy += drawn_energy(spring, scene);
+      }
+    }
+    const double least = mass_properties(object).inertia.diagonal().minCoeff();
+    const double turn = tick * std::sqrt(2 * energy / least);
+    if (!(turn > BodyMotion::kMostTurn)) continue;
+    warnings.push_back(fmt::format(
+        "'{}': its springs, {:.3g} J at the start, may turn its {:.3g} kg m^2 by {:.3g} "
+        "rad in a tick of {:.3g} ms; bodies of mechanisms turn by {:.3g} rad at most, "
+        "and lose the rest",
+        object.name, energy, least, turn, 1e3 * tick, BodyMotion::kMostTurn));
+  }
+  return warnings;
 }
 
 double most_weight_energy(const Scene& scene, const ArmDescription& arm) {

@@ -18,6 +18,11 @@ struct BodyReport {
 // Reports on a scene whose meshes have their triangles; empty if nothing in it moves.
 BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm);
 
+// Warns of bodies of mechanisms that springs which are drawn at the start could turn by more than
+// BodyMotion::kMostTurn in a tick [s]: as fast as all energy of the springs at the body turns it
+// about its axis of least inertia.
+std::vector<std::string> quick_mechanisms(const Scene& scene, double tick);
+
 // Returns the most energy that weight may give [J]: by how far each body may sink, at most to the
 // lowest level plane, or without a plane as far as the tip gets.
 double most_weight_energy(const Scene& scene, const ArmDescription& arm);

@@ -164,6 +164,7 @@ bool Summary::add(std::span<const double> row) {
     t.most_awake = std::max(t.most_awake, at(Column::objects_awake)[0]);
     t.left_out = std::max(t.left_out, at(Column::objects_left_out)[0]);
     t.stood_still = at(Column::objects_stood_still)[0];
+    t.turned_less = at(Column::objects_turned_less)[0];
   }
   return memorable;
 }
@@ -211,6 +212,11 @@ std::string Summary::text() const {
     text +=
         fmt::format("objects stood still      {:.0f} ticks: the solver found no forces for them\n",
                     t.stood_still);
+  }
+  if (t.turned_less > 0) {
+    text += fmt::format(
+        "objects turned less      {:.0f} ticks: a body of a mechanism turns by a radian at most\n",
+        t.turned_less);
   }
   return text;
 }

@@ -89,6 +89,7 @@ class Summary {
     double most_awake = 0;                    // bodies
     double left_out = 0;                      // most points at which bodies meet without pushing
     double stood_still = 0;                   // ticks in which forces of bodies were not found
+    double turned_less = 0;                   // ticks in which mechanisms turned as far as they may
     // Ticks in which the account of energy held back the walls' force, and torque.
     std::uint64_t walls_held = 0, torque_held = 0;
     double warmest = 0;  // of the arm's motors [-]

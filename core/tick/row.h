@@ -62,6 +62,7 @@ enum class Column : std::uint8_t {
   objects_sweeps,
   objects_left_out,
   objects_stood_still,
+  objects_turned_less,
   magnet,
   hand_magnet,
   hand_pull,
@@ -205,6 +206,9 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "points at which bodies touch beyond as many as the loop has room for: these do not push"},
     {Column::objects_stood_still, "/objects/stood_still", ColumnWidth::if_bodies, "-",
      "ticks so far in which the solver found no forces for bodies: they stood still in these"},
+    {Column::objects_turned_less, "/objects/turned_less", ColumnWidth::if_bodies, "-",
+     "ticks so far in which a body of a mechanism would have turned by more than a radian: it "
+     "turned less"},
     {Column::magnet, "/objects/held", ColumnWidth::if_bodies, "-",
      "number of the body that the magnet held over the tick, from 1 on; 0 none"},
     {Column::hand_magnet, "/hand/magnet", ColumnWidth::if_bodies, "-",

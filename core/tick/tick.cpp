@@ -313,6 +313,7 @@ void Tick<N>::write_row(const Parameters& p, const Reading<N>& in, std::span<dou
     set(Column::objects_sweeps, world->sweeps());
     set(Column::objects_left_out, world->left_out());
     set(Column::objects_stood_still, world->stood_still());
+    set(Column::objects_turned_less, world->turned_less());
     const auto& magnet = proxy_.contacts().magnet();
     set(Column::magnet, magnet.on() ? magnet.body + 1 : 0);
     set(Column::hand_magnet, in.magnet ? 1 : 0);

@@ -321,9 +321,11 @@ void BodyMotion::finish(double T) {
   w_ += (own - w_) / theta_;
 }
 
-void BodyMotion::limit_spin(double T) {
+bool BodyMotion::limit_spin(double T) {
   const double turn = T * w_.norm();
-  if (turn > kMostTurn) w_ *= kMostTurn / turn;
+  if (!(turn > kMostTurn)) return false;
+  w_ *= kMostTurn / turn;
+  return true;
 }
 
 void BodyMotion::halt() {

@@ -39,6 +39,7 @@ class BodyMotion {
   // Begins a tick of T [s]: computes the mean velocity under weight alone, and the response to
   // forces.
   void begin(double T, bool pressed);
+  double theta() const { return theta_; }  // weight of the tick's end
   Lever lever(const Vec3& point, double T) const;
   // The same by the mean spin that the forces so far lead to: the middle of both places.
   Lever middle(const Vec3& point, double T) const;
@@ -77,7 +78,8 @@ class BodyMotion {
   double joint_speed() const { return U_; }
   void set_joint_speed(double speed);  // after forces along the joint
   double joint_answer() const { return a_; }
-  double joint() const { return s_; }  // [m] or [rad]
+  double joint() const { return s_; }        // [m] or [rad]
+  double joint_rate() const { return sd_; }  // between ticks [m/s] or [rad/s]
   const BodyJoint& of_joint() const { return joint_; }
   // Potential along the joint: weight, springs, detents.
   const JointPotential& potential() const { return potential_; }
@@ -85,8 +87,8 @@ class BodyMotion {
   void finish(double T);
   // Bodies of mechanisms turn at most by this angle in a tick [rad].
   static constexpr double kMostTurn = 1;
-  void limit_spin(double T);
-  void halt();  // at rest from now on
+  bool limit_spin(double T);  // true: it would have turned further
+  void halt();                // at rest from now on
   // Between ticks: velocity of the body's point there [m/s], its response along a unit n to an
   // impulse there [1/kg], and such an impulse [N s].
   Vec3 speed_at(const Vec3& point) const { return speed() + spin().cross(point - center()); }

@@ -34,6 +34,14 @@ constexpr int kMostRounds = 4;       // rounds of sweeps for forces that make en
 // second none is assumed [rad^2].
 constexpr int kMostTurnings = 5;
 constexpr double kSameTurn2 = 2.5e-5, kTooFar2 = 1;
+constexpr double kHitsFollow = -1;  // stands for the pair of a contact where hits follow
+
+// Calls visit(forces along it) for each joint that may have stops.
+template <class Constraints, class Visit>
+void for_each_hit(Constraints& constraints, const Visit& visit) {
+  for (auto& joint : constraints.world_joints) visit(joint.along);
+  for (auto& between : constraints.joints_between) visit(between.joint.forces);
+}
 
 }  // namespace
 
@@ -145,7 +153,7 @@ void BodyWorld::reset() {
   constraints_.pairs.clear();
   fresh_ = true;
   given_ = given_now_ = all_given_ = all_pulled_ = energy_ = first_energy_ = gain_ = 0;
-  stood_still_ = 0;
+  stood_still_ = turned_less_ = 0;
 }
 
 void BodyWorld::take_over(const BodyWorld& other) {
@@ -465,6 +473,9 @@ void BodyWorld::finish() {
   hold_what_is_made_up();
   for (const PullLink& pull : constraints_.pulls) all_pulled_ += pull.work(bodies_);
   for_each_of(constraints_.all(), [&](auto& c) { c.finish(bodies_); });
+  bool less = std::ranges::any_of(constraints_.joints_between, [this](const JointBetween& c) {
+    return c.joint.turns_less && (moves(c.a) || moves(c.b));
+  });
   for (int i = 0; i < count(); ++i) {
     if (!moves(i)) continue;
     BodyMotion& body = bodies_[i];
@@ -473,11 +484,12 @@ void BodyWorld::finish() {
       passing_.push_back(i);
     }
     body.finish(bodies_.T);
-    if (linked_[at(i)] != 0) body.limit_spin(bodies_.T);
+    if (linked_[at(i)] != 0 && body.limit_spin(bodies_.T)) less = true;
     if (!body.finite()) body.reset();
     if (const double by = slower_[at(root(i))]; by != 1) body.slow_down(by);
     geometry_.place(i, pose(i));
   }
+  turned_less_ += less ? 1 : 0;
   for (const int i : passing_) bounce(i);
   part();
   fall_asleep();
@@ -650,6 +662,11 @@ void BodyWorld::write(std::vector<double>& into) const {
     into.insert(into.end(), numbers_of_it.begin(), numbers_of_it.end());
   });
   geometry_.write(into);
+  bool any = false;
+  for_each_hit(constraints_, [&](const JointForces& along) { any |= along.kept_hit() != 0; });
+  if (!any) return;
+  into.push_back(kHitsFollow);
+  for_each_hit(constraints_, [&](const JointForces& along) { into.push_back(along.kept_hit()); });
 }
 
 bool BodyWorld::read(std::span<const double> from) {
@@ -683,7 +700,14 @@ bool BodyWorld::read(std::span<const double> from) {
     c.read(from.data());
     from = from.subspan(c.numbers().size());
   });
-  geometry_.read(from);
+  from = geometry_.read(from);
+  if (from.empty() || from[0] != kHitsFollow) return true;
+  from = from.subspan(1);
+  for_each_hit(constraints_, [&](JointForces& along) {
+    if (from.empty()) return;
+    along.hit.speed = from[0];
+    from = from.subspan(1);
+  });
   return true;
 }
 

@@ -103,14 +103,18 @@ class BodyWorld {
   int sweeps() const { return sweeps_; }  // of the last tick
   // Number of ticks since the start in which forces were not found and a mechanism stood still.
   int stood_still() const { return stood_still_; }
+  // Number of ticks since the start in which a body or a hinge of a mechanism would have turned
+  // further than BodyMotion::kMostTurn.
+  int turned_less() const { return turned_less_; }
   // Number of points for which there was no room: they do not push.
   int left_out() const { return geometry_.left_out(); }
 
   // Writes all state that is kept from tick to tick behind `into`; read() restores it. False: the
-  // numbers are of another scene.
+  // numbers are of another scene. Hits on stops come last, and only where there are some: so
+  // numbers without them are read as well.
   void write(std::vector<double>& into) const;
   bool read(std::span<const double> from);
-  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 64 + BodyGeometry::kMost * 31;
+  static constexpr std::size_t kMostNumbers = 64 + kMostBodies * 80 + BodyGeometry::kMost * 31;
 
  private:
   static std::size_t at(int body) { return static_cast<std::size_t>(body); }
@@ -168,7 +172,7 @@ class BodyWorld {
   bool fresh_ = true;                         // first_energy_ is not yet known
   double given_now_ = 0, given_ = 0, all_given_ = 0, energy_ = 0, first_energy_ = 0, gain_ = 0;
   double all_pulled_ = 0;
-  int sweeps_ = 0, stood_still_ = 0;
+  int sweeps_ = 0, stood_still_ = 0, turned_less_ = 0;
 };
 
 }  // namespace limpid

@@ -74,6 +74,7 @@ double HeldJoint::stored() const {
 
 void HeldJoint::start(const Mat3& now) {
   answer = now;
+  turns_less = false;
   if (ball()) {
     damped = (Mat3::Identity() + joint.damping * answer).inverse();
   } else {
@@ -97,7 +98,8 @@ double HeldJoint::sweep(double T, const Vec3& speed) {
   AlongJoint now{place, left * undamped, left * w};
   const double change = sweep_joint(joint, potential, T, now, forces);
   damping = -joint.damping * now.speed * along;
-  if (turns() && T * std::abs(now.speed) > BodyMotion::kMostTurn) {
+  turns_less = turns() && T * std::abs(now.speed) > BodyMotion::kMostTurn;
+  if (turns_less) {
     const double most = std::copysign(BodyMotion::kMostTurn / T, now.speed);
     if (potential.any()) potential.over_a_tick(place, T * most, 0, forces.potential);
     damping = (most - undamped - w * (forces.sum() - before_it)) / w * along;
@@ -136,13 +138,16 @@ double HeldJoint::made(double T, const Vec3& speed) const {
 void HeldJoint::finish(double T, const Vec3& speed) {
   anchor = -friction / joint.stop_stiffness;
   forces.anchor = -forces.friction / joint.stop_stiffness;
-  if (!ball()) place += T * along.dot(speed);
+  if (ball()) return;
+  const double way = T * along.dot(speed);
+  forces.hit.finish(joint, place, way);
+  place += way;
 }
 
 void HeldJoint::hold() {
   friction = -joint.stop_stiffness * anchor;
   damping.setZero();
-  forces.potential = forces.stop = 0;
+  forces.potential = forces.stop = forces.hit.speed = 0;
   forces.friction = -joint.stop_stiffness * forces.anchor;
 }
 
@@ -163,7 +168,7 @@ std::array<double, HeldJoint::kNumbers> HeldJoint::kept() const {
 
 void HeldJoint::read(const double* from) {
   place = from[0];
-  forces = {from[1], from[2], from[3], from[4]};
+  forces = {from[1], from[2], from[3], from[4], {}};
   friction = Vec3(from[5], from[6], from[7]);
   anchor = Vec3(from[8], from[9], from[10]);
   damping = Vec3(from[11], from[12], from[13]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "core/touch/body_motion.h"
@@ -58,8 +59,10 @@ struct HeldJoint {
   Vec3 along = Vec3::Zero();       // axis, in the world
   Mat3 answer = Mat3::Zero();      // see joint_answer()
   Mat3 damped = Mat3::Identity();  // part of a force on it that damping leaves [-]
+  bool turns_less = false;         // than its forces would have it: by kMostTurn
 
   bool ball() const { return joint.kind == BodyJoint::Kind::ball; }
+  bool has_stops() const { return std::isfinite(joint.low) || std::isfinite(joint.high); }
   bool turns() const { return joint.kind != BodyJoint::Kind::slider; }
   Vec3 force() const { return damping + (ball() ? friction : Vec3(forces.sum() * along)); }
   double stored() const;  // [J]
@@ -76,6 +79,11 @@ struct HeldJoint {
   Vec3 numbers() const;                            // of the forces
   double made(double T, const Vec3& speed) const;  // see made() of a joint
   bool presses() const { return ball() ? !friction.isZero(0) : forces.presses(); }
+  // Begins a tick of T before any solve, with the sides' relative velocity or angular velocity at
+  // its start and their theta.
+  void meet(double T, const Vec3& rate, double theta) {
+    forces.hit.begin(joint, place, along.dot(rate), theta, forces.stop, T);
+  }
   // Ends a tick of T in which the sides moved with `speed`.
   void finish(double T, const Vec3& speed);
   // Holds the joint for a tick, with the friction of the last one.

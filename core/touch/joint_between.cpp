@@ -26,7 +26,21 @@ void JointBetween::prepare(Bodies& bodies) {
   end_a = bodies.end_at(a, at);
   end_b = bodies.end_at(b, at);
   find_answer(bodies);
+  meet(bodies, at);
   push(bodies, joint.force());
+}
+
+// Stiff links tremble from tick to tick: the speed that counts is without what they stretch by.
+void JointBetween::meet(const Bodies& bodies, const Vec3& at) {
+  if (!joint.has_stops()) return;
+  JointAnswer::Numbers stretching = JointAnswer::Numbers::Zero();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    stretching.segment<3>(3 * static_cast<Eigen::Index>(i)) = links[i].stretching(bodies);
+  }
+  const Vec3 all = joint.turns() ? Vec3(bodies.spin(a) - bodies.spin(b))
+                                 : Vec3(bodies.speed_at(a, at) - bodies.speed_at(b, at));
+  const Vec3 rate = all - answer.yield.transpose() * stretching;
+  joint.meet(bodies.T, rate, bodies[bodies.moves(a) ? a : b].theta());
 }
 
 void JointBetween::turn(Bodies& bodies) {
@@ -65,11 +79,22 @@ double JointBetween::solve(Bodies& bodies) {
   }
   const double linked = add_to_links(bodies, -answer.give * left);
   const Vec3 before = joint.force();
+  joint.forces.hit.trembling = joint.forces.hit.holds ? joint.along.dot(trembling(bodies)) : 0;
   const double change = joint.sweep(bodies.T, speed(bodies));
   const Vec3 more = joint.force() - before;
   push(bodies, more);
   add_to_links(bodies, -answer.yield * more);
   return std::max(linked, change);
+}
+
+// The part of the relative velocity that its links' stretching makes.
+Vec3 JointBetween::trembling(const Bodies& bodies) const {
+  JointAnswer::Numbers stretching = JointAnswer::Numbers::Zero();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    stretching.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        links[i].held * links[i].force.speed(bodies);
+  }
+  return answer.yield.transpose() * stretching;
 }
 
 double JointBetween::add_to_links(Bodies& bodies, const JointAnswer::Numbers& more) {

@@ -43,7 +43,9 @@ struct JointBetween {
   void read(const double* from) { joint.read(from); }
 
  private:
+  void meet(const Bodies& bodies, const Vec3& at);  // the joint's stops, by its point on a
   void find_answer(const Bodies& bodies);
+  Vec3 trembling(const Bodies& bodies) const;
   Vec3 speed(const Bodies& bodies) const;  // of a relative to b: of the joint's point, or angular
   void push(Bodies& bodies, const Vec3& force) const;
   double add_to_links(Bodies& bodies, const JointAnswer::Numbers& more);  // the largest change [N]

@@ -40,15 +40,18 @@ double sweep_joint(const BodyJoint& joint, const JointPotential& potential, doub
   }
   // The stop that is pressed, or else the one ahead: a quick joint may reach the further one.
   const bool within = joint.low <= s && s <= joint.high;
-  const bool up = within ? along.speed > w * forces.stop : s > joint.high;
+  const bool up = forces.hit.holds ? upper_is_nearer(joint, s)
+                  : within         ? along.speed > w * forces.stop
+                                   : s > joint.high;
   const double depth = up ? s - joint.high : joint.low - s;
   if (std::isfinite(depth) || forces.stop != 0) {
     const double m_eff = BodyMotion::kTheta * T / w;
-    const double B =
-        2 * damping_ratio(joint.stop_restitution) * std::sqrt(joint.stop_stiffness * m_eff);
+    const double ratio = forces.hit.lossless ? 0 : damping_ratio(joint.stop_restitution);
+    const double B = 2 * ratio * std::sqrt(joint.stop_stiffness * m_eff);
     const double sign = up ? -1 : 1;
     const double deeper = -sign * T * (along.speed - w * forces.stop);
-    set(forces.stop, sign * wall_force({joint.stop_stiffness, B, T, depth, deeper, c}));
+    const double F = wall_force({joint.stop_stiffness, B, T, depth, deeper, c});
+    set(forces.stop, sign * forces.hit.limited(F, deeper / T, sign, w));
   }
   if (joint.friction > 0) {
     const double K = joint.stop_stiffness;

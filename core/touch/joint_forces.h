@@ -3,6 +3,7 @@
 
 #include "core/touch/body.h"
 #include "core/touch/joint_potential.h"
+#include "core/touch/stop_hit.h"
 
 namespace limpid {
 
@@ -14,9 +15,13 @@ double damping_ratio(double restitution);
 struct JointForces {
   double potential = 0, stop = 0, friction = 0;
   double anchor = 0;  // stretch of friction's spring [m] or [rad]
+  StopHit hit;
 
   double sum() const { return potential + stop + friction; }
-  bool presses() const { return stop != 0 || friction != 0; }
+  // The speed of a hit, for the next tick; before the joint meets its stop it is found anew.
+  double kept_hit() const { return hit.speed < 0 || stop != 0 ? hit.speed : 0; }
+  // A hit that keeps its energy bears nothing.
+  bool presses() const { return (stop != 0 && !hit.lossless) || friction != 0; }
 };
 
 // Motion along a joint over a tick.

@@ -36,6 +36,12 @@ struct JointLink : HeldForce {
     return held * force.speed(bodies) +
            (point.K * point.stretch + force.on_a) / point.push(bodies.T);
   }
+  // Velocity of stretching at the tick's start [m/s].
+  Vec3 stretching(const Bodies& bodies) const {
+    const Vec3 at = bodies.place(a, on_a);
+    const Vec3 there = rail_axis ? at : bodies.place(b, on_b);
+    return held * (bodies.speed_at(a, at) - bodies.speed_at(b, there));
+  }
   void finish(const Bodies& bodies);
   double energy(const Bodies&) const { return 0.5 * point.K * made_stretch.squaredNorm(); }
 

@@ -4,6 +4,13 @@
 
 namespace limpid {
 
+void WorldJoint::prepare(Bodies& bodies) {
+  BodyMotion& body = bodies[a];
+  along.hit.begin(body.of_joint(), body.joint(), body.joint_rate(), body.theta(), along.stop,
+                  bodies.T);
+  body.push_joint(along.sum());
+}
+
 double WorldJoint::solve(Bodies& bodies) {
   BodyMotion& body = bodies[a];
   AlongJoint now{body.joint(), body.joint_speed(), body.joint_answer()};
@@ -19,7 +26,9 @@ double WorldJoint::made(const Bodies& bodies) const {
 }
 
 void WorldJoint::finish(Bodies& bodies) {
+  const BodyMotion& body = bodies[a];
   along.anchor = -along.friction / stiffness(bodies);
+  along.hit.finish(body.of_joint(), body.joint(), bodies.T * body.joint_speed());
   if (along.presses()) bodies.press(a);
 }
 

@@ -16,12 +16,12 @@ struct WorldJoint {
 
   static constexpr bool kWakes = false;
   bool off() const { return false; }
-  void prepare(Bodies& bodies) { bodies[a].push_joint(along.sum()); }
+  void prepare(Bodies& bodies);
   double solve(Bodies& bodies);
   Vec3 forces() const { return {along.potential, along.stop, along.friction}; }
   void add(Bodies& bodies, const Vec3& more);
   void hold(const Bodies& bodies) {
-    along.potential = along.stop = 0;
+    along.potential = along.stop = along.hit.speed = 0;
     along.friction = -along.anchor * stiffness(bodies);
   }
   double made(const Bodies& bodies) const;
@@ -31,7 +31,7 @@ struct WorldJoint {
   std::array<double, 4> numbers() const {
     return {along.potential, along.stop, along.friction, along.anchor};
   }
-  void read(const double* from) { along = {from[0], from[1], from[2], from[3]}; }
+  void read(const double* from) { along = {from[0], from[1], from[2], from[3], {}}; }
 
  private:
   double stiffness(const Bodies& bodies) const { return bodies[a].of_joint().stop_stiffness; }

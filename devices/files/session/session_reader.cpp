@@ -49,6 +49,7 @@ std::optional<double> default_of(Column column) {
     case Column::objects_sweeps:
     case Column::objects_left_out:
     case Column::objects_stood_still:
+    case Column::objects_turned_less:
     case Column::magnet:
     case Column::hand_magnet:
     case Column::hand_pull:

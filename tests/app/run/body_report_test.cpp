@@ -12,6 +12,7 @@
 namespace limpid {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
@@ -185,6 +186,31 @@ TEST(BodyReport, CountsWhatSpringsHoldAtTheStart) {
   EXPECT_NEAR(spring_energy(scene), 12.52 + 25 * drawn * drawn, 1e-12);
   const BodyReport report = report_on_bodies(scene, arm());
   EXPECT_THAT(report.warnings, testing::Contains(HasSubstr("springs that are drawn")));
+}
+
+// A spring of 3.6 J turns 9e-9 kg m^2 by sqrt(2 3.6/9e-9) = 28,284 rad/s: 28.3 rad in a
+// millisecond.
+TEST(BodyReport, WarnsOfMechanismsThatSpringsTurnByFarInATick) {
+  Object frame = body("frame", Sphere{0.02}, Vec3(0.3, 0, 0));
+  frame.body->inertia = Vec3(1e-6, 1e-6, 9e-9);
+  Object rotor = body("rotor", Sphere{0.02}, Vec3(0.3, 0, 0.1));
+  rotor.body->inertia = Vec3(1e-4, 1e-4, 1e-4);
+  BodyJoint& joint = rotor.body->joint.emplace();
+  joint.kind = BodyJoint::Kind::hinge;
+  joint.force.spring = 0.002;
+  joint.force.rest = 60;
+  EXPECT_THAT(quick_mechanisms(on_a_floor({frame, rotor}), 1e-3), ElementsAre()) << "on the world";
+  joint.to = "frame";
+  EXPECT_THAT(quick_mechanisms(on_a_floor({frame, rotor}), 1e-3),
+              ElementsAre(AllOf(HasSubstr("'frame': its springs, 3.6 J"), HasSubstr("by 28.3 rad"),
+                                HasSubstr("1 rad at most"))));
+  EXPECT_THAT(quick_mechanisms(on_a_floor({frame, rotor}), 3e-5), ElementsAre());
+  joint.force.spring = 0;
+  Scene scene = on_a_floor({frame, rotor});
+  scene.springs.push_back({.between = {"frame", ""},
+                           .points = {Vec3::Zero(), Vec3(0.3, 0, 0.12)},
+                           .stiffness = 500});  // 3.6 J
+  EXPECT_THAT(quick_mechanisms(scene, 1e-3), ElementsAre(HasSubstr("by 28.3 rad")));
 }
 
 TEST(BodyReport, KnowsWhichInertiaThereIs) {

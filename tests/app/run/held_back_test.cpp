@@ -1,4 +1,4 @@
-// Sentences of a run's summary on force that the account of energy held back.
+// Sentences of a run's summary on what was held back: force, and mechanisms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,6 +40,23 @@ TEST(HeldBack, AreTicksInWhichTheAccountCutForce) {
 TEST(HeldBack, AreNoWallsWhereNoneIsTouchedOrTheLawHoldsNoneBack) {
   EXPECT_THAT(summary(CouplingKind::predictive, false), Not(HasSubstr("walls held back")));
   EXPECT_THAT(summary(CouplingKind::tank, true), Not(HasSubstr("walls held back")));
+}
+
+TEST(HeldBack, AreMechanismsThatStoodStillOrTurnedLess) {
+  const RowLayout layout(3, 2);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+  Summary quiet(layout), moved(layout);
+  for (int k = 0; k < 9; ++k) {
+    quiet.add(row);
+    layout.in(std::span<double>(row), Column::objects_stood_still)[0] = k / 4;
+    layout.in(std::span<double>(row), Column::objects_turned_less)[0] = k;
+    moved.add(row);
+    layout.in(std::span<double>(row), Column::objects_stood_still)[0] = 0;
+    layout.in(std::span<double>(row), Column::objects_turned_less)[0] = 0;
+  }
+  EXPECT_THAT(quiet.text(), Not(HasSubstr("objects turned less")));
+  EXPECT_THAT(moved.text(), HasSubstr("objects stood still      2 ticks"));
+  EXPECT_THAT(moved.text(), HasSubstr("objects turned less      8 ticks"));
 }
 
 // An arm whose second motor has a model warms up by a hundredth in each tick of 2 ms.

@@ -84,6 +84,8 @@ TEST(BodyGyroscopes, TurnAtMostByARadianInATickAndHold) {
     EXPECT_LT(most, 1.5e-4) << rest;
     EXPECT_LE(fastest, 1 / kTick * (1 + 1e-12)) << rest;
     EXPECT_EQ(world.stood_still(), 0) << rest;
+    const double turn = kTick * rest * std::sqrt(0.002 / 9e-9);  // all energy in the frame's spin
+    EXPECT_EQ(world.turned_less() > 0, turn > 1) << rest;
   }
 }
 
