@@ -32,7 +32,8 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   };
   fmt::print("rests on                   {}\n", basis_text(arm, p));
   if (const std::string filed = readings_text(arm, p); !filed.empty()) {
-    fmt::print("readings                   {}; --readings takes the file's\n", filed);
+    fmt::print("readings                   {}; --readings takes the values of the arm's file\n",
+               filed);
   }
   fmt::print("observer bandwidth w_f     {} rad/s\n", list(a.w_f));
   fmt::print("locked system w_c          {} rad/s\n", list(a.w_c));
@@ -55,7 +56,8 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
                a.condition3.holds ? "holds" : "BROKEN", a.condition3.device_margin,
                a.condition3.proxy_margin);
   } else {
-    fmt::print("condition (3)              no bound is known, as packets are lost (link.loss)\n");
+    fmt::print(
+        "condition (3)              no bound is known because packets are lost (link.loss)\n");
   }
   if (!p.linked()) return;
   const std::string old =

@@ -28,17 +28,17 @@ int say_arm(const ArmOptions& options) {
   const std::string in_use = hub.in_use();
   choose_device(options.device, hub, "");
   if (!hub.may_say_arm()) {
-    throw UsageError(fmt::format(
-        "--arm: {} {}", hub.present()->place.name,
-        hub.notes(hub.in_use()).arm.empty()
-            ? "says itself which arm it is, or has none"
-            : "was identified as an arm of its own; `limpid identify --forget` ends that"));
+    throw UsageError(
+        fmt::format("--arm: {} {}", hub.present()->place.name,
+                    hub.notes(hub.in_use()).arm.empty()
+                        ? "has no arm to choose: the device reports its arm itself, or has no arm"
+                        : "was identified; `limpid identify --forget` removes the identified arm"));
   }
   std::string file = options.arm == kAskAgain ? std::string() : options.arm;
   if (!file.empty() && file != kBuiltInArm) file = std::filesystem::absolute(file).string();
   const std::unique_ptr<Device> device = hub.open_to_look();
   hub.say_arm(file, file.empty() ? std::string() : options.tip, &device->traits());
-  std::string said = "nobody has said any more which arm it is";
+  std::string said = "no arm is chosen for this device any more";
   if (!file.empty()) {
     const TakenArm taken = hub.arm_for(device->traits());
     if (!taken.known) throw UsageError("--arm: " + taken.why);
@@ -134,7 +134,7 @@ Command declare_devices(CLI::App& app) {
     if (!options->arm.empty()) return say_arm(*options);
     if (options->device.empty()) return devices(*json);
     throw UsageError(fmt::format(
-        "{}: a device can be named only together with --arm, which says which arm it is",
+        "{}: a device can be named only together with --arm, which chooses the device's arm",
         options->device));
   };
 }

@@ -95,7 +95,7 @@ int run(const ExperimentOptions& options) {
       write_report(options.out);
     }
   } catch (const Cancelled&) {
-    fmt::print(stderr, "limpid: stopped; the same command goes on from here\n");
+    fmt::print(stderr, "limpid: stopped; the same command continues from here\n");
     return 1;
   } catch (const FileError& e) {  // of the results, not of the input
     throw std::runtime_error(e.what());
@@ -168,7 +168,8 @@ Command declare_experiment(CLI::App& app) {
       ->required()
       ->type_name("DIR");
   require_whole_number(
-      command->add_option("--seed", options->seed, "of all random numbers")->type_name("N"));
+      command->add_option("--seed", options->seed, "the seed of all random numbers")
+          ->type_name("N"));
   command->add_option("--threads", options->threads, "default: one per core")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));

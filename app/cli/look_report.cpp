@@ -107,13 +107,13 @@ std::string state_text(const DeviceSeen& seen) {
       look_line("calibration", for_some_time(seen.uncalibrated, "no complaint", "not calibrated")) +
       look_line("fault", for_some_time(seen.fault, "none", "reported")) + causes_text(seen);
   if (seen.warmth > 0) {
-    text += look_line("warmth", fmt::format("{:.0f} % of what its hottest motor bears, at most",
+    text += look_line("warmth", fmt::format("at most {:.0f} % of the hottest motor's thermal limit",
                                             100 * seen.warmth));
   }
   if (seen.unbelieved > 0) {
-    text +=
-        look_line("wrong readings",
-                  fmt::format("{} said what cannot be, and are not in the table", seen.unbelieved));
+    text += look_line(
+        "wrong readings",
+        fmt::format("{} readings were impossible, and are not in the table", seen.unbelieved));
   }
   return text;
 }
@@ -149,9 +149,10 @@ std::string look_text(const LookedDevice& device, const DeviceSeen& seen) {
       look_line("arm", device.arm_why);
   if (!traits.made_by.empty()) text += look_line("driven by", traits.made_by);
   text +=
-      look_line("motors", traits.pushes ? "it has some, and got no force" : "it has none") +
+      look_line("motors",
+                traits.pushes ? "the device has motors, and got no force" : "it has none") +
       look_line("axes", device.checked ? "adjusted as they were checked"
-                                       : "as the device has them; nobody has checked them") +
+                                       : "as the device reports them; not checked yet") +
       look_line("joints", std::to_string(traits.dof)) +
       look_line("readings",
                 fmt::format("{}, {:.0f} a second{}; between two {:.2f} ms in the middle, {:.1f} ms "

@@ -181,7 +181,7 @@ void write_icons(const fs::path& folder) {
 }  // namespace
 
 Command declare_share(CLI::App& app, std::vector<ManualKey> keys) {
-  auto* command = app.add_subcommand("share", "writes the manual and icons, to be installed");
+  auto* command = app.add_subcommand("share", "writes the manual and icons for an installation");
   command->group("");
   auto into = std::make_shared<std::string>();
   command->add_option("DIR", *into, "the folder for them")->required();

@@ -93,7 +93,9 @@ Command declare_story(CLI::App& app, MakeVideo make_video) {
   auto* command = app.add_subcommand(
       "story", "a script that plays itself: what happens in each step, a session, a video");
   auto options = std::make_shared<StoryOptions>();
-  command->add_option("FILE.toml", options->script, "the script; default: the one that comes along")
+  command
+      ->add_option("FILE.toml", options->script,
+                   "the script; default: first.toml, which is installed with Limpid")
       ->transform(or_shipped({"stories"}), "", "")
       ->type_name("");
   auto* record =

@@ -82,7 +82,7 @@ inline constexpr std::array kAxisFields{
         "the hand stays the power in the loop.",
         {0.1, 10, true}),
     Field<AxisAdjustment>("inverted", "invert", &AxisAdjustment::inverted, {0, 1},
-                          "Turns the axis round, its torque with it."),
+                          "Reverses the sign of the axis and of its torque."),
 };
 // The settings of the same names, without their tables.
 inline constexpr auto kOwnForcesFields = [] {

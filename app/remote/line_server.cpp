@@ -372,8 +372,8 @@ void LineServer::split(Connection& c, Client id) {
   if (c.looked > 0) return;
   if (c.dropped > 0 && has_room(c)) {
     c.out += fmt::format(
-        "{{\"id\":null,\"error\":\"{} lines found no room and were dropped: {} bytes of lines "
-        "may wait while answers are not fetched\"}}\n",
+        "{{\"id\":null,\"error\":\"{} lines were dropped: at most {} bytes of lines may wait while "
+        "the client does not read answers\"}}\n",
         std::exchange(c.dropped, 0), kMostWaiting);
   }
   if (!c.too_long) return;

@@ -117,7 +117,7 @@ std::vector<std::string> touch_warnings(const Model& model, const TriangleMesh& 
   if (const std::string health = shape.health().text(); !health.empty()) lines.push_back(health);
   if (!shape.health().closed()) return lines;
   if (volume(model, shape.middle()) < 0) {
-    lines.push_back("its faces look inwards: it is felt from inside, as a hollow");
+    lines.push_back("the faces point inwards: the model is felt from inside, like a hollow");
   }
   const double size = model.bounds().sizes().maxCoeff();
   const double share = thin_share(model, shape, kThin * size);

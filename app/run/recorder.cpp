@@ -97,7 +97,8 @@ void Recorder::mark(Mark mark) {
   check_mark(mark, out_);
   const std::lock_guard lock(marks_mutex_);
   if (marked_ == kMostMarks) {
-    throw FileError(fmt::format("{}: has {} marks, and takes no more", out_.string(), marked_));
+    throw FileError(fmt::format("{}: has {} marks already, the most that a recording can have",
+                                out_.string(), marked_));
   }
   ++marked_;
   marks_.push_back(std::move(mark));

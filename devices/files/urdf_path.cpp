@@ -35,7 +35,9 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   for (const auto& [name, link] : model.links_) {
     int depth = 0;
     for (auto at = link; at->getParent() != nullptr; at = at->getParent()) {
-      if (++depth > kDeepestChain) places.refuse_link(name, "too many links before it");
+      if (++depth > kDeepestChain) {
+        places.refuse_link(name, "too many links in the chain before this link");
+      }
     }
   }
 }
@@ -205,7 +207,7 @@ Way named(const urdf::ModelInterface& model, const std::string& tip, const UrdfP
   }
   std::ranges::reverse(way);
   if (std::ranges::none_of(way, [](const auto& joint) { return moves(*joint); })) {
-    places.refuse_link(tip, "no joint moves it; it cannot be the tip");
+    places.refuse_link(tip, "no joint moves this link, so the link cannot be the tip");
   }
   return way;
 }

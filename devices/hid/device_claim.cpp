@@ -65,8 +65,9 @@ int open_file(const fs::path& path) {
   }
   struct stat is {};
   if (file >= 0 && fstat(file, &is) == 0 && S_ISREG(is.st_mode) && is.st_nlink <= 1) return file;
-  const std::string why =
-      file >= 0 || errno == ELOOP ? "it must be a plain file, and is not" : std::strerror(errno);
+  const std::string why = file >= 0 || errno == ELOOP
+                              ? "this is not a plain file, but must be a plain file"
+                              : std::strerror(errno);
   if (file >= 0) close(file);
   throw HidError(fmt::format("{}: {}, so nobody can tell whether another program uses the device",
                              path.string(), why));

@@ -35,7 +35,7 @@ const char* explain(ExcitationEnd end) {
     case ExcitationEnd::running: return "under way";
     case ExcitationEnd::complete: return "complete";
     case ExcitationEnd::cancelled: return "cancelled";
-    case ExcitationEnd::not_well: return "the device stopped answering as it should";
+    case ExcitationEnd::not_well: return "the device no longer answered correctly";
     case ExcitationEnd::let_go: return "the device's hand switch opened";
     case ExcitationEnd::limit: return "a limit of safety was reached";
     case ExcitationEnd::held: return "a joint did not follow: something holds the device";

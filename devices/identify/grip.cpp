@@ -428,7 +428,7 @@ std::string spread(const HeldDevice& device, const DeviceTrust& trust, Grip& gri
     value.of.bound += value.more;
     uneven = uneven || wide(value.of, value.least);
   }
-  return uneven ? "the hand is not alike in all directions: " + along : "";
+  return uneven ? "the hand differs between directions: " + along : "";
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ class IdentifyWithLoad(WindowTest):
     def drawn_scale(self) -> float:
         """Scale of the simulated device's motor torques, as the command reports it."""
         done = limpid("identify", "simulated", "--load", "0.05", "--out", self.home / "out")
-        return float(re.search(r"([\d.]+) was drawn", done.out)[1])
+        return float(re.search(r"([\d.]+) is the true value", done.out)[1])
 
     def begin(self) -> None:
         self.key("Return")

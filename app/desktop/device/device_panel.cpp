@@ -144,7 +144,7 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
               angle * (slides ? 1e3 * kSlideUnit : kDegrees));
   ImGui::SameLine(8.5f * ImGui::GetFontSize());
   changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
-  tooltip("Turns the axis round, its torque with it.");
+  tooltip("Reverses the sign of the axis and of its torque.");
   ImGui::SameLine();
   changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
   tooltip(

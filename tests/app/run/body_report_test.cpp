@@ -184,7 +184,7 @@ TEST(BodyReport, CountsWhatSpringsHoldAtTheStart) {
   scene.objects.back().body->joint = joint;
   EXPECT_NEAR(spring_energy(scene), 12.52 + 25 * drawn * drawn, 1e-12);
   const BodyReport report = report_on_bodies(scene, arm());
-  EXPECT_THAT(report.warnings, testing::Contains(HasSubstr("springs that are drawn")));
+  EXPECT_THAT(report.warnings, testing::Contains(HasSubstr("springs that are stretched")));
 }
 
 TEST(BodyReport, KnowsWhichInertiaThereIs) {
@@ -219,7 +219,7 @@ TEST(BodyReport, WarnsOfAllThat) {
                  root.z() - 0.3),
       arm());
   ASSERT_EQ(report.facts.size(), 4u);
-  EXPECT_THAT(report.facts[0], HasSubstr("3 of them, 0 springs"));
+  EXPECT_THAT(report.facts[0], HasSubstr("3 objects, 0 springs"));
   EXPECT_THAT(report.facts[1], HasSubstr("1 kg"));
   ASSERT_EQ(report.warnings.size(), 4u);
   EXPECT_THAT(report.warnings[0], HasSubstr("[1, 1, 3]"));

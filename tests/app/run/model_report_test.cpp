@@ -109,7 +109,7 @@ TEST_F(AModelsReport, WarnsOfSizesThatNobodyTouches) {
 
 TEST_F(AModelsReport, WarnsOfFacesThatLookInwards) {
   EXPECT_THAT(report_on_model(stl({20, 30, 40}, true)).warnings,
-              ElementsAre(StartsWith("its faces look inwards")));
+              ElementsAre(StartsWith("the faces point inwards")));
 }
 
 // Four of a plate's twelve triangles are its two large faces.

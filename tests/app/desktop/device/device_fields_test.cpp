@@ -57,7 +57,7 @@ TEST_F(DeviceFields, ShowAnglesInDegreesAndSlidesInMillimetres) {
 
 TEST_F(DeviceFields, TurnAnAxisRoundItsTorqueOrBoth) {
   draw();
-  EXPECT_THAT(hint("invert"), HasSubstr("Turns the axis round, its torque with it."));
+  EXPECT_THAT(hint("invert"), HasSubstr("Reverses the sign of the axis and of its torque."));
   EXPECT_THAT(hint("reverse force"), HasSubstr("After a change here the axes are checked again"));
   click_on("invert", 1);
   EXPECT_TRUE(anew_);

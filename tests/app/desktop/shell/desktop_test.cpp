@@ -565,14 +565,14 @@ TEST_F(ADesktop, TakesADeviceForABuiltInArmWhateverIsOpenUntilSomebodyHasSaidWhi
   const ArmDescription first = open();
   EXPECT_EQ(first.urdf, test::omni().urdf);
   for (const Joint& joint : first.joints) EXPECT_LE(joint.effort, 0.5);
-  EXPECT_TRUE(said("is taken for the arm omni"));
+  EXPECT_TRUE(said("is used as the arm omni"));
   const NamedArm asked = desktop->world.arm_file();
   EXPECT_EQ(asked.file, file.string()) << "that the question offers";
   desktop->devices.hub().say_arm(asked.file, asked.tip, nullptr);
   const ArmDescription second = open();
   EXPECT_EQ(second.name, "long");
   for (const Joint& joint : second.joints) EXPECT_LE(joint.effort, 3) << "the device's own limit";
-  EXPECT_TRUE(said("is taken for the arm long"));
+  EXPECT_TRUE(said("is used as the arm long"));
 }
 
 // The device is plugged in again with another full force, from changed settings.
