@@ -292,9 +292,9 @@ Command declare_characterize(CLI::App& app) {
   command->footer(
       "For each law the report has the stiffest wall that feels as stiff as set and does not "
       "chatter, the energy\ngiven to the hand, and mass and damping felt in free motion, beside "
-      "the values that `limpid analyze` computes.\nAll numbers come from the virtual arm of that "
-      "file: a real device may differ. The report says which numbers are\nmeasured, set and "
-      "assumed. Exit status 1: a promise was not kept, or the command was stopped.\n\n" +
+      "the values that `limpid analyze`\ncomputes. All numbers come from the virtual arm of that "
+      "file: a real device may differ. The report says\nwhich numbers are measured, set and "
+      "assumed. Exit status 1: a promise was not kept, or the command was\nstopped.\n\n" +
       parameter_help());
   return [options] { return run_characterize(*options); };
 }

@@ -164,7 +164,7 @@ Command declare_experiment(CLI::App& app) {
       app.add_subcommand("experiment", "one of the paper's experiments: data, figure, verdict");
   auto options = std::make_shared<ExperimentOptions>();
   command->add_option("NAME", options->name, "an experiment, or all")->required();
-  command->add_option("--out", options->out, "the folder for its results")
+  command->add_option("--out", options->out, "the folder for the results")
       ->required()
       ->type_name("DIR");
   require_whole_number(

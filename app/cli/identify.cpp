@@ -313,11 +313,12 @@ Command declare_identify(CLI::App& app) {
   command->add_option("--gravity", options->gravity,
                       "none, or X,Y,Z [m/s^2] in the frame of the arm's base");
   command
-      ->add_option("--range", options->order.plan.range, "part of each joint's range that is used")
+      ->add_option("--range", options->order.plan.range,
+                   "share of each joint's range that the motion uses")
       ->check(CLI::Range(0.05, 0.9));
   command
       ->add_option("--torque", options->order.plan.torque,
-                   "share of the motors' torque limits that is used")
+                   "share of the motors' torque limits that the motion uses")
       ->check(CLI::Range(0.05, 1.0));
   auto* load = command
                    ->add_option("--load", options->order.load,

@@ -43,7 +43,7 @@ void LiveOptions::add(CLI::App& command) {
           "lists it; default: the device in use")
       ->type_name("[ID]")
       ->expected(0, 1);
-  command.add_flag("--yes", yes, "with --live: begin without asking");
+  command.add_flag("--yes", yes, "with --live: begin without a question");
 }
 
 void choose_device(const std::string& id, DeviceHub& hub, const std::string& otherwise) {

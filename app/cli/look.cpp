@@ -72,9 +72,9 @@ struct LookEnd {
 
 void announce(const std::string& name, double seconds) {
   fmt::print(stderr,
-             "limpid: {} is read for {:.3g} s and gets no force: it never pushes. Move each joint "
-             "slowly to both of its ends, hold still for a second, press its buttons; Ctrl-C ends "
-             "it.\n",
+             "limpid: {} is read for {:.3g} s and gets no force: the device never pushes. Move "
+             "each joint slowly to both of its ends, hold the device still for a second, press its "
+             "buttons; Ctrl-C ends the reading.\n",
              name, seconds);
 }
 
@@ -157,8 +157,8 @@ Command declare_look(CLI::App& devices) {
   command->footer(
       "Force is off and cannot be armed: no torque is sent to the device. The device's axes need "
       "no check before.\nThe arm is the one that the device reports, or that was identified or "
-      "chosen for the device; otherwise a built-in arm\nwith the same number of joints. Send the "
-      "session to Limpid's authors if they do not know your device.");
+      "chosen for the device; otherwise a\nbuilt-in arm with the same number of joints. Send the "
+      "session to Limpid's authors if they do not know your\ndevice.");
   return [options] { return run_look(*options); };
 }
 

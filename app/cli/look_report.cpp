@@ -89,7 +89,7 @@ std::string causes_text(const DeviceSeen& seen) {
   for (std::size_t i = 1; i < seen.no_force.size(); ++i) {
     if (seen.no_force[i] <= 0) continue;
     const std::string words = device_words({.no_force = static_cast<NoForce>(i)});
-    text += look_line("force of its own", fmt::format("{:.2f} s: {}", seen.no_force[i], words));
+    text += look_line("device's force off", fmt::format("{:.2f} s: {}", seen.no_force[i], words));
   }
   return text;
 }
@@ -100,10 +100,11 @@ std::string state_text(const DeviceSeen& seen) {
   };
   const std::vector<int> buttons = pressed(seen);
   std::string text =
-      look_line("buttons", buttons.empty() ? "none was pressed"
+      look_line("buttons", buttons.empty() ? "no button was pressed"
                                            : fmt::format("pressed: {}", fmt::join(buttons, ", "))) +
-      look_line("hand", for_some_time(seen.without_hand, "on it all the time, or it has no switch",
-                                      "none on its switch")) +
+      look_line("hand", for_some_time(seen.without_hand,
+                                      "on the switch all the time, or the device has no switch",
+                                      "no hand on the switch")) +
       look_line("calibration", for_some_time(seen.uncalibrated, "no complaint", "not calibrated")) +
       look_line("fault", for_some_time(seen.fault, "none", "reported")) + causes_text(seen);
   if (seen.warmth > 0) {

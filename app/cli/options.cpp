@@ -273,8 +273,8 @@ RunPlan make_plan(const InputOptions& options) {
   if (is_session(options.hand)) {
     if (options.readings) {
       throw UsageError(
-          "--readings: a recorded session has settings of its own; --set device.encoder_step and "
-          "device.delay change them");
+          "--readings: not together with a recorded session, which has its own settings; change "
+          "the settings with --set device.encoder_step and --set device.delay");
     }
     plan = plan_from_session(options);
   } else {

@@ -65,11 +65,13 @@ int run_live(const LiveRunOptions& options) {
   RunWatch watch(plan.arm, plan.layout(), plan.parameters);
   const double seconds = options.input.duration.value_or(kLiveSeconds);
   if (options.measure_grip && seconds < grip_run_duration()) refuse_short_grip();
-  LiveTask task{fmt::format("Take hold of {}: {:.3g} s, as you like.", plan.arm.name, seconds),
-                seconds, options.record, options.force};
+  LiveTask task{
+      fmt::format("Take hold of {} and move it for {:.3g} s, as you like.", plan.arm.name, seconds),
+      seconds, options.record, options.force};
   if (options.measure_grip) {
-    task.instruction = fmt::format("Hold {} still, away from walls, as you will use it: {:.3g} s.",
-                                   plan.arm.name, seconds);
+    task.instruction = fmt::format(
+        "Hold {} still, away from walls, with the grip that you will use, for {:.3g} s.",
+        plan.arm.name, seconds);
     task.measure_grip = true;
   }
   GripRecord grip(plan.layout(), plan.parameters.tick);
@@ -111,7 +113,7 @@ void finish(Recorder& recorder) {
     recorder.finish();
   } catch (const FileError& e) {
     throw std::runtime_error(
-        fmt::format("{}; what was recorded up to there is in {}.part (limpid recover)", e.what(),
+        fmt::format("{}; the recording up to that moment is in {}.part (limpid recover)", e.what(),
                     recorder.out().string()));
   }
 }
@@ -376,14 +378,14 @@ int run(const RunOptions& options) {
 }  // namespace
 
 Command declare_run(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("run", "runs the same loop without a window, as fast as possible");
+  auto* command = app.add_subcommand(
+      "run", "runs the window's control loop without a window, as fast as possible");
   auto options = std::make_shared<RunOptions>();
   command->add_option("--record", options->record, "write every tick to this session file")
       ->type_name("OUT.h5");
   command
       ->add_option("--picture", options->picture,
-                   "draw the moment of the strongest contact into this file")
+                   "draw a picture of the strongest contact into this file")
       ->type_name("OUT.png");
   command->add_flag("--force", options->force, "replace OUT.h5 and OUT.png if they exist");
   command->add_flag("--json", options->json,

@@ -217,11 +217,11 @@ Command declare_sweep(CLI::App& app) {
   auto* command =
       app.add_subcommand("sweep", "runs all combinations of a plan's values and writes one table");
   auto options = std::make_shared<SweepOptions>();
-  command->add_option("PLAN.toml", options->plan, "what is varied and what is measured")
+  command->add_option("PLAN.toml", options->plan, "the plan: what is varied and what is measured")
       ->transform(or_shipped({"sweeps"}), "", "")
       ->required()
       ->type_name("");
-  command->add_option("--out", options->out, "the folder for its results")
+  command->add_option("--out", options->out, "the folder for the results")
       ->required()
       ->type_name("DIR");
   command->add_option("--threads", options->threads, "default: one per core; one under mpirun")
@@ -230,7 +230,7 @@ Command declare_sweep(CLI::App& app) {
   auto* shard = command->add_option("--shard", options->shard, "run only the I-th of N parts")
                     ->type_name("I/N");
   auto* gather = command->add_flag("--gather", options->gather,
-                                   "run nothing, only put together the results so far");
+                                   "run nothing; only collect the existing results");
   auto* mpi = command->add_flag("--mpi", options->mpi, "run the part of this rank, under mpirun");
   auto* slurm = command->add_flag("--slurm", options->slurm, "run as an array job of Slurm");
   for (auto* one : {shard, gather, mpi, slurm}) {
@@ -252,14 +252,15 @@ Command declare_sweep(CLI::App& app) {
       ->needs(slurm);
   command
       ->add_option("--open", options->open,
-                   "runs that point again, records it in DIR/points and plays it")
+                   "run this point again, record the run in DIR/points and play the recording")
       ->type_name("POINT");
   command->add_flag("--csv", options->csv, "write DIR/table.csv as well");
   command->add_flag("--allow-xacro", options->xacro,
                     "expand arms in xacro that the plan names: this runs code in them");
   command->footer(
-      "How to write a plan: assets/sweeps/README.md. Writes DIR/table.h5, and its parts while it\n"
-      "runs. Called again it goes on where it was stopped, or killed.\n\n" +
+      "How to write a plan: assets/sweeps/README.md. The command writes DIR/table.h5, and parts of "
+      "the table while\nthe sweep runs. Called again, the command continues where the sweep was "
+      "stopped or killed.\n\n" +
       measure_help());
   return [options] { return sweep(*options); };
 }

@@ -100,7 +100,7 @@ Finding room() {
           "disk",
           left < kTooLittle ? State::broken : State::better,
           found,
-          "recordings and videos soon end",
+          "recordings and videos will soon stop, as the disk is nearly full",
           "sudo apt clean; du -xh ~ | sort -h | tail"};
 }
 

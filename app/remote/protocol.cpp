@@ -71,8 +71,8 @@ std::string names_of_verbs() {
 json parse(std::string_view line) {
   const auto shallow = [](int depth, json::parse_event_t, json&) {
     if (depth <= kDeepest) return true;
-    throw RemoteError(
-        fmt::format("a line has lists and objects at most {} deep; this one has more", kDeepest));
+    throw RemoteError(fmt::format(
+        "a line has lists and objects at most {} deep; this line has deeper ones", kDeepest));
   };
   try {
     return json::parse(line.begin(), line.end(), shallow);

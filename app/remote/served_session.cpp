@@ -162,7 +162,8 @@ Answer ServedSession::open(const Keys& keys) {
   if (loop().device_in_place() &&
       (!asked.arm.empty() || !asked.session.empty() || !asked.hand.empty())) {
     throw RemoteError(
-        "open: a real device is in the arm's place, and a person's hand leads it; allowed: scene");
+        "open: a person's hand leads a real device, so arm, session and hand cannot be opened; "
+        "allowed: scene");
   }
   if (asked.scene.empty() && asked.arm.empty() && asked.session.empty() && asked.hand.empty()) {
     throw RemoteError("open: nothing to open; allowed: scene, arm, session, hand");

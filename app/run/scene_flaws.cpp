@@ -38,8 +38,8 @@ void warn_of_friction(const Object& object, std::vector<std::string>& warnings) 
   const Material& m = object.material;
   if (m.friction_kinetic <= m.friction_static) return;
   warnings.push_back(
-      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: what slides "
-                  "would be held more than what sticks",
+      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: a sliding tip "
+                  "would be held more than a sticking tip",
                   object.name, m.friction_kinetic, m.friction_static));
 }
 

@@ -24,16 +24,16 @@ void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
   if (joint.friction > 0 && joint.friction >= joint.effort) {
     const char* const of_force = slides(joint) ? "N" : "N m";
     places.warn_joint(joint.name,
-                      fmt::format("friction {:.3g} {}, effort {:.3g} {}: its motor cannot overcome "
-                                  "its friction, and no force of it is felt; lower the friction in "
-                                  "<dynamics> or raise the effort in <limit>",
+                      fmt::format("friction {:.3g} {}, effort {:.3g} {}: the motor cannot overcome "
+                                  "the joint's friction, so no force of this motor is felt; lower "
+                                  "the friction in <dynamics> or raise the effort in <limit>",
                                   joint.friction / unit, of_force, joint.effort / unit, of_force));
   }
   if (joint.upper - joint.lower < kLeastRange) {
     places.warn_joint(
         joint.name,
-        fmt::format("limits from {:.6g} to {:.6g} {}: it has hardly any room to move; "
-                    "widen its <limit>, or make it a fixed joint",
+        fmt::format("limits from {:.6g} to {:.6g} {}: the joint can hardly move; widen the joint's "
+                    "<limit>, or make the joint a fixed joint",
                     unit * joint.lower, unit * joint.upper, slides(joint) ? "m" : "rad"));
   }
 }

@@ -80,10 +80,11 @@ class Search {
     }
     try {
       places_.refuse_link(
-          link.name, fmt::format("the arm branches here, to '{}' and '{}'; name the tip with "
-                                 "--tip LINK, and the other branches are held still; its tips, "
-                                 "with the joints to each: {}",
-                                 one, other, all));
+          link.name,
+          fmt::format(
+              "the arm branches here, to '{}' and '{}'; name the tip with --tip LINK, and the "
+              "other branches are held still; tips, with the number of joints to each tip: {}",
+              one, other, all));
     } catch (const FileError& error) {
       throw TipsToChoose(error, places_.where, std::move(tips));
     }

@@ -122,7 +122,7 @@ void check_body(const Link& link, const UrdfPlaces& places) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
   const double largest = link.inertia.cwiseAbs().maxCoeff();
   if (solver.eigenvalues().minCoeff() < -1e-9 * largest) {
-    places.refuse_link(link.name, "inertia is not that of any body (a negative moment)");
+    places.refuse_link(link.name, "the inertia is impossible (a negative moment)");
   }
 }
 

@@ -137,9 +137,10 @@ fs::path claim_folder(std::span<const fs::path> among) {
   }
   std::string names;
   for (const fs::path& folder : among) names += (names.empty() ? "" : " or ") + folder.string();
-  throw HidError(fmt::format(
-      "no folder says which program uses a device; needed: {}, in which every user may make files",
-      names));
+  throw HidError(
+      fmt::format("no folder to note which program uses a device; needed: {}, in which every user "
+                  "may make files",
+                  names));
 }
 
 // Has the same places for all users, whatever their environment says.

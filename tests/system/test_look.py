@@ -140,7 +140,7 @@ class Look(unittest.TestCase):
                 self.assertGreater(found[key], 1.5, key)
             self.assertGreater(found["no_force_s"][1], 1.5)
             text = limpid("devices", "look", "socket:played", "--record", self.out, "--force", "--seconds", "1").out
-            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "none on its switch",
+            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "no hand on the switch",
                          "25 % of the hottest", "turret [rad]", "not checked yet", "got no force"):
                 self.assertIn(said, text)
 
@@ -179,7 +179,7 @@ class Look(unittest.TestCase):
         self.assertEqual(result.status, 2)
         self.assertIn("--record", result.err)
         result = limpid("devices", "socket:played", "look", "--record", self.out)
-        self.assertIn("stand behind it", result.err)
+        self.assertIn("write device and options after", result.err)
 
     def test_ctrl_c_leaves_a_whole_session(self) -> None:
         with Played("played") as device:

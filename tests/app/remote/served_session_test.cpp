@@ -243,7 +243,7 @@ TEST_F(Served, LeavesTheForceOfARealDeviceToItsSecondButton) {
   EXPECT_TRUE(until(armed));
   ask({{"do", "cut"}});
   EXPECT_TRUE(until([&] { return !armed(); }));
-  EXPECT_THAT(refused({{"do", "open"}, {"arm", "omni.urdf"}}), HasSubstr("a real device is in"));
+  EXPECT_THAT(refused({{"do", "open"}, {"arm", "omni.urdf"}}), HasSubstr("leads a real device"));
   EXPECT_THAT(refused({{"do", "twin"}}), HasSubstr("one hand cannot hold two real devices"));
 }
 

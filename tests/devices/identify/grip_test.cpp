@@ -300,7 +300,7 @@ TEST(Grip, SaysWhichOfItsValuesIsNotKnown) {
   of.p.encoder_step = kOmniStep;
   const Grip grip = of.run();
   EXPECT_TRUE(grip.measured);
-  EXPECT_THAT(grip.unknown, testing::StartsWith("the bound of its damping is wide"));
+  EXPECT_THAT(grip.unknown, testing::StartsWith("the bounds of the hand's damping are wide"));
 }
 
 TEST(Grip, OfHandsThatMoveByThemselvesIsRightOrNotKnown) {
