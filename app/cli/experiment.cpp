@@ -149,12 +149,11 @@ std::string experiment_help() {
     text += fmt::format("  {:<14} {}\n", e.name, e.about);
   }
   return text +
-         "\n"
-         "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
-         "the trials. Called again with the same DIR it goes on where it was stopped; trials of\n"
-         "another version of the program, or of other inputs, are run again.\n"
-         "Arm, scene and settings are the experiment's own; options for them go with --live.\n"
-         "Exit status 1: a check failed, or it was stopped.";
+         "\nWrites DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\nthe "
+         "trials. Called again with the same DIR, the command continues where it was "
+         "stopped;\ntrials of another version of the program, or of other inputs, are run "
+         "again.\nEach experiment has its own arm, scene and settings; options for these need "
+         "--live.\nExit status 1: a check failed, or the command was stopped.";
 }
 
 }  // namespace

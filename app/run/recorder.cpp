@@ -28,7 +28,7 @@ const std::filesystem::path& of_as_many_lanes(const std::filesystem::path& out,
                                               const SessionInfo& info, std::size_t lanes) {
   if (info.lanes() == lanes && lanes <= kMostLanes) return out;
   throw std::invalid_argument(
-      fmt::format("{}: {} runs, and settings of {}", out.string(), info.lanes(), lanes));
+      fmt::format("{}: {} runs, but settings of {} runs", out.string(), info.lanes(), lanes));
 }
 
 std::size_t row_size(const SessionInfo& info) {
@@ -197,7 +197,7 @@ void Recorder::write_changes() {
 
 std::string lock_note(const Recorder& recorder) {
   if (recorder.is_locked()) return {};
-  return fmt::format("{}: its file system has no locks; no other program may record into it",
+  return fmt::format("{}: the file system has no locks; no other program may record into this file",
                      recorder.out().string());
 }
 

@@ -273,7 +273,7 @@ TEST_F(SceneFields, SayWhatTheyAre) {
     EXPECT_THAT(words(), HasSubstr(std::string(label).substr(0, 15)));
   }
   EXPECT_EQ(hint("A scene"), "What it is for.");
-  EXPECT_THAT(hint("Mass"), HasSubstr("Up to 100 kg."));
+  EXPECT_THAT(hint("Mass"), HasSubstr("Mass of the object, up to 100 kg."));
 }
 
 TEST_F(SceneFields, OfWhatMovesBeginWithTheMassOfWood) {
