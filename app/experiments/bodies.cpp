@@ -76,10 +76,10 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
       off = worse(off, (Vec3(pose[0], pose[1], pose[2]) - bench.world().center(0)).norm());
       bench.step();
     }
-    checks.push_back(at_most(
-        fmt::format("ball beside an arm in the ordinary loop, off the one by itself, {} [m]",
-                    tick_text(kBodyTicks[i])),
-        off, 1e-9));
+    checks.push_back(at_most(fmt::format("ball beside an arm in the ordinary loop: distance from "
+                                         "the ball without an arm, {} [m]",
+                                         tick_text(kBodyTicks[i])),
+                             off, 1e-9));
   }
   return checks;
 }

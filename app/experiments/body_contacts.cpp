@@ -54,7 +54,7 @@ BodyFindings slides(double tick) {
     BodyBench bench(block_on(slope, friction), tick);
     found.claims.push_back(
         {.group = "slide",
-         .what = fmt::format("slides at {} degrees, friction {}, {}", degrees, friction,
+         .what = fmt::format("block slides at {} degrees, friction {}, {}", degrees, friction,
                              tick_text(tick)),
          .unit = "m/s^2",
          .expected = sliding(slope, friction),
@@ -69,7 +69,7 @@ BodyFindings slides(double tick) {
   const Vec3 before = bench.world().center(0);
   bench.run(5);
   found.claims.push_back({.group = "slide",
-                          .what = "stays at 0.99 of the friction angle, " + tick_text(tick),
+                          .what = "block stays at 0.99 of the friction angle, " + tick_text(tick),
                           .unit = "mm",
                           .expected = 0,
                           .measured = 1e3 * (bench.world().center(0) - before).norm(),
@@ -271,7 +271,7 @@ BodyFindings tips_over(double tick) {
   const double degree = radians(1);
   return {
       {{.group = "tip",
-        .what = "slope from which on a block tips over, " + tick_text(tick),
+        .what = "smallest slope at which a block tips over, " + tick_text(tick),
         .unit = "degrees",
         .expected = tipping(size.x(), size.z()) / degree,
         .measured = (stands + falls) / 2 / degree,
@@ -362,7 +362,7 @@ BodyFindings falls_slowly(double tick) {
   BodyBench bench(scene, tick);
   bench.run(10);
   return {{{.group = "rest",
-            .what = "falls under a ten thousandth of weight, " + tick_text(tick),
+            .what = "ball falls under a ten thousandth of the usual gravity, " + tick_text(tick),
             .unit = "mm",
             .expected = 50,
             .measured = -1e3 * bench.world().center(0).z(),

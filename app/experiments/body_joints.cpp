@@ -183,7 +183,7 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
       "A slab of 30 x 50 x 10 mm and 50 g, spun about its middle axis with a "
       "hundredth about both others, no weight";
   found.claims.push_back({.group = "spin",
-                          .what = which + ": its fifth turning over",
+                          .what = which + ": time of the fifth flip",
                           .unit = "s",
                           .expected = expected,
                           .measured = measured,
@@ -198,7 +198,7 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
                           .conditions = of + "."});
   found.claims.push_back(
       {.group = "spin",
-       .what = which + ": angular momentum after ten seconds, off by",
+       .what = which + ": angular momentum after ten seconds",
        .unit = "of it",
        .expected = 0,
        .measured = (bench.angular_momentum(0, moments) - momentum).norm() / momentum.norm(),

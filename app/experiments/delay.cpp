@@ -280,17 +280,20 @@ void judge(const LateTable& table, std::vector<Check>& checks) {
     const std::string where = fmt::format("delay of {} to {} ms, {}: ", known ? 0 : 1,
                                           DelayPlan::kMost, known ? "known" : "not known");
     using P = DelayPlan;
+    checks.push_back(at_most(where + "largest energy given to the human in free motion [J]",
+                             worst.free, P::kGiven));
     checks.push_back(
-        at_most(where + "given to the human in free motion [J]", worst.free, P::kGiven));
-    checks.push_back(at_most(where + fmt::format("inertia felt to {} Hz off what analyze says, by "
-                                                 "the larger of eta and 1",
-                                                 P::kInertiaTo),
-                             std::abs(worst.inertia), known ? P::kOffKnown : P::kOff));
+        at_most(where + fmt::format("deviation of the inertia felt up to {} Hz from that of "
+                                    "analyze, divided by the larger of eta and 1",
+                                    P::kInertiaTo),
+                std::abs(worst.inertia), known ? P::kOffKnown : P::kOff));
     checks.push_back(
         at_least(where + "softest wall that analyze names [N/m]", worst.named, P::kSoftestNamed));
-    checks.push_back(at_most(where + "given to the human at that wall [J]", worst.wall, P::kGiven));
-    checks.push_back(at_most(where + "stiffness felt there off that set, of it",
-                             std::abs(worst.felt - 1), P::kOff));
+    checks.push_back(at_most(where + "largest energy given to the human at that wall [J]",
+                             worst.wall, P::kGiven));
+    checks.push_back(
+        at_most(where + "relative deviation of the stiffness felt at that wall from the set one",
+                std::abs(worst.felt - 1), P::kOff));
   }
 }
 

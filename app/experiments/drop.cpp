@@ -136,13 +136,16 @@ Outcome drop(TrialRunner& lab) {
     }
     outcome.checks.push_back(at_least(which + "hardest force on the tip [N]", hardest, 1));
     outcome.checks.push_back(
-        at_least(which + "the ledger's lowest less its start [J]", v.reserve, -1e-4));
+        at_least(which + "lowest reserve of the energy account, minus the reserve at the start [J]",
+                 v.reserve, -1e-4));
     outcome.checks.push_back(
-        at_least(which + "least share of the contact's force let through", v.governor, 1));
+        at_least(which + "smallest share of the contact force that the governor let through",
+                 v.governor, 1));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-4));
     outcome.checks.push_back(
-        at_most(which + "given to the human beyond what the block gave [J]", v.beyond, 5e-5));
-    outcome.checks.push_back(at_most(which + "gained by the block [J]", v.gain, 1e-6));
+        at_most(which + "largest energy given to the human beyond what the block gave [J]",
+                v.beyond, 5e-5));
+    outcome.checks.push_back(at_most(which + "energy gained by the block [J]", v.gain, 1e-6));
   }
   return outcome;
 }

@@ -277,8 +277,10 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
   checks.push_back(
       at_least(where + "shortest time in which all walls were touched [s]", touched, 0.1));
   checks.push_back(at_most(where + "highest E_c [J]", energy, 5e-5));
-  checks.push_back(at_most(where + "most that friction gave in a tick [J]", given, 1e-7));
-  checks.push_back(at_most(where + "friction beyond its cone, of the normal force", beyond, 1e-6));
+  checks.push_back(at_most(where + "largest energy that friction gave in a tick [J]", given, 1e-7));
+  checks.push_back(
+      at_most(where + "friction force beyond the friction cone, divided by the normal force",
+              beyond, 1e-6));
   return panel;
 }
 
@@ -352,16 +354,20 @@ Outcome friction(TrialRunner& lab) {
   double given = 0;
   for (const Dragged& d : all) given = worse(given, d.verdict.given);
   outcome.checks = {
-      at_least("plane: ticks in which it surely stuck", rough.stuck, 100),
-      at_least("plane: ticks in which it surely slipped", rough.slid, 100),
-      at_most("plane: tip moved in a tick, besides the spring of friction, while it stuck [m]",
+      at_least("plane: ticks in which the tip surely stuck", rough.stuck, 100),
+      at_least("plane: ticks in which the tip surely slipped", rough.slid, 100),
+      at_most("plane: largest motion of the stuck tip in a tick, beyond that of the friction's "
+              "spring [m]",
               rough.crept, 1e-9),
-      at_least("plane: highest tangential over normal force, of the static coefficient",
-               rough.broke_away / kStatic, 0.99),
-      at_most("plane: friction beyond the static cone, of the normal force", rough.beyond, 1e-6),
-      at_most("plane: tangential force while slipping off the kinetic one, of it",
+      at_least(
+          "plane: highest ratio of tangential to normal force, divided by the static coefficient",
+          rough.broke_away / kStatic, 0.99),
+      at_most("plane: friction force beyond the static cone, divided by the normal force",
+              rough.beyond, 1e-6),
+      at_most("plane: relative deviation of the tangential force from the kinetic one while the "
+              "tip slips",
               rough.off_kinetic, 0.01),
-      at_most("plane: most that friction gave in a tick [J]", given, 1e-7)};
+      at_most("plane: largest energy that friction gave in a tick [J]", given, 1e-7)};
   outcome.figure.panels = {ratio_panel(all), stick_panel(drag(all[0].what.walls), all[0]),
                            taken_panel(all)};
   outcome.figure.panels.push_back(

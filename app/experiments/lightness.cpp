@@ -252,17 +252,18 @@ void judge_predictive(const std::vector<LawAtEta>& laws, std::vector<Check>& che
       if (m.f <= 5) off = worse(off, std::abs(m.inertia / law.eta - 1));
     }
     checks.push_back(at_most(
-        fmt::format("predictive, eta = {}: inertia felt off eta, 0.5 to 5 Hz, of it", law.eta), off,
-        0.1));
+        fmt::format(
+            "predictive, eta = {}: relative deviation of the inertia felt from eta, 0.5 to 5 Hz",
+            law.eta),
+        off, 0.1));
   }
   for (const LawAtEta& law : laws) {
     if (law.eta >= 1) continue;
     const FeltMotion m = law.at(kSlow);
-    checks.push_back(
-        at_least(fmt::format("predictive, eta = {}: damping felt at 0.5 Hz over the least of any "
-                             "passive law",
-                             law.eta),
-                 m.damping / least_damping(law.eta, m.mass), 1));
+    checks.push_back(at_least(fmt::format("predictive, eta = {}: damping felt at 0.5 Hz, divided "
+                                          "by the least that a passive law can have",
+                                          law.eta),
+                              m.damping / least_damping(law.eta, m.mass), 1));
   }
 }
 
@@ -272,11 +273,10 @@ void judge_proposed(const std::vector<LawAtEta>& laws, std::vector<Check>& check
   for (const LawAtEta& law : laws) {
     if (law.eta == 1) continue;
     const double damping = law.at(kSlow).damping / one->at(kSlow).damping;
-    checks.push_back(at_most(
-        fmt::format(
-            "proposed, eta = {}: damping felt at 0.5 Hz, relative to eta = 1, off eta, of it",
-            law.eta),
-        std::abs(damping / law.eta - 1), 0.05));
+    checks.push_back(at_most(fmt::format("proposed, eta = {}: relative deviation from eta of the "
+                                         "damping felt at 0.5 Hz over that at eta = 1",
+                                         law.eta),
+                             std::abs(damping / law.eta - 1), 0.05));
   }
   for (const LawAtEta& law : laws) {
     if (law.eta <= 1) continue;

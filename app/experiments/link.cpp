@@ -241,7 +241,8 @@ std::vector<Check> judge(TrialRunner& lab, const std::vector<LinkCurve>& laws,
   const double foretold =
       longest(standard, [&](std::size_t k) { return theory.standard(standard.delays()[k]); });
   return {
-      at_most("tank, delays to 100 ms: highest E_c [J]", highest_of(laws[kTank].energy), S::kGiven),
+      at_most("tank, delays up to 100 ms: highest E_c [J]", highest_of(laws[kTank].energy),
+              S::kGiven),
       at_most(
           fmt::format("tank, {} links with delay, jitter and loss: highest E_c [J]", S::kRandom),
           through_random_links(lab), S::kGiven),
@@ -249,12 +250,13 @@ std::vector<Check> judge(TrialRunner& lab, const std::vector<LinkCurve>& laws,
               WellRendered::kEnergy),
       at_least("standard, gains by condition (3): stiffest wall [N/m]",
                least_of(laws[kFitted], 100, [](int) { return 1.0; }), kStiffest),
-      at_least("tank, delays to 50 ms: stiffest wall [N/m]",
+      at_least("tank, delays up to 50 ms: stiffest wall [N/m]",
                least_of(laws[kTank], 50, [](int) { return 1.0; }), kStiffest),
-      at_least("standard: longest delay at which a tap comes to rest, divided by theory's",
+      at_least("standard: longest delay at which a tap comes to rest, divided by that of theory",
                found / foretold, 0.75),
-      at_most("the same, at most", found / foretold, 1.25),
-      at_least("proposed, delays to 2 ms: stiffest wall, divided by theory's",
+      at_most("standard: longest delay at which a tap comes to rest, divided by that of theory",
+              found / foretold, 1.25),
+      at_least("proposed, delays up to 2 ms: stiffest wall, divided by that of theory",
                least_of(laws[kProposed], 2, [&](int d) { return theory.proposed(d); }), 1),
   };
 }

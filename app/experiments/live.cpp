@@ -209,10 +209,11 @@ Outcome live_coordination(LiveLaboratory& lab) {
   figure.panels = {force, error, scatter};
   const double standard = contact_slope(runs[0].session);
   outcome.checks.push_back(
-      at_most("slope of the error, standard coupling, over 1/k_vc, off 1 by at most",
+      at_most("standard coupling: deviation from 1 of the error's slope divided by 1/k_vc",
               std::abs(standard * lab.parameters.k_vc - 1), 0.2));
-  outcome.checks.push_back(at_most("slope of the error, proposed over standard coupling",
-                                   contact_slope(runs[1].session) / standard, 0.2));
+  outcome.checks.push_back(
+      at_most("slope of the error, proposed coupling divided by standard coupling",
+              contact_slope(runs[1].session) / standard, 0.2));
   return outcome;
 }
 
@@ -254,11 +255,13 @@ Outcome live_inertia(LiveLaboratory& lab) {
       continue;
     }
     outcome.checks.push_back(at_most(
-        fmt::format("inertia felt at eta = {:.2f}, relative to eta = 1, off (24) by", p.eta),
+        fmt::format("inertia felt at eta = {:.2f}, divided by that at eta = 1: deviation from (24)",
+                    p.eta),
         std::abs(mass - promised_inertia(p, b)), kOff));
-    outcome.checks.push_back(
-        at_most(fmt::format("damping felt at eta = {:.2f}, relative to eta = 1, off eta by", p.eta),
-                std::abs(drag - p.eta), kOff));
+    outcome.checks.push_back(at_most(
+        fmt::format("damping felt at eta = {:.2f}, divided by that at eta = 1: deviation from eta",
+                    p.eta),
+        std::abs(drag - p.eta), kOff));
   }
   Series of_inertia{"", kProposedInk, Series::Style::dashed, {}};
   Series of_damping{"", kHandInk, Series::Style::dashed, {}};
@@ -338,7 +341,7 @@ Outcome live_zwidth(LiveLaboratory& lab) {
   }
   outcome.figure.panels = {panel};
   outcome.checks = {at_least("stiffest wall, proposed coupling [N/m]", stiffest[0], kSoft),
-                    at_least("stiffest wall, predictive coupling, over that of the proposed one",
+                    at_least("stiffest wall, predictive coupling divided by proposed coupling",
                              stiffest[1] / std::max(kSoft, stiffest[0]), 1)};
   return outcome;
 }

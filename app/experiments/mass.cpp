@@ -301,9 +301,10 @@ void add_staggered(const ArmDescription& arm, double damping, const char* ink, F
   panel.series.insert(panel.series.end(),
                       {line, curve, {"", ink, Series::Style::points, curve.points}});
   if (damping == 0) return;
-  checks.push_back(at_most(fmt::format("staggered, {} N s/m: least mass off {}, to {} N/m, of it",
-                                       damping, law, kStillDevice),
-                           off, 0.1));
+  checks.push_back(at_most(
+      fmt::format("staggered, {} N s/m: relative deviation of the least mass from {}, up to {} N/m",
+                  damping, law, kStillDevice),
+      off, 0.1));
 }
 
 FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
@@ -327,10 +328,11 @@ FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
   }
   panel.series.insert(panel.series.end(),
                       {ours, {"", kPredictiveInk, Series::Style::points, ours.points}});
-  checks.push_back(at_least(
-      fmt::format("predictive: stiffnesses of 100 to 20000 N/m, of {}, at which {} g are held",
-                  good.size(), 1e3 * kLightest),
-      static_cast<double>(ours.points.size()), static_cast<double>(good.size())));
+  checks.push_back(at_least(fmt::format("predictive: number of stiffnesses from 100 to 20000 N/m, "
+                                        "out of {}, at which {} g are held",
+                                        good.size(), 1e3 * kLightest),
+                            static_cast<double>(ours.points.size()),
+                            static_cast<double>(good.size())));
   return panel;
 }
 
@@ -344,9 +346,10 @@ Outcome mass(TrialRunner& lab) {
   for (const double mass : kHeldMasses) outcome.figure.panels.push_back(felt_panel(all, mass));
   for (const FeltBody& one : all) {
     if (one.way.law != CouplingKind::predictive) continue;
-    outcome.checks.push_back(at_most(fmt::format("{}: felt of {} g off m / (1 - m w^2 / K), of it",
-                                                 one.way.label, 1e3 * one.mass),
-                                     one.off(), one.way.eta == 1 ? 0.02 : 0.04));
+    outcome.checks.push_back(at_most(
+        fmt::format("{}: relative deviation of the mass felt of {} g from m / (1 - m w^2 / K)",
+                    one.way.label, 1e3 * one.mass),
+        one.off(), one.way.eta == 1 ? 0.02 : 0.04));
   }
   outcome.figure.panels.push_back(least_panel(lab, outcome.checks));
   outcome.figure.caption = fmt::format(

@@ -161,7 +161,8 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   panel.series = {ideal, gain_line, phase_line, by_gain, by_phase};
   outcome.figure.panels.push_back(panel);
   outcome.checks.push_back(at_most(
-      fmt::format("-3 dB bandwidth off alpha / m where w_f T <= {}", kUnsampled), off_fast, 0.02));
+      fmt::format("deviation of the -3 dB bandwidth from alpha / m where w_f T <= {}", kUnsampled),
+      off_fast, 0.02));
   outcome.checks.push_back(
       at_most("-3 dB and -45 degree bandwidths: error against (17) in ticks, all gains and modes",
               off_sampled, 0.03));

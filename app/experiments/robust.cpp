@@ -322,9 +322,9 @@ void judge_promised(const Robustness& all, std::vector<Check>& checks) {
     const auto promised = [&](const RobustCase& c) {
       return (c.way == w || c.level == 0) && c.level <= way.promised && c.of_law().promises;
     };
-    checks.push_back(
-        at_most(fmt::format("{} to {}: most given [J]", way.title, level_text(way, way.promised)),
-                all.most_given(promised), kMayGive));
+    checks.push_back(at_most(
+        fmt::format("{} to {}: largest energy given [J]", way.title, level_text(way, way.promised)),
+        all.most_given(promised), kMayGive));
   }
 }
 

@@ -81,14 +81,16 @@ Cornered cornered(const Session& s, double limit) {
 
 void judge(const CornerSet& set, const Cornered& worst, int at_limit, std::vector<Check>& checks) {
   const std::string where = fmt::format("{} corners, {}: ", set.count, set.label);
-  checks.push_back(at_least(where + "in how many a motor met its limit", at_limit, set.count / 3));
+  checks.push_back(
+      at_least(where + "corners in which a motor met its limit", at_limit, set.count / 3));
   checks.push_back(at_most(where + "highest E_c [J]", worst.energy, kMostEnergy));
-  checks.push_back(at_most(where + "given to the human [J]", worst.port, kMostEnergy));
+  checks.push_back(
+      at_most(where + "largest energy given to the human [J]", worst.port, kMostEnergy));
   checks.push_back(at_most(where + "largest contact torque over the motors' limit", worst.torque,
                            set.most_torque));
   checks.push_back(
-      at_most(where + "farthest that the proxy goes in a tick [rad]", worst.jump, kMostJump));
-  checks.push_back(at_least(where + "least reserve [J]", worst.reserve, 0));
+      at_most(where + "longest way of the proxy in a tick [rad]", worst.jump, kMostJump));
+  checks.push_back(at_least(where + "lowest reserve of the energy account [J]", worst.reserve, 0));
 }
 
 constexpr double kLimit = 0.2;  // of every motor [N m]
@@ -317,19 +319,22 @@ Outcome saturation(TrialRunner& lab) {
     return run.rms(from, to, [&](std::size_t k) { return run.estimate_error(k); });
   };
   outcome.checks = {
-      at_most("anti-windup: rms error of the estimate while held, over the rms true torque",
+      at_most("anti-windup, while held: rms error of the estimate, divided by the rms true torque",
               error(with, kHeldFrom, kPullOut) / human(with), 0.02),
-      at_least("wound up: rms estimate while held over rms true torque, at least",
+      at_least("wound up, while held: rms estimate divided by the rms true torque",
                estimated(without) / human(without), 2),
-      at_most("wound up: estimate off the paper's d - (tau_c - tau_m), of the estimate",
+      at_most("wound up: deviation of the estimate from the paper's d - (tau_c - tau_m), divided "
+              "by the estimate",
               without.off_the_law(), 0.02),
-      at_least("pull-out: rms error of the estimate wound up over that with anti-windup, at least",
+      at_least("pull-out: rms error of the estimate without anti-windup, divided by that with "
+               "anti-windup",
                error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 3),
-      at_least("pull-out: largest pull of the hand wound up over that with anti-windup, at least",
+      at_least("pull-out: largest pull of the hand without anti-windup, divided by that with "
+               "anti-windup",
                without.largest_pull() / with.largest_pull(), 1.2),
-      at_least("pull-out: largest pull of the hand, proposed with anti-windup over predictive, at "
-               "least",
-               with.largest_pull() / predicted.largest_pull(), 1.2)};
+      at_least(
+          "pull-out: largest pull of the hand, proposed with anti-windup divided by predictive",
+          with.largest_pull() / predicted.largest_pull(), 1.2)};
   const Touch push = worst_push(lab);
   const std::string where = "predictive, pushed with 8 N, motors of 0.4 N m: ";
   outcome.checks.push_back(at_most(where + "highest E_c [J]", push.energy, 5e-5));

@@ -150,16 +150,18 @@ Outcome stack(TrialRunner& lab) {
                                      [&](auto k) { return s.at(k, Column::contact_force)[2]; }));
     const MovingVerdict v = judge_moving(results[i]);
     const std::string which = one.label + ": ";
-    outcome.checks.push_back(at_most(which + "pressed in off weight / (4 K_o) [m]", off, 2e-5));
-    outcome.checks.push_back(at_most(which + "gained by the blocks [J]", v.gain, 1e-6));
+    outcome.checks.push_back(
+        at_most(which + "deviation of a contact's depth from weight / (4 K_o) [m]", off, 2e-5));
+    outcome.checks.push_back(at_most(which + "energy gained by the blocks [J]", v.gain, 1e-6));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-5));
     outcome.checks.push_back(
-        at_most(which + "given to the human beyond what the blocks gave [J]", v.beyond, 5e-5));
+        at_most(which + "largest energy given to the human beyond what the blocks gave [J]",
+                v.beyond, 5e-5));
     outcome.checks.push_back(
         at_most(which + "ticks for which the proxy stood still", v.unsolved, 0));
     const double last = s.at(s.size() - 1, Column::contact_force)[2];
     outcome.checks.push_back(
-        at_most(which + "force at the end off that of all springs in a row, of it",
+        at_most(which + "relative deviation of the final force from that of all springs in series",
                 std::abs(last / one.force() - 1), 0.02));
   }
   outcome.figure.title = "Stacks with the tip on top";

@@ -255,16 +255,20 @@ Outcome switching(TrialRunner& lab) {
                            torque_panel(turns), apart_panel(turns)};
   outcome.checks = {
       at_least("contacts made with each stop, predictive", std::min(own.touched, stiff.touched), 7),
-      at_most("predictive: largest energy from nowhere in making and breaking contact [J]",
+      at_most("predictive: largest energy without a source when contact is made or broken [J]",
               worse(furthest(own.gain), furthest(stiff.gain)), 1e-9),
-      at_least("proposed: the same, at least [J]", furthest(papers.gain), 1e-6),
-      at_least("switching while pressing: laws that were handed over to, to the end", steps.arrived,
+      at_least("proposed: largest energy without a source when contact is made or broken [J]",
+               furthest(papers.gain), 1e-6),
+      at_least("switching while pressing: completed transitions to another law", steps.arrived,
                kOrder.size() - 1),
       at_most("switching while pressing: largest change of a motor's torque in a tick during the "
               "transition to the other law [N m]",
               steps.on_the_way, 0.0065),
-      at_most("switching while pressing: the same, once it is there [N m]", steps.there, 0.05),
-      at_most("switching while pressing: recorded energies off torques times motions [J]",
+      at_most("switching while pressing: largest change of a motor's torque in a tick after the "
+              "transition [N m]",
+              steps.there, 0.05),
+      at_most("switching while pressing: deviation of the recorded energies from torques times "
+              "motions [J]",
               books_off(turns), 1e-12)};
   return outcome;
 }

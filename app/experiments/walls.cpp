@@ -211,10 +211,12 @@ void judge(const std::vector<Felts>& felts, std::vector<Check>& checks) {
     checks.push_back(
         at_least(where + fmt::format("arms for which analyze names a wall, of {}", P::kArms), walls,
                  P::kNamed[q]));
+    checks.push_back(at_most(where + "relative deviation of the stiffness felt from the set one",
+                             std::abs(worst.felt - 1), P::kOff));
     checks.push_back(
-        at_most(where + "stiffness felt off that set, of it", std::abs(worst.felt - 1), P::kOff));
-    checks.push_back(at_most(where + "rms force above 20 Hz, of what is allowed", worst.rattle, 1));
-    checks.push_back(at_most(where + "given to the human [J]", worst.port, P::kGiven));
+        at_most(where + "rms force above 20 Hz, divided by what is allowed", worst.rattle, 1));
+    checks.push_back(
+        at_most(where + "largest energy given to the human [J]", worst.port, P::kGiven));
   }
 }
 

@@ -233,11 +233,12 @@ void judge_taps(TrialRunner& lab, std::vector<Check>& checks) {
     const Touch exact = worst_tap(lab, {.hand_mass = mass}),
                 fine = worst_tap(lab, {.encoder_step = kFine, .hand_mass = mass});
     checks.push_back(at_most(where + ", exact encoders: highest E_c [J]", exact.energy, 5e-5));
-    checks.push_back(at_most(where + ", exact encoders: stiffness felt off that set, of it",
-                             std::abs(exact.felt - 1), 0.01));
+    checks.push_back(at_most(
+        where + ", exact encoders: relative deviation of the stiffness felt from the set one",
+        std::abs(exact.felt - 1), 0.01));
     checks.push_back(at_most(where + ", exact encoders: chatter [m/s]", exact.chatter, quiet));
-    checks.push_back(
-        at_most(where + ", encoders of 1e-4 rad: given to the human [J]", fine.port, 5e-5));
+    checks.push_back(at_most(
+        where + ", encoders of 1e-4 rad: largest energy given to the human [J]", fine.port, 5e-5));
     checks.push_back(at_most(where + ", encoders of 1e-4 rad: highest E_c [J]", fine.energy, 4e-3));
     checks.push_back(at_most(where + ", encoders of 1e-4 rad: chatter [m/s]", fine.chatter, 0.02));
   }
@@ -245,8 +246,8 @@ void judge_taps(TrialRunner& lab, std::vector<Check>& checks) {
   const std::string where =
       fmt::format("5000 N/m, eta 0.3 to 1, the arm's own motors, pressed with {} N: ", kOwnPress);
   checks.push_back(at_most(where + "highest E_c [J]", own.energy, 5e-5));
-  checks.push_back(
-      at_most(where + "stiffness felt off that set, of it", std::abs(own.felt - 1), 0.01));
+  checks.push_back(at_most(where + "relative deviation of the stiffness felt from the set one",
+                           std::abs(own.felt - 1), 0.01));
   checks.push_back(at_most(where + "chatter [m/s]", own.chatter, 1e-4));
 }
 

@@ -39,7 +39,7 @@ class Characterize(SystemTest):
         self.assertEqual((numbers["delay"]["value"], numbers["delay"]["assumed"]), (1, False))
         self.assertTrue(numbers["encoder_step"]["assumed"])
         self.assertIn("ASSUMED: exact", result.out)
-        self.assertIn("----  direct: stiffest wall by (b_d + b_h)/(T/2 + delay)", result.out)
+        self.assertIn("----  direct: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)", result.out)
         for end in ("report.html", "characterize.svg", "characterize.csv"):
             self.assertTrue((out / end).exists(), end)
 
