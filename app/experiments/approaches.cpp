@@ -321,17 +321,17 @@ Outcome approaches(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "Stability approaches compared";
   outcome.figure.caption = fmt::format(
-      "Taps at {} m/s, pressed with {} N or half of what the motors bear, held; grips of 300 and "
-      "3,000 N/m with 2 N s/m and without damping. Gains fitted to each arm and its delay, eta 1, "
+      "The tip taps a wall at {} m/s. Then the hand presses with {} N or half of what the motors "
+      "bear, and holds. Grips are 300 and 3,000 N/m, with 2 N s/m and without damping. Gains "
+      "fitted to each arm and its delay, eta 1, "
       "tick "
       "1 ms. "
-      "Touch: encoders of 4.19e-4 rad, friction, 1 ms of delay; omega: 0.01 mm; Inverse3: 0.01 mm, "
-      "1 ms; delays are known to the laws. Energy: most that the hand was given, at least 1e-4 mJ "
-      "and at most 1 J shown. Stiffest wall: felt within {} % of that set and the tip above 20 Hz "
-      "at "
-      "most {} mm/s, in both grips that damp; of {} to {} N/m. Through a link: held for 3 s, 300 "
-      "N/m, the paper's "
-      "gains.",
+      "Touch: encoder steps of 4.19e-4 rad, friction, 1 ms of delay. omega: position steps of 0.01 "
+      "mm. Inverse3: position steps of 0.01 mm, 1 ms of delay. The laws know the delays. Energy is "
+      "the largest that the hand was given; the axis shows 1e-4 mJ to 1 J. At the stiffest wall "
+      "the stiffness felt is within {} % of the set one, and the rms speed of the tip above 20 Hz "
+      "is at most {} mm/s, in both grips with damping. Walls from {} to {} N/m were tried. Through "
+      "a link the tip is held for 3 s in a grip of 300 N/m, with the paper's gains.",
       WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall);
   outcome.figure.columns = 2;
   for (const BenchArm& arm : kArms) outcome.figure.panels.push_back(energy_panel(all, arm));

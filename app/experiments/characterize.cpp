@@ -209,13 +209,13 @@ void judge_free(const LawRendered& law, std::vector<Check>& checks) {
 
 std::string caption(const Characterized& subject) {
   return fmt::format(
-      "{}. Taps before the rest pose at {} m/s, pressed with {} N or half of what the motors bear, "
-      "in grips of 300 and 3,000 N/m with 2 N s/m and without damping. Stiffest wall: felt within "
-      "{} % of that set and the tip above 20 Hz at most {} mm/s, in both grips that damp; of {} to "
-      "{} N/m. Energy: most that the hand was given. Free motion: the tip shaken at one "
-      "frequency after the other, {:.1f} mm at 1 Hz and as fast at all, in a grip of {} N/m and {} "
-      "N s/m; friction of the "
-      "arm is felt as damping.",
+      "{}. The tip taps a wall before the rest pose at {} m/s. Then the hand presses with {} N or "
+      "half of what the motors bear. Grips are 300 and 3,000 N/m, with 2 N s/m and without "
+      "damping. At the stiffest wall the stiffness felt is within {} % of the set one, and the rms "
+      "speed of the tip above 20 Hz is at most {} mm/s, in both grips with damping. Walls from {} "
+      "to {} N/m were tried. Energy is the largest that the hand was given. In free motion the tip "
+      "is shaken at one frequency after the other: {:.1f} mm at 1 Hz, with the same speed at all "
+      "frequencies, in a grip of {} N/m and {} N s/m. Friction of the arm is felt as damping.",
       subject.name, WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall,
       1e3 * shaken_by(subject.at.arm), kFreeGrip, kFreeGripDamping);
 }

@@ -79,10 +79,10 @@ Outcome drop(TrialRunner& lab) {
   const ArmDescription& arm = trials.front().plan.arm;
 
   FigurePanel height = drop_panel("The block's lower face above the tip's rest", "height [mm]");
-  FigurePanel reserve = drop_panel("The ledger's reserve, predictive", "reserve [mJ]");
+  FigurePanel reserve = drop_panel("Reserve of the energy account, predictive", "reserve [mJ]");
   FigurePanel force = drop_panel(fmt::format("Force on the tip, {} N/m", kDropUsual), "force [N]");
   FigurePanel beyond =
-      drop_panel(fmt::format("Given to the human beyond what the block gave, {} N/m", kDropUsual),
+      drop_panel(fmt::format("Energy to the human beyond what the block gave, {} N/m", kDropUsual),
                  "energy [mJ]");
   Outcome outcome;
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -119,12 +119,11 @@ Outcome drop(TrialRunner& lab) {
   outcome.figure.columns = 2;
   outcome.figure.panels = {height, reserve, force, beyond};
   outcome.figure.caption = fmt::format(
-      "A block of {} g, {} cm above a tip that a hand holds still; friction 0.5, contacts of {}, "
-      "{} "
-      "and {} N/m. It brings {:.0f} mJ; the ledger books what it gives as what bodies gave, so "
-      "that "
-      "the reserve does not fall. Staggered: no coupling; the force of a tick follows from where "
-      "tip and block last were, and the block cannot slip off.",
+      "A block of {} g falls from {} cm above a tip. A hand holds the tip still. Friction is 0.5; "
+      "contacts have {}, {} and {} N/m. The block brings {:.0f} mJ. The energy account books this "
+      "energy as given by bodies, so the reserve does not fall. Staggered means no coupling: the "
+      "force of a tick follows from the last positions of tip and block. There the block cannot "
+      "slip off.",
       1e3 * kDropMass, 100 * kDropHeight, kDropHard[0], kDropHard[1], kDropHard[2],
       1e3 * kDropMass * kDropGravity * kDropHeight);
   for (std::size_t i = 0; i < std::size(kDropHard); ++i) {

@@ -113,7 +113,7 @@ constexpr std::array kExperiments{
     Experiment{"mass", "the mass felt of a body that is held, and the least that can be held",
                mass},
     Experiment{"click", "a button: its force felt over its travel", click},
-    Experiment{"drop", "a body that falls on the tip, and the energy ledger", drop},
+    Experiment{"drop", "a body that falls on the tip, and the energy account", drop},
     Experiment{"stack",
                "stacks of bodies: how deep they sink into each other, sweeps of the solver, energy",
                stack},

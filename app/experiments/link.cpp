@@ -272,12 +272,14 @@ Outcome link(TrialRunner& lab) {
   outcome.figure.title = "Walls through a delay between device and proxy";
   outcome.figure.caption = fmt::format(
       "Taps at {} m/s, {} N, held for {} s, eta 1. At rest: E_c at most {} mJ, and the tip at most "
-      "{} mm/s at the end. Walls of {} to {} N/m were tried: a curve at the top has no limit in "
-      "them, one at the bottom has none that rests. Energies are drawn from {} mJ to {} J, what is "
-      "beyond at these ends. The link delays each packet alike and loses "
-      "none; the random links of the checks do. Gains by (3): k_vc, b_vc and b_v as condition (3) "
-      "has them for the link and the arm's damping. The predictive coupling has no link; in its "
-      "place the torque of the motors comes the whole trip later, which it knows, as far as 20 ms. "
+      "{} mm/s at the end. Walls of {} to {} N/m were tried. A curve at the top has no limit in "
+      "this range. A curve at the bottom has no wall at which the tip comes to rest. Energies "
+      "outside {} mJ to {} J are drawn at the axis ends. This link delays all packets alike and "
+      "loses none. Only the random links of the checks have jitter and loss. Gains by (3): k_vc, "
+      "b_vc and b_v as condition (3) "
+      "has them for the link and the arm's damping. The predictive coupling has no link. Instead "
+      "the motors' torque comes late by the delay of both ways together. The law knows this delay "
+      "up to 20 ms. "
       "Theory: of the standard coupling the poles of hand, device, spring and wall; of the "
       "proposed one the damping against the lag of the contact.",
       TapBench::kSpeed, TapSetting{}.press, LinkStudy::kHold, 1e3 * LinkStudy::kGiven,

@@ -284,8 +284,9 @@ Outcome zwidth(TrialRunner& lab) {
       "encoders, no mass, no delay unless varied; motors of {} N m, which never meet their limit, "
       "but in the last panel. Well: at most {} mJ given to the human, tip above {} Hz "
       "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
-      "mJ. Walls of {} to {} N/m were tried: a curve at the top has no limit in them, one at the "
-      "bottom renders none. Each thing is varied alone, beside the encoder: a delay, another tick "
+      "mJ. Walls of {} to {} N/m were tried. A curve at the top has no limit in this range. A "
+      "curve at the bottom has no wall that is rendered well. Each quantity is varied alone, "
+      "beside the encoder: a delay, another tick "
       "and a mass at once are not covered, nor are other arms (see walls) and other etas under a "
       "delay (see delay).",
       TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
