@@ -156,7 +156,7 @@ class Look(unittest.TestCase):
             threading.Timer(2.5, device.over.set).start()
             threading.Timer(2.6, device.device._hang_up).start()
             found = self.look("socket:played", "--seconds", "60", status=1)
-        self.assertIn("the device is gone", self.said)
+        self.assertIn("the device is disconnected", self.said)
         self.assertTrue(found["gone"])
         with h5py.File(self.out) as file:
             self.assertGreater(len(file["time"]), 1000)

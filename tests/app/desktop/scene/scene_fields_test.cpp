@@ -407,7 +407,7 @@ TEST_F(SceneFields, OfARecordingOnlyShowIt) {
   scene.scene.add(body_of(Sphere{0.01}));
   show([&] { ScenePanel::draw_recorded(scene); });
   EXPECT_THAT(words(), StartsWith("untitled\n"));
-  EXPECT_THAT(words(), HasSubstr("The recording's scene; it stays as it was."));
+  EXPECT_THAT(words(), HasSubstr("The scene of the recording. This scene cannot be changed."));
   EXPECT_TRUE(find("it"));
   EXPECT_FALSE(find("Add"));
 }
