@@ -176,13 +176,14 @@ std::string not_held(const std::vector<FeltBody>& all) {
     if (one.felt.empty()) words.push_back(fmt::format("{} ({} g)", one.way.label, 1e3 * one.mass));
   }
   if (words.empty()) return "";
-  return fmt::format("Missing is what the magnet let go of: {}. ", fmt::join(words, ", "));
+  return fmt::format("The magnet lost these cubes, so their curves are missing: {}. ",
+                     fmt::join(words, ", "));
 }
 
 FigurePanel felt_panel(const std::vector<FeltBody>& all, double mass) {
-  FigurePanel panel{.title = fmt::format("Felt of {} g", 1e3 * mass),
+  FigurePanel panel{.title = fmt::format("Mass felt of {} g", 1e3 * mass),
                     .x_label = "frequency [Hz]",
-                    .y_label = "felt by given mass [-]",
+                    .y_label = "mass felt / mass given [-]",
                     .log_x = true,
                     .x_range = std::pair(0.4, 6.0),
                     .y_range = std::pair(0.7, 1.5)};
@@ -309,7 +310,7 @@ void add_staggered(const ArmDescription& arm, double damping, const char* ink, F
 
 FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
   FigurePanel panel{.title = "The least mass that can be held",
-                    .x_label = "stiffness that holds it [N/m]",
+                    .x_label = "stiffness that holds the mass [N/m]",
                     .y_label = "least stable mass [g]",
                     .log_x = true,
                     .log_y = true,
@@ -353,15 +354,16 @@ Outcome mass(TrialRunner& lab) {
   }
   outcome.figure.panels.push_back(least_panel(lab, outcome.checks));
   outcome.figure.caption = fmt::format(
-      "A cube that the magnet holds by its centre of mass at {} N/m ({} N/m where it is said), "
-      "shaken at five frequencies together, {} mm at 1 Hz and less above, no weight. Felt: the "
-      "hand's force in phase with the tip's acceleration, less that of the same shaking with {} "
-      "mg, of the other laws with nothing. The spring between them makes m / (1 - m w^2 / K) of a "
-      "mass. {}Staggered: no coupling; the force of a tick follows from where tip and body last "
-      "were, and the body is stepped after it. Last: a nudge of {} mm, with motors that never meet "
-      "their limit, and whether the cube comes to rest. While the device stands still, a staggered "
-      "body needs K T^2/4 + B T/2 (Jury); it does not stand still beyond {} N/m, or without a "
-      "damper, and where a curve ends nothing up to {} kg is stable.",
+      "The magnet holds a cube without weight by the centre of mass, at {} N/m ({} N/m where the "
+      "label says so). The hand shakes the tip at five frequencies together: {} mm at 1 Hz and "
+      "less above. The mass felt is the hand's force in phase with the tip's acceleration, minus "
+      "that of the same shaking with {} mg (for the other laws: with no cube). The spring between "
+      "tip and cube turns a mass m into m / (1 - m w^2 / K). {}Staggered means no coupling: the "
+      "force of a tick follows from the last positions of tip and body, and the body is stepped "
+      "after the tick. Last panel: the hand nudges the tip by {} mm, and the cube comes to rest or "
+      "not; the motors never meet their limit. While the device stands still, a staggered body "
+      "needs a mass of at least K T^2/4 + B T/2 (Jury). The device does not stand still beyond {} "
+      "N/m, or without a damper. Where a curve ends, no mass up to {} kg is stable.",
       kHeld, kHeldSoftly, 1e3 * kHeldAmplitude, 1e6 * kSpeck, not_held(all), 1e3 * kNudge,
       kStillDevice, kHeaviest);
   return outcome;

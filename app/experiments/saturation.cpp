@@ -210,7 +210,7 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
       curve(with, "estimate, anti-windup", kProposedInk, dashed, Column::hand_torque_estimate),
       curve(with, "true, anti-windup", kProposedInk, line, Column::hand_torque),
       curve(predicted, "true, predictive", kPredictiveInk, line, Column::hand_torque)};
-  FigurePanel motors{.title = "Torque asked of the shoulder's motor, and given",
+  FigurePanel motors{.title = "Torque of the shoulder's motor, asked and given",
                      .x_label = "time [s]",
                      .y_label = "tau1 [N m]"};
   motors.series = {
@@ -219,10 +219,9 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
       curve(without, "given, wound up", kProposedTint, line, Column::motor_torque),
       curve(with, "given, anti-windup", kProposedInk, line, Column::motor_torque),
       curve(predicted, "given, predictive", kPredictiveInk, line, Column::motor_torque)};
-  FigurePanel lurking{
-      .title = "The proxy goes into the table with the device; the predictive one not",
-      .x_label = "time [s]",
-      .y_label = "tip below the surface [mm]"};
+  FigurePanel lurking{.title = "Depth of device and proxy in the table, under each coupling",
+                      .x_label = "time [s]",
+                      .y_label = "tip below the surface [mm]"};
   lurking.series = {
       depth(with, "device, proposed", kProposedInk, line, Column::device_position),
       depth(with, "proxy, proposed", kProposedInk, dashed, Column::proxy_position),
@@ -243,10 +242,10 @@ void press_into_corners(TrialRunner& lab, Outcome& outcome) {
   const ArmDescription desktop = read_urdf(default_device());
   FigurePanel torque{.title = "Pressed into random corners: contact torque",
                      .x_label = "limit of every motor [N m]",
-                     .y_label = "largest contact torque, by the limit [-]"};
+                     .y_label = "largest contact torque / limit [-]"};
   FigurePanel jump{.title = "Pressed into random corners: the proxy's steps",
                    .x_label = "limit of every motor [N m]",
-                   .y_label = "farthest in a tick [mrad]"};
+                   .y_label = "longest way in a tick [mrad]"};
   torque.x_range = jump.x_range = {0.08, 0.62};
   torque.y_range = {0, 2};
   jump.y_range = {0, 14};
@@ -300,8 +299,9 @@ Outcome saturation(TrialRunner& lab) {
   outcome.figure.caption = fmt::format(
       "Proposed and predictive coupling at the paper's gains, eta = {}, motors limited to {} N m, "
       "table 600 N/m. "
-      "Anti-windup: the observer is told the torque the motors gave; wound up: the torque asked of "
-      "them. Last two panels: the predictive coupling's tip pressed into a corner of one to six "
+      "With anti-windup the observer is told the torque that the motors gave. Without anti-windup "
+      "(wound up) the observer is told the torque that was asked. Last two panels: the predictive "
+      "coupling's tip pressed into a corner of one to six "
       "planes of 100 to 10,000 N/m, rough or smooth, and rubbed along it, with motors of 0.1 to "
       "0.6 N m; each point is one corner, drawn at random, as are arm, grip and eta.",
       kEta, kLimit);

@@ -280,15 +280,17 @@ Outcome zwidth(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "The stiffest wall that is rendered well";
   outcome.figure.caption = fmt::format(
-      "Taps at {} m/s, {} N, held, in hands of {} and {} N/m and {} N s/m; tick 1 ms, exact "
-      "encoders, no mass, no delay unless varied; motors of {} N m, which never meet their limit, "
-      "but in the last panel. Well: at most {} mJ given to the human, tip above {} Hz "
-      "at most {} mm/s, stiffness felt within {} % of that set, with exact encoders E_c at most {} "
-      "mJ. Walls of {} to {} N/m were tried. A curve at the top has no limit in this range. A "
-      "curve at the bottom has no wall that is rendered well. Each quantity is varied alone, "
-      "beside the encoder: a delay, another tick "
-      "and a mass at once are not covered, nor are other arms (see walls) and other etas under a "
-      "delay (see delay).",
+      "The tip taps a wall at {} m/s, presses with {} N and holds, in grips of {} and {} N/m with "
+      "{} N s/m. Where not varied, the tick is 1 ms, encoders are exact, and there is no mass of "
+      "the hand and no delay. Motors of {} N m never meet their limit; the last panel has the "
+      "arm's own motors. A wall is rendered well if the human is given at most {} mJ, the rms "
+      "speed of the tip above {} Hz is at most {} mm/s, and the stiffness felt is within {} % of "
+      "the set one. With exact encoders E_c must be at most {} mJ as well. Walls of {} to {} N/m "
+      "were tried. A curve at the top has no limit in this range. A "
+      "curve at the bottom has no wall that is rendered well. Each quantity is varied alone "
+      "or together with the encoder step. Not covered are a delay, another tick and a mass at the "
+      "same time. Other arms are in the experiment walls, other etas under a delay in the "
+      "experiment delay.",
       TapBench::kSpeed, TapSetting{}.press, kGrips[0], kGrips[1], TapBench::kGripDamping,
       TapSetting{}.torque_limit, 1e3 * WellRendered::kPort, TapBench::kFast,
       1e3 * WellRendered::kChatter, 100 * WellRendered::kFelt, 1e3 * WellRendered::kEnergy,
