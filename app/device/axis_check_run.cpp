@@ -92,7 +92,8 @@ const char* explain(CheckEnd end) {
   switch (end) {
     case CheckEnd::none: return "";
     case CheckEnd::stopped: return " You stopped it.";
-    case CheckEnd::no_window: return " The window did not answer for 0.4 s.";
+    case CheckEnd::no_window:
+      return " The window did not answer for 0.4 s, so the check ended and the force went off.";
     case CheckEnd::gone: return " The device was disconnected. Plug the device in again.";
     case CheckEnd::open_hand: return " The device says that no hand holds it.";
     case CheckEnd::fault: return " The device reported a fault.";

@@ -153,7 +153,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
   if (with_steps) {
     if (button("|<", "To the beginning (Home)")) player.seek(0);
     if (button("<", "One tick back (left arrow)")) player.step(-1);
-    if (button(">", "One tick on (right arrow)")) player.step(1);
+    if (button(">", "One tick forward (right arrow)")) player.step(1);
   }
   if (with_loop && button("Loop", "Begin again at the end (L)", player.loop)) {
     player.loop = !player.loop;
@@ -210,7 +210,7 @@ void time_controls(LiveStage& live, const Act& act) {
     act("loop.pause");
   }
   if (paused) {
-    if (button(">", "One tick on (right arrow), with Shift ten")) act("loop.step");
+    if (button(">", "One tick forward (right arrow), with Shift ten ticks")) act("loop.step");
     return;
   }
   int& slow = live.controls().slow;
