@@ -180,7 +180,7 @@ std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheo
                                   "stiffness [N/m]", {kSoftest, kStiffest}, &LinkCurve::walls, 1);
   Series standard{"standard, theory", kStandardInk, Series::Style::dashed, {}};
   Series proposed{"proposed, theory", kProposedInk, Series::Style::dashed, {}};
-  Series named{"predictive, as analyze names it", kPredictiveInk, Series::Style::dashed, {}};
+  Series named{"predictive, wall that analyze names", kPredictiveInk, Series::Style::dashed, {}};
   for (const int delay : LinkStudy::kDelays) {
     standard.points.push_back({on_axis(delay), theory.standard(delay)});
     proposed.points.push_back({on_axis(delay), theory.proposed(delay)});
@@ -191,7 +191,7 @@ std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheo
         {on_axis(delay), std::clamp(named_wall(predictive.at(delay)), kSoftest, kStiffest)});
   }
   for (const Series& line : {standard, proposed, named}) walls.series.push_back(line);
-  FigurePanel felt = over_delays(laws, "Stiffness felt of that wall, at the device",
+  FigurePanel felt = over_delays(laws, "Stiffness felt at the device, at the stiffest wall",
                                  "stiffness [N/m]", {1, 25000}, &LinkCurve::felt, 1);
   FigurePanel energy = over_delays(laws,
                                    fmt::format("Highest E_c on walls of {} and {} N/m",

@@ -211,9 +211,9 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
   const std::vector<TrialResult> results = lab.run(trials);
 
   FigurePanel panel;
-  panel.title = "Error of an estimate wrong at first, heaviest mode (dashed: exp(-w_f t))";
+  panel.title = "Decay of a wrong estimate, heaviest mode (dashed: exp(-w_f t))";
   panel.x_label = "time [s]";
-  panel.y_label = "|error|, of the first [-]";
+  panel.y_label = "|error| / |first error| [-]";
   panel.log_y = true;
   panel.x_range = {0, 0.1};
   panel.y_range = {1e-2, 1};
