@@ -300,7 +300,8 @@ Outcome lightness(TrialRunner& lab) {
       "against and along the motion of all joints. An inertia of eta up to {} Hz costs every "
       "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
       "Under the proposed coupling eta scales the damping, and so the force felt in slow motion. "
-      "The inertia felt is not eta times the arm's own, as (12) says. Above eta = 1 the inertia "
+      "By (12) the inertia felt would be eta times the arm's own; measured inertia differs. Above "
+      "eta = 1 the inertia "
       "felt is negative up to 5 Hz. Last panel: the arm roams in an undamped grip of 3000 N/m, "
       "with motors that have practically no limit.",
       1e3 * kAmplitude, kLightGrip, kLightGripDamping, Parameters{}.band);
