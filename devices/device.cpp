@@ -10,14 +10,14 @@ namespace {
 const char* explain(NoForce reason) {
   switch (reason) {
     case NoForce::none: return "";
-    case NoForce::button: return "its force is switched off by a button of its own";
-    case NoForce::velocity: return "it moved faster than it allows itself";
-    case NoForce::watchdog: return "its own watchdog has cut the force";
-    case NoForce::software: return "the device's own software has switched its force off";
-    case NoForce::connection: return "its connection was interrupted";
-    case NoForce::dead_man: return "nobody holds its dead-man switch";
-    case NoForce::warm: return "its motors are too warm";
-    case NoForce::other: return "it does not say why";
+    case NoForce::button: return "a button on the device has switched the force off";
+    case NoForce::velocity: return "the device moved faster than its own speed limit";
+    case NoForce::watchdog: return "the device's own watchdog has cut the force";
+    case NoForce::software: return "the device's own software has switched the force off";
+    case NoForce::connection: return "the device's connection was interrupted";
+    case NoForce::dead_man: return "nobody holds the dead-man switch";
+    case NoForce::warm: return "the device's motors are too warm";
+    case NoForce::other: return "the device gives no reason";
   }
   return "";
 }
@@ -39,7 +39,7 @@ std::string device_words(const DeviceReading& reading) {
     say(fmt::format("The device itself gives no force: {}.", explain(reading.no_force)));
   }
   if (static_cast<double>(reading.warmth) >= kWarmFrom) {
-    say(fmt::format("Its hottest motor is at {:.0f} % of its thermal limit.",
+    say(fmt::format("The device's hottest motor is at {:.0f} % of its thermal limit.",
                     100 * reading.warmth));
   }
   return words;

@@ -249,8 +249,8 @@ void say_z_up(ArmDescription& arm, const std::set<std::string>& files) {
   if (named > 3) names += " and " + std::to_string(named - 3) + " more";
   arm.warnings.push_back(names + (named == 1 ? " has" : " have") +
                          " z up, where glTF says y up: not turned, because " +
-                         (named == 1 ? "it fits its link" : "they fit their links") + " as " +
-                         (named == 1 ? "it is" : "they are"));
+                         (named == 1 ? "the picture fits the link" : "the pictures fit the links") +
+                         " as " + (named == 1 ? "it is" : "they are"));
 }
 
 Item body(const ArmDescription& arm, std::size_t i, double reach) {

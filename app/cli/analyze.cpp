@@ -32,7 +32,8 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   };
   fmt::print("rests on                   {}\n", basis_text(arm, p));
   if (const std::string filed = readings_text(arm, p); !filed.empty()) {
-    fmt::print("readings                   {}; --readings takes the file's\n", filed);
+    fmt::print("readings                   {}; --readings takes the values of the arm's file\n",
+               filed);
   }
   fmt::print("observer bandwidth w_f     {} rad/s\n", list(a.w_f));
   fmt::print("locked system w_c          {} rad/s\n", list(a.w_c));
@@ -55,7 +56,8 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
                a.condition3.holds ? "holds" : "BROKEN", a.condition3.device_margin,
                a.condition3.proxy_margin);
   } else {
-    fmt::print("condition (3)              no bound is known, as packets are lost (link.loss)\n");
+    fmt::print(
+        "condition (3)              no bound is known because packets are lost (link.loss)\n");
   }
   if (!p.linked()) return;
   const std::string old =
@@ -241,34 +243,34 @@ int analyze_command(const AnalyzeOptions& options) {
 
 Command declare_analyze(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "analyze", "eta_min, walls and what is felt under each law, without simulating");
+      "analyze",
+      "computes eta_min, stable walls and what is felt under each law, without simulation");
   auto options = std::make_shared<AnalyzeOptions>();
   options->input.add_world(*command);
   options->input.add_readings(*command);
   options->input.add_parameters(*command);
-  auto* band =
-      command->add_option("--band", options->band, "the human's bandwidth, for eta_min within it")
-          ->type_name("HZ");
+  auto* band = command
+                   ->add_option("--band", options->band,
+                                "the human's bandwidth; eta_min is computed within this band")
+                   ->type_name("HZ");
   auto* mass = command
                    ->add_option("--mass", options->mass,
-                                "a scalar inertia in place of the arm's at its rest pose")
+                                "a scalar inertia in place of the arm's inertia in the rest pose")
                    ->type_name("KG_M2");
-  auto* grip =
-      command
-          ->add_option(
-              "--grip", options->grip,
-              "hands from one stiffness to another, with hand.damping and hand.mass: which "
-              "walls are stable in all of them, beside those that are passive in every "
-              "hand; bounds by name; Llewellyn's criterion")
-          ->type_name("FROM TO")
-          ->expected(2)
-          ->excludes(mass);
+  auto* grip = command
+                   ->add_option("--grip", options->grip,
+                                "a range of hand stiffness, with hand.damping and hand.mass: shows "
+                                "walls that are stable in all these hands, walls that are passive "
+                                "in every hand, named bounds, and Llewellyn's criterion")
+                   ->type_name("FROM TO")
+                   ->expected(2)
+                   ->excludes(mass);
   command
-      ->add_option("--grip-of", options->grip_of,
-                   "a session in which the grip was measured (`limpid run --measure-grip`, or the "
-                   "window's Hand section): stiffness, damping and mass of that hand with their "
-                   "bounds, eta_min and stable walls in it; device, scene and settings are the "
-                   "session's")
+      ->add_option(
+          "--grip-of", options->grip_of,
+          "a session in which the grip was measured (`limpid run --measure-grip`, or the window's "
+          "Hand section): shows stiffness, damping and mass of that hand with bounds, and eta_min "
+          "and stable walls in that hand; device, scene and settings come from the session")
       ->type_name("SESSION.h5")
       ->check(CLI::ExistingFile)
       ->excludes(mass)
@@ -280,7 +282,8 @@ Command declare_analyze(CLI::App& app) {
   require_above_zero(band, 1e6, "Hz");
   require_above_zero(grip, 1e6, "N/m");
   require_above_zero(mass, 1e6, "kg m^2");
-  command->add_flag("--all", options->all, "laws for comparison too; JSON always has them");
+  command->add_flag("--all", options->all,
+                    "print the laws for comparison as well; JSON always has these laws");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(parameter_help());
   return [options] { return analyze_command(*options); };

@@ -67,12 +67,14 @@ void choose_plugged_in(const std::string& id, DeviceHub& hub) {
     const std::string arm = !notes.arm.empty()               ? notes.arm
                             : notes.taken_for == kBuiltInArm ? std::string()
                                                              : notes.taken_for;
-    throw UsageError(fmt::format("{}. Plug it in: it says its encoders itself.{}", error.what(),
-                                 arm.empty()
-                                     ? std::string()
-                                     : fmt::format(" Without it: limpid characterize {} --set "
-                                                   "device.encoder_step=STEP",
-                                                   arm)));
+    throw UsageError(fmt::format(
+        "{}. Plug the device in: a connected device reports the encoder steps itself.{}",
+        error.what(),
+        arm.empty()
+            ? std::string()
+            : fmt::format(
+                  " Without the device: limpid characterize {} --set device.encoder_step=STEP",
+                  arm)));
   }
 }
 
@@ -82,7 +84,8 @@ Source of_device(const CharacterizeOptions& options) {
   choose_plugged_in(*options.device, hub);
   const FoundDevice& found = *hub.present();
   if (found.kind->leads_hand) {
-    throw UsageError(found.place.id + ": leads the hand of the virtual arm and renders nothing");
+    throw UsageError(found.place.id +
+                     ": this device only leads the hand of the virtual arm and gives no force");
   }
   const OnlyLooked device(hub.open_to_look(), std::make_shared<DeviceSeen>());
   std::optional<ArmDescription> named;
@@ -101,14 +104,15 @@ KnownNumber encoder_number(const Source& source, const InputOptions& input, Para
     number.from = "set";
   } else if (source.encoder_step.value_or(0) > 0) {
     p.encoder_step = *source.encoder_step;
-    number.from = "the device says so";
+    number.from = "reported by the device";
   } else if (source.arm.encoder_step > 0) {
     p.encoder_step = source.arm.encoder_step;
     number.from = "the arm's file";
   } else {
     number.assumed = true;
-    number.from = source.encoder_step ? "exact: the device names no step"
-                                      : "exact; --set device.encoder_step=STEP says another";
+    number.from = source.encoder_step
+                      ? "exact encoders: the device reports no step"
+                      : "exact encoders; --set device.encoder_step=STEP sets a step";
   }
   return number;
 }
@@ -122,25 +126,26 @@ KnownNumber delay_number(const Source& source, const InputOptions& input, Parame
   if (source.arm.delay) {
     p.device_delay =
         static_cast<int>(std::min<long>(kMostDelay, std::lround(*source.arm.delay / p.tick)));
-    number.from = fmt::format("identified as {:.2f} ms, in whole ticks", 1e3 * *source.arm.delay);
+    number.from =
+        fmt::format("identified as {:.2f} ms, rounded to whole ticks", 1e3 * *source.arm.delay);
   } else if (source.arm.assumed_delay > 0) {
     p.device_delay = with_readings_of(source.arm, p).device_delay;
     number.assumed = true;
-    number.from = "assumed by the arm's file; limpid identify measures it";
+    number.from = "assumed in the arm's file; limpid identify measures the delay";
   } else if (source.encoder_step) {
     p.device_delay = kUsualDelay;
     number.assumed = true;
-    number.from = "one tick, as nobody has measured it; limpid identify does";
+    number.from = "one tick: the delay was never measured; limpid identify measures it";
   } else {
     number.assumed = true;
-    number.from = "none; --set device.delay=TICKS says another";
+    number.from = "no delay; --set device.delay=TICKS sets a delay";
   }
   p.delay = p.device_delay;
   return number;
 }
 
 KnownNumber damping_number(const Source& source, const InputOptions& input, const Parameters& p) {
-  KnownNumber number{"damping",         "its own damping at the tip", "N s/m", 0, source.from,
+  KnownNumber number{"damping",         "device's own damping at the tip", "N s/m", 0, source.from,
                      source.arm_assumed};
   if (sets(input, &DeviceSettings::damping, 1.0, 2.0)) {
     number.from = "set";
@@ -149,7 +154,8 @@ KnownNumber damping_number(const Source& source, const InputOptions& input, cons
   }
   if (!std::isnan(p.damping)) {
     number.assumed = true;
-    number.from = "its file says none; one that slows it as fast as the built-in arm's does";
+    number.from =
+        "the arm's file gives no damping; this value slows the arm as fast as the built-in arm";
   }
   return number;
 }
@@ -162,7 +168,7 @@ KnownNumber friction_number(const Source& source, const InputOptions& input, dou
     number.assumed = false;
   } else if (friction <= 0 && !source.arm.delay) {
     number.assumed = true;
-    number.from = "none: its file names none";
+    number.from = "no friction: the arm's file gives none";
   }
   return number;
 }
@@ -216,7 +222,8 @@ void print_table(const Characterized& subject, const Characterization& found) {
 // Refuses what would have no effect: all laws are measured, in hands of the bench's own.
 void refuse_what_is_fixed(const InputOptions& input) {
   const auto refuse = [](const char* what) {
-    throw UsageError(fmt::format("{}: every law is measured, in hands of the bench's own", what));
+    throw UsageError(fmt::format(
+        "{}: cannot be chosen here: characterize measures every law, with fixed hands", what));
   };
   if (input.coupling) refuse("--coupling");
   if (sets(input, &ControllerSettings::kind, CouplingKind::standard, CouplingKind::tank)) {
@@ -265,7 +272,7 @@ int run_characterize(const CharacterizeOptions& options) {
 
 Command declare_characterize(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "characterize", "what an arm, or a device's arm, can render under each law: one report");
+      "characterize", "reports what an arm, or a device's arm, can render under each law");
   auto options = std::make_shared<CharacterizeOptions>();
   command->add_option("ARM", options->input.device, "the arm's file")
       ->transform(or_shipped({"devices"}), "", "")
@@ -273,9 +280,8 @@ Command declare_characterize(CLI::App& app) {
   command
       ->add_option_function<std::string>(
           "--device", [options](const std::string& id) { options->device = id; },
-          "a real device, by its id, as `limpid devices` lists it: its arm, as it was identified "
-          "or "
-          "said to be, its encoders, delay and friction. It never pushes")
+          "the id of a real device, as `limpid devices` lists it: the report uses that device's "
+          "arm (identified or chosen), encoders, delay and friction. The device gets no force")
       ->type_name("DEVICE");
   command->add_option("--tip", options->input.tip, "the link of the arm that the hand holds")
       ->type_name("LINK");
@@ -284,11 +290,11 @@ Command declare_characterize(CLI::App& app) {
       ->type_name("DIR");
   options->input.add_parameters(*command);
   command->footer(
-      "Law by law: the stiffest wall that is felt as set and quiet, the energy given, and mass and "
-      "damping felt in free\nmotion, on the virtual arm of that file, beside what `limpid analyze` "
-      "names. All is on the virtual arm: a real device\nmay differ from its numbers, and the "
-      "report says which are measured, set and assumed.\nExit status 1: a promise was not kept, or "
-      "it was stopped.\n\n" +
+      "For each law the report has the stiffest wall that feels as stiff as set and does not "
+      "chatter, the energy\ngiven to the hand, and mass and damping felt in free motion, beside "
+      "the values that `limpid analyze`\ncomputes. All numbers come from the virtual arm of that "
+      "file: a real device may differ. The report says\nwhich numbers are measured, set and "
+      "assumed. Exit status 1: a promise was not kept, or the command was\nstopped.\n\n" +
       parameter_help());
   return [options] { return run_characterize(*options); };
 }

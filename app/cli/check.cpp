@@ -66,26 +66,27 @@ void list_joints(const ArmDescription& arm, const Eigen::MatrixXd& M, CheckRepor
 void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Parameters& p,
                 CheckReport& report) {
   const std::string fit = fit_text(p);
-  report.facts.push_back(fit.empty() ? "gains        the paper's suit it"
+  report.facts.push_back(fit.empty() ? "gains        the paper's gains suit this arm"
                                      : "gains        fitted: " + fit);
   const Analysis a = analyze(arm, rest, p, std::nullopt);
   report.facts.push_back("             for " + basis_text(arm, p));
   if (const std::string filed = readings_text(arm, p); !filed.empty()) {
-    report.facts.push_back("readings     " + filed + "; --readings takes the file's");
+    report.facts.push_back("readings     " + filed +
+                           "; --readings takes the values of the arm's file");
   }
-  report.facts.push_back(
-      fmt::format("             condition (3) {}; eta from {:.2f} on is passive (25)",
-                  a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
+  report.facts.push_back(fmt::format(
+      "             condition (3) {}; the proposed law is passive at eta of {:.2f} and above (25)",
+      a.condition3.holds ? "holds" : "is BROKEN", a.eta_min));
   if (!a.condition3.holds) {
     report.warnings.push_back(
         "condition (3) does not hold with these settings: lower coupling.k_vc or coupling.b_vc, or "
-        "leave them to be fitted");
+        "leave both unset and Limpid fits the two gains to the arm");
     const std::string late = fit_text(fitted(arm, p, a.delay, p));
     if (!a.condition3.known) {
       report.warnings.back() =
           "condition (3): no bound is known where packets are lost (link.loss)";
     } else if (a.delay + a.link > 0) {
-      report.warnings.back() += "; what holds with its delay: " + late;
+      report.warnings.back() += "; gains that fulfil condition (3) with this delay: " + late;
     }
   }
 }
@@ -93,7 +94,7 @@ void list_gains(const ArmDescription& arm, const Eigen::VectorXd& rest, const Pa
 // Lists the limits on the motors' torque, which hold for any gains.
 void list_limits(const Parameters& p, CheckReport& report) {
   report.facts.push_back(fmt::format(
-      "limits       torque {}, within {:.0f} ms from none; a real device's tip: {:.0f} N",
+      "limits       torque {}, reached within {:.0f} ms; force at a real device's tip: {:.0f} N",
       std::isfinite(p.torque_limit) ? fmt::format("{:.3g} N m", p.torque_limit)
                                     : "as the effort above",
       1000 * SafetyLimits::kSlew, SafetyLimits{}.tip_force));
@@ -112,9 +113,9 @@ void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
     if (joint.kind != Joint::Kind::prismatic) continue;
     const double travel = kSlideUnit * (joint.upper - joint.lower);
     if (travel < kFar) continue;
-    report.warnings.push_back(fmt::format(
-        "joint '{}': a slide of {:.3g} m; give it the travel that it has in its <limit>",
-        joint.name, travel));
+    report.warnings.push_back(
+        fmt::format("joint '{}' slides over {:.3g} m; write the joint's real travel in <limit>",
+                    joint.name, travel));
   }
 }
 
@@ -126,17 +127,17 @@ void list_inertias(const ArmDescription& arm, CheckReport& report) {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
     const Vec3 moments = solver.eigenvalues();
     if (2 * moments.z() > kRounded * moments.sum()) {
-      report.warnings.push_back(fmt::format(
-          "link '{}': no body has principal moments of {:.3g}, {:.3g} and {:.3g} kg m^2: none may "
-          "be more than the other two together",
-          link.name, moments.x(), moments.y(), moments.z()));
+      report.warnings.push_back(
+          fmt::format("link '{}': principal moments of {:.3g}, {:.3g} and {:.3g} kg m^2 are "
+                      "impossible: each moment must be at most the sum of the other two",
+                      link.name, moments.x(), moments.y(), moments.z()));
     }
     const double ring = std::sqrt(moments.z() / link.mass);
     if (link.mass > 0 && ring > std::max(1.0, 2 * reach)) {
-      report.warnings.push_back(fmt::format(
-          "link '{}': {:.3g} kg m^2 and {:.3g} kg are a ring of {:.3g} m radius; are its moments "
-          "in kg m^2?",
-          link.name, moments.z(), link.mass, ring));
+      report.warnings.push_back(
+          fmt::format("link '{}': {:.3g} kg m^2 with {:.3g} kg would be a ring of {:.3g} m radius; "
+                      "are the link's moments given in kg m^2?",
+                      link.name, moments.z(), link.mass, ring));
     }
   }
 }
@@ -188,7 +189,7 @@ CheckReport on_scene(const std::string& file, const InputOptions& input) {
     report.facts.emplace_back("to touch     nothing");
     if (loaded.document.about.empty()) {
       report.warnings.emplace_back(
-          "nothing is there to touch; where that is meant, `about` says so in the file");
+          "the scene has nothing to touch; if this is intended, say so in the file's key `about`");
     }
     return report;
   }
@@ -236,9 +237,10 @@ CheckReport on(const CheckOptions& options) {
         fmt::format("{0}: a recording or a table; `limpid info {0}` says what a recording holds",
                     options.file));
   }
-  throw FileError(fmt::format(
-      "{}: no file that is known; needed: an arm (.urdf, .xacro), a scene (.toml) or a model ({})",
-      options.file, model_suffixes()));
+  throw FileError(
+      fmt::format("{}: this kind of file is not known; needed: an arm (.urdf, .xacro), a scene "
+                  "(.toml) or a model ({})",
+                  options.file, model_suffixes()));
 }
 
 // Checks the file; whatever goes wrong is an error of the file.
@@ -246,7 +248,7 @@ CheckReport opened(const CheckOptions& options) {
   try {
     return on(options);
   } catch (const std::bad_alloc&) {
-    throw FileError(options.file + ": takes more memory than there is");
+    throw FileError(options.file + ": needs more main memory (RAM) than Limpid can get");
   } catch (const std::exception& e) {
     throw FileError(e.what());
   }
@@ -274,7 +276,8 @@ int check(const CheckOptions& options) {
 }  // namespace
 
 Command declare_check(CLI::App& app) {
-  auto* command = app.add_subcommand("check", "what an arm, a scene or a model is, and its flaws");
+  auto* command =
+      app.add_subcommand("check", "describes an arm, a scene or a model, and lists the flaws");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("FILE", options->file, "an arm, a scene or a model")
       ->transform(or_shipped({"scenes", "devices"}), "", "")
@@ -285,9 +288,9 @@ Command declare_check(CLI::App& app) {
   options->input.add_parameters(*command);
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
-      "Of an arm: its chain, masses, reach and the gains that suit it. --tip LINK says where the "
-      "chain\nends; --device is the arm that a scene is for. Exit status: 0 fine, 1 works but for "
-      "the warnings,\n2 does not work, and why.");
+      "The report on an arm has chain, masses, reach and fitting gains. --tip LINK says where the "
+      "chain\nends; --device is the arm that a scene is for. Exit status: 0 fine, 1 works, with "
+      "warnings,\n2 does not work; the report says why.");
   return [options] { return check(*options); };
 }
 

@@ -13,7 +13,7 @@ namespace limpid {
 namespace {
 
 std::vector<HelpWord> known_device_words() {
-  std::vector<HelpWord> words{{"simulated", "one that is unlike its file"}};
+  std::vector<HelpWord> words{{"simulated", "a simulated device that differs from its file"}};
   try {
     for (const FoundDevice& found : DeviceHub::look()) {
       words.push_back({found.place.id, found.place.name});
@@ -24,7 +24,7 @@ std::vector<HelpWord> known_device_words() {
 }
 
 std::vector<HelpWord> experiment_words() {
-  std::vector<HelpWord> words{{"all", "one after the other"}};
+  std::vector<HelpWord> words{{"all", "all experiments, one after the other"}};
   for (const Experiment& e : experiments()) words.push_back({e.name, e.about});
   return words;
 }

@@ -28,17 +28,17 @@ int say_arm(const ArmOptions& options) {
   const std::string in_use = hub.in_use();
   choose_device(options.device, hub, "");
   if (!hub.may_say_arm()) {
-    throw UsageError(fmt::format(
-        "--arm: {} {}", hub.present()->place.name,
-        hub.notes(hub.in_use()).arm.empty()
-            ? "says itself which arm it is, or has none"
-            : "was identified as an arm of its own; `limpid identify --forget` ends that"));
+    throw UsageError(
+        fmt::format("--arm: {} {}", hub.present()->place.name,
+                    hub.notes(hub.in_use()).arm.empty()
+                        ? "has no arm to choose: the device reports its arm itself, or has no arm"
+                        : "was identified; `limpid identify --forget` removes the identified arm"));
   }
   std::string file = options.arm == kAskAgain ? std::string() : options.arm;
   if (!file.empty() && file != kBuiltInArm) file = std::filesystem::absolute(file).string();
   const std::unique_ptr<Device> device = hub.open_to_look();
   hub.say_arm(file, file.empty() ? std::string() : options.tip, &device->traits());
-  std::string said = "nobody has said any more which arm it is";
+  std::string said = "no arm is chosen for this device any more";
   if (!file.empty()) {
     const TakenArm taken = hub.arm_for(device->traits());
     if (!taken.known) throw UsageError("--arm: " + taken.why);
@@ -101,40 +101,41 @@ int devices(bool json) {
 Command declare_devices(CLI::App& app) {
   auto* command = app.add_subcommand("devices", "lists connected devices and the drivers for them");
   command->footer(
-      "Known are the 3Dconnexion SpaceMouse family, joysticks and wheels with USB PID force "
-      "feedback,\nand devices that speak Limpid's open raw-HID protocol "
-      "(devices/hid/raw_protocol.h),\nalso programs that do so on a socket, "
-      "$XDG_RUNTIME_DIR/limpid/NAME.device\n(assets/python/limpid_device.py), and the Inverse3s of "
-      "a Haply Inverse Service at localhost:10001,\nor where the id of the one in use says: "
-      "inverse3:ID@HOST:PORT. Touch, Omni and Premium (OpenHaptics), omega, delta, sigma, lambda "
-      "and Falcon\n(Force Dimension) are known where their makers' libraries are installed: "
-      "limpid-vendor loads these, and\n`limpid doctor` says which are missing.\n\nRanges and "
-      "levers of its arm bound what a device's motors may do. A device that does not say which arm "
-      "it is\nhas to be told once, here or in the window's Device panel. Until then Limpid takes a "
-      "built-in arm with as many\njoints, and little force.");
+      "Limpid finds these devices: the 3Dconnexion SpaceMouse family, joysticks and wheels with "
+      "USB PID force\nfeedback, devices that speak Limpid's open raw-HID protocol "
+      "(devices/hid/raw_protocol.h), and programs that\nspeak this protocol on a socket, "
+      "$XDG_RUNTIME_DIR/limpid/NAME.device (assets/python/limpid_device.py).\nLimpid also finds "
+      "each Inverse3 of a Haply Inverse Service at localhost:10001, or at the address in the "
+      "id\nof the device in use: inverse3:ID@HOST:PORT. Touch, Omni and Premium (OpenHaptics), "
+      "omega, delta, sigma,\nlambda and Falcon (Force Dimension) are found where their makers' "
+      "libraries are installed: limpid-vendor\nloads the libraries, and `limpid doctor` says which "
+      "libraries are missing.\n\nThe arm's ranges and levers limit what a device's motors may do. "
+      "If a device does not report its arm, choose\nthe arm once, here or in the window's Device "
+      "panel. Until then Limpid uses a built-in arm with the same\nnumber of joints, and little "
+      "force.");
   auto options = std::make_shared<ArmOptions>();
-  auto* arm = command
-                  ->add_option("--arm", options->arm,
-                               fmt::format("which arm the device is: a URDF, or {}; {}: nobody has "
-                                           "said",
-                                           kBuiltInArm, kAskAgain))
-                  ->type_name("FILE.urdf");
-  command->add_option("--tip", options->tip, "the link in that URDF that the hand holds")
+  auto* arm =
+      command
+          ->add_option("--arm", options->arm,
+                       fmt::format("the device's arm: a URDF, or {}; {}: forget the chosen arm",
+                                   kBuiltInArm, kAskAgain))
+          ->type_name("FILE.urdf");
+  command->add_option("--tip", options->tip, "the link of that URDF that the hand holds")
       ->needs(arm);
   command->add_option("DEVICE", options->device,
-                      "with --arm: its id, as listed here; default: the one in use");
+                      "with --arm: the device's id, as listed here; default: the device in use");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "one JSON object on standard output")->excludes(arm);
   const Command look = declare_look(*command);
   return [options, json, command, look] {
     if (!command->get_subcommands().empty()) {
       if (options->device.empty() && options->arm.empty() && !*json) return look();
-      throw UsageError("look: its device and options stand behind it");
+      throw UsageError("look: write device and options after `look`");
     }
     if (!options->arm.empty()) return say_arm(*options);
     if (options->device.empty()) return devices(*json);
     throw UsageError(fmt::format(
-        "{}: a device can be named only together with --arm, which says which arm it is",
+        "{}: a device can be named only together with --arm, which chooses the device's arm",
         options->device));
   };
 }

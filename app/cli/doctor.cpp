@@ -60,7 +60,7 @@ int doctor(bool json) {
   } else {
     print(all);
     fmt::print("\n{}\n", worst == State::fine     ? "all is well"
-                         : worst == State::better ? "all works; something would be better"
+                         : worst == State::better ? "all works; some things can be improved"
                                                   : "something does not work");
   }
   return static_cast<int>(worst);
@@ -69,13 +69,14 @@ int doctor(bool json) {
 }  // namespace
 
 Command declare_doctor(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "doctor", "what is missing here for real time, devices and picture, and what mends it");
+  auto* command = app.add_subcommand("doctor",
+                                     "what is missing on this computer for real time, devices and "
+                                     "picture, and which command repairs it");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "one JSON object on standard output");
   command->footer(
-      "Needs no display, opens no device and changes nothing. Exit status: 0 all is well, 1 all "
-      "works but\nsomething would be better, 2 something does not work.");
+      "The command needs no display, opens no device and changes nothing. Exit status: 0 all is "
+      "well, 1 all works,\nbut some things can be improved, 2 something does not work.");
   return [json] { return doctor(*json); };
 }
 

@@ -95,7 +95,7 @@ int run(const ExperimentOptions& options) {
       write_report(options.out);
     }
   } catch (const Cancelled&) {
-    fmt::print(stderr, "limpid: stopped; the same command goes on from here\n");
+    fmt::print(stderr, "limpid: stopped; the same command continues from here\n");
     return 1;
   } catch (const FileError& e) {  // of the results, not of the input
     throw std::runtime_error(e.what());
@@ -149,12 +149,11 @@ std::string experiment_help() {
     text += fmt::format("  {:<14} {}\n", e.name, e.about);
   }
   return text +
-         "\n"
-         "Writes DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\n"
-         "the trials. Called again with the same DIR it goes on where it was stopped; trials of\n"
-         "another version of the program, or of other inputs, are run again.\n"
-         "Arm, scene and settings are the experiment's own; options for them go with --live.\n"
-         "Exit status 1: a check failed, or it was stopped.";
+         "\nWrites DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\nthe "
+         "trials. Called again with the same DIR, the command continues where it was "
+         "stopped;\ntrials of another version of the program, or of other inputs, are run "
+         "again.\nEach experiment has its own arm, scene and settings; options for these need "
+         "--live.\nExit status 1: a check failed, or the command was stopped.";
 }
 
 }  // namespace
@@ -164,11 +163,12 @@ Command declare_experiment(CLI::App& app) {
       app.add_subcommand("experiment", "one of the paper's experiments: data, figure, verdict");
   auto options = std::make_shared<ExperimentOptions>();
   command->add_option("NAME", options->name, "an experiment, or all")->required();
-  command->add_option("--out", options->out, "the folder for its results")
+  command->add_option("--out", options->out, "the folder for the results")
       ->required()
       ->type_name("DIR");
   require_whole_number(
-      command->add_option("--seed", options->seed, "of all random numbers")->type_name("N"));
+      command->add_option("--seed", options->seed, "the seed of all random numbers")
+          ->type_name("N"));
   command->add_option("--threads", options->threads, "default: one per core")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));

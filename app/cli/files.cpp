@@ -93,8 +93,9 @@ class RowsTold {
   }
   // Describes the recorded contacts; recordings of the first edition have only their torque.
   std::string contacts() const {
-    if (!contacts_) return "where and how hard was not recorded";
-    return fmt::format("the {} hardest of every tick, x, y, z one after the other", kRowContacts);
+    if (!contacts_) return "contact points and forces were not recorded";
+    return fmt::format("the {} strongest contacts of every tick, x, y, z one after the other",
+                       kRowContacts);
   }
 
   std::string file_;
@@ -227,7 +228,7 @@ Session read_and_tell(const InfoOptions& options, RowsTold& told) {
 int info(const InfoOptions& options) {
   const bool to_stdout = options.csv == kStandardOutput;
   if (to_stdout && options.json) {
-    throw UsageError("--json: not together with --csv -, which is standard output as well");
+    throw UsageError("--json: not together with --csv -: both write to standard output");
   }
   if (!to_stdout) keep_apart("--csv", options.csv, std::span(&options.session, 1));
   std::error_code none;
@@ -270,14 +271,14 @@ int recover(const RecoverOptions& options) {
 }  // namespace
 
 Command declare_info(CLI::App& app) {
-  auto* command = app.add_subcommand("info", "what a recording holds");
+  auto* command = app.add_subcommand("info", "says what a recording holds");
   auto options = std::make_shared<InfoOptions>();
   command->add_option("SESSION.h5", options->session, "the recording")
       ->transform(or_shipped({"sessions"}), "", "")
       ->type_name("")
       ->required();
   command->add_flag("--json", options->json, "one JSON object on standard output");
-  command->add_option("--csv", options->csv, "write it as a table; - is standard output")
+  command->add_option("--csv", options->csv, "write the recording as a table; - is standard output")
       ->type_name("OUT.csv");
   command->add_flag("--force", options->force, "replace OUT.csv if it exists");
   return [options] { return info(*options); };
@@ -285,12 +286,14 @@ Command declare_info(CLI::App& app) {
 
 Command declare_recover(CLI::App& app) {
   auto* command =
-      app.add_subcommand("recover", "what a killed recording left, as a proper session file");
+      app.add_subcommand("recover", "makes a session file of a recording that was cut off");
   auto options = std::make_shared<RecoverOptions>();
-  command->add_option("SESSION.h5.part", options->part, "the leftover, with .part at its end")
+  command
+      ->add_option("SESSION.h5.part", options->part,
+                   "the recording that was cut off, a file ending in .part")
       ->type_name("")
       ->required();
-  command->add_option("--out", options->out, "another name or disk, in place of SESSION.h5")
+  command->add_option("--out", options->out, "the file to write, in place of SESSION.h5")
       ->type_name("OUT.h5");
   command->add_flag("--force", options->force, "replace the file if it exists");
   return [options] { return recover(*options); };

@@ -53,7 +53,7 @@ void print(const Identification& identification) {
         timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
   }
   if (identification.torque_scale) {
-    fmt::print("motors         give {} times what they are told\n",
+    fmt::print("motors         give {} times the commanded torque\n",
                text_of(*identification.torque_scale, 1));
   }
 }
@@ -107,7 +107,9 @@ nlohmann::ordered_json rehearse_and_print(const ArmDescription& truth, const Unl
       json[name(kind)][after ? "identified" : "file"] = as_json(r);
     }
   }
-  fmt::print("hand off: its torque in free motion off the one that eta promises, of it\n");
+  fmt::print(
+      "hand off: deviation of the hand's torque in free motion from the torque that eta promises, "
+      "in % of the promised torque\n");
   return json;
 }
 
@@ -137,7 +139,8 @@ Vec3 gravity_of(const std::string& text) {
 
 void ask() {
   if (isatty(STDIN_FILENO) == 0) {
-    throw UsageError("nobody can be asked whether it may move; needed: --yes, or a terminal");
+    throw UsageError(
+        "no terminal to ask a person whether the device may move; needed: --yes, or a terminal");
   }
   const auto wait = [] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -149,9 +152,9 @@ void ask() {
 void ask_to_begin(const IdentifyOptions& options, const Device& device) {
   const IdentifyRequest& order = options.order;
   fmt::print(
-      "{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\n"
-      "Clear the space around it and let go of it; Ctrl-C stops it at once, and so does\n"
-      "holding on to it.\n",
+      "{} will move by itself for about {:.0f} s, through {:.0f} % of its range.\nClear the space "
+      "around the device and let go of the device. Ctrl-C stops the motion at\nonce. Holding the "
+      "device stops the motion as well.\n",
       device.traits().name, Excitation(order.guess, device.traits(), order.plan).duration(),
       100 * order.plan.range);
   if (!options.yes) ask();
@@ -228,7 +231,7 @@ bool moved(const IdentifyOptions& options, const Move& mover, IdentifyRun& bare,
 int identify_simulated(IdentifyOptions& options) {
   IdentifyRequest& order = options.order;
   if (order.masses_right) {
-    throw UsageError("--masses-right: the simulated device has other masses than its file");
+    throw UsageError("--masses-right: the simulated device has other masses than the arm's file");
   }
   SimulatedBench bench = simulated_bench(order, options.seed);
   const auto move = [&](bool with_load, IdentifyProgress& motion) {
@@ -239,7 +242,10 @@ int identify_simulated(IdentifyOptions& options) {
   const Identification done =
       identification(bench.name, order, std::move(bare), std::move(with_load));
   print(done);
-  if (done.torque_scale) fmt::print("{:<15}{:.3f} was drawn\n", "", bench.unlikeness.torque_scale);
+  if (done.torque_scale) {
+    fmt::print("{:<15}{:.3f} is the true value, drawn at random\n", "",
+               bench.unlikeness.torque_scale);
+  }
   bench.unlikeness.torque_scale = 1;  // the identified torques include it
   const ordered_json rehearsal{{"rehearsal", rehearse_and_print(bench.truth, bench.unlikeness,
                                                                 order.guess, done.found.arm)}};
@@ -256,12 +262,14 @@ int identify_device(IdentifyOptions options) {
   read_world(options.input, order.guess, scene);
   if (options.device == kSimulated) return identify_simulated(options);
   if (options.yes && order.load > 0) {
-    throw UsageError("--yes: with --load somebody has to be asked to fix it to the tip");
+    throw UsageError(
+        "--yes: not together with --load: a person must be asked to fix the load to the tip");
   }
   DeviceHub hub(device_store_file(), {});
   const std::string in_use = hub.in_use();
-  const std::unique_ptr<Device> device = open_device(
-      options.device, hub, fmt::format(", and \"{}\" tries it without one", kSimulated));
+  const std::unique_ptr<Device> device =
+      open_device(options.device, hub,
+                  fmt::format(", and \"{}\" tries the command without a device", kSimulated));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
   // A named arm wins over the one identified before.
   order.guess = options.input.device.empty() ? arm_of_device(device->traits(), hub, options.input)
@@ -282,7 +290,7 @@ int identify_device(IdentifyOptions options) {
     throw std::runtime_error(wrong);
   }
   save(hub, in_use);
-  fmt::print("remembered: {} is this arm from now on; --forget ends that\n", name);
+  fmt::print("stored: {} uses this arm from now on; --forget removes the arm\n", name);
   return status;
 }
 
@@ -290,12 +298,13 @@ int identify_device(IdentifyOptions options) {
 
 Command declare_identify(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "identify", "moves a device by itself and finds its inertia, friction, weight and delay");
+      "identify", "moves a device and finds the device's inertia, friction, weight and delay");
   auto options = std::make_shared<IdentifyOptions>();
-  command->add_option("DEVICE", options->device,
-                      fmt::format("its id, as `limpid devices` lists it, or \"{}\": one that is "
-                                  "unlike its file, drawn by --seed; default: the one in use",
-                                  kSimulated));
+  command->add_option(
+      "DEVICE", options->device,
+      fmt::format("the device's id, as `limpid devices` lists it, or \"{}\": a simulated device "
+                  "that differs from its file, drawn by --seed; default: the device in use",
+                  kSimulated));
   options->input.add_world(*command);
   command
       ->add_option("--out", options->out,
@@ -304,29 +313,31 @@ Command declare_identify(CLI::App& app) {
   command->add_option("--gravity", options->gravity,
                       "none, or X,Y,Z [m/s^2] in the frame of the arm's base");
   command
-      ->add_option("--range", options->order.plan.range, "part of each joint's range that is used")
+      ->add_option("--range", options->order.plan.range,
+                   "share of each joint's range that the motion uses")
       ->check(CLI::Range(0.05, 0.9));
   command
       ->add_option("--torque", options->order.plan.torque,
-                   "share of the motors' torque limits that is used")
+                   "share of the motors' torque limits that the motion uses")
       ->check(CLI::Range(0.05, 1.0));
-  auto* load =
-      command
-          ->add_option("--load", options->order.load,
-                       "mass that you will fix to the tip for a second motion, which tells "
-                       "what the motors really give [kg]")
-          ->check(CLI::Range(kLeastLoad, kMostLoad));
+  auto* load = command
+                   ->add_option("--load", options->order.load,
+                                "mass that you will fix to the tip for a second motion; this "
+                                "motion shows the motors' true torque [kg]")
+                   ->check(CLI::Range(kLeastLoad, kMostLoad));
   command
       ->add_flag("--masses-right", options->order.masses_right,
-                 "the arm's file has the masses right: they tell what the motors really give")
+                 "the masses in the arm's file are right: Limpid finds the motors' true torque "
+                 "from these masses")
       ->excludes(load);
-  require_whole_number(command->add_option("--seed", options->seed, "of the simulated device"));
+  require_whole_number(
+      command->add_option("--seed", options->seed, "the seed of the simulated device"));
   command->add_flag("--yes", options->yes, "begin without asking");
-  command->add_flag("--forget", options->forget, "take the device for its file's arm again");
+  command->add_flag("--forget", options->forget, "forget the identified arm of the device");
   command->footer(
-      "Nobody may hold the device meanwhile. The motion ends at once on Ctrl-C, when something "
-      "holds it, when it\nfalls silent, and at every limit of safety. The URDF holds what was "
-      "found: limpid --device OUT/identified.urdf");
+      "Nobody may hold the device during the motion. The motion ends at once on Ctrl-C, when "
+      "something holds the\ndevice, when the device sends no readings, and at every safety limit. "
+      "The result is a URDF:\nlimpid --device OUT/identified.urdf");
   return [options] { return identify_device(*options); };
 }
 

@@ -15,7 +15,8 @@ std::string walls_text(const SafeWalls& walls) {
 }
 
 std::string why_text(const SafeWalls& walls) {
-  return walls.hand ? fmt::format("{}; the hand of {:.4g} N/m", walls.why, *walls.hand) : walls.why;
+  return walls.hand ? fmt::format("{}; in the hand of {:.4g} N/m", walls.why, *walls.hand)
+                    : walls.why;
 }
 
 void print_bound(const NamedBound& bound) {
@@ -66,8 +67,9 @@ void print_in_hands(const InHands& found, std::span<const CouplingKind> told) {
     const SafeWalls& walls = found.laws[static_cast<std::size_t>(kind)].in_range;
     fmt::print("stable walls, {:<12} {:>10}  {}\n", name(kind), walls_text(walls), why_text(walls));
   }
-  fmt::print("eta, proposed              {:>10.4f}  the least that is stable there\n",
-             found.eta_min);
+  fmt::print(
+      "eta, proposed              {:>10.4f}  the smallest eta that is stable in all these hands\n",
+      found.eta_min);
   fmt::print("\nin every passive hand\n");
   for (const CouplingKind kind : told) {
     const SafeWalls& walls = found.laws[static_cast<std::size_t>(kind)].in_any_hand;
@@ -78,17 +80,17 @@ void print_in_hands(const InHands& found, std::span<const CouplingKind> told) {
   print_bound(found.stepped);
   fmt::print("eta_min, proposed          {:>10.4f}  (25)\n", found.eta_min_any);
   fmt::print(
-      "\nLlewellyn's criterion, stable from 1 on (hand and contact passive, of the least "
-      "damped joint)\n");
+      "\nLlewellyn's criterion for the least damped joint: stable at 1 and above, if hand and "
+      "contact are passive\n");
   for (const CouplingKind kind : told) {
     const LawInHands& law = found.laws[static_cast<std::size_t>(kind)];
     std::string least;
     if (law.two_port) {
-      least =
-          fmt::format("least {:.4g} at {:.4g} Hz: {}", law.two_port->least, law.two_port->frequency,
-                      law.two_port->fails_from
-                          ? fmt::format("fails from {:.4g} Hz on; ", *law.two_port->fails_from)
-                          : "holds; ");
+      least = fmt::format("lowest value {:.4g} at {:.4g} Hz: {}", law.two_port->least,
+                          law.two_port->frequency,
+                          law.two_port->fails_from
+                              ? fmt::format("fails from {:.4g} Hz on; ", *law.two_port->fails_from)
+                              : "holds; ");
     }
     fmt::print("{:<26} {}{}\n", name(kind), least, law.two_port_why);
   }

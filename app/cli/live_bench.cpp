@@ -39,11 +39,11 @@ void LiveOptions::add(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--live", [this](const std::string& id) { device = id; },
-          "a real device and your hand on it, not a path: its id, as `limpid devices` lists it; "
-          "default: the one in use")
+          "use a real device with your hand, not a path: the device's id, as `limpid devices` "
+          "lists it; default: the device in use")
       ->type_name("[ID]")
       ->expected(0, 1);
-  command.add_flag("--yes", yes, "with --live: begin without asking");
+  command.add_flag("--yes", yes, "with --live: begin without a question");
 }
 
 void choose_device(const std::string& id, DeviceHub& hub, const std::string& otherwise) {
@@ -66,10 +66,10 @@ std::unique_ptr<Device> open_device(const std::string& id, DeviceHub& hub,
                                     const std::string& otherwise) {
   choose_device(id, hub, otherwise);
   const auto refuse = [&] [[noreturn]] {
-    throw UsageError(fmt::format(
-        "{}: its axes must be checked before it may push; start limpid, choose the device in the "
-        "Device panel and press \"Check the axes\"",
-        hub.present()->place.name));
+    throw UsageError(
+        fmt::format("{}: the axes must be checked before the device may push; start limpid, choose "
+                    "the device in the Device panel and press \"Check the axes\"",
+                    hub.present()->place.name));
   };
   if (hub.needs_check() && hub.present()->missing.empty()) refuse();
   try {
@@ -93,7 +93,8 @@ ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
 
 LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {
   if (!yes_ && isatty(STDIN_FILENO) == 0) {
-    throw UsageError("nobody can be asked whether it may push; needed: --yes, or a terminal");
+    throw UsageError(
+        "no terminal to ask a person whether the device may push; needed: --yes, or a terminal");
   }
   DeviceHub hub(device_store_file(), by_rtkit());
   std::unique_ptr<Device> device = open_device(*options.device, hub, "");
@@ -158,7 +159,7 @@ void LiveBench::WithoutForce::judge(double seconds) const {
   if (time <= kWorthSaying) return;
   fmt::print(stderr, "limpid: {:.2f} s were without force: {}\n", time, explain(why));
   if (time > seconds * kMostWithoutForce) {
-    throw std::runtime_error("too long to say anything of the coupling; once more");
+    throw std::runtime_error("the device was without force for too long; repeat the trial");
   }
 }
 

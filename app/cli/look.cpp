@@ -72,9 +72,9 @@ struct LookEnd {
 
 void announce(const std::string& name, double seconds) {
   fmt::print(stderr,
-             "limpid: {} is read for {:.3g} s and gets no force: it never pushes. Move each joint "
-             "slowly to both of its ends, hold still for a second, press its buttons; Ctrl-C ends "
-             "it.\n",
+             "limpid: {} is read for {:.3g} s and gets no force: the device never pushes. Move "
+             "each joint slowly to both of its ends, hold the device still for a second, press its "
+             "buttons; Ctrl-C ends the reading.\n",
              name, seconds);
 }
 
@@ -138,26 +138,27 @@ int run_look(const LookOptions& options) {
 }  // namespace
 
 Command declare_look(CLI::App& devices) {
-  auto* command =
-      devices.add_subcommand("look", "reads a device for a while and records it; it never pushes");
+  auto* command = devices.add_subcommand(
+      "look", "reads a device for some time and records the readings; the device gets no force");
   auto options = std::make_shared<LookOptions>();
   command->add_option("DEVICE", options->device,
-                      "its id, as `limpid devices` lists it; default: the one in use");
-  command->add_option("--record", options->record, "the session file for what it reads")
+                      "the device's id, as `limpid devices` lists it; default: the device in use");
+  command->add_option("--record", options->record, "the session file for the readings")
       ->required()
       ->type_name("OUT.h5");
-  require_above_zero(
-      command->add_option("--seconds", options->seconds, "how long; Ctrl-C ends it before")
-          ->type_name("S")
-          ->capture_default_str(),
-      kMostLookSeconds, "s");
+  require_above_zero(command
+                         ->add_option("--seconds", options->seconds,
+                                      "how long to read; Ctrl-C ends the reading earlier")
+                         ->type_name("S")
+                         ->capture_default_str(),
+                     kMostLookSeconds, "s");
   command->add_flag("--force", options->force, "replace OUT.h5 if it exists");
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
-      "Force is off and cannot be armed: no torque is sent to the device, whatever a law computes. "
-      "Its axes need\nno check before. The arm is the one that the device names, or that was "
-      "identified or chosen for it; otherwise a\nbuilt-in one with as many joints. The session is "
-      "what Limpid's authors need of a device that they have never seen.");
+      "Force is off and cannot be armed: no torque is sent to the device. The device's axes need "
+      "no check before.\nThe arm is the one that the device reports, or that was identified or "
+      "chosen for the device; otherwise a\nbuilt-in arm with the same number of joints. Send the "
+      "session to Limpid's authors if they do not know your\ndevice.");
   return [options] { return run_look(*options); };
 }
 

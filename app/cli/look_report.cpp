@@ -89,7 +89,7 @@ std::string causes_text(const DeviceSeen& seen) {
   for (std::size_t i = 1; i < seen.no_force.size(); ++i) {
     if (seen.no_force[i] <= 0) continue;
     const std::string words = device_words({.no_force = static_cast<NoForce>(i)});
-    text += look_line("force of its own", fmt::format("{:.2f} s: {}", seen.no_force[i], words));
+    text += look_line("device's force off", fmt::format("{:.2f} s: {}", seen.no_force[i], words));
   }
   return text;
 }
@@ -100,20 +100,21 @@ std::string state_text(const DeviceSeen& seen) {
   };
   const std::vector<int> buttons = pressed(seen);
   std::string text =
-      look_line("buttons", buttons.empty() ? "none was pressed"
+      look_line("buttons", buttons.empty() ? "no button was pressed"
                                            : fmt::format("pressed: {}", fmt::join(buttons, ", "))) +
-      look_line("hand", for_some_time(seen.without_hand, "on it all the time, or it has no switch",
-                                      "none on its switch")) +
+      look_line("hand", for_some_time(seen.without_hand,
+                                      "on the switch all the time, or the device has no switch",
+                                      "no hand on the switch")) +
       look_line("calibration", for_some_time(seen.uncalibrated, "no complaint", "not calibrated")) +
       look_line("fault", for_some_time(seen.fault, "none", "reported")) + causes_text(seen);
   if (seen.warmth > 0) {
-    text += look_line("warmth", fmt::format("{:.0f} % of what its hottest motor bears, at most",
+    text += look_line("warmth", fmt::format("at most {:.0f} % of the hottest motor's thermal limit",
                                             100 * seen.warmth));
   }
   if (seen.unbelieved > 0) {
-    text +=
-        look_line("wrong readings",
-                  fmt::format("{} said what cannot be, and are not in the table", seen.unbelieved));
+    text += look_line(
+        "wrong readings",
+        fmt::format("{} readings were impossible, and are not in the table", seen.unbelieved));
   }
   return text;
 }
@@ -149,9 +150,10 @@ std::string look_text(const LookedDevice& device, const DeviceSeen& seen) {
       look_line("arm", device.arm_why);
   if (!traits.made_by.empty()) text += look_line("driven by", traits.made_by);
   text +=
-      look_line("motors", traits.pushes ? "it has some, and got no force" : "it has none") +
+      look_line("motors",
+                traits.pushes ? "the device has motors, and got no force" : "it has none") +
       look_line("axes", device.checked ? "adjusted as they were checked"
-                                       : "as the device has them; nobody has checked them") +
+                                       : "as the device reports them; not checked yet") +
       look_line("joints", std::to_string(traits.dof)) +
       look_line("readings",
                 fmt::format("{}, {:.0f} a second{}; between two {:.2f} ms in the middle, {:.1f} ms "

@@ -181,10 +181,10 @@ void write_icons(const fs::path& folder) {
 }  // namespace
 
 Command declare_share(CLI::App& app, std::vector<ManualKey> keys) {
-  auto* command = app.add_subcommand("share", "writes the manual and icons, to be installed");
+  auto* command = app.add_subcommand("share", "writes the manual and icons for an installation");
   command->group("");
   auto into = std::make_shared<std::string>();
-  command->add_option("DIR", *into, "the folder for them")->required();
+  command->add_option("DIR", *into, "the folder for manual and icons")->required();
   return [into, &app, keys = std::move(keys)] {
     write_pages(app, fs::path(*into) / "man/man1");
     write_icons(fs::path(*into) / "icons/hicolor");
@@ -196,7 +196,7 @@ Command declare_share(CLI::App& app, std::vector<ManualKey> keys) {
 Command declare_manual(CLI::App& app) {
   auto* command = app.add_subcommand("manual", "opens the manual in the browser");
   auto path = std::make_shared<bool>(false);
-  command->add_flag("--path", *path, "only print where it is");
+  command->add_flag("--path", *path, "only print where the manual is");
   return [path] {
     const fs::path file = manual_file();
     if (file.empty()) {

@@ -104,10 +104,10 @@ void vary(RunPlan& plan, const InputOptions& options) {
   const HandPath& hand = plan.hand;
   const bool held = std::ranges::all_of(hand.grip, [](double grip) { return grip == 1; });
   if (!held || !plan.hand_torque.empty() || !hand.magnet.empty() || !hand.pull.empty()) {
-    throw UsageError(fmt::format(
-        "--variation: --hand {} does more than follow a path: it lets go, or has torques, a magnet "
-        "or pulls, which have no variations; needed: a path alone",
-        options.hand));
+    throw UsageError(
+        fmt::format("--variation: --hand {} is more than a path: the hand lets go, or has torques, "
+                    "a magnet or pulls, which have no variations; needed: only a path",
+                    options.hand));
   }
   plan.hand = varied(plan.hand, plan.seed, *options.variation);
 }
@@ -142,7 +142,7 @@ void InputOptions::add_parameters(CLI::App& command) {
       ->type_name("FILE.toml")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--set", settings, "one parameter; repeatable")
+  command.add_option("--set", settings, "set one parameter; repeatable")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -168,9 +168,9 @@ std::function<std::string(std::string)> or_shipped(Kinds kinds) {
 void InputOptions::add_world(CLI::App& command) {
   command
       .add_option("--device", device,
-                  "the arm; default: the built-in one, like an Omni but ideal. "
-                  "inverse3[:ID][@HOST[:PORT]]: the "
-                  "Inverse3 of a Haply Inverse Service in the window, elsewhere an arm like it")
+                  "the arm; default: the built-in arm, like an Omni but ideal. "
+                  "inverse3[:ID][@HOST[:PORT]]: in the window the Inverse3 of a Haply Inverse "
+                  "Service, in other commands an arm like the Inverse3")
       ->transform(or_shipped({"devices"}), "", "")
       ->type_name("FILE.urdf");
   command
@@ -184,8 +184,8 @@ void InputOptions::add_world(CLI::App& command) {
 
 void InputOptions::add_readings(CLI::App& command) {
   command.add_flag("--readings", readings,
-                   "encoder steps and a known delay as the arm's file says, such as touch.urdf's; "
-                   "without it encoders are exact and prompt, unless set");
+                   "use encoder steps and delay of the arm's file (touch.urdf has both); without "
+                   "this option encoders are exact and have no delay, unless set");
 }
 
 void InputOptions::add_hand(CLI::App& command) {
@@ -200,11 +200,11 @@ void InputOptions::add_hand(CLI::App& command) {
   require_above_zero(length, kLongestRun, "s");
   command
       .add_option("--variation", variation,
-                  "a small random variation of the hand, by its number, as if the same person led "
-                  "it another time (as `repeats` of a sweep); default: 0, none")
+                  "number of a small random variation of the hand's path, as if the same person "
+                  "repeated the motion (like `repeats` of a sweep); default: 0, no variation")
       ->type_name("I")
       ->check(whole_number());
-  command.add_option("--seed", seed, "which hands the variations are; nothing else is random")
+  command.add_option("--seed", seed, "the seed of the hand's variations; nothing else is random")
       ->type_name("N")
       ->check(whole_number());
 }
@@ -273,8 +273,8 @@ RunPlan make_plan(const InputOptions& options) {
   if (is_session(options.hand)) {
     if (options.readings) {
       throw UsageError(
-          "--readings: a recorded session has settings of its own; --set device.encoder_step and "
-          "device.delay change them");
+          "--readings: not together with a recorded session, which has its own settings; change "
+          "the settings with --set device.encoder_step and --set device.delay");
     }
     plan = plan_from_session(options);
   } else {

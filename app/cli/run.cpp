@@ -65,11 +65,13 @@ int run_live(const LiveRunOptions& options) {
   RunWatch watch(plan.arm, plan.layout(), plan.parameters);
   const double seconds = options.input.duration.value_or(kLiveSeconds);
   if (options.measure_grip && seconds < grip_run_duration()) refuse_short_grip();
-  LiveTask task{fmt::format("Take hold of {}: {:.3g} s, as you like.", plan.arm.name, seconds),
-                seconds, options.record, options.force};
+  LiveTask task{
+      fmt::format("Take hold of {} and move it for {:.3g} s, as you like.", plan.arm.name, seconds),
+      seconds, options.record, options.force};
   if (options.measure_grip) {
-    task.instruction = fmt::format("Hold {} still, away from walls, as you will use it: {:.3g} s.",
-                                   plan.arm.name, seconds);
+    task.instruction = fmt::format(
+        "Hold {} still, away from walls, with the grip that you will use, for {:.3g} s.",
+        plan.arm.name, seconds);
     task.measure_grip = true;
   }
   GripRecord grip(plan.layout(), plan.parameters.tick);
@@ -111,7 +113,7 @@ void finish(Recorder& recorder) {
     recorder.finish();
   } catch (const FileError& e) {
     throw std::runtime_error(
-        fmt::format("{}; what was recorded up to there is in {}.part (limpid recover)", e.what(),
+        fmt::format("{}; the recording up to that moment is in {}.part (limpid recover)", e.what(),
                     recorder.out().string()));
   }
 }
@@ -148,14 +150,14 @@ void add_lanes(const RunOptions& options, RunPlan& plan) {
     const auto& settings = options.beside[lane - 1];
     if (settings && last) {
       throw UsageError(
-          fmt::format("{}: needs {} beside it", lane_option(lane), lane_option(lane - 1)));
+          fmt::format("{}: needs {} as well", lane_option(lane), lane_option(lane - 1)));
     }
     last = !settings;
     if (!settings) continue;
     Lane added{plan.parameters, {}};
     for (const std::string& setting : *settings) apply_setting(added.parameters, setting);
     if (added.parameters.tick != plan.parameters.tick) {
-      throw UsageError(lane_option(lane) + " loop.tick: all runs go in the same ticks");
+      throw UsageError(lane_option(lane) + " loop.tick: all runs must have the same tick");
     }
     if (settings->empty()) added.parameters.kind = law_beside(plan.settings());
     plan.beside.push_back(std::move(added));
@@ -298,19 +300,22 @@ void say_about(const RunPlan& plan) {
   }
   if (const std::string filed = readings_text(plan.arm, plan.parameters);
       !again && !filed.empty()) {
-    fmt::print(stderr, "limpid: note: {}: {}; --readings takes the file's\n", plan.arm.name, filed);
+    fmt::print(stderr, "limpid: note: {}: {}; --readings takes the values of the arm's file\n",
+               plan.arm.name, filed);
   }
 }
 
 int live(const RunOptions& options) {
   const auto refuse = [](bool given, std::string_view what) {
     if (given)
-      throw UsageError(fmt::format("{}: not together with --live; the hand is yours", what));
+      throw UsageError(
+          fmt::format("{}: not together with --live: your own hand leads the device", what));
   };
   refuse(!options.input.hand.empty(), "--hand");
   refuse(options.input.variation.has_value(), "--variation");
   if (options.input.readings)
-    throw UsageError("--readings: not together with --live; the device has its own");
+    throw UsageError(
+        "--readings: not together with --live: the device has its own encoder step and delay");
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     refuse(options.beside[lane - 1].has_value(), lane_option(lane));
   }
@@ -373,19 +378,19 @@ int run(const RunOptions& options) {
 }  // namespace
 
 Command declare_run(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("run", "runs the same loop without a window, as fast as possible");
+  auto* command = app.add_subcommand(
+      "run", "runs the window's control loop without a window, as fast as possible");
   auto options = std::make_shared<RunOptions>();
   command->add_option("--record", options->record, "write every tick to this session file")
       ->type_name("OUT.h5");
   command
       ->add_option("--picture", options->picture,
-                   "draw the moment of the strongest contact into this file")
+                   "draw a picture of the strongest contact into this file")
       ->type_name("OUT.png");
   command->add_flag("--force", options->force, "replace OUT.h5 and OUT.png if they exist");
   command->add_flag("--json", options->json,
-                    "what came of it as one JSON object, instead of lines");
-  command->add_flag("--realtime", options->realtime, "pace at the tick rate");
+                    "print the results as one JSON object, instead of lines");
+  command->add_flag("--realtime", options->realtime, "run in real time, at the tick rate");
   command->add_flag(
       "--measure-grip", options->measure_grip,
       fmt::format("measure how the hand holds the device: for {:.3g} s the motors add "
@@ -400,8 +405,9 @@ Command declare_run(CLI::App& app) {
               options->beside[lane - 1] = settings;
               std::erase(*options->beside[lane - 1], "");  // from the option alone
             },
-            fmt::format("a {} run on the same hand beside this one: with the standard coupling, or "
-                        "another law if that one is there, or with these settings changed",
+            fmt::format("a {} run at the same time, with the same hand: with the standard coupling "
+                        "(another law if a run has the standard coupling already), or with these "
+                        "settings changed",
                         lane_ordinal(lane)))
         ->type_name("[KEY=VALUE ...]")
         ->expected(0, -1)

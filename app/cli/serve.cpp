@@ -99,7 +99,7 @@ class Worlds {
 struct RealDevice {
   RealDevice(const std::string& id, const InputOptions& input, ServedSession::World& world) {
     if (!input.hand.empty())
-      throw UsageError("--hand: not together with --live; the hand is yours");
+      throw UsageError("--hand: not together with --live: your own hand leads the device");
     DeviceHub hub(device_store_file(), by_rtkit());
     device = open_device(id, hub, "");
     const DeviceTraits& traits = device->traits();
@@ -162,24 +162,24 @@ Command declare_serve(CLI::App& app) {
   auto options = std::make_shared<ServeOptions>();
   command
       ->add_option("NAME", options->name,
-                   "of the socket, $XDG_RUNTIME_DIR/limpid/NAME.control; default: control")
+                   "the name of the socket $XDG_RUNTIME_DIR/limpid/NAME.control; default: control")
       ->type_name("");
   options->input.add_world(*command);
   command
       ->add_option("--hand", options->input.hand,
-                   "the virtual arm's hand: its path, or a recorded session; default: nobody holds "
-                   "the arm")
+                   "the path of the virtual arm's hand, or a recorded session; default: nobody "
+                   "holds the arm")
       ->transform(or_shipped({"hands", "sessions"}), "", "")
       ->type_name("FILE.csv|FILE.h5");
   command
       ->add_option_function<std::string>(
           "--live", [options](const std::string& id) { options->device = id; },
-          "a real device and your hand on it: its id, as `limpid devices` lists it; default: the "
-          "one in use. Its second button arms the force, and nothing else here does")
+          "use a real device with your hand: the device's id, as `limpid devices` lists it; "
+          "default: the device in use. Only the device's second button arms the force")
       ->type_name("[ID]")
       ->expected(0, 1);
   command->add_flag("--until-eof", options->until_eof,
-                    "end when standard input ends, as it does when the calling program ends");
+                    "end when standard input ends: standard input ends with the calling program");
   options->input.add_parameters(*command);
   command->footer(
       "Each line is one JSON object, and so is each answer: {\"id\": 1, \"do\": \"set\", "

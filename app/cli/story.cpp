@@ -91,15 +91,19 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
 
 Command declare_story(CLI::App& app, MakeVideo make_video) {
   auto* command = app.add_subcommand(
-      "story", "a script that plays itself: what happens in each step, a session, a video");
+      "story",
+      "runs a script (a story): prints what happens in each step, writes a session or a video");
   auto options = std::make_shared<StoryOptions>();
-  command->add_option("FILE.toml", options->script, "the script; default: the one that comes along")
+  command
+      ->add_option("FILE.toml", options->script,
+                   "the script; default: first.toml, which is installed with Limpid")
       ->transform(or_shipped({"stories"}), "", "")
       ->type_name("");
   auto* record =
       command->add_option("--record", options->record, "write both runs to this session file")
           ->type_name("OUT.h5");
-  auto* check = command->add_flag("--check", options->check, "read the script and list its steps");
+  auto* check = command->add_flag("--check", options->check,
+                                  "read the script and list the steps, without running them");
   options->video.add(*command);
   CLI::Option* video = command->get_option("--video");
   command->get_option("--force")->remove_needs(video);  // also for a session

@@ -20,7 +20,10 @@
 namespace limpid {
 
 void check_point(const SweepPlan& plan, std::uint64_t index) {
-  if (plan.boundary) throw UsageError("--open: a point of a boundary is many runs");
+  if (plan.boundary) {
+    throw UsageError(
+        "--open: not for a plan with a boundary: each point of a boundary is many runs");
+  }
   if (index < plan.points()) return;
   throw UsageError(fmt::format("--open {}: is not allowed; allowed: a point from 0 to {}", index,
                                plan.points() - 1));
@@ -97,7 +100,7 @@ class Sweeping {
     if (!options_.gather) {
       const bool finished = work(alone);
       if (!finished && alone) book_.write();
-      if (!finished) return stopped("the same command goes on from here");
+      if (!finished) return stopped("the same command continues from here");
     }
     if (!alone && !first && !options_.gather) return 0;
     book_.gather();
@@ -145,9 +148,10 @@ class Sweeping {
     }
     if (book_.complete()) return finish();
     book_.write();
-    return stopped(fmt::format(
-        "its tasks go on, and the same command collects their results; scancel -n {} ends them",
-        array.name()));
+    return stopped(
+        fmt::format("the tasks continue, and the same command collects the results; scancel -n {} "
+                    "ends the tasks",
+                    array.name()));
   }
 
   int stopped(const std::string& advice) {
@@ -195,7 +199,7 @@ int sweep(const SweepOptions& options) {
   try {
     return Sweeping(options, share, plan, folder).carry_out();
   } catch (const FileError& e) {  // of the results, not of the input
-    throw std::runtime_error(fmt::format("{}; the same command goes on from here", e.what()));
+    throw std::runtime_error(fmt::format("{}; the same command continues from here", e.what()));
   }
 }
 
@@ -213,22 +217,22 @@ Command declare_sweep(CLI::App& app) {
   auto* command =
       app.add_subcommand("sweep", "runs all combinations of a plan's values and writes one table");
   auto options = std::make_shared<SweepOptions>();
-  command->add_option("PLAN.toml", options->plan, "what is varied and what is measured")
+  command->add_option("PLAN.toml", options->plan, "the plan: what is varied and what is measured")
       ->transform(or_shipped({"sweeps"}), "", "")
       ->required()
       ->type_name("");
-  command->add_option("--out", options->out, "the folder for its results")
+  command->add_option("--out", options->out, "the folder for the results")
       ->required()
       ->type_name("DIR");
   command->add_option("--threads", options->threads, "default: one per core; one under mpirun")
       ->type_name("N")
       ->check(CLI::Range(1u, kMostThreads));
-  auto* shard =
-      command->add_option("--shard", options->shard, "only the I-th of N parts")->type_name("I/N");
+  auto* shard = command->add_option("--shard", options->shard, "run only the I-th of N parts")
+                    ->type_name("I/N");
   auto* gather = command->add_flag("--gather", options->gather,
-                                   "run nothing, only put together the results so far");
-  auto* mpi = command->add_flag("--mpi", options->mpi, "the part of this rank under mpirun");
-  auto* slurm = command->add_flag("--slurm", options->slurm, "as an array job of Slurm");
+                                   "run nothing; only collect the existing results");
+  auto* mpi = command->add_flag("--mpi", options->mpi, "run the part of this rank, under mpirun");
+  auto* slurm = command->add_flag("--slurm", options->slurm, "run as an array job of Slurm");
   for (auto* one : {shard, gather, mpi, slurm}) {
     for (auto* other : {shard, gather, mpi, slurm}) {
       if (one != other) one->excludes(other);
@@ -248,14 +252,15 @@ Command declare_sweep(CLI::App& app) {
       ->needs(slurm);
   command
       ->add_option("--open", options->open,
-                   "runs that point again, records it in DIR/points and plays it")
+                   "run this point again, record the run in DIR/points and play the recording")
       ->type_name("POINT");
-  command->add_flag("--csv", options->csv, "DIR/table.csv, too");
+  command->add_flag("--csv", options->csv, "write DIR/table.csv as well");
   command->add_flag("--allow-xacro", options->xacro,
                     "expand arms in xacro that the plan names: this runs code in them");
   command->footer(
-      "How to write a plan: assets/sweeps/README.md. Writes DIR/table.h5, and its parts while it\n"
-      "runs. Called again it goes on where it was stopped, or killed.\n\n" +
+      "How to write a plan: assets/sweeps/README.md. The command writes DIR/table.h5, and parts of "
+      "the table while\nthe sweep runs. Called again, the command continues where the sweep was "
+      "stopped or killed.\n\n" +
       measure_help());
   return [options] { return sweep(*options); };
 }

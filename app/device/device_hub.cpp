@@ -194,13 +194,13 @@ std::function<std::unique_ptr<Device>()> DeviceHub::opening() const {
     const DeviceNotes& notes = opening.notes;
     if (!notes.checked) {
       throw UncheckedError(
-          fmt::format("{}: its axes must be checked before it may push", traits.name));
+          fmt::format("{}: the axes must be checked before the device may push", traits.name));
     }
     const std::string now = what_it_is(traits.name, traits.dof);
     if (!notes.checked_as.empty() && notes.checked_as != now) {
       throw UncheckedError(
-          fmt::format("{}: its axes must be checked before it may push; those that were checked "
-                      "under its id are of another device: {}",
+          fmt::format("{}: the axes must be checked before the device may push; the stored check "
+                      "under this id is of another device: {}",
                       now, notes.checked_as));
     }
     return opened;
@@ -211,7 +211,7 @@ std::string DeviceHub::remember(const Profile& profile) {
   DeviceNotes& notes = DeviceHub::notes(store_.in_use);
   const double scale = notes.torque_scale * profile.torque_scale;
   if (scale < kLeastTorqueScale || scale > kMostTorqueScale) {
-    return fmt::format("the motors would give {:.3g} times what they are told; believed: {} to {}",
+    return fmt::format("the motors would give {:.3g} times the commanded torque; allowed: {} to {}",
                        scale, kLeastTorqueScale, kMostTorqueScale);
   }
   const std::filesystem::path arm = nature_file(store_.in_use, ".urdf");

@@ -70,19 +70,18 @@ inline constexpr std::array kPidFields{
                        "How far the stick tilts to each side.", {0.0873, 1.047}),
     Field<PidSettings>(
         "effort", "full force", &PidSettings::effort, {0.01, 50, false, "N m"},
-        "The joystick's own torque at full force, measured or from its data sheet: USB gives "
-        "forces without a unit. Too low a value here makes it push too hard.",
+        "The joystick's torque at full force, measured or from the data sheet: USB gives forces "
+        "without a unit. If this value is too low, the joystick pushes too hard.",
         {0.05, 10, true}),
 };
 inline constexpr std::array kAxisFields{
     Field<AxisAdjustment>("zero", "zero", &AxisAdjustment::zero, {-100, 100, false, "rad"}, ""),
-    Field<AxisAdjustment>(
-        "scale", "scale", &AxisAdjustment::scale, {0.1, 10},
-        "Joint angle for an angle of the device. Torques are scaled alike, so that the power at "
-        "the hand stays the power in the loop.",
-        {0.1, 10, true}),
+    Field<AxisAdjustment>("scale", "scale", &AxisAdjustment::scale, {0.1, 10},
+                          "Joint angle divided by the angle of the device. Torques are scaled as "
+                          "well, so that the power at the hand equals the power in the loop.",
+                          {0.1, 10, true}),
     Field<AxisAdjustment>("inverted", "invert", &AxisAdjustment::inverted, {0, 1},
-                          "Turns the axis round, its torque with it."),
+                          "Reverses the sign of the axis and of its torque."),
 };
 // The settings of the same names, without their tables.
 inline constexpr auto kOwnForcesFields = [] {

@@ -12,7 +12,7 @@ namespace limpid {
 namespace {
 
 constexpr const char* kSayWhich =
-    "say which arm it is, in the device panel or by `limpid devices ID --arm FILE.urdf`";
+    "choose the device's arm, in the device panel or by `limpid devices ID --arm FILE.urdf`";
 
 bool has_own(const DeviceKind* kind) { return kind != nullptr && *kind->arm != '\0'; }
 
@@ -29,8 +29,8 @@ ArmDescription built_in(const DeviceTraits& traits) {
   if (traits.dof >= 1 && static_cast<std::size_t>(traits.dof) <= kBuiltIn.size()) {
     return shipped(kBuiltIn[static_cast<std::size_t>(traits.dof) - 1]);
   }
-  throw UnknownArmError(
-      fmt::format("{} has {}, and no built-in arm has as many", traits.name, joints(traits.dof)));
+  throw UnknownArmError(fmt::format("{} has {}; no built-in arm has so many joints", traits.name,
+                                    joints(traits.dof)));
 }
 
 // Reads a known arm's file. An error adds `what_to_do`, as no other arm may take its place unasked.
@@ -58,7 +58,7 @@ void add(std::string& all, const std::string& sentence) {
 
 TakenArm taken(ArmDescription arm, const DeviceTraits& traits, const std::string& because,
                const std::string& besides) {
-  std::string why = fmt::format("{} is taken for the arm {}: {}.", traits.name, arm.name, because);
+  std::string why = fmt::format("{} is used as the arm {}: {}.", traits.name, arm.name, because);
   if (!besides.empty()) why = besides + " " + why;
   return {narrowed(std::move(arm), traits), std::move(why), true};
 }
@@ -73,14 +73,14 @@ std::string not_as_many(const std::string& how, const ArmDescription& arm,
 
 ArmDescription narrowed(ArmDescription arm, const DeviceTraits& traits) {
   if (arm.dof() != traits.dof) {
-    throw FileError(fmt::format("the arm {} has {}, and {} has {}", arm.name, joints(arm.dof()),
-                                traits.name, joints(traits.dof)));
+    throw FileError(fmt::format("the arm {} has {}, but the device {} has {}", arm.name,
+                                joints(arm.dof()), traits.name, joints(traits.dof)));
   }
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     Joint& joint = arm.joints[i];
     const bool slides = joint.kind == Joint::Kind::prismatic;
     if (i < traits.slides.size() && traits.slides[i] != slides) {
-      throw FileError(fmt::format("joint {} {} by the arm {}, and {} by {} itself", joint.name,
+      throw FileError(fmt::format("joint {} {} in the arm {}, but {} in the device {}", joint.name,
                                   slides ? "slides" : "turns", arm.name,
                                   slides ? "turns" : "slides", traits.name));
     }
@@ -90,11 +90,11 @@ ArmDescription narrowed(ArmDescription arm, const DeviceTraits& traits) {
     const double upper = std::min(joint.upper, traits.upper[i]);
     if (!(lower < upper)) {
       const double unit = slides ? kSlideUnit : 1;
-      throw FileError(fmt::format(
-          "joint {} goes from {:.4g} to {:.4g} {} by the arm {}, and from {:.4g} to {:.4g} by {} "
-          "itself; needed: ranges that overlap",
-          joint.name, unit * joint.lower, unit * joint.upper, slides ? "m" : "rad", arm.name,
-          unit * traits.lower[i], unit * traits.upper[i], traits.name));
+      throw FileError(
+          fmt::format("joint {} goes from {:.4g} to {:.4g} {} in the arm {}, but from {:.4g} to "
+                      "{:.4g} in the device {}; needed: ranges that overlap",
+                      joint.name, unit * joint.lower, unit * joint.upper, slides ? "m" : "rad",
+                      arm.name, unit * traits.lower[i], unit * traits.upper[i], traits.name));
     }
     joint.lower = lower;
     joint.upper = upper;
@@ -108,42 +108,47 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
   if (!notes.arm.empty()) {
     ArmDescription arm = read_known(notes.arm, "",
                                     "the device was identified as that arm; `limpid identify "
-                                    "--forget` gives it its usual arm again");
+                                    "--forget` gives the device the usual arm again");
     if (!arm.delay && notes.delay >= 0) arm.delay = notes.delay;
     if (arm.dof() != traits.dof) {
-      add(besides,
-          not_as_many("was identified as", arm, traits) + " `limpid identify --forget` ends that.");
+      add(besides, not_as_many("was identified as", arm, traits) +
+                       " `limpid identify --forget` removes the identified arm.");
     } else if (has_own(kind) && !same_joints(arm, shipped(kind->arm))) {
       add(besides,
-          fmt::format("The arm {} that {} was identified as has other joints than its own.",
-                      arm.name, traits.name));
+          fmt::format(
+              "The arm {}, as which {} was identified, has other joints than the device's own arm.",
+              arm.name, traits.name));
     } else {
-      return taken(std::move(arm), traits, "it was identified as such", besides);
+      return taken(std::move(arm), traits, "the device was identified as this arm", besides);
     }
   }
-  if (has_own(kind)) return taken(shipped(kind->arm), traits, "it says so itself", besides);
+  if (has_own(kind)) {
+    return taken(shipped(kind->arm), traits, "the device reports this arm itself", besides);
+  }
   if (named != nullptr && named->dof() == traits.dof) {
-    return taken(*named, traits, "--device says so", besides);
+    return taken(*named, traits, "--device names this arm", besides);
   }
   if (named != nullptr) add(besides, not_as_many("is not", *named, traits));
   if (!notes.taken_for.empty()) {
     const std::string now = what_it_is(traits.name, traits.dof);
     const bool another = !notes.taken_as.empty() && notes.taken_as != now;
     if (another) {
-      add(besides,
-          fmt::format("What was said of its arm was said of another device: {}.", notes.taken_as));
+      add(besides, fmt::format("The arm stored under this id was chosen for another device: {}.",
+                               notes.taken_as));
     } else if (notes.taken_for == kBuiltInArm) {
-      return taken(built_in(traits), traits, "so it was said", besides);
+      return taken(built_in(traits), traits, "this arm was chosen for the device", besides);
     } else {
       ArmDescription arm = read_known(notes.taken_for, notes.taken_for_tip, kSayWhich);
-      if (arm.dof() == traits.dof) return taken(std::move(arm), traits, "so it was said", besides);
-      add(besides, not_as_many("was said to be", arm, traits));
+      if (arm.dof() == traits.dof) {
+        return taken(std::move(arm), traits, "this arm was chosen for the device", besides);
+      }
+      add(besides, not_as_many("was chosen to be", arm, traits));
     }
   }
   TakenArm last;
   try {
-    last = taken(built_in(traits), traits, fmt::format("a built-in arm, until you {}", kSayWhich),
-                 besides);
+    last = taken(built_in(traits), traits,
+                 fmt::format("a built-in arm is used until you {}", kSayWhich), besides);
   } catch (const FileError& error) {
     std::string why = besides;
     add(why, fmt::format("{}; {}", error.what(), kSayWhich));
@@ -165,12 +170,12 @@ bool may_be_told_its_arm(const DeviceNotes& notes, const DeviceKind& kind) {
 
 std::string arm_words(const DeviceNotes& notes, const DeviceKind& kind) {
   if (kind.leads_hand) return {};
-  if (!notes.arm.empty()) return "arm: as it was identified, " + notes.arm;
-  if (has_own(&kind)) return fmt::format("arm: its own, {}", kind.arm);
-  if (notes.taken_for == kBuiltInArm) return "arm: a built-in arm, as was said";
-  if (!notes.taken_for.empty()) return fmt::format("arm: {}, as was said", notes.taken_for);
-  return "arm: a built-in arm, with little force, until you say which arm it is: "
-         "limpid devices ID --arm FILE.urdf";
+  if (!notes.arm.empty()) return "arm: the identified arm, " + notes.arm;
+  if (has_own(&kind)) return fmt::format("arm: the device's own arm, {}", kind.arm);
+  if (notes.taken_for == kBuiltInArm) return "arm: a built-in arm, as chosen";
+  if (!notes.taken_for.empty()) return fmt::format("arm: {}, as chosen", notes.taken_for);
+  return "arm: a built-in arm, with little force, until you choose the device's arm: limpid "
+         "devices ID --arm FILE.urdf";
 }
 
 }  // namespace limpid

@@ -58,7 +58,7 @@ Finding on_hid() {
           "HID",
           State::better,
           "the kernel has no /sys/class/hidraw",
-          "no USB device can be used; those on sockets can",
+          "USB devices cannot be used; devices on sockets can",
           "a kernel with CONFIG_HIDRAW, as Debian's: sudo apt install linux-image-amd64"};
 }
 
@@ -67,7 +67,7 @@ Finding one(const FoundDevice& device) {
   const std::string kind = fmt::format("{} at {}", device.kind->name, device.place.path);
   if (device.missing.empty()) return {kDevicesArea, what, State::fine, kind, {}, {}};
   if (device.kind->service || access(device.place.path.c_str(), R_OK | W_OK) == 0) {
-    return {kDevicesArea, what, State::better, kind, "it is left out", device.missing};
+    return {kDevicesArea, what, State::better, kind, "this device is left out", device.missing};
   }
   const std::string mend =
       installed_rule().empty()

@@ -87,7 +87,12 @@ Finding room() {
   std::error_code failed;
   const std::uintmax_t left = fs::space(there, failed).available;
   if (failed)
-    return {kFilesArea, "disk", State::better, failed.message(), "nobody knows what fits", "df -h"};
+    return {kFilesArea,
+            "disk",
+            State::better,
+            failed.message(),
+            "the free space on the disk is not known",
+            "df -h"};
   const std::string found =
       fmt::format("{:.1f} GB left at {}", static_cast<double>(left) / 1e9, there.string());
   if (left >= kLittle) return {kFilesArea, "disk", State::fine, found, {}, {}};
@@ -95,7 +100,7 @@ Finding room() {
           "disk",
           left < kTooLittle ? State::broken : State::better,
           found,
-          "recordings and videos soon end",
+          "recordings and videos will soon stop, as the disk is nearly full",
           "sudo apt clean; du -xh ~ | sort -h | tail"};
 }
 

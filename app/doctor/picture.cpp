@@ -130,7 +130,8 @@ Finding window() {
           "window",
           State::better,
           it.text,
-          "drawn by the processor: few pictures per second, and less of it for the loop",
+          "the processor draws the picture: few pictures per second, and less computing time for "
+          "the loop",
           "sudo apt install libgl1-mesa-dri firmware-linux    # for Intel and AMD; NVIDIA: "
           "nvidia-driver"};
 }

@@ -90,14 +90,14 @@ Finding memory(const RealtimeReport& report) {
     return {kRealTimeArea,
             "memory",
             State::fine,
-            fmt::format("stays (RLIMIT_MEMLOCK {})", limit),
+            fmt::format("is locked, never swapped out (RLIMIT_MEMLOCK {})", limit),
             {},
             {}};
   }
   return {kRealTimeArea,
           "memory",
           State::better,
-          fmt::format("may be taken away (RLIMIT_MEMLOCK {})", limit),
+          fmt::format("may be swapped out to the disk (RLIMIT_MEMLOCK {})", limit),
           "a tick is late when memory comes back from the disk",
           mend_limits()};
 }
@@ -130,7 +130,7 @@ Finding governor() {
     return {kRealTimeArea,
             "clock",
             State::fine,
-            "the processor's clock is not the kernel's to set",
+            "the kernel does not control the processor's clock",
             {},
             {}};
   }

@@ -76,10 +76,10 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
       off = worse(off, (Vec3(pose[0], pose[1], pose[2]) - bench.world().center(0)).norm());
       bench.step();
     }
-    checks.push_back(at_most(
-        fmt::format("ball beside an arm in the ordinary loop, off the one by itself, {} [m]",
-                    tick_text(kBodyTicks[i])),
-        off, 1e-9));
+    checks.push_back(at_most(fmt::format("ball beside an arm in the ordinary loop: distance from "
+                                         "the ball without an arm, {} [m]",
+                                         tick_text(kBodyTicks[i])),
+                             off, 1e-9));
   }
   return checks;
 }
@@ -88,12 +88,12 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
 FigurePanel errors_panel(const std::vector<BodyClaim>& claims, double tick) {
   FigurePanel panel{.title = "Errors over their limits, " + tick_text(tick),
                     .x_label = "what moves",
-                    .y_label = "error over limit [-]",
+                    .y_label = "error / limit [-]",
                     .log_y = true,
                     .y_range = std::pair(1e-4, 1e4)};
-  Series more{"more than right", kContactInk, Series::Style::points, {}};
-  Series less{"less than right", kProxyInk, Series::Style::points, {}};
-  Series measured{"only measured", kNeutralInk, Series::Style::points, {}};
+  Series more{"above theory", kContactInk, Series::Style::points, {}};
+  Series less{"below theory", kProxyInk, Series::Style::points, {}};
+  Series measured{"no theory", kNeutralInk, Series::Style::points, {}};
   std::vector<std::string> groups;
   for (const BodyClaim& claim : claims) {
     if (claim.group.empty()) continue;
@@ -142,20 +142,21 @@ Outcome bodies(TrialRunner& lab) {
   outcome.figure.columns = 2;
   FigurePanel swing{.title = "Energy of a pendulum over a minute, " + tick_text(kBodyTicks[0]),
                     .x_label = "time [s]",
-                    .y_label = "energy, less that at the start [mJ]",
+                    .y_label = "energy minus energy at the start [mJ]",
                     .series = curves_of(all.curves[0], "swings")};
   FigurePanel roll{.title = "Rolling down 20 degrees, " + tick_text(kBodyTicks[0]),
                    .x_label = "time [s]",
-                   .y_label = "way [m]"};
+                   .y_label = "distance [m]"};
   for (const char* name : {"ball", "cylinder", "capsule"}) {
     for (const Series& curve : curves_of(all.curves[0], name)) roll.series.push_back(curve);
   }
   outcome.figure.panels = {errors_panel(all.claims[0], kBodyTicks[0]),
                            errors_panel(all.claims[1], kBodyTicks[1]), swing, roll};
   outcome.figure.caption =
-      "Bodies without an arm, stepped as the loop steps them. First row: every check's error over "
-      "its limit, under two ticks; what is off the axis is drawn at its end, and grey is what "
-      "no theory judges. Rolling: solid as simulated, dashed as right.";
+      "Bodies without an arm, stepped as in the loop. The first row shows the error of each check "
+      "divided by the limit of the check, for two ticks. Errors outside the axis are drawn at the "
+      "axis end. Grey points have no theory to compare with. In the panel on rolling, solid curves "
+      "are simulated and dashed curves are theory.";
   return outcome;
 }
 

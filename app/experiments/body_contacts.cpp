@@ -54,7 +54,7 @@ BodyFindings slides(double tick) {
     BodyBench bench(block_on(slope, friction), tick);
     found.claims.push_back(
         {.group = "slide",
-         .what = fmt::format("slides at {} degrees, friction {}, {}", degrees, friction,
+         .what = fmt::format("block slides at {} degrees, friction {}, {}", degrees, friction,
                              tick_text(tick)),
          .unit = "m/s^2",
          .expected = sliding(slope, friction),
@@ -69,7 +69,7 @@ BodyFindings slides(double tick) {
   const Vec3 before = bench.world().center(0);
   bench.run(5);
   found.claims.push_back({.group = "slide",
-                          .what = "stays at 0.99 of the friction angle, " + tick_text(tick),
+                          .what = "block stays at 0.99 of the friction angle, " + tick_text(tick),
                           .unit = "mm",
                           .expected = 0,
                           .measured = 1e3 * (bench.world().center(0) - before).norm(),
@@ -165,17 +165,16 @@ BodyFindings bounces(double tick) {
   BodyFindings found;
   for (const double mass : {1e-6, 0.001, 0.1, 1.0}) {
     for (const double restitution : {0.0, 0.3, 0.7, 1.0}) {
-      found.claims.push_back(
-          {.group = "bounce",
-           .what = fmt::format("ball of {} g bounces, restitution {}, {}", 1e3 * mass, restitution,
-                               tick_text(tick)),
-           .unit = "of its speed",
-           .expected = restitution,
-           .measured = rebound(mass, restitution, tick),
-           .limit = restitution == 0 ? 0.02 : 0.03,
-           .relative = false,
-           .conditions =
-               "Falls 20 cm on a plane, radius 10 mm, contact of 20,000 N/m, no friction."});
+      found.claims.push_back({.group = "bounce",
+                              .what = fmt::format("ball of {} g bounces, restitution {}, {}",
+                                                  1e3 * mass, restitution, tick_text(tick)),
+                              .unit = "of its speed",
+                              .expected = restitution,
+                              .measured = rebound(mass, restitution, tick),
+                              .limit = restitution == 0 ? 0.02 : 0.03,
+                              .relative = false,
+                              .conditions = "A ball of 10 mm radius falls 20 cm onto a plane, with "
+                                            "a contact of 20,000 N/m and no friction."});
     }
   }
   return found;
@@ -269,17 +268,15 @@ BodyFindings tips_over(double tick) {
     (tips(middle) ? falls : stands) = middle;
   }
   const double degree = radians(1);
-  return {
-      {{.group = "tip",
-        .what = "slope from which on a block tips over, " + tick_text(tick),
-        .unit = "degrees",
-        .expected = tipping(size.x(), size.z()) / degree,
-        .measured = (stands + falls) / 2 / degree,
-        .limit = 1,
-        .conditions =
-            "atan(width / height); a block of 20 x 20 x 40 mm and 50 g, friction "
-            "1.5, set down at rest on contacts of 1e6 N/m, within 1.5 s. On softer ones it rocks "
-            "and tips earlier."}}};
+  return {{{.group = "tip",
+            .what = "smallest slope at which a block tips over, " + tick_text(tick),
+            .unit = "degrees",
+            .expected = tipping(size.x(), size.z()) / degree,
+            .measured = (stands + falls) / 2 / degree,
+            .limit = 1,
+            .conditions = "atan(width / height); a block of 20 x 20 x 40 mm and 50 g, friction "
+                          "1.5, set down at rest on contacts of 1e6 N/m, within 1.5 s. On softer "
+                          "contacts the block rocks and tips earlier."}}};
 }
 
 // Cubes one on the other.
@@ -352,7 +349,7 @@ BodyFindings grain_rests(double tick) {
             .measured = most,
             .limit = 0.02,
             .relative = false,
-            .conditions = "A cube of 2 mm on a plane, fastest from 2 to 3 s."}}};
+            .conditions = "A cube of 2 mm lies on a plane; the fastest spin from 2 to 3 s."}}};
 }
 
 BodyFindings falls_slowly(double tick) {
@@ -362,7 +359,7 @@ BodyFindings falls_slowly(double tick) {
   BodyBench bench(scene, tick);
   bench.run(10);
   return {{{.group = "rest",
-            .what = "falls under a ten thousandth of weight, " + tick_text(tick),
+            .what = "ball falls under a ten thousandth of the usual gravity, " + tick_text(tick),
             .unit = "mm",
             .expected = 50,
             .measured = -1e3 * bench.world().center(0).z(),
@@ -398,9 +395,10 @@ BodyFindings dominoes(double tick) {
             .expected = {},
             .measured = (kLast - kFirst) * kApart / (last - first),
             .limit = 0,
-            .conditions = "8 x 24 x 48 mm, 12 g, 24 mm from middle to middle, friction 0.2 among "
-                          "them, 0.5 with the ground; from the fifth to the fifteenth.",
-            .unjudged = "No closed form is known to judge it by."}}};
+            .conditions = "Dominoes of 8 x 24 x 48 mm and 12 g, 24 mm from middle to middle, "
+                          "friction 0.2 among dominoes and 0.5 with the ground. The speed is "
+                          "measured from the fifth to the fifteenth domino.",
+            .unjudged = "No closed form is known for the speed of dominoes."}}};
 }
 
 }  // namespace

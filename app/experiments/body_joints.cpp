@@ -89,7 +89,7 @@ void add_pendulum(double tick, BodyJoint::Kind kind, double amplitude, BodyFindi
        .limit = kGained,
        .relative = false,
        .conditions =
-           fmt::format("Change of what it has; {}, which swings with {:.3g} mJ.", of,
+           fmt::format("Change of the pendulum's energy. {}, which swings with {:.3g} mJ.", of,
                        1e3 * kRodMass * kStandardGravity * to_center * (1 - std::cos(amplitude)))});
   found.curves.push_back(curve);
 }
@@ -183,7 +183,7 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
       "A slab of 30 x 50 x 10 mm and 50 g, spun about its middle axis with a "
       "hundredth about both others, no weight";
   found.claims.push_back({.group = "spin",
-                          .what = which + ": its fifth turning over",
+                          .what = which + ": time of the fifth flip",
                           .unit = "s",
                           .expected = expected,
                           .measured = measured,
@@ -198,7 +198,7 @@ void add_tumbling(double tick, double spin, BodyFindings& found) {
                           .conditions = of + "."});
   found.claims.push_back(
       {.group = "spin",
-       .what = which + ": angular momentum after ten seconds, off by",
+       .what = which + ": angular momentum after ten seconds",
        .unit = "of it",
        .expected = 0,
        .measured = (bench.angular_momentum(0, moments) - momentum).norm() / momentum.norm(),
@@ -234,8 +234,8 @@ BodyFindings chains(double tick) {
   double most = 0;
   bench.run(10, [&] { most = worse(most, energy() - before); });
   const std::string of = fmt::format(
-      "Rods of 10 x 10 x 100 mm and 50 g, let go in line, 60 degrees from hanging, with {:.3g} mJ; "
-      "ten seconds.",
+      "Rods of 10 x 10 x 100 mm and 50 g are released in line, 60 degrees from hanging, with "
+      "{:.3g} mJ. The run lasts ten seconds.",
       1e3 * kRodMass * kStandardGravity * kRodLength * 4.5 * (1 - std::cos(angle)));
   return {{{.group = "chain",
             .what = "chain of three links, most energy gained, " + tick_text(tick),
@@ -333,8 +333,9 @@ BodyFindings joints_with_stops(double tick) {
         .measured = most_gained(kLightBetweenHeavy, tick, 1),
         .limit = kGained,
         .relative = false,
-        .conditions = "125 g on a slider, 3.4 g hinged to it, 240 g hinged to that, all with "
-                      "stops; a second."},
+        .conditions =
+            "A link of 125 g on a slider, a link of 3.4 g hinged to the first, and a link of 240 g "
+            "hinged to the second. All joints have stops. The run lasts one second."},
        {.group = "chain",
         .what = "flipper of 10 mg at its stop, most energy gained, " + tick_text(tick),
         .unit = "J",
@@ -342,7 +343,8 @@ BodyFindings joints_with_stops(double tick) {
         .measured = most_gained(kFlipper, tick, 1),
         .limit = kGained,
         .relative = false,
-        .conditions = "A hinge with a spring of 0.05 N m/rad against a stop; a second."}}};
+        .conditions = "A spring of 0.05 N m/rad presses the hinge against a stop. The run lasts "
+                      "one second."}}};
 }
 
 // A body on a level slider along x.
@@ -372,7 +374,8 @@ BodyFindings drawers(double tick) {
          .expected = 1e3 * braked_way(kMass, kDamping, speed, time),
          .measured = 1e3 * (bench.world().center(0).x() - place),
          .limit = 0.5,
-         .conditions = "v m / c (1 - exp(-c t / m)); 500 g, 2 N s/m, pushed to 0.5 m/s."});
+         .conditions = "v m / c (1 - exp(-c t / m)). A drawer of 500 g with a damper of 2 N s/m "
+                       "starts with 0.5 m/s."});
   }
   constexpr double kSoft = 300, kSpring = 10, kRest = 0.02;  // [N s/m, N/m, m]
   Scene soft = drawer(kMass, kSoft);
@@ -387,7 +390,8 @@ BodyFindings drawers(double tick) {
        .expected = 1e3 * drawn_way(kMass, kSoft, kSpring, kRest, 60),
        .measured = 1e3 * closing.world().center(0).x(),
        .limit = 0.5,
-       .conditions = "Of 20 mm; 500 g, a spring of 10 N/m, 300 N s/m."});
+       .conditions = "A drawer of 500 g, 20 mm from the rest position, with a spring of 10 N/m and "
+                     "a damper of 300 N s/m."});
   return found;
 }
 

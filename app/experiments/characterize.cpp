@@ -164,8 +164,9 @@ void judge_walls(const Characterized& subject, const LawRendered& law, std::vect
   const auto& [arm, p] = under(subject, law.kind);
   if (law.kind == CouplingKind::predictive) {
     const double named = std::clamp(law.named, kLeastWall, kMostWall * kAsNamed);
-    checks.push_back(at_least("predictive: stiffest wall by the one that limpid analyze names",
-                              law.wall / named, kAsNamed));
+    checks.push_back(
+        at_least("predictive: stiffest wall, divided by the one that limpid analyze names",
+                 law.wall / named, kAsNamed));
   }
   if (law.kind == CouplingKind::direct) {
     const ArmAt at = arm_at(arm, rest_pose(arm));
@@ -173,8 +174,8 @@ void judge_walls(const Characterized& subject, const LawRendered& law, std::vect
     const TipAlong tip = tip_along(at.J, at.M, b, least_damped(at.J, b));
     const double theory = direct_wall(
         tip, {.T = p.tick, .hand_damping = kHands[0].damping, .delay = device_delay(arm, p)});
-    for (Check check : by_direct_theory("direct: stiffest wall by (b_d + b_h)/(T/2 + delay)",
-                                        law.wall / theory)) {
+    for (Check check : by_direct_theory(
+             "direct: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)", law.wall / theory)) {
       check.unjudged = kNoPromise;
       checks.push_back(std::move(check));
     }
@@ -199,22 +200,22 @@ void judge_free(const LawRendered& law, std::vector<Check>& checks) {
     const FeltMotion* const felt = at_frequency(law.free, named.f);
     off = worse(off, felt == nullptr ? std::nan("") : std::abs(felt->inertia / named.inertia - 1));
   }
-  Check check =
-      at_most("predictive: mass felt, 0.5 to 5 Hz, off the one that limpid analyze names, of it",
-              off, kFreeOff);
+  Check check = at_most(
+      "predictive: relative deviation of the mass felt from that of limpid analyze, 0.5 to 5 Hz",
+      off, kFreeOff);
   check.unjudged = kNoPromise;
   checks.push_back(std::move(check));
 }
 
 std::string caption(const Characterized& subject) {
   return fmt::format(
-      "{}. Taps before the rest pose at {} m/s, pressed with {} N or half of what the motors bear, "
-      "in grips of 300 and 3,000 N/m with 2 N s/m and without damping. Stiffest wall: felt within "
-      "{} % of that set and the tip above 20 Hz at most {} mm/s, in both grips that damp; of {} to "
-      "{} N/m. Energy: most that the hand was given. Free motion: the tip shaken at one "
-      "frequency after the other, {:.1f} mm at 1 Hz and as fast at all, in a grip of {} N/m and {} "
-      "N s/m; friction of the "
-      "arm is felt as damping.",
+      "{}. The tip taps a wall before the rest pose at {} m/s. Then the hand presses with {} N or "
+      "half of what the motors bear. Grips are 300 and 3,000 N/m, with 2 N s/m and without "
+      "damping. At the stiffest wall the stiffness felt is within {} % of the set one, and the rms "
+      "speed of the tip above 20 Hz is at most {} mm/s, in both grips with damping. Walls from {} "
+      "to {} N/m were tried. Energy is the largest that the hand was given. In free motion the tip "
+      "is shaken at one frequency after the other: {:.1f} mm at 1 Hz, with the same speed at all "
+      "frequencies, in a grip of {} N/m and {} N s/m. Friction of the arm is felt as damping.",
       subject.name, WallTap::kSpeed, kHardest, 100 * kFeltOff, 1e3 * kQuiet, kLeastWall, kMostWall,
       1e3 * shaken_by(subject.at.arm), kFreeGrip, kFreeGripDamping);
 }

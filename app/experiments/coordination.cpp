@@ -114,20 +114,19 @@ std::vector<Check> judge(const std::vector<TrialResult>& results, double ideal) 
   std::vector<Check> checks = {
       at_least("contacts made with the standard coupling", lasting_contacts(a), 6),
       at_least("contacts made with the proposed coupling", lasting_contacts(b), 6),
-      at_most("slope of the error, standard coupling, over 1/k_vc, off 1 by at most",
+      at_most("standard coupling: deviation from 1 of the error's slope divided by 1/k_vc",
               std::abs(contact_slope(a) / ideal - 1), 0.02),
-      at_most("slope of the error, proposed over standard coupling",
+      at_most("slope of the error, proposed coupling divided by standard coupling",
               contact_slope(b) / contact_slope(a), 0.01),
-      at_most("largest error, proposed over standard coupling", largest_error(b) / largest_error(a),
-              0.1),
+      at_most("largest error, proposed coupling divided by standard coupling",
+              largest_error(b) / largest_error(a), 0.1),
   };
   for (std::size_t i = 0; i < std::size(kInertiaErrors); ++i) {
     const Session& s = results[2 + i].session;
-    checks.push_back(
-        at_most(fmt::format("largest error with the model's inertia times {}, over that with the "
-                            "right one",
-                            kInertiaErrors[i]),
-                largest_error(s) / largest_error(b), 1.25));
+    checks.push_back(at_most(fmt::format("largest error with the model's inertia times {}, divided "
+                                         "by that with the right inertia",
+                                         kInertiaErrors[i]),
+                             largest_error(s) / largest_error(b), 1.25));
     checks.push_back(at_most(fmt::format("slope of the error with {} times the inertia in the "
                                          "model, divided by that of the standard coupling",
                                          kInertiaErrors[i]),

@@ -245,15 +245,17 @@ std::vector<FigurePanel> draw(const LateTable& table) {
   constexpr std::pair kEnergies(1e-3, 1e5);  // [mJ]
   FigurePanel free = against_etas(table, "Free motion: most that the hand was given", "energy [mJ]",
                                   kEnergies, [](auto& f) { return 1e3 * f.free; });
-  FigurePanel wall = against_etas(table, "At the wall that limpid analyze names: the same",
-                                  "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.wall; });
+  FigurePanel wall =
+      against_etas(table, "Wall that limpid analyze names: most that the hand was given",
+                   "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.wall; });
   for (FigurePanel* panel : {&free, &wall}) {
     panel->log_y = true;
     add_bound(*panel, 1e3 * DelayPlan::kGiven, "bound");
   }
   FigurePanel inertia = against_etas(
-      table, fmt::format("Inertia felt up to {} Hz, off what is wanted", DelayPlan::kInertiaTo),
-      "off it, by the larger of eta and 1 [-]", {-0.5, 0.5}, [](auto& f) { return f.inertia; });
+      table,
+      fmt::format("Inertia felt up to {} Hz: deviation from the wanted one", DelayPlan::kInertiaTo),
+      "deviation / larger of eta and 1 [-]", {-0.5, 0.5}, [](auto& f) { return f.inertia; });
   FigurePanel felt = against_etas(table, "Stiffness felt at the wall, divided by the set one",
                                   "felt / set [-]", {0, 1.5}, [](auto& f) { return f.felt; });
   for (const auto& [panel, wanted] : {std::pair(&inertia, 0.0), {&felt, 1.0}}) {
@@ -280,17 +282,20 @@ void judge(const LateTable& table, std::vector<Check>& checks) {
     const std::string where = fmt::format("delay of {} to {} ms, {}: ", known ? 0 : 1,
                                           DelayPlan::kMost, known ? "known" : "not known");
     using P = DelayPlan;
+    checks.push_back(at_most(where + "largest energy given to the human in free motion [J]",
+                             worst.free, P::kGiven));
     checks.push_back(
-        at_most(where + "given to the human in free motion [J]", worst.free, P::kGiven));
-    checks.push_back(at_most(where + fmt::format("inertia felt to {} Hz off what analyze says, by "
-                                                 "the larger of eta and 1",
-                                                 P::kInertiaTo),
-                             std::abs(worst.inertia), known ? P::kOffKnown : P::kOff));
+        at_most(where + fmt::format("deviation of the inertia felt up to {} Hz from that of "
+                                    "analyze, divided by the larger of eta and 1",
+                                    P::kInertiaTo),
+                std::abs(worst.inertia), known ? P::kOffKnown : P::kOff));
     checks.push_back(
         at_least(where + "softest wall that analyze names [N/m]", worst.named, P::kSoftestNamed));
-    checks.push_back(at_most(where + "given to the human at that wall [J]", worst.wall, P::kGiven));
-    checks.push_back(at_most(where + "stiffness felt there off that set, of it",
-                             std::abs(worst.felt - 1), P::kOff));
+    checks.push_back(at_most(where + "largest energy given to the human at that wall [J]",
+                             worst.wall, P::kGiven));
+    checks.push_back(
+        at_most(where + "relative deviation of the stiffness felt at that wall from the set one",
+                std::abs(worst.felt - 1), P::kOff));
   }
 }
 
@@ -303,13 +308,14 @@ Outcome delay(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "A device whose torque answers its reading late";
   outcome.figure.caption = fmt::format(
-      "Predictive coupling, eta {} to {}, a delay of 0 to {} ms from reading to torque that the "
-      "law knows (model.delay) or does not; in grips of {} to {} N/m and {} N s/m; the worst grip "
-      "is drawn. Free motion: the tip is shaken at all frequencies from 0.5 to 7 Hz together, {} "
+      "Predictive coupling, eta {} to {}. The torque follows the reading with a delay of 0 to {} "
+      "ms. The law knows this delay (model.delay) or does not know it. Grips are {} to {} N/m with "
+      "{} N s/m; the worst grip is drawn. Free motion: the tip is shaken at all frequencies from "
+      "0.5 to 7 Hz together, {} "
       "mm at 1 Hz. The inertia felt is compared with that of limpid analyze: eta times the arm's "
-      "own, minus the part that late networks take, and under an unknown delay late dampers too. "
-      "Walls: the tip taps at {} m/s and presses with {} N. Points beyond a frame are drawn at its "
-      "edge.",
+      "own, minus the part that late networks take. Under an unknown delay late dampers take a "
+      "part too. At walls the tip taps at {} m/s and presses with {} N. Points outside a frame are "
+      "drawn at the frame's edge.",
       DelayPlan::kEtas[0], DelayPlan::kEtas[std::size(DelayPlan::kEtas) - 1], DelayPlan::kMost,
       DelayPlan::kGrips[0], DelayPlan::kGrips[std::size(DelayPlan::kGrips) - 1],
       TapBench::kGripDamping, 1e3 * DelayPlan::kAmplitude, TapBench::kSpeed, DelayPlan::kPress);

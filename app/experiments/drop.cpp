@@ -79,10 +79,10 @@ Outcome drop(TrialRunner& lab) {
   const ArmDescription& arm = trials.front().plan.arm;
 
   FigurePanel height = drop_panel("The block's lower face above the tip's rest", "height [mm]");
-  FigurePanel reserve = drop_panel("The ledger's reserve, predictive", "reserve [mJ]");
+  FigurePanel reserve = drop_panel("Reserve of the energy account, predictive", "reserve [mJ]");
   FigurePanel force = drop_panel(fmt::format("Force on the tip, {} N/m", kDropUsual), "force [N]");
   FigurePanel beyond =
-      drop_panel(fmt::format("Given to the human beyond what the block gave, {} N/m", kDropUsual),
+      drop_panel(fmt::format("Energy to the human beyond what the block gave, {} N/m", kDropUsual),
                  "energy [mJ]");
   Outcome outcome;
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -119,12 +119,11 @@ Outcome drop(TrialRunner& lab) {
   outcome.figure.columns = 2;
   outcome.figure.panels = {height, reserve, force, beyond};
   outcome.figure.caption = fmt::format(
-      "A block of {} g, {} cm above a tip that a hand holds still; friction 0.5, contacts of {}, "
-      "{} "
-      "and {} N/m. It brings {:.0f} mJ; the ledger books what it gives as what bodies gave, so "
-      "that "
-      "the reserve does not fall. Staggered: no coupling; the force of a tick follows from where "
-      "tip and block last were, and the block cannot slip off.",
+      "A block of {} g falls from {} cm above a tip. A hand holds the tip still. Friction is 0.5; "
+      "contacts have {}, {} and {} N/m. The block brings {:.0f} mJ. The energy account books this "
+      "energy as given by bodies, so the reserve does not fall. Staggered means no coupling: the "
+      "force of a tick follows from the last positions of tip and block. There the block cannot "
+      "slip off.",
       1e3 * kDropMass, 100 * kDropHeight, kDropHard[0], kDropHard[1], kDropHard[2],
       1e3 * kDropMass * kDropGravity * kDropHeight);
   for (std::size_t i = 0; i < std::size(kDropHard); ++i) {
@@ -136,13 +135,16 @@ Outcome drop(TrialRunner& lab) {
     }
     outcome.checks.push_back(at_least(which + "hardest force on the tip [N]", hardest, 1));
     outcome.checks.push_back(
-        at_least(which + "the ledger's lowest less its start [J]", v.reserve, -1e-4));
+        at_least(which + "lowest reserve of the energy account, minus the reserve at the start [J]",
+                 v.reserve, -1e-4));
     outcome.checks.push_back(
-        at_least(which + "least share of the contact's force let through", v.governor, 1));
+        at_least(which + "smallest share of the contact force that the governor let through",
+                 v.governor, 1));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-4));
     outcome.checks.push_back(
-        at_most(which + "given to the human beyond what the block gave [J]", v.beyond, 5e-5));
-    outcome.checks.push_back(at_most(which + "gained by the block [J]", v.gain, 1e-6));
+        at_most(which + "largest energy given to the human beyond what the block gave [J]",
+                v.beyond, 5e-5));
+    outcome.checks.push_back(at_most(which + "energy gained by the block [J]", v.gain, 1e-6));
   }
   return outcome;
 }

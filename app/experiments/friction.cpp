@@ -180,9 +180,9 @@ std::vector<Dragged> drag_all(TrialRunner& lab) {
 }
 
 FigurePanel ratio_panel(const std::vector<Dragged>& all) {
-  FigurePanel panel{.title = "Tangential over normal force, against the drag",
+  FigurePanel panel{.title = "Tangential force divided by normal force, over the drag",
                     .x_label = "sideways distance of the hand from where it pressed [mm]",
-                    .y_label = "tangential over normal force [-]"};
+                    .y_label = "tangential / normal force [-]"};
   for (const Dragged& d : all) {
     Series line{d.what.label, d.what.ink, Series::Style::line, {}};
     for (std::size_t k = 0; k < d.rubs.size(); k += 2) {
@@ -208,7 +208,7 @@ FigurePanel ratio_panel(const std::vector<Dragged>& all) {
 FigurePanel stick_panel(const Trial& trial, const Dragged& d) {
   FigurePanel panel{.title = fmt::format("Stick and slip: {}", d.what.label),
                     .x_label = "time [s]",
-                    .y_label = "aside [mm]"};
+                    .y_label = "sideways position [mm]"};
   const Session& s = d.result.session;
   const auto tip = [&](Column c) {
     return [&, c](std::size_t k) { return 1e3 * tip_at(trial.plan.arm, vector_at(s, k, c)).y(); };
@@ -223,7 +223,7 @@ FigurePanel stick_panel(const Trial& trial, const Dragged& d) {
 }
 
 FigurePanel taken_panel(const std::vector<Dragged>& all) {
-  FigurePanel panel{.title = "Energy that friction gave: its work and what its spring holds",
+  FigurePanel panel{.title = "Energy that friction gave: work and energy in the friction's spring",
                     .x_label = "time [s]",
                     .y_label = "energy [mJ]"};
   for (const Dragged& d : all) {
@@ -277,8 +277,10 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
   checks.push_back(
       at_least(where + "shortest time in which all walls were touched [s]", touched, 0.1));
   checks.push_back(at_most(where + "highest E_c [J]", energy, 5e-5));
-  checks.push_back(at_most(where + "most that friction gave in a tick [J]", given, 1e-7));
-  checks.push_back(at_most(where + "friction beyond its cone, of the normal force", beyond, 1e-6));
+  checks.push_back(at_most(where + "largest energy that friction gave in a tick [J]", given, 1e-7));
+  checks.push_back(
+      at_most(where + "friction force beyond the friction cone, divided by the normal force",
+              beyond, 1e-6));
   return panel;
 }
 
@@ -339,29 +341,32 @@ Outcome friction(TrialRunner& lab) {
   const std::vector<Dragged> all = drag_all(lab);
   const Verdict& rough = all.front().verdict;
   Outcome outcome;
-  outcome.figure.title = "Friction: sticking, slipping, and the energy it takes";
+  outcome.figure.title = "Friction: sticking, slipping, and the energy that friction takes";
   outcome.figure.caption = fmt::format(
-      "Predictive coupling. A hand of 300 N/m and 2 N s/m presses a plane of {} N/m with {} N and "
-      "drags {} mm aside and back. Edge and corner: pressed in with {} N, "
-      "wandering, in a grip of 300 N/m with eta = 0.3 (drawn) and in one of 3000 N/m with eta = 1; "
-      "once with motors of {} N m, which never meet their limit, and once with the arm's own, "
-      "which "
-      "do.",
+      "Predictive coupling. A hand of 300 N/m and 2 N s/m presses a plane of {} N/m with {} N. "
+      "Then the hand drags the tip {} mm aside and back. In edge and corner the hand presses with "
+      "{} N and wanders, in a grip of 300 N/m with eta = 0.3 (drawn) and in a grip of 3000 N/m "
+      "with eta = 1. Each wandering is made twice: with motors of {} N m, which never meet their "
+      "limit, and with the arm's own motors, which do.",
       kWall, kPress, 1e3 * kDrag, kEdgePress, kStrong);
   outcome.figure.columns = 2;
   double given = 0;
   for (const Dragged& d : all) given = worse(given, d.verdict.given);
   outcome.checks = {
-      at_least("plane: ticks in which it surely stuck", rough.stuck, 100),
-      at_least("plane: ticks in which it surely slipped", rough.slid, 100),
-      at_most("plane: tip moved in a tick, besides the spring of friction, while it stuck [m]",
+      at_least("plane: ticks in which the tip surely stuck", rough.stuck, 100),
+      at_least("plane: ticks in which the tip surely slipped", rough.slid, 100),
+      at_most("plane: largest motion of the stuck tip in a tick, beyond that of the friction's "
+              "spring [m]",
               rough.crept, 1e-9),
-      at_least("plane: highest tangential over normal force, of the static coefficient",
-               rough.broke_away / kStatic, 0.99),
-      at_most("plane: friction beyond the static cone, of the normal force", rough.beyond, 1e-6),
-      at_most("plane: tangential force while slipping off the kinetic one, of it",
+      at_least(
+          "plane: highest ratio of tangential to normal force, divided by the static coefficient",
+          rough.broke_away / kStatic, 0.99),
+      at_most("plane: friction force beyond the static cone, divided by the normal force",
+              rough.beyond, 1e-6),
+      at_most("plane: relative deviation of the tangential force from the kinetic one while the "
+              "tip slips",
               rough.off_kinetic, 0.01),
-      at_most("plane: most that friction gave in a tick [J]", given, 1e-7)};
+      at_most("plane: largest energy that friction gave in a tick [J]", given, 1e-7)};
   outcome.figure.panels = {ratio_panel(all), stick_panel(drag(all[0].what.walls), all[0]),
                            taken_panel(all)};
   outcome.figure.panels.push_back(

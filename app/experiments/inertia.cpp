@@ -70,12 +70,14 @@ Outcome inertia(TrialRunner& lab) {
     if (eta == 1) continue;
     const double rms = rms_norm(s, Column::hand_torque, 0, s.size());
     outcome.checks.push_back(at_most(
-        fmt::format("rms human torque at eta = {} over eta times that at eta = 1, off 1 by at most",
-                    eta),
+        fmt::format(
+            "rms human torque at eta = {} divided by eta times that at eta = 1: deviation from 1",
+            eta),
         std::abs(rms / (eta * rms_at_one) - 1), 0.10));
-    outcome.checks.push_back(
-        at_most(fmt::format("motion at eta = {} differs from that at eta = 1, of its range", eta),
-                largest_difference(reference, s), 0.02));
+    outcome.checks.push_back(at_most(
+        fmt::format(
+            "difference of the motion at eta = {} from that at eta = 1, divided by the range", eta),
+        largest_difference(reference, s), 0.02));
   }
   torque.series.insert(torque.series.end(), estimates.begin(), estimates.end());
   outcome.figure.panels = {torque, motion};

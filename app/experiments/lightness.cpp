@@ -160,13 +160,13 @@ Series eta_itself() {
 }
 
 FigurePanel price_panel(const std::vector<LawAtEta>& laws) {
-  FigurePanel panel{.title = "What lightness costs: damping at 0.5 Hz against inertia at 2 Hz",
-                    .x_label = "inertia felt, of the arm's own [-]",
+  FigurePanel panel{.title = "Cost of lightness: damping at 0.5 Hz over inertia at 2 Hz",
+                    .x_label = "inertia felt / arm's own inertia [-]",
                     .y_label = "damping felt [N m s/rad]"};
   panel.x_range = {0, 1.1};
   panel.y_range = {0, 0.03};
   const double mass = of(laws, CouplingKind::predictive).front().at(kSlow).mass;
-  panel.series.push_back({"least of any passive law that keeps it up to 5.3 Hz",
+  panel.series.push_back({"least damping of any passive law, inertia kept up to 5.3 Hz",
                           kNeutralInk,
                           Series::Style::dashed,
                           {{0, least_damping(0, mass)}, {1, 0}}});
@@ -184,7 +184,8 @@ FigurePanel price_panel(const std::vector<LawAtEta>& laws) {
   return panel;
 }
 
-constexpr const char *kInertia = "inertia, of the arm's own [-]", *kDamping = "damping [N m s/rad]";
+constexpr const char *kInertia = "inertia / arm's own inertia [-]",
+                     *kDamping = "damping [N m s/rad]";
 
 // Panels of the proposed coupling, lighter and heavier apart: their sizes differ.
 std::vector<FigurePanel> proposed_panels(const std::vector<LawAtEta>& laws) {
@@ -232,7 +233,8 @@ std::vector<FigurePanel> panels(const std::vector<LawAtEta>& laws) {
                                    [](const LawAtEta& law) { return law.at(kSlow).damping; });
   damped.log_y = true;
   damped.y_range = {0.0005, 0.3};
-  Series least{"least of any passive law with that inertia", kHandInk, Series::Style::dashed, {}};
+  Series least{
+      "least damping of any passive law with this inertia", kHandInk, Series::Style::dashed, {}};
   const double mass = ours.front().at(kSlow).mass;
   for (double eta = 0.1; eta < 1; eta *= 1.05) {
     least.points.push_back({eta, least_damping(eta, mass)});
@@ -252,17 +254,18 @@ void judge_predictive(const std::vector<LawAtEta>& laws, std::vector<Check>& che
       if (m.f <= 5) off = worse(off, std::abs(m.inertia / law.eta - 1));
     }
     checks.push_back(at_most(
-        fmt::format("predictive, eta = {}: inertia felt off eta, 0.5 to 5 Hz, of it", law.eta), off,
-        0.1));
+        fmt::format(
+            "predictive, eta = {}: relative deviation of the inertia felt from eta, 0.5 to 5 Hz",
+            law.eta),
+        off, 0.1));
   }
   for (const LawAtEta& law : laws) {
     if (law.eta >= 1) continue;
     const FeltMotion m = law.at(kSlow);
-    checks.push_back(
-        at_least(fmt::format("predictive, eta = {}: damping felt at 0.5 Hz over the least of any "
-                             "passive law",
-                             law.eta),
-                 m.damping / least_damping(law.eta, m.mass), 1));
+    checks.push_back(at_least(fmt::format("predictive, eta = {}: damping felt at 0.5 Hz, divided "
+                                          "by the least that a passive law can have",
+                                          law.eta),
+                              m.damping / least_damping(law.eta, m.mass), 1));
   }
 }
 
@@ -272,11 +275,10 @@ void judge_proposed(const std::vector<LawAtEta>& laws, std::vector<Check>& check
   for (const LawAtEta& law : laws) {
     if (law.eta == 1) continue;
     const double damping = law.at(kSlow).damping / one->at(kSlow).damping;
-    checks.push_back(at_most(
-        fmt::format(
-            "proposed, eta = {}: damping felt at 0.5 Hz, relative to eta = 1, off eta, of it",
-            law.eta),
-        std::abs(damping / law.eta - 1), 0.05));
+    checks.push_back(at_most(fmt::format("proposed, eta = {}: relative deviation from eta of the "
+                                         "damping felt at 0.5 Hz over that at eta = 1",
+                                         law.eta),
+                             std::abs(damping / law.eta - 1), 0.05));
   }
   for (const LawAtEta& law : laws) {
     if (law.eta <= 1) continue;
@@ -297,10 +299,11 @@ Outcome lightness(TrialRunner& lab) {
       "a grip of {} N/m and {} N s/m; exact encoders. Inertia and damping: the hand's torque "
       "against and along the motion of all joints. An inertia of eta up to {} Hz costs every "
       "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
-      "Under the proposed coupling eta scales the damping, and with it what is felt of slow "
-      "motion; the inertia felt is not eta times the arm's own, as (12) has it, and above eta = 1 "
-      "it is negative up to 5 Hz. Last: the arm roams in an undamped grip of 3000 N/m, with motors "
-      "that have no limit to speak of.",
+      "Under the proposed coupling eta scales the damping, and so the force felt in slow motion. "
+      "By (12) the inertia felt would be eta times the arm's own; measured inertia differs. Above "
+      "eta = 1 the inertia "
+      "felt is negative up to 5 Hz. Last panel: the arm roams in an undamped grip of 3000 N/m, "
+      "with motors that have practically no limit.",
       1e3 * kAmplitude, kLightGrip, kLightGripDamping, Parameters{}.band);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(laws);

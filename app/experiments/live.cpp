@@ -69,11 +69,10 @@ double promised_inertia(const Parameters& p, double b) {
 }
 
 LiveTrial swing(const Parameters& p) {
-  return {
-      fmt::format("eta-{:.2f}", p.eta), p, kInertiaSeconds,
-      fmt::format("eta = {:.2f}: swing the tip through free space, about once a second, without "
-                  "touching anything, 15 s.",
-                  p.eta)};
+  return {fmt::format("eta-{:.2f}", p.eta), p, kInertiaSeconds,
+          fmt::format("eta = {:.2f}: for 15 s, swing the tip through free space about once a "
+                      "second. Touch nothing.",
+                      p.eta)};
 }
 
 constexpr double kPassivitySeconds = 20;
@@ -90,14 +89,15 @@ struct Wall {
 
 Wall tap(LiveLaboratory& lab, const Parameters& p, double stiffness) {
   lab.stiffen(stiffness);
-  const Session s =
-      lab.run({fmt::format("{}-{:.0f}", name(p.kind), stiffness), p, kZwidthSeconds,
-               fmt::format("A wall of {:.0f} N/m, {} coupling: tap it, press, hold, 6 s.",
-                           stiffness, name(p.kind))});
+  const Session s = lab.run({fmt::format("{}-{:.0f}", name(p.kind), stiffness), p, kZwidthSeconds,
+                             fmt::format("Wall of {:.0f} N/m, {} coupling: for 6 s, tap the wall, "
+                                         "press the tip into the wall, and hold the tip there.",
+                                         stiffness, name(p.kind))});
   std::size_t touching = 0;
   for (std::size_t k = 0; k < s.size(); ++k) touching += contact_torque(s, k) > 0;
   if (touching < kZwidthTouching)
-    throw std::runtime_error("the wall was hardly touched; once more");
+    throw std::runtime_error(
+        "the tip hardly touched the wall; start the trial again and press the tip into the wall");
   const double chatter = chatter_in_contact(s, lab.arm);
   return {stiffness, chatter, chatter <= WellRendered::kChatter};
 }
@@ -120,7 +120,9 @@ Outcome carry_out(const LiveExperiment& experiment, LiveLaboratory& lab,
 Felt felt_of(const Session& s, const ArmDescription& arm) {
   constexpr std::size_t kReach = 25;  // rows: passes a hand's few hertz, no tremor
   constexpr std::size_t kStep = 10;   // rows from one evaluation to the next
-  if (s.size() < 8 * kReach) throw std::runtime_error("too short to say what is felt");
+  if (s.size() < 8 * kReach)
+    throw std::runtime_error(
+        "the recording is too short to find the inertia felt; start the trial again");
   std::vector<Eigen::VectorXd> x, torque;
   for (std::size_t k = 0; k < s.size(); ++k) {
     x.push_back(vector_at(s, k, Column::device_position));
@@ -181,7 +183,8 @@ Outcome live_coordination(LiveLaboratory& lab) {
   Figure& figure = outcome.figure;
   figure.title = "Coordination of device and proxy in your hand";
   figure.caption =
-      "The tip pressed onto the surface and let go again, as often and as hard as the hand liked.";
+      "The hand pressed the tip onto the surface and lifted it off, as often and as hard as the "
+      "person liked.";
   figure.columns = 2;
   FigurePanel force{
       .title = "Contact torque |f2|", .x_label = "time [s]", .y_label = "torque [N m]"};
@@ -196,8 +199,8 @@ Outcome live_coordination(LiveLaboratory& lab) {
     const std::string law = name(run.kind);
     run.session = lab.run({law, p, kSeconds,
                            "The " + law +
-                               " coupling: press the tip onto the surface, hold, let go; three "
-                               "times or more, 20 s."});
+                               " coupling: press the tip onto the surface, hold it there, lift it "
+                               "off. Repeat this at least three times within 20 s."});
     const Session& s = run.session;
     force.series.push_back(over_time(s, law, run.ink, Series::Style::line,
                                      [&](auto k) { return contact_torque(s, k); }));
@@ -209,10 +212,11 @@ Outcome live_coordination(LiveLaboratory& lab) {
   figure.panels = {force, error, scatter};
   const double standard = contact_slope(runs[0].session);
   outcome.checks.push_back(
-      at_most("slope of the error, standard coupling, over 1/k_vc, off 1 by at most",
+      at_most("standard coupling: deviation from 1 of the error's slope divided by 1/k_vc",
               std::abs(standard * lab.parameters.k_vc - 1), 0.2));
-  outcome.checks.push_back(at_most("slope of the error, proposed over standard coupling",
-                                   contact_slope(runs[1].session) / standard, 0.2));
+  outcome.checks.push_back(
+      at_most("slope of the error, proposed coupling divided by standard coupling",
+              contact_slope(runs[1].session) / standard, 0.2));
   return outcome;
 }
 
@@ -225,14 +229,16 @@ Outcome live_inertia(LiveLaboratory& lab) {
   Outcome outcome;
   outcome.figure.title = "What a hand feels of the arm, at three etas";
   outcome.figure.caption =
-      "Free motion, the proposed coupling. Found from the estimate of the hand's torque, the "
-      "observer's lag taken out, along M(x1) a1 and v1, relative to eta = 1. Lines: (24).";
+      "Free motion under the proposed coupling. Inertia and damping are found from the estimated "
+      "hand torque, without the observer's lag, along M(x1) a1 and v1. Both are divided by their "
+      "values at eta = 1. Lines show (24).";
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Estimate of the human torque |f1|",
                      .x_label = "time [s]",
                      .y_label = "torque [N m]"};
-  FigurePanel share{
-      .title = "Felt, relative to eta = 1", .x_label = "eta [-]", .y_label = "share [-]"};
+  FigurePanel share{.title = "Inertia and damping felt, divided by those at eta = 1",
+                    .x_label = "eta [-]",
+                    .y_label = "share [-]"};
   Series inertia{"inertia", kProposedInk, Series::Style::points, {}};
   Series damping{"damping", kHandInk, Series::Style::points, {}};
   Felt at_one;
@@ -254,11 +260,13 @@ Outcome live_inertia(LiveLaboratory& lab) {
       continue;
     }
     outcome.checks.push_back(at_most(
-        fmt::format("inertia felt at eta = {:.2f}, relative to eta = 1, off (24) by", p.eta),
+        fmt::format("inertia felt at eta = {:.2f}, divided by that at eta = 1: deviation from (24)",
+                    p.eta),
         std::abs(mass - promised_inertia(p, b)), kOff));
-    outcome.checks.push_back(
-        at_most(fmt::format("damping felt at eta = {:.2f}, relative to eta = 1, off eta by", p.eta),
-                std::abs(drag - p.eta), kOff));
+    outcome.checks.push_back(at_most(
+        fmt::format("damping felt at eta = {:.2f}, divided by that at eta = 1: deviation from eta",
+                    p.eta),
+        std::abs(drag - p.eta), kOff));
   }
   Series of_inertia{"", kProposedInk, Series::Style::dashed, {}};
   Series of_damping{"", kHandInk, Series::Style::dashed, {}};
@@ -282,16 +290,17 @@ Outcome live_passivity(LiveLaboratory& lab) {
   Outcome outcome;
   outcome.figure.title = "Energy that the coupling adds, in your hand";
   outcome.figure.caption =
-      "Controller energy E_c in free motion, taps and circles on the surface. It may fall; what "
-      "rises above zero was made by the coupling.";
+      "Controller energy E_c in free motion, taps and circles on the surface. E_c may fall. Where "
+      "E_c is above zero, the coupling has produced energy.";
   FigurePanel energy{.title = "Total", .x_label = "time [s]", .y_label = "energy [mJ]"};
   for (const Law& law : kRuns) {
     Parameters p = lab.parameters;
     p.kind = law.kind;
     const std::string label = name(law.kind);
-    const Session s = lab.run(
-        {label, p, kPassivitySeconds,
-         "The " + label + " coupling: move freely, tap the surface, draw circles on it, 20 s."});
+    const Session s = lab.run({label, p, kPassivitySeconds,
+                               "The " + label +
+                                   " coupling: for 20 s, move freely, tap the surface, and draw "
+                                   "circles on the surface."});
     double highest = 0;
     for (std::size_t k = 0; k < s.size(); ++k) {
       highest = worse(highest, s.at(k, Column::energy_total)[0]);
@@ -313,8 +322,9 @@ Outcome live_zwidth(LiveLaboratory& lab) {
   Outcome outcome;
   outcome.figure.title = "The stiffest wall that does not buzz in your hand";
   outcome.figure.caption = fmt::format(
-      "Walls from {} N/m on, each twice as stiff, tapped and pressed until the tip moves faster "
-      "than {} mm/s above 20 Hz in contact.",
+      "The hand taps and presses walls. The first wall has {} N/m, and each next wall is twice as "
+      "stiff as the one before. The series ends when the rms speed of the tip above 20 Hz in "
+      "contact exceeds {} mm/s.",
       kSoft, 1e3 * WellRendered::kChatter);
   FigurePanel panel{.title = "Chatter in contact",
                     .x_label = "stiffness of the wall [N/m]",
@@ -338,7 +348,7 @@ Outcome live_zwidth(LiveLaboratory& lab) {
   }
   outcome.figure.panels = {panel};
   outcome.checks = {at_least("stiffest wall, proposed coupling [N/m]", stiffest[0], kSoft),
-                    at_least("stiffest wall, predictive coupling, over that of the proposed one",
+                    at_least("stiffest wall, predictive coupling divided by proposed coupling",
                              stiffest[1] / std::max(kSoft, stiffest[0]), 1)};
   return outcome;
 }

@@ -176,13 +176,14 @@ std::string not_held(const std::vector<FeltBody>& all) {
     if (one.felt.empty()) words.push_back(fmt::format("{} ({} g)", one.way.label, 1e3 * one.mass));
   }
   if (words.empty()) return "";
-  return fmt::format("Missing is what the magnet let go of: {}. ", fmt::join(words, ", "));
+  return fmt::format("The magnet lost these cubes, so their curves are missing: {}. ",
+                     fmt::join(words, ", "));
 }
 
 FigurePanel felt_panel(const std::vector<FeltBody>& all, double mass) {
-  FigurePanel panel{.title = fmt::format("Felt of {} g", 1e3 * mass),
+  FigurePanel panel{.title = fmt::format("Mass felt of {} g", 1e3 * mass),
                     .x_label = "frequency [Hz]",
-                    .y_label = "felt by given mass [-]",
+                    .y_label = "mass felt / mass given [-]",
                     .log_x = true,
                     .x_range = std::pair(0.4, 6.0),
                     .y_range = std::pair(0.7, 1.5)};
@@ -301,14 +302,15 @@ void add_staggered(const ArmDescription& arm, double damping, const char* ink, F
   panel.series.insert(panel.series.end(),
                       {line, curve, {"", ink, Series::Style::points, curve.points}});
   if (damping == 0) return;
-  checks.push_back(at_most(fmt::format("staggered, {} N s/m: least mass off {}, to {} N/m, of it",
-                                       damping, law, kStillDevice),
-                           off, 0.1));
+  checks.push_back(at_most(
+      fmt::format("staggered, {} N s/m: relative deviation of the least mass from {}, up to {} N/m",
+                  damping, law, kStillDevice),
+      off, 0.1));
 }
 
 FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
   FigurePanel panel{.title = "The least mass that can be held",
-                    .x_label = "stiffness that holds it [N/m]",
+                    .x_label = "stiffness that holds the mass [N/m]",
                     .y_label = "least stable mass [g]",
                     .log_x = true,
                     .log_y = true,
@@ -327,10 +329,11 @@ FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
   }
   panel.series.insert(panel.series.end(),
                       {ours, {"", kPredictiveInk, Series::Style::points, ours.points}});
-  checks.push_back(at_least(
-      fmt::format("predictive: stiffnesses of 100 to 20000 N/m, of {}, at which {} g are held",
-                  good.size(), 1e3 * kLightest),
-      static_cast<double>(ours.points.size()), static_cast<double>(good.size())));
+  checks.push_back(at_least(fmt::format("predictive: number of stiffnesses from 100 to 20000 N/m, "
+                                        "out of {}, at which {} g are held",
+                                        good.size(), 1e3 * kLightest),
+                            static_cast<double>(ours.points.size()),
+                            static_cast<double>(good.size())));
   return panel;
 }
 
@@ -344,21 +347,23 @@ Outcome mass(TrialRunner& lab) {
   for (const double mass : kHeldMasses) outcome.figure.panels.push_back(felt_panel(all, mass));
   for (const FeltBody& one : all) {
     if (one.way.law != CouplingKind::predictive) continue;
-    outcome.checks.push_back(at_most(fmt::format("{}: felt of {} g off m / (1 - m w^2 / K), of it",
-                                                 one.way.label, 1e3 * one.mass),
-                                     one.off(), one.way.eta == 1 ? 0.02 : 0.04));
+    outcome.checks.push_back(at_most(
+        fmt::format("{}: relative deviation of the mass felt of {} g from m / (1 - m w^2 / K)",
+                    one.way.label, 1e3 * one.mass),
+        one.off(), one.way.eta == 1 ? 0.02 : 0.04));
   }
   outcome.figure.panels.push_back(least_panel(lab, outcome.checks));
   outcome.figure.caption = fmt::format(
-      "A cube that the magnet holds by its centre of mass at {} N/m ({} N/m where it is said), "
-      "shaken at five frequencies together, {} mm at 1 Hz and less above, no weight. Felt: the "
-      "hand's force in phase with the tip's acceleration, less that of the same shaking with {} "
-      "mg, of the other laws with nothing. The spring between them makes m / (1 - m w^2 / K) of a "
-      "mass. {}Staggered: no coupling; the force of a tick follows from where tip and body last "
-      "were, and the body is stepped after it. Last: a nudge of {} mm, with motors that never meet "
-      "their limit, and whether the cube comes to rest. While the device stands still, a staggered "
-      "body needs K T^2/4 + B T/2 (Jury); it does not stand still beyond {} N/m, or without a "
-      "damper, and where a curve ends nothing up to {} kg is stable.",
+      "The magnet holds a cube without weight by the centre of mass, at {} N/m ({} N/m where the "
+      "label says so). The hand shakes the tip at five frequencies together: {} mm at 1 Hz and "
+      "less above. The mass felt is the hand's force in phase with the tip's acceleration, minus "
+      "that of the same shaking with {} mg (for the other laws: with no cube). The spring between "
+      "tip and cube turns a mass m into m / (1 - m w^2 / K). {}Staggered means no coupling: the "
+      "force of a tick follows from the last positions of tip and body, and the body is stepped "
+      "after the tick. Last panel: the hand nudges the tip by {} mm, and the cube comes to rest or "
+      "not; the motors never meet their limit. While the device stands still, a staggered body "
+      "needs a mass of at least K T^2/4 + B T/2 (Jury). The device does not stand still beyond {} "
+      "N/m, or without a damper. Where a curve ends, no mass up to {} kg is stable.",
       kHeld, kHeldSoftly, 1e3 * kHeldAmplitude, 1e6 * kSpeck, not_held(all), 1e3 * kNudge,
       kStillDevice, kHeaviest);
   return outcome;

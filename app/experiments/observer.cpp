@@ -161,7 +161,8 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   panel.series = {ideal, gain_line, phase_line, by_gain, by_phase};
   outcome.figure.panels.push_back(panel);
   outcome.checks.push_back(at_most(
-      fmt::format("-3 dB bandwidth off alpha / m where w_f T <= {}", kUnsampled), off_fast, 0.02));
+      fmt::format("deviation of the -3 dB bandwidth from alpha / m where w_f T <= {}", kUnsampled),
+      off_fast, 0.02));
   outcome.checks.push_back(
       at_most("-3 dB and -45 degree bandwidths: error against (17) in ticks, all gains and modes",
               off_sampled, 0.03));
@@ -210,9 +211,9 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
   const std::vector<TrialResult> results = lab.run(trials);
 
   FigurePanel panel;
-  panel.title = "Error of an estimate wrong at first, heaviest mode (dashed: exp(-w_f t))";
+  panel.title = "Decay of a wrong estimate, heaviest mode (dashed: exp(-w_f t))";
   panel.x_label = "time [s]";
-  panel.y_label = "|error|, of the first [-]";
+  panel.y_label = "|error| / |first error| [-]";
   panel.log_y = true;
   panel.x_range = {0, 0.1};
   panel.y_range = {1e-2, 1};

@@ -250,14 +250,16 @@ std::vector<Check> judge(const Runs& runs) {
   checks.push_back(at_least(
       "highest E_c, commanded, in each trial at eta = 0.4, which is not passive, at least [J]",
       least, kNoise));
-  checks.push_back(
-      at_most(fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
-                          runs.limit * (1 + kOffLimit)),
-              growth(runs.held[0]), 0.5));
-  checks.push_back(
-      at_least(fmt::format("stiff grip, eta {:.3f}: motion after 1.5 s over motion after the nudge",
-                           runs.limit * (1 - kOffLimit)),
-               growth(runs.held[1]), 2));
+  checks.push_back(at_most(
+      fmt::format(
+          "stiff grip, eta {:.3f}: motion after 1.5 s, divided by motion just after the nudge",
+          runs.limit * (1 + kOffLimit)),
+      growth(runs.held[0]), 0.5));
+  checks.push_back(at_least(
+      fmt::format(
+          "stiff grip, eta {:.3f}: motion after 1.5 s, divided by motion just after the nudge",
+          runs.limit * (1 - kOffLimit)),
+      growth(runs.held[1]), 2));
   return checks;
 }
 

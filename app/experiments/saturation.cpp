@@ -81,14 +81,16 @@ Cornered cornered(const Session& s, double limit) {
 
 void judge(const CornerSet& set, const Cornered& worst, int at_limit, std::vector<Check>& checks) {
   const std::string where = fmt::format("{} corners, {}: ", set.count, set.label);
-  checks.push_back(at_least(where + "in how many a motor met its limit", at_limit, set.count / 3));
+  checks.push_back(
+      at_least(where + "corners in which a motor met its limit", at_limit, set.count / 3));
   checks.push_back(at_most(where + "highest E_c [J]", worst.energy, kMostEnergy));
-  checks.push_back(at_most(where + "given to the human [J]", worst.port, kMostEnergy));
+  checks.push_back(
+      at_most(where + "largest energy given to the human [J]", worst.port, kMostEnergy));
   checks.push_back(at_most(where + "largest contact torque over the motors' limit", worst.torque,
                            set.most_torque));
   checks.push_back(
-      at_most(where + "farthest that the proxy goes in a tick [rad]", worst.jump, kMostJump));
-  checks.push_back(at_least(where + "least reserve [J]", worst.reserve, 0));
+      at_most(where + "longest way of the proxy in a tick [rad]", worst.jump, kMostJump));
+  checks.push_back(at_least(where + "lowest reserve of the energy account [J]", worst.reserve, 0));
 }
 
 constexpr double kLimit = 0.2;  // of every motor [N m]
@@ -208,7 +210,7 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
       curve(with, "estimate, anti-windup", kProposedInk, dashed, Column::hand_torque_estimate),
       curve(with, "true, anti-windup", kProposedInk, line, Column::hand_torque),
       curve(predicted, "true, predictive", kPredictiveInk, line, Column::hand_torque)};
-  FigurePanel motors{.title = "Torque asked of the shoulder's motor, and given",
+  FigurePanel motors{.title = "Torque of the shoulder's motor, asked and given",
                      .x_label = "time [s]",
                      .y_label = "tau1 [N m]"};
   motors.series = {
@@ -217,10 +219,9 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
       curve(without, "given, wound up", kProposedTint, line, Column::motor_torque),
       curve(with, "given, anti-windup", kProposedInk, line, Column::motor_torque),
       curve(predicted, "given, predictive", kPredictiveInk, line, Column::motor_torque)};
-  FigurePanel lurking{
-      .title = "The proxy goes into the table with the device; the predictive one not",
-      .x_label = "time [s]",
-      .y_label = "tip below the surface [mm]"};
+  FigurePanel lurking{.title = "Depth of device and proxy in the table, under each coupling",
+                      .x_label = "time [s]",
+                      .y_label = "tip below the surface [mm]"};
   lurking.series = {
       depth(with, "device, proposed", kProposedInk, line, Column::device_position),
       depth(with, "proxy, proposed", kProposedInk, dashed, Column::proxy_position),
@@ -241,10 +242,10 @@ void press_into_corners(TrialRunner& lab, Outcome& outcome) {
   const ArmDescription desktop = read_urdf(default_device());
   FigurePanel torque{.title = "Pressed into random corners: contact torque",
                      .x_label = "limit of every motor [N m]",
-                     .y_label = "largest contact torque, by the limit [-]"};
+                     .y_label = "largest contact torque / limit [-]"};
   FigurePanel jump{.title = "Pressed into random corners: the proxy's steps",
                    .x_label = "limit of every motor [N m]",
-                   .y_label = "farthest in a tick [mrad]"};
+                   .y_label = "longest way in a tick [mrad]"};
   torque.x_range = jump.x_range = {0.08, 0.62};
   torque.y_range = {0, 2};
   jump.y_range = {0, 14};
@@ -298,8 +299,9 @@ Outcome saturation(TrialRunner& lab) {
   outcome.figure.caption = fmt::format(
       "Proposed and predictive coupling at the paper's gains, eta = {}, motors limited to {} N m, "
       "table 600 N/m. "
-      "Anti-windup: the observer is told the torque the motors gave; wound up: the torque asked of "
-      "them. Last two panels: the predictive coupling's tip pressed into a corner of one to six "
+      "With anti-windup the observer is told the torque that the motors gave. Without anti-windup "
+      "(wound up) the observer is told the torque that was asked. Last two panels: the predictive "
+      "coupling's tip pressed into a corner of one to six "
       "planes of 100 to 10,000 N/m, rough or smooth, and rubbed along it, with motors of 0.1 to "
       "0.6 N m; each point is one corner, drawn at random, as are arm, grip and eta.",
       kEta, kLimit);
@@ -317,19 +319,22 @@ Outcome saturation(TrialRunner& lab) {
     return run.rms(from, to, [&](std::size_t k) { return run.estimate_error(k); });
   };
   outcome.checks = {
-      at_most("anti-windup: rms error of the estimate while held, over the rms true torque",
+      at_most("anti-windup, while held: rms error of the estimate, divided by the rms true torque",
               error(with, kHeldFrom, kPullOut) / human(with), 0.02),
-      at_least("wound up: rms estimate while held over rms true torque, at least",
+      at_least("wound up, while held: rms estimate divided by the rms true torque",
                estimated(without) / human(without), 2),
-      at_most("wound up: estimate off the paper's d - (tau_c - tau_m), of the estimate",
+      at_most("wound up: deviation of the estimate from the paper's d - (tau_c - tau_m), divided "
+              "by the estimate",
               without.off_the_law(), 0.02),
-      at_least("pull-out: rms error of the estimate wound up over that with anti-windup, at least",
+      at_least("pull-out: rms error of the estimate without anti-windup, divided by that with "
+               "anti-windup",
                error(without, kPullOut, kOut) / error(with, kPullOut, kOut), 3),
-      at_least("pull-out: largest pull of the hand wound up over that with anti-windup, at least",
+      at_least("pull-out: largest pull of the hand without anti-windup, divided by that with "
+               "anti-windup",
                without.largest_pull() / with.largest_pull(), 1.2),
-      at_least("pull-out: largest pull of the hand, proposed with anti-windup over predictive, at "
-               "least",
-               with.largest_pull() / predicted.largest_pull(), 1.2)};
+      at_least(
+          "pull-out: largest pull of the hand, proposed with anti-windup divided by predictive",
+          with.largest_pull() / predicted.largest_pull(), 1.2)};
   const Touch push = worst_push(lab);
   const std::string where = "predictive, pushed with 8 N, motors of 0.4 N m: ";
   outcome.checks.push_back(at_most(where + "highest E_c [J]", push.energy, 5e-5));

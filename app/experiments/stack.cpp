@@ -107,16 +107,16 @@ Outcome stack(TrialRunner& lab) {
   for (const Stack& one : all) trials.push_back(stack_pressed(one));
   const std::vector<TrialResult> results = lab.run(trials);
 
-  FigurePanel sinks{.title = "How far contacts are pressed in by the weight above",
+  FigurePanel sinks{.title = "Depth of contacts under the weight above",
                     .x_label = "weight above a contact [N]",
-                    .y_label = "pressed in [mm]",
+                    .y_label = "depth [mm]",
                     .log_x = true,
                     .log_y = true};
   FigurePanel sweeps{.title = "Sweeps over contacts until a tick's forces were found",
                      .x_label = "time [s]",
                      .y_label = "sweeps [-]",
                      .x_range = std::pair(0.0, kStackSeconds)};
-  FigurePanel gain{.title = "What the stack has beyond what it had and was given",
+  FigurePanel gain{.title = "Energy gained by the stack, minus energy given to the stack",
                    .x_label = "time [s]",
                    .y_label = "energy [mJ]",
                    .x_range = std::pair(0.0, kStackSeconds)};
@@ -150,27 +150,30 @@ Outcome stack(TrialRunner& lab) {
                                      [&](auto k) { return s.at(k, Column::contact_force)[2]; }));
     const MovingVerdict v = judge_moving(results[i]);
     const std::string which = one.label + ": ";
-    outcome.checks.push_back(at_most(which + "pressed in off weight / (4 K_o) [m]", off, 2e-5));
-    outcome.checks.push_back(at_most(which + "gained by the blocks [J]", v.gain, 1e-6));
+    outcome.checks.push_back(
+        at_most(which + "deviation of a contact's depth from weight / (4 K_o) [m]", off, 2e-5));
+    outcome.checks.push_back(at_most(which + "energy gained by the blocks [J]", v.gain, 1e-6));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-5));
     outcome.checks.push_back(
-        at_most(which + "given to the human beyond what the blocks gave [J]", v.beyond, 5e-5));
+        at_most(which + "largest energy given to the human beyond what the blocks gave [J]",
+                v.beyond, 5e-5));
     outcome.checks.push_back(
         at_most(which + "ticks for which the proxy stood still", v.unsolved, 0));
     const double last = s.at(s.size() - 1, Column::contact_force)[2];
     outcome.checks.push_back(
-        at_most(which + "force at the end off that of all springs in a row, of it",
+        at_most(which + "relative deviation of the final force from that of all springs in series",
                 std::abs(last / one.force() - 1), 0.02));
   }
   outcome.figure.title = "Stacks with the tip on top";
   outcome.figure.columns = 2;
   outcome.figure.panels = {sinks, sweeps, gain, force};
   outcome.figure.caption = fmt::format(
-      "Blocks of {} mm on a floor, predictive coupling, pressed from above with {} N after {} s; "
-      "friction 0.5, contacts among blocks of K_o = {} N/m at each of {} points, {} N/m for the "
-      "tip. First: just before the tip comes; what lies above the line is depth that points had "
-      "when they were found, which pushes nothing. Sweeps: over what the tip touches and over all "
-      "else together; none while a stack sleeps.",
+      "Blocks of {} mm stand on a floor under the predictive coupling. The tip presses from above "
+      "with {} N after {} s. Friction is 0.5. Contacts among blocks have K_o = {} N/m at each of "
+      "{} points; the tip's contact has {} N/m. The first panel shows the depths just before the "
+      "tip comes. Depth above the line existed when the contact was found, and gives no force. "
+      "Sweeps count those over the tip's contacts and those over all others together. A sleeping "
+      "stack has no sweeps.",
       1e3 * kStackEdge, kStackPress, kStackDown, kStackBetween, kStackPoints, kStackWall);
   return outcome;
 }

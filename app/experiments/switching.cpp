@@ -160,7 +160,7 @@ double books_off(const Session& s) {
 FigurePanel stop_panel(const Session& s) {
   FigurePanel panel{.title = fmt::format("Into a stop of {} N m/rad and out of it", kStop),
                     .x_label = "time [s]",
-                    .y_label = "beyond the stop [mrad]"};
+                    .y_label = "angle beyond the stop [mrad]"};
   panel.series = {
       over_time(s, "device x1", kDeviceInk, Series::Style::line,
                 [&](auto k) { return 1e3 * s.at(k, Column::device_position)[kTurret]; }),
@@ -172,7 +172,7 @@ FigurePanel stop_panel(const Session& s) {
 
 FigurePanel gain_panel(const Session& paper, const Balance& papers, const Session& ours,
                        const Balance& own, const Balance& stiff) {
-  FigurePanel panel{.title = "What the stop has given beyond what it stored",
+  FigurePanel panel{.title = "Energy that the stop gave beyond the energy stored in the stop",
                     .x_label = "time [s]",
                     .y_label = "energy [μJ]"};
   const auto label = [](const char* law, double stop) {
@@ -189,9 +189,10 @@ FigurePanel gain_panel(const Session& paper, const Balance& papers, const Sessio
 }
 
 FigurePanel torque_panel(const Session& s) {
-  FigurePanel panel{.title = "Motor torque while the couplings take turns, pressing the table",
-                    .x_label = "time [s]",
-                    .y_label = "torque [N m]"};
+  FigurePanel panel{
+      .title = "Motor torque while the couplings change and the hand presses the table",
+      .x_label = "time [s]",
+      .y_label = "torque [N m]"};
   constexpr const char* kNames[] = {"turret", "shoulder", "elbow"};
   for (std::size_t j = 0; j < 3; ++j) {
     panel.series.push_back(over_time(s, kNames[j], kFamilyInk[j], Series::Style::line,
@@ -208,7 +209,7 @@ FigurePanel torque_panel(const Session& s) {
 }
 
 FigurePanel apart_panel(const Session& s) {
-  FigurePanel panel{.title = "Device and proxy apart, meanwhile",
+  FigurePanel panel{.title = "Distance of device and proxy while the couplings change",
                     .x_label = "time [s]",
                     .y_label = "|x1 - x2| [mrad]"};
   for (const CouplingKind kind :
@@ -245,26 +246,30 @@ Outcome switching(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "Contacts made and broken, couplings switched";
   outcome.figure.caption = fmt::format(
-      "Above: a hand of 300 N/m and 2 N s/m swings the first joint into a stop and out of it at "
-      "{} Hz; the stop is flat in joint space, so that no curvature is left; "
-      "what the predictive coupling's damper took is counted in. Below: the hand "
-      "presses a table of 600 N/m with {} N while each coupling hands over to each other. eta = 1.",
+      "Above: a hand of 300 N/m and 2 N s/m swings the first joint into a stop and out again at {} "
+      "Hz. The stop is flat in joint space, so there is no curvature. The energy includes what the "
+      "predictive coupling's damper took. Below: the hand presses a table of 600 N/m with {} N "
+      "while Limpid switches from each coupling to each other one. eta = 1.",
       kSwinging, kSwitchingPress);
   outcome.figure.columns = 2;
   outcome.figure.panels = {stop_panel(ours), gain_panel(paper, papers, ours, own, stiff),
                            torque_panel(turns), apart_panel(turns)};
   outcome.checks = {
       at_least("contacts made with each stop, predictive", std::min(own.touched, stiff.touched), 7),
-      at_most("predictive: largest energy from nowhere in making and breaking contact [J]",
+      at_most("predictive: largest energy without a source when contact is made or broken [J]",
               worse(furthest(own.gain), furthest(stiff.gain)), 1e-9),
-      at_least("proposed: the same, at least [J]", furthest(papers.gain), 1e-6),
-      at_least("switching while pressing: laws that were handed over to, to the end", steps.arrived,
+      at_least("proposed: largest energy without a source when contact is made or broken [J]",
+               furthest(papers.gain), 1e-6),
+      at_least("switching while pressing: completed transitions to another law", steps.arrived,
                kOrder.size() - 1),
       at_most("switching while pressing: largest change of a motor's torque in a tick during the "
               "transition to the other law [N m]",
               steps.on_the_way, 0.0065),
-      at_most("switching while pressing: the same, once it is there [N m]", steps.there, 0.05),
-      at_most("switching while pressing: recorded energies off torques times motions [J]",
+      at_most("switching while pressing: largest change of a motor's torque in a tick after the "
+              "transition [N m]",
+              steps.there, 0.05),
+      at_most("switching while pressing: deviation of the recorded energies from torques times "
+              "motions [J]",
               books_off(turns), 1e-12)};
   return outcome;
 }

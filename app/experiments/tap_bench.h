@@ -74,7 +74,7 @@ double named_wall(const TapSetting& setting);
 
 // Bounds for a well rendered wall.
 struct WellRendered {
-  static constexpr double kPort = 5e-5;     // given to the human [J]
+  static constexpr double kPort = 5e-5;     // largest energy given to the human [J]
   static constexpr double kEnergy = 5e-5;   // E_c, with exact encoders [J]
   static constexpr double kChatter = 0.02;  // [m/s]
   static constexpr double kFelt = 0.05;     // felt stiffness off the set one, over that [-]

@@ -246,14 +246,18 @@ void free_motion(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
     const double inertia_seen = apparent_inertia(felt.seen[i], 3);
     off_inertia = worse(off_inertia, std::abs(inertia_seen / apparent_inertia(expected, 3) - 1));
   }
-  outcome.checks.push_back(at_most("free: impedance off (24) in ticks, 0.5 to 50 Hz, all couplings",
-                                   worst_off_theory(felt, 50), 0.10));
+  outcome.checks.push_back(at_most(
+      "free motion: deviation of the impedance from (24) in ticks, 0.5 to 50 Hz, all couplings",
+      worst_off_theory(felt, 50), 0.10));
   outcome.checks.push_back(
-      at_most("free: |Z| off eta (M_L j w + b), 0.5 to 1 Hz, eta 0.4 to 5", off_low, 0.10));
+      at_most("free motion: deviation of |Z| from |eta (M_L j w + b)|, 0.5 to 1 Hz, eta 0.4 to 5",
+              off_low, 0.10));
   outcome.checks.push_back(
-      at_most("free: |Z| off eta (M_L j w + b), 5 to 15 Hz, eta 0.4 to 1", off_ideal, 0.15));
+      at_most("free motion: deviation of |Z| from |eta (M_L j w + b)|, 5 to 15 Hz, eta 0.4 to 1",
+              off_ideal, 0.15));
   outcome.checks.push_back(
-      at_most("free: apparent inertia Im Z / w up to 3 Hz off that of (24) in ticks, eta 0.4 to 1",
+      at_most("free motion: deviation of the inertia Im Z / w from that of (24) in ticks, up to 3 "
+              "Hz, eta 0.4 to 1",
               off_inertia, 0.10));
 }
 
@@ -270,8 +274,9 @@ void in_contact(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   }
   panel.series.push_back(wall);
   outcome.figure.panels.push_back(panel);
-  outcome.checks.push_back(at_most("contact: impedance off theory, 0.5 to 20 Hz, all couplings",
-                                   worst_off_theory(felt, 20), 0.10));
+  outcome.checks.push_back(
+      at_most("contact: deviation of the impedance from theory, 0.5 to 20 Hz, all couplings",
+              worst_off_theory(felt, 20), 0.10));
 }
 
 void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
@@ -313,10 +318,12 @@ void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   panel.series = {same, soft, points[0], points[1]};
   outcome.figure.panels.push_back(panel);
   outcome.checks.push_back(
-      at_most("standard: stiffness felt off 1 / (1/K + r^2/k_vc), walls of 50 to 1000 N/m",
+      at_most("standard: deviation of the stiffness felt from 1 / (1/K + r^2/k_vc), walls of 50 to "
+              "1000 N/m",
               off_series, 0.02));
   outcome.checks.push_back(at_most(
-      "proposed: stiffness felt off that of the wall, walls of 50 to 1000 N/m", off_wall, 0.03));
+      "proposed: deviation of the stiffness felt from that of the wall, walls of 50 to 1000 N/m",
+      off_wall, 0.03));
 }
 
 }  // namespace

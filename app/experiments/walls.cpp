@@ -211,10 +211,12 @@ void judge(const std::vector<Felts>& felts, std::vector<Check>& checks) {
     checks.push_back(
         at_least(where + fmt::format("arms for which analyze names a wall, of {}", P::kArms), walls,
                  P::kNamed[q]));
+    checks.push_back(at_most(where + "relative deviation of the stiffness felt from the set one",
+                             std::abs(worst.felt - 1), P::kOff));
     checks.push_back(
-        at_most(where + "stiffness felt off that set, of it", std::abs(worst.felt - 1), P::kOff));
-    checks.push_back(at_most(where + "rms force above 20 Hz, of what is allowed", worst.rattle, 1));
-    checks.push_back(at_most(where + "given to the human [J]", worst.port, P::kGiven));
+        at_most(where + "rms force above 20 Hz, divided by what is allowed", worst.rattle, 1));
+    checks.push_back(
+        at_most(where + "largest energy given to the human [J]", worst.port, P::kGiven));
   }
 }
 
@@ -226,12 +228,13 @@ Outcome walls(TrialRunner& lab) {
   using P = WallsPlan;
   outcome.figure.title = "Walls on any arm, with the stiffness that `limpid analyze` names";
   outcome.figure.caption = fmt::format(
-      "Predictive coupling, eta = 1. {} random arms of 1 to {} joints and {} to {} kg, each in a "
-      "pose of its own, its tip tapping a wall at {} m/s along the direction in which its dampers "
-      "hold it least, and pressed on it with {} N, or with what its motors bear twice. Desktop "
-      "devices in grips of {} and {} N/m, arms from {} kg on in grips of {} and {} N/m: the worst "
-      "of both. Allowed above {} Hz: {} of the press, and {} N of robots. Points beyond a frame "
-      "are drawn at its edge.",
+      "Predictive coupling, eta = 1. There are {} random arms of 1 to {} joints and {} to {} kg, "
+      "each in another pose. The tip taps a wall at {} m/s along the direction in which the arm's "
+      "dampers hold the tip least. Then the hand presses with {} N, or with half of what the "
+      "motors bear. Desktop devices are held in grips of {} and {} N/m, arms from {} kg on in "
+      "grips of {} and {} N/m; the worse grip is drawn. The rms force allowed above {} Hz is {} of "
+      "the pressing force, and {} N for robots. Points outside a frame are drawn at the frame's "
+      "edge.",
       P::kArms, P::kMostJoints, P::kLightest, P::kHeaviest, WallTap::kSpeed, P::kPress,
       P::kDesktopGrips[0].stiffness, P::kDesktopGrips[1].stiffness, P::kRobot,
       P::kRobotGrips[0].stiffness, P::kRobotGrips[1].stiffness, WallTap::kFast, P::kRattle,

@@ -28,7 +28,7 @@ void LiveRun::check() {
   if (!status.running) throw std::runtime_error("the loop has ended: " + status.failure);
   const nanoseconds now = MonotonicTime{}.now();
   if (session_.loop().snapshot().connected) seen_ = now;
-  if (now - seen_ > kGone) throw std::runtime_error("the device is gone");
+  if (now - seen_ > kGone) throw std::runtime_error("the device is disconnected");
   if (const std::string& why = session_.last_recording().trouble; !why.empty()) {
     throw FileError(why);
   }

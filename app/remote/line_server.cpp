@@ -81,7 +81,7 @@ int take_lock(const fs::path& path) {
     const std::string owner = owner_in(lock);
     close(lock);
     throw ListenError(
-        fmt::format("{}: {} listens there already; choose another name", path.string(), owner));
+        fmt::format("{}: {} uses this socket already; choose another name", path.string(), owner));
   }
   const std::string owner = fmt::format("process {} ({})", getpid(), own_words());
   if (ftruncate(lock, 0) != 0 || pwrite(lock, owner.data(), owner.size(), 0) < 0) {
@@ -301,7 +301,7 @@ void LineServer::greet() {
     return;
   }
   const std::string line = fmt::format(
-      "{{\"id\":null,\"error\":\"{} programs are connected already, which is the most\"}}\n",
+      "{{\"id\":null,\"error\":\"{} programs are connected already; no more can connect\"}}\n",
       kMostClients);
   [[maybe_unused]] const ssize_t sent = send(file, line.data(), line.size(), MSG_NOSIGNAL);
   close(file);
@@ -372,14 +372,14 @@ void LineServer::split(Connection& c, Client id) {
   if (c.looked > 0) return;
   if (c.dropped > 0 && has_room(c)) {
     c.out += fmt::format(
-        "{{\"id\":null,\"error\":\"{} lines found no room and were dropped: {} bytes of lines "
-        "may wait while answers are not fetched\"}}\n",
+        "{{\"id\":null,\"error\":\"{} lines were dropped: at most {} bytes of lines may wait while "
+        "the client does not read answers\"}}\n",
         std::exchange(c.dropped, 0), kMostWaiting);
   }
   if (!c.too_long) return;
-  c.out +=
-      fmt::format("{{\"id\":null,\"error\":\"a line has at most {} bytes; this one has more\"}}\n",
-                  kLongestLine);
+  c.out += fmt::format(
+      "{{\"id\":null,\"error\":\"a line has at most {} bytes; this line is longer\"}}\n",
+      kLongestLine);
   part(c);
 }
 

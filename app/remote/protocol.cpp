@@ -29,29 +29,31 @@ constexpr std::array kPicture{"file", "replace"};
 
 constexpr std::array kVerbs{
     Verb{"hello", kNone, "which version of Limpid this is, and what it offers"},
-    Verb{"get", kGet, "settings, all or those of \"keys\", and the state"},
+    Verb{"get", kGet, "gives the settings, all or those of \"keys\", and the state"},
     Verb{"set", kSet,
-         "\"values\" of settings, all or none of them; with \"twin\" true, the twin's, and with "
-         "\"lane\" 2 the third run's; with "
-         "\"reset\" true, all others as they usually are"},
-    Verb{"open", kOpen, "a scene, an arm, a session or a hand's path"},
+         "sets the \"values\" of settings, all or none; \"twin\": true sets the twin's, \"lane\": "
+         "2 the third run's; \"reset\": true gives all other settings their usual values"},
+    Verb{"open", kOpen, "opens a scene, an arm, a session or a hand's path"},
     Verb{"record", kRecord,
-         "every tick, into \"file\" or a new file of the user's sessions; with \"force\" true also "
-         "in place of one that is there"},
-    Verb{"stop", kNone, "the recording; answers once the file is complete"},
-    Verb{"start_over", kNone, "at rest in the middle, or at the beginning of the hand's path"},
-    Verb{"mark", kMark, "\"text\" in the plots and in what is recorded; answers which tick it is"},
-    Verb{"row", kRow, "the newest row, of all \"channels\" or some"},
-    Verb{"follow", kFollow, "rows of \"channels\" from now on, \"rate\" a second; none ends it"},
+         "records every tick, into \"file\" or a new file of the user's sessions; \"force\": true "
+         "replaces an existing file"},
+    Verb{"stop", kNone, "ends the recording; answers once the file is complete"},
+    Verb{"start_over", kNone,
+         "starts over, at rest in the middle or at the beginning of the hand's path"},
+    Verb{"mark", kMark, "notes \"text\" in the plots and in the recording; answers with the tick"},
+    Verb{"row", kRow, "gives the newest row, of all \"channels\" or some"},
+    Verb{"follow", kFollow,
+         "sends rows of \"channels\" from now on, \"rate\" rows a second; no channels end the "
+         "sending"},
     Verb{"twin", kTwin,
-         "a second run on the same hand, or with \"lane\" 2 a third one, with \"values\" of its "
-         "own"},
+         "adds a second run with the same hand and own \"values\"; \"lane\": 2 adds a third run"},
     Verb{"blind", kBlind, "the window hides law, settings and plots while this client is there"},
     Verb{"ask", kAsk,
-         "a person \"text\"; answers which of the \"choices\", and after how long; \"beside\" the "
-         "picture, which can be used meanwhile; for \"seconds\" only"},
-    Verb{"picture", kPicture, "into \"file\", a PNG; one that is there with \"replace\" true only"},
-    Verb{"cut", kNone, "no force, at once"},
+         "asks a person \"text\"; answers with the choice out of \"choices\" and the time it took; "
+         "\"beside\": true leaves the picture usable; \"seconds\" limits the time"},
+    Verb{"picture", kPicture,
+         "draws the picture into \"file\", a PNG; \"replace\": true replaces an existing file"},
+    Verb{"cut", kNone, "cuts the force at once"},
     Verb{"bye", kNone, "ends the connection"},
 };
 
@@ -69,8 +71,8 @@ std::string names_of_verbs() {
 json parse(std::string_view line) {
   const auto shallow = [](int depth, json::parse_event_t, json&) {
     if (depth <= kDeepest) return true;
-    throw RemoteError(
-        fmt::format("a line has lists and objects at most {} deep; this one has more", kDeepest));
+    throw RemoteError(fmt::format(
+        "a line has lists and objects at most {} deep; this line has deeper ones", kDeepest));
   };
   try {
     return json::parse(line.begin(), line.end(), shallow);
@@ -142,8 +144,8 @@ Request read_request(std::string_view line, json& id) {
   whole.erase(wanted);
   for (const auto& [key, value] : whole.items()) {
     if (std::ranges::count(verb->keys, std::string_view(key)) > 0) continue;
-    throw RemoteError(fmt::format("{}: {} is no key of it; allowed: {}", verb->name, shown(key),
-                                  list(verb->keys)));
+    throw RemoteError(fmt::format("{}: {} is not a key of this command; allowed: {}", verb->name,
+                                  shown(key), list(verb->keys)));
   }
   return {id, verb, std::move(whole)};
 }
@@ -196,8 +198,7 @@ std::filesystem::path Keys::file_to_write(std::string_view ending) const {
                                        std::filesystem::file_type::not_found) {
     return named;
   }
-  throw error("file", fmt::format("{} is there already; allowed: a file that is not, or "
-                                  "\"replace\": true",
+  throw error("file", fmt::format("{} exists already; allowed: a new file, or \"replace\": true",
                                   shown(named.string())));
 }
 

@@ -47,7 +47,7 @@ std::size_t asked_lane(const Keys& keys, std::size_t usual) {
 void check_beside(const Keys& keys, std::size_t lane, std::size_t lanes) {
   if (lane == kMainLane) throw keys.error("lane", "0 is the first run, which always runs");
   if (keys.flag_or("on", true) && lane > lanes) {
-    throw keys.error("lane", fmt::format("{} needs {} beside it", lane, lane - 1));
+    throw keys.error("lane", fmt::format("{} needs {} as well", lane, lane - 1));
   }
 }
 
@@ -218,10 +218,12 @@ json Remote::get(const Keys& keys) const {
 json Remote::set(const Keys& keys, Client client) {
   const bool of_twin = keys.flag_or("twin", false);
   const std::size_t lane = asked_lane(keys, of_twin ? kTwinLane : kMainLane);
-  if (of_twin && lane != kTwinLane) throw keys.error("lane", "is not the twin's, which is 1");
+  if (of_twin && lane != kTwinLane) {
+    throw keys.error("lane", "does not fit to \"twin\": true, which is lane 1");
+  }
   const bool reset = keys.flag_or("reset", false);
   if (lane >= host_.lanes()) {
-    throw keys.error(keys.has("lane") ? "lane" : "twin", "there is none");
+    throw keys.error(keys.has("lane") ? "lane" : "twin", "there is no such run");
   }
   const auto changed = [&] {
     Parameters p = host_.parameters(lane);
@@ -262,7 +264,7 @@ std::vector<Remote::Wanted> Remote::find(const std::vector<std::string>& names,
 json Remote::newest(const Keys& keys) const {
   const TraceChannels& channels = host_.channels();
   const auto rows = host_.rows();
-  if (rows.empty()) throw RemoteError("row: no row is there yet");
+  if (rows.empty()) throw RemoteError("row: the loop has not run a tick yet");
   std::vector<std::vector<double>> values;
   for (const std::span<const double> row : rows) {
     values.emplace_back(static_cast<std::size_t>(channels.count()));

@@ -55,7 +55,8 @@ void set_by_remote(Parameters& p, const std::string& key, const json& value,
   if (!info.live && parameter_text(before, info) != parameter_text(p, info)) {
     p = before;
     throw RemoteError(fmt::format(
-        "set: {}: stays as it is while the loop runs; it is chosen when the program starts", key));
+        "set: {}: cannot change while the loop runs; choose this setting when the program starts",
+        key));
   }
   if (std::ranges::count(kMotorLimits, key) == 0) return;
   const double asked = parameter_number(p, info);

@@ -156,16 +156,19 @@ Answer ServedSession::open(const Keys& keys) {
   const auto text = [&](const char* key) { return keys.text_if(key).value_or(""); };
   const OpenRequest asked{text("scene"), text("arm"), text("tip"), text("session"), text("hand")};
   const bool waits = keys.flag_or("wait", false);
-  if (session_.recording()) throw RemoteError("open: stop the recording before");
+  if (session_.recording()) {
+    throw RemoteError("open: not while a recording runs; stop the recording first");
+  }
   if (loop().device_in_place() &&
       (!asked.arm.empty() || !asked.session.empty() || !asked.hand.empty())) {
     throw RemoteError(
-        "open: a real device is in the arm's place, and a person's hand leads it; allowed: scene");
+        "open: a person's hand leads a real device, so arm, session and hand cannot be opened; "
+        "allowed: scene");
   }
   if (asked.scene.empty() && asked.arm.empty() && asked.session.empty() && asked.hand.empty()) {
     throw RemoteError("open: nothing to open; allowed: scene, arm, session, hand");
   }
-  if (busy(opening_)) throw RemoteError("open: something else is being opened");
+  if (busy(opening_)) throw RemoteError("open: another file is being opened; try again");
   opening_ = std::make_shared<std::future<World>>(files_.run(
       [open = options_.open, asked, now = controls().parameters()] { return open(asked, now); }));
   return Answer::Later([this, loading = opening_, waits,
@@ -173,17 +176,20 @@ Answer ServedSession::open(const Keys& keys) {
     if (!ready(*loading)) return std::nullopt;
     World world = loading->get();
     if (const double tick = world.plan.parameters.tick; of_session && tick < kLeastTick) {
-      throw RemoteError(
-          fmt::format("open: session: a tick of {} s would take the computer; allowed: {} to 0.1",
-                      tick, kLeastTick));
+      throw RemoteError(fmt::format(
+          "open: session: a tick of {} s is too short for the live loop; allowed: {} to 0.1", tick,
+          kLeastTick));
     }
-    if (session_.recording()) throw RemoteError("open: a recording has begun meanwhile");
+    if (session_.recording()) {
+      throw RemoteError("open: a recording has begun in the meantime; stop the recording first");
+    }
     if (!loop().device_in_place()) {
       begin(std::move(world), waits);
       return state();
     }
     if (count_bodies(world.plan.document.scene) != loop().layout().bodies()) {
-      throw RemoteError("open: scene: has another number of objects that move");
+      throw RemoteError(
+          "open: scene: the number of objects that move must stay the same on a real device");
     }
     loop().cut();
     session_.touch(world_.plan.arm, world.plan.document.scene);
@@ -199,7 +205,7 @@ std::string ServedSession::source() const {
 
 Answer ServedSession::record(const Keys& keys) {
   if (session_.recording()) {
-    throw RemoteError("record: a recording is under way; stop it before");
+    throw RemoteError("record: a recording runs already; stop that recording first");
   }
   if (session_.closing())
     throw RemoteError(
@@ -250,7 +256,9 @@ Answer ServedSession::stop() {
 }
 
 Answer ServedSession::start_over() {
-  if (session_.recording()) throw RemoteError("start_over: stop the recording before");
+  if (session_.recording()) {
+    throw RemoteError("start_over: not while a recording runs; stop the recording first");
+  }
   if (!loop().device_in_place()) loop().arm();
   ++controls().resets;
   return place();
@@ -269,7 +277,9 @@ Answer ServedSession::mark(const Keys& keys) {
 }
 
 Answer ServedSession::twin(const Keys& keys) {
-  if (session_.recording()) throw RemoteError("twin: stop the recording before");
+  if (session_.recording()) {
+    throw RemoteError("twin: not while a recording runs; stop the recording first");
+  }
   if (loop().device_in_place()) {
     throw RemoteError("twin: needs the virtual arm: one hand cannot hold two real devices");
   }
@@ -290,9 +300,9 @@ Answer ServedSession::twin(const Keys& keys) {
 
 Answer ServedSession::picture(const Keys& keys) {
   const fs::path file = keys.file_to_write(".png");
-  if (!session_.ticked()) throw RemoteError("picture: there is no row yet");
+  if (!session_.ticked()) throw RemoteError("picture: the loop has not run a tick yet");
   std::vector<double> row(session_.rows()[0].begin(), session_.rows()[0].end());
-  if (busy(drawing_)) throw RemoteError("picture: another one is being drawn");
+  if (busy(drawing_)) throw RemoteError("picture: another picture is being drawn; try again");
   drawing_ = std::make_shared<std::future<bool>>(
       files_.run([draw = options_.draw, file, plan = world_.plan, row = std::move(row)] {
         draw(file, plan, row);

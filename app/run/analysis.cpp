@@ -78,22 +78,23 @@ Held held_at(const ArmDescription& description, const Eigen::VectorXd& x, const 
 
 // Judges spring and damper alone.
 Passivity by_condition3(const Condition3& c) {
-  if (!c.known) return {std::nullopt, "no bound is known, as packets are lost (link.loss)"};
+  if (!c.known) return {std::nullopt, "no bound is known because packets are lost (link.loss)"};
   return {c.holds, c.holds ? "condition (3) holds" : "condition (3) is broken"};
 }
 
 Passivity of_feedforward(const Analysis& a, const Parameters& p) {
   if (!a.above_eta_min) return {false, fmt::format("eta is below eta_min {:.4f}, (25)", a.eta_min)};
   if (p.eta < a.eta_min_compliant) {
-    return {false, fmt::format("eta is below {:.4f}, where this grip makes it unstable",
+    return {false, fmt::format("eta is below {:.4f}: the coupling is unstable in this grip",
                                a.eta_min_compliant)};
   }
   Passivity spring = by_condition3(a.condition3);
   if (spring.passive == false) return spring;
-  if (p.linked()) return {std::nullopt, "no bound is known for the feedforward through a link"};
+  if (p.linked()) return {std::nullopt, "no bound is known for feedforward torques through a link"};
   if (a.delay > 0) {
-    return {std::nullopt, fmt::format("no bound is known for a feedforward that is {:.3g} ms late",
-                                      1e3 * a.delay)};
+    return {std::nullopt,
+            fmt::format("no bound is known for feedforward torques that act {:.3g} ms late",
+                        1e3 * a.delay)};
   }
   return {true, "in free motion: eta is at or above eta_min, (25), and condition (3) holds"};
 }
@@ -159,8 +160,8 @@ std::string basis_text(const ArmDescription& arm, const Parameters& p) {
                : fmt::format("inertia, damping and {}, measured", delay);
   }
   return fmt::format("{}, {}",
-                     set ? "inertia as its file has it, damping as set"
-                         : "inertia and damping as its file has them",
+                     set ? "inertia as in the arm's file, damping as set"
+                         : "inertia and damping as in the arm's file",
                      p.delay + p.device_delay > 0 ? delay + " as set" : "no delay: assumed");
 }
 
@@ -191,20 +192,29 @@ Passivity passivity(const Analysis& a, const Parameters& p) {
     case Promise::eta_min: return of_feedforward(a, p);
     case Promise::ledger:
       if (p.tick > kTriedTick) {
-        return {std::nullopt, "no bound is known: its ledger was tried at ticks of up to 1 ms"};
+        return {
+            std::nullopt,
+            "no bound is known: the law's energy account was tested only at ticks of up to 1 ms"};
       }
-      return {true, fmt::format("its ledger: at most {:.3g} mJ are given", 1e3 * p.energy)};
+      return {true, fmt::format("the energy account: the hand is given at most {:.3g} mJ",
+                                1e3 * p.energy)};
     case Promise::tanks:
-      return {true, fmt::format("its tanks: at most {:.3g} mJ are given", 1e3 * p.tank_energy)};
+      return {true, fmt::format("the energy tanks: the hand is given at most {:.3g} mJ",
+                                1e3 * p.tank_energy)};
     case Promise::port:
-      return {true, "its account: nothing is given, as far as the device's damping is right"};
+      return {true,
+              "the energy account: the hand is given no energy if the value of the device's "
+              "damping is right"};
     case Promise::line:
-      if (a.line_margin >= 0) return {true, "its line, which is soft beside the device's damping"};
-      return {std::nullopt, "no bound is known: its line is above a third of the device's damping"};
+      if (a.line_margin >= 0) {
+        return {true, "the line's impedance is small compared with the device's damping"};
+      }
+      return {std::nullopt,
+              "no bound is known: the line's impedance is above a third of the device's damping"};
     case Promise::observer:
-      return {std::nullopt, "no bound is known: its damper may be too small or too late"};
+      return {std::nullopt, "no bound is known: the law's damper may be too small or too late"};
     case Promise::none:
-      return {std::nullopt, "no bound is known: it depends on how the hand damps"};
+      return {std::nullopt, "no bound is known: passivity depends on the hand's damping"};
   }
   return {};
 }

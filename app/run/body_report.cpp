@@ -107,20 +107,20 @@ std::string line_of(const Object& object) {
 
 void warn_of_inertia(const Object& object, const Vec3& i, BodyReport& report) {
   if (!possible_inertia(i)) {
-    report.warnings.push_back(fmt::format(
-        "'{}': no body has an inertia of [{:.4g}, {:.4g}, {:.4g}] kg m^2: none of the three may "
-        "be more than the other two together",
-        object.name, i.x(), i.y(), i.z()));
+    report.warnings.push_back(
+        fmt::format("'{}': an inertia of [{:.4g}, {:.4g}, {:.4g}] kg m^2 is impossible: each "
+                    "moment must be at most the sum of the other two",
+                    object.name, i.x(), i.y(), i.z()));
     return;
   }
   // Mass at the ends of a rod has three times the inertia of the rod.
   const MassProperties solid = solid_mass_properties(object, 1);
   const double usual = object.body->mass * solid.inertia.diagonal().maxCoeff() / solid.mass;
   if (i.maxCoeff() > kFarFetched * usual) {
-    report.warnings.push_back(fmt::format(
-        "'{}': an inertia of {:.3g} kg m^2 is {:.0f} times that of a solid of its shape and mass; "
-        "are its moments in kg m^2?",
-        object.name, i.maxCoeff(), i.maxCoeff() / usual));
+    report.warnings.push_back(
+        fmt::format("'{}': an inertia of {:.3g} kg m^2 is {:.0f} times that of a solid with the "
+                    "same shape and mass; are the moments given in kg m^2?",
+                    object.name, i.maxCoeff(), i.maxCoeff() / usual));
   }
 }
 
@@ -128,8 +128,8 @@ void warn(const Object& object, const Scene& scene, const ArmDescription& arm, B
   const double reach = farthest_tip(arm).distance;
   const double away = beyond_reach(object, scene, arm);
   if (away > 0) {
-    report.warnings.push_back(
-        fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
+    report.warnings.push_back(fmt::format("'{}' lies {:.3g} m beyond the tip's reach of {:.3g} m",
+                                          object.name, away, reach));
   }
   if (object.body->inertia) warn_of_inertia(object, *object.body->inertia, report);
 }
@@ -261,29 +261,29 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm) {
   if (bodies == 0) return report;
   const double energy = most_weight_energy(scene, arm);
   const double springs = spring_energy(scene);
-  report.facts.push_back(fmt::format(
-      "moves        {} of them, {} springs; their weight may give {:.3g} J, their springs {:.3g} J",
-      bodies, scene.springs.size(), energy, springs));
+  report.facts.push_back(
+      fmt::format("moves        {} objects, {} springs; the objects' weight may give {:.3g} J, the "
+                  "springs {:.3g} J",
+                  bodies, scene.springs.size(), energy, springs));
   for (const Object& object : scene.objects) {
     if (!object.body) continue;
     report.facts.push_back(line_of(object));
     warn(object, scene, arm, report);
   }
   if (energy > kHurts) {
-    report.warnings.push_back(fmt::format(
-        "falling, its bodies may give {:.3g} J, more than {} J: a falling kilogram hurts; make "
-        "them lighter, or let them start lower",
-        energy, kHurts));
+    report.warnings.push_back(
+        fmt::format("falling objects may give {:.3g} J, more than {} J: a falling kilogram hurts; "
+                    "make the objects lighter, or let the objects start lower",
+                    energy, kHurts));
   }
   if (springs > kHurts) {
     report.warnings.push_back(
-        fmt::format("springs that are drawn at the start may give {:.3g} J, more than {} J: make "
-                    "them softer, or "
-                    "let their bodies start nearer to rest",
+        fmt::format("springs that are stretched at the start may give {:.3g} J, more than {} J: "
+                    "make the springs softer, or let the objects start nearer to rest",
                     springs, kHurts));
   }
   for (const auto& [i, j] : overlapping(scene)) {
-    report.warnings.push_back(fmt::format("'{}' and '{}' are in each other at the start",
+    report.warnings.push_back(fmt::format("'{}' and '{}' overlap at the start",
                                           scene.objects[i].name, scene.objects[j].name));
   }
   return report;

@@ -117,7 +117,7 @@ std::string readings_text(const ArmDescription& arm, const Parameters& p) {
                             : "no delay";
     return step + " and " + delay;
   };
-  return fmt::format("its file says {}; these settings have {}", told(filed), told(p));
+  return fmt::format("the arm's file says {}; the settings say {}", told(filed), told(p));
 }
 
 CompensationSettings suggested_compensation(const ArmDescription& arm) {

@@ -28,7 +28,7 @@ Parameters fitted(const ArmDescription& arm, const Parameters& chosen = {}, doub
 // delay in whole ticks, which the law knows.
 Parameters with_readings_of(const ArmDescription& arm, Parameters p);
 // Says how settings differ from that: "its file says encoder steps of 0.419 mrad and a delay of 1
-// ms; these settings have exact encoders and no delay"; empty if they do not, or if the file says
+// ms; the settings say exact encoders and no delay"; empty if they do not, or if the file says
 // nothing. For arms that slide the steps are in mm.
 std::string readings_text(const ArmDescription& arm, const Parameters& p);
 

@@ -42,7 +42,8 @@ class JudgedLaws {
     LawInHands law;
     law.in_any_hand = info(kind).loop == LinearLoop::on_device ? on_device(all) : passive_walls(p);
     const bool every = law.in_any_hand.up_to == kEvery;
-    law.in_range = every ? SafeWalls{kEvery, std::nullopt, "as in every hand"} : in_range(kind);
+    law.in_range = every ? SafeWalls{kEvery, std::nullopt, "the same as in every passive hand"}
+                         : in_range(kind);
     law.two_port_why = unknown_two_port(kind);
     if (law.two_port_why.empty()) criterion(kind, law);
     return law;
@@ -56,13 +57,15 @@ class JudgedLaws {
     // The conditions of (25) are about free motion and the spring.
     if (info(p.kind).promise == Promise::eta_min) {
       return {std::nullopt, std::nullopt,
-              "free motion is; a contact's force is fed forward late, and no bound is known of it"};
+              "passive in free motion; no bound is known for contact forces, which are fed forward "
+              "late"};
     }
     return {kEvery, std::nullopt, known.by};
   }
   SafeWalls on_device(const InHands& all) const {
     if (p_.encoder_step > 0 && !all.stepped.wall) {
-      return {std::nullopt, std::nullopt, "no bound is known of encoder steps with a delay"};
+      return {std::nullopt, std::nullopt,
+              "no bound is known for encoder steps together with a delay"};
     }
     const double stepped = all.stepped.wall.value_or(kEvery), sampled = *all.sampled.wall;
     return {std::min(sampled, stepped), std::nullopt,
@@ -72,12 +75,12 @@ class JudgedLaws {
   SafeWalls in_range(CouplingKind kind) const {
     const LinearLoop loop = info(kind).loop;
     const auto unknown = [](const char* why) { return SafeWalls{std::nullopt, std::nullopt, why}; };
-    if (loop == LinearLoop::none) return unknown("it is not linear, and no bound is known");
+    if (loop == LinearLoop::none) return unknown("no bound is known: the law is not linear");
     if (loop != LinearLoop::on_device && p_.linked()) {
-      return unknown("it is not reckoned through a link");
+      return unknown("no bound is computed for a link between device and proxy");
     }
     if (loop == LinearLoop::fed_forward && p_.velocity != VelocitySource::raw) {
-      return unknown("it is reckoned with raw velocities only");
+      return unknown("a bound is computed only with raw velocities");
     }
     SafeWalls found{kEvery, std::nullopt,
                     "the sampled loop of arm, hand and wall, with exact encoders"};
@@ -112,11 +115,11 @@ class JudgedLaws {
       case LinearLoop::on_device: return {};
       case LinearLoop::behind_spring:
         if (p_.link_jitter > 0 || p_.link_loss > 0) {
-          return "not known: the criterion asks for a link whose delay does not change";
+          return "not known: the criterion needs a link with a constant delay";
         }
         return {};
       case LinearLoop::fed_forward:
-        return "not known: forces are fed forward; (25) is the condition on them";
+        return "not known: the law feeds forces forward; condition (25) applies to the law";
       case LinearLoop::none: break;
     }
     return "not known: the law is not linear";
@@ -131,10 +134,11 @@ class JudgedLaws {
           return on_device ? device_two_port(joint, f) : spring_two_port(p_, joint, f);
         },
         p_.tick);
-    law.two_port_why = !law.two_port->fails_from
-                           ? "every passive hand is stable on every passive contact"
-                       : on_device ? "without a spring between, some wall is unstable in some hand"
-                                   : "some contact is unstable in some hand";
+    law.two_port_why =
+        !law.two_port->fails_from ? "every passive hand is stable on every passive contact"
+        : on_device
+            ? "without a spring between hand and wall, some walls are unstable in some hands"
+            : "some contacts are unstable in some hands";
   }
 
   const ArmDescription& arm_;
@@ -157,7 +161,7 @@ NamedBound abbott_okamura(const ArmDescription& arm, const ArmAt& at, const Para
                    "tip",
                    std::nullopt};
   if (tip.loop.delay > 0) {
-    bound.rule += "; it is known only without a delay";
+    bound.rule += "; this bound is known only without a delay";
     return bound;
   }
   const double friction = (1 - p.friction_share) * friction_at_tip(at.J, device_friction(arm, p));

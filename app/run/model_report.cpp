@@ -117,14 +117,14 @@ std::vector<std::string> touch_warnings(const Model& model, const TriangleMesh& 
   if (const std::string health = shape.health().text(); !health.empty()) lines.push_back(health);
   if (!shape.health().closed()) return lines;
   if (volume(model, shape.middle()) < 0) {
-    lines.push_back("its faces look inwards: it is felt from inside, as a hollow");
+    lines.push_back("the faces point inwards: the model is felt from inside, like a hollow");
   }
   const double size = model.bounds().sizes().maxCoeff();
   const double share = thin_share(model, shape, kThin * size);
   if (share > 0.2) {
     lines.push_back(
-        fmt::format("{:.0f} % of its surface is a wall thinner than {:.2g} % of its "
-                    "size: pressed hard, the tip may slip around its edge",
+        fmt::format("{:.0f} % of the model's surface is a wall thinner than {:.2g} % of the "
+                    "model's size: pressed hard, the tip may slip around the wall's edge",
                     100 * share, 100 * kThin));
   }
   return lines;
@@ -135,8 +135,7 @@ std::string size_warning(const Model& model, double unit) {
   if (longest <= kLargest && longest >= kSmallest) return {};
   const bool large = longest > kLargest;
   return fmt::format(
-      "it is {:.3g} {} long, {}: its unit (m, cm, mm, in or ft) or its scale may be "
-      "wrong",
+      "the model is {:.3g} {} long, {}: the unit (m, cm, mm, in or ft) or the scale may be wrong",
       large ? longest : 1e3 * longest, large ? "m" : "mm",
       large ? "more than 10 m" : "less than 1 mm");
 }

@@ -28,7 +28,7 @@ const std::filesystem::path& of_as_many_lanes(const std::filesystem::path& out,
                                               const SessionInfo& info, std::size_t lanes) {
   if (info.lanes() == lanes && lanes <= kMostLanes) return out;
   throw std::invalid_argument(
-      fmt::format("{}: {} runs, and settings of {}", out.string(), info.lanes(), lanes));
+      fmt::format("{}: {} runs, but settings of {} runs", out.string(), info.lanes(), lanes));
 }
 
 std::size_t row_size(const SessionInfo& info) {
@@ -97,7 +97,8 @@ void Recorder::mark(Mark mark) {
   check_mark(mark, out_);
   const std::lock_guard lock(marks_mutex_);
   if (marked_ == kMostMarks) {
-    throw FileError(fmt::format("{}: has {} marks, and takes no more", out_.string(), marked_));
+    throw FileError(fmt::format("{}: has {} marks already, the most that a recording can have",
+                                out_.string(), marked_));
   }
   ++marked_;
   marks_.push_back(std::move(mark));
@@ -196,7 +197,7 @@ void Recorder::write_changes() {
 
 std::string lock_note(const Recorder& recorder) {
   if (recorder.is_locked()) return {};
-  return fmt::format("{}: its file system has no locks; no other program may record into it",
+  return fmt::format("{}: the file system has no locks; no other program may record into this file",
                      recorder.out().string());
 }
 

@@ -154,7 +154,9 @@ RunPlan replay(const Session& session, const std::string& where, const Parameter
   plan.rows = session.size();
   plan.note = other_build(session.info.build, where);
   if (had_another_filter(session, where)) {
-    plan.note += "; its filter of encoder steps is no longer the program's, so the numbers differ";
+    plan.note +=
+        "; Limpid no longer has the filter of encoder steps that this recording used, so the "
+        "numbers differ";
   }
   plan.seed = session.info.seed;
   // A real device has no measured hand torque: the observer's estimate acts in its place. It has

@@ -14,8 +14,8 @@ std::vector<std::string> notes_on(const Parameters& p) {
   }
   if (law.promise == Promise::ledger && p.tick > kTriedTick) {
     notes.push_back(fmt::format(
-        "loop.tick {:.4g} ms: {}'s account of energy was tried at ticks of up to 1 ms; at longer "
-        "ones the hand may be given more than ledger.energy",
+        "loop.tick {:.4g} ms: the energy account of the law {} was tested only at ticks of up to 1 "
+        "ms; at longer ticks the hand may be given more energy than ledger.energy",
         1e3 * p.tick, law.key));
   }
   return notes;

@@ -86,9 +86,9 @@ std::vector<std::string> RunWatch::cautions() const {
   std::vector<std::string> all;
   if (energy_.since >= 0) {
     const std::string allowed =
-        promised_ > 0
-            ? fmt::format(", more than the {} that its account allows", joules_text(promised_))
-            : "";
+        promised_ > 0 ? fmt::format(", more than the {} that the energy account allows",
+                                    joules_text(promised_))
+                      : "";
     all.push_back(fmt::format(
         "E_c rose to {}{}, above the bound since t = {:.3f} s: this run is not passive ({})",
         joules_text(energy_.most), allowed, energy_.since, energy_.with));

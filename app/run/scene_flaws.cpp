@@ -38,8 +38,8 @@ void warn_of_friction(const Object& object, std::vector<std::string>& warnings) 
   const Material& m = object.material;
   if (m.friction_kinetic <= m.friction_static) return;
   warnings.push_back(
-      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: what slides "
-                  "would be held more than what sticks",
+      fmt::format("'{}': friction_kinetic {:.4g} is above friction_static {:.4g}: a sliding tip "
+                  "would be held more than a sticking tip",
                   object.name, m.friction_kinetic, m.friction_static));
 }
 
@@ -48,13 +48,14 @@ void warn_of_place(const Object& object, const Scene& scene, const ArmDescriptio
   const double reach = farthest_tip(arm).distance;
   const double away = beyond_reach(object, scene, arm);
   if (away > 0) {
-    warnings.push_back(
-        fmt::format("'{}': {:.3g} m beyond the tip's reach of {:.3g} m", object.name, away, reach));
+    warnings.push_back(fmt::format("'{}' lies {:.3g} m beyond the tip's reach of {:.3g} m",
+                                   object.name, away, reach));
   }
   const double depth = depth_of(tip, object, scene);
   if (depth > kInside) {
-    warnings.push_back(fmt::format("'{}': the tip of the arm at its rest pose is {:.3g} mm inside",
-                                   object.name, 1e3 * depth));
+    warnings.push_back(
+        fmt::format("'{}': in the arm's rest pose the tip is {:.3g} mm inside this object",
+                    object.name, 1e3 * depth));
   }
 }
 

@@ -194,8 +194,8 @@ std::string Summary::text() const {
   held("torque held back in", t.torque_held);
   if (t.warmest > 0) {
     text += fmt::format(
-        "warmth of the motors     at most {:.0f} % of what they bear for hours ({}); less than the "
-        "full torque for {:.3f} s\n",
+        "warmth of the motors     at most {:.0f} % of the limit for hours of use ({}); less than "
+        "the full torque for {:.3f} s\n",
         100 * t.warmest, warming_[t.warmest_joint], t.held_by_warmth);
   }
   if (layout_.bodies() == 0) return text;

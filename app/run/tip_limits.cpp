@@ -11,8 +11,8 @@ std::string still_tip(const ArmDescription& arm) {
   constexpr double kNoLever = 1e-9;  // round-off [m]
   if (arm_at(arm, rest_pose(arm)).J.norm() > kNoLever) return {};
   return fmt::format(
-      "no joint moves '{}', the tip, from the rest pose: there is no wall to name and nothing is "
-      "felt there; --tip takes another link",
+      "no joint moves the tip '{}' from the rest pose, so nothing can be felt at this tip; choose "
+      "another link with --tip",
       arm.tip_link);
 }
 
@@ -70,8 +70,9 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
 
 std::string late_text(const TipLimits& l, const Parameters& p) {
   if (p.eta <= 1 || l.added.edge >= added_mass(p.eta, 0, p.tick).edge) return {};
-  return fmt::format("{:.3g} up to {:.2g} Hz, as the torque may be {:.3g} ms late", l.added.eta,
-                     l.added.edge / (2 * std::numbers::pi), 1e3 * p.tick * l.delay_most);
+  return fmt::format("{:.3g} up to {:.2g} Hz, because the torque may be {:.3g} ms late",
+                     l.added.eta, l.added.edge / (2 * std::numbers::pi),
+                     1e3 * p.tick * l.delay_most);
 }
 
 }  // namespace limpid

@@ -35,7 +35,7 @@ TipLimits without_delay(const ArmDescription& arm, const Eigen::VectorXd& x, con
                         const Scene& scene);
 
 // Says what the possible delay leaves of an eta above 1 under the predictive coupling: "5 up to 3.3
-// Hz, as the torque may be 3 ms late"; empty if it leaves all of it.
+// Hz, because the torque may be 3 ms late"; empty if it leaves all of it.
 std::string late_text(const TipLimits& limits, const Parameters& p);
 
 }  // namespace limpid

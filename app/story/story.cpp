@@ -56,7 +56,8 @@ void check(const std::string& setting, std::size_t lane, double time) {
   const ParameterInfo* info = key_of(setting);
   if (info == nullptr) return;  // apply_setting has a better message
   if (lane != kAll && !of_controller(*info)) {
-    throw ParameterError(fmt::format("{}: is one for all runs; it belongs under set", info->key));
+    throw ParameterError(
+        fmt::format("{}: is one setting for all runs; write this setting under set", info->key));
   }
   if (!info->live && time > 0) {
     throw ParameterError(fmt::format("{}: may be set in the first step only", info->key));
@@ -337,7 +338,7 @@ void StoryHand::add(double time, const Vec3& point, std::uint32_t line) {
   if (!time_.empty()) {
     const double passed = time - time_.back(), way = (point - position_.back()).norm();
     if (way > kFastest * passed) {
-      refuse(fmt::format("is {:.3f} m from the one {:.3f} s before; allowed: up to {} m/s", way,
+      refuse(fmt::format("is {:.3f} m from the point {:.3f} s before; allowed: up to {} m/s", way,
                          passed, kFastest));
     }
   }

@@ -87,11 +87,12 @@ std::vector<SweepColumn> measured_columns(const SweepPlan& plan) {
   const std::string condition = plan.boundary->condition.measure->name;
   return {
       {"boundary", axis.unit, fmt::format("lowest {} at which {} changes", axis.name, condition)},
-      {"boundary_last", axis.unit, fmt::format("highest {} at which it changes", axis.name)},
+      {"boundary_last", axis.unit,
+       fmt::format("highest {} at which the result changes", axis.name)},
       {"at_top", "yes/no",
        fmt::format("whether {} is met at the highest {}", condition, axis.name)},
-      {"changes", "-", "how often it changes between the values tried"},
-      {"runs", "-", "how many runs it took"}};
+      {"changes", "-", "number of changes between the values tried"},
+      {"runs", "-", "number of runs made"}};
 }
 
 std::optional<RunMeter> run_point(const SweepPlan& plan, const RunPlan& run,

@@ -96,7 +96,8 @@ class Reader {
     plan_.jump = {hand->need(hand->vector("at", kMetres), "at"),
                   hand->vector("jump", kMetres).value_or(Vec3::Zero())};
     if (plan_.seconds == 0) file_.refuse_missing("seconds");
-    if (plan_.repeats > 1) file_.refuse("repeats", "1 for a hand that jumps: all would be alike");
+    if (plan_.repeats > 1)
+      file_.refuse("repeats", "1 for a hand that jumps: all repeats would be alike");
   }
 
   // Refuses other keys beside a tap, which makes its own wall and path.
@@ -105,7 +106,8 @@ class Reader {
       if (hand.find(key) != nullptr) hand.refuse(key, "nothing: a hand that taps finds its way");
     }
     if (file_.find("scene") != nullptr) file_.refuse("scene", "nothing: a tap has its own wall");
-    if (plan_.repeats > 1) file_.refuse("repeats", "1 for a hand that taps: all would be alike");
+    if (plan_.repeats > 1)
+      file_.refuse("repeats", "1 for a hand that taps: all repeats would be alike");
   }
 
   void read_axes() {
@@ -170,7 +172,7 @@ class Reader {
       plan_.measures.push_back(measure);
     }
     if (plan_.boundary && !plan_.measures.empty()) {
-      file_.refuse("measure", "nothing: a boundary is what is measured");
+      file_.refuse("measure", "nothing: a sweep with a boundary measures the boundary only");
     }
     if (!plan_.boundary && plan_.measures.empty()) file_.refuse_missing("measure");
     for (const TomlTable& each : file_.tables("stop")) {
@@ -194,7 +196,7 @@ class Reader {
                     figure->texts("theory"), figure->text("caption").value_or("")};
     const auto measured = [&](const MeasureInfo* m) { return plan_.figure.measure == m->name; };
     if (!plan_.figure.measure.empty() && std::ranges::none_of(plan_.measures, measured)) {
-      figure->refuse("measure", "one that is measured");
+      figure->refuse("measure", "a measure that the plan measures");
     }
     for (const std::string& line : plan_.figure.theory) {
       if (std::ranges::find(kTheories, line) == std::end(kTheories)) {

@@ -127,12 +127,15 @@ std::shared_ptr<const SweepPlan> plan_in(const TableFile& file, const fs::path& 
   const std::string text = file.text_if_any("plan");
   if (text.empty()) {
     throw FileError(
-        fmt::format("{}: holds no plan, so that nobody knows what its points are", path.string()));
+        fmt::format("{}: the table holds no plan, so that nobody knows what the table's points "
+                    "are; needed: a table with a plan",
+                    path.string()));
   }
   if (("\n" + text).find("\n[refine]") != std::string::npos) {
-    throw FileError(fmt::format(
-        "{}: an older version refined its map, which this one does not show; h5py reads it",
-        path.string()));
+    throw FileError(
+        fmt::format("{}: an older version of limpid refined this map; this version cannot show a "
+                    "refined map. Read the file with h5py",
+                    path.string()));
   }
   auto plan = std::make_shared<SweepPlan>(plan_of_text(text, plan_behind(path.parent_path())));
   try {

@@ -96,7 +96,7 @@ SweepFolder::SweepFolder(const SweepPlan& plan, fs::path dir)
     const std::string said = read_text(note, kLongestNote);
     Belongs found{};
     if (std::sscanf(said.c_str(), "plan %lx\nbuild %lx", &found.plan, &found.build) != 2) {
-      throw FileError(fmt::format("{}: is no note of a sweep", note.string()));
+      throw FileError(fmt::format("{}: this file is no note of a sweep", note.string()));
     }
     check_same(found, own, note);
     return;

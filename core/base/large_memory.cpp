@@ -77,13 +77,14 @@ Mapped map_file(std::size_t bytes) {
   const Descriptor file(nameless_file(in));
   if (*file < 0) return failed();
   if (!keeps_its_room(*file))
-    return {nullptr, in + ": its file system is memory itself, or keeps no room for a file"};
+    return {nullptr,
+            in + ": the file system lies in main memory, or cannot reserve room for a file"};
   struct statvfs disk {};
   if (::fstatvfs(*file, &disk) != 0) return failed();
   const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
   if (free < bytes + kLeftOnDisk) {
-    return {nullptr, fmt::format("{}: {} MiB are free, and {} MiB of them stay free", in,
-                                 free >> 20, kLeftOnDisk >> 20)};
+    return {nullptr, fmt::format("{}: {} MiB of the disk are free, and Limpid leaves {} MiB free",
+                                 in, free >> 20, kLeftOnDisk >> 20)};
   }
   if (::fallocate(*file, 0, 0, static_cast<off_t>(bytes)) != 0) return failed();
   void* block = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, *file, 0);
@@ -129,8 +130,8 @@ void* take_large_block(std::size_t bytes) {
     if (void* block = map_plain(bytes)) return block;
   }
   throw NoRoom(
-      fmt::format("{} MiB more are needed, this computer's memory is {} MiB, and {}; TMPDIR names "
-                  "another folder",
+      fmt::format("{} MiB more main memory (RAM) are needed, this computer has {} MiB in all, and "
+                  "{}; set TMPDIR to another folder",
                   bytes >> 20, memory >> 20, file.why));
 }
 

@@ -25,8 +25,8 @@ struct EbaLaw {
       .key = "eba",
       .label = "Energy bounding",
       .meaning =
-          "walls on the device itself, let through as far as the device's damping pays (Kim and "
-          "Ryu 2010).",
+          "walls on the device itself; the law limits their force so that the device's damping can "
+          "pay for the energy (Kim and Ryu 2010).",
       .verdict = "Passive in every hand, as stiff as the arm's damping.",
       .promise = Promise::port,
       .on_device = true,

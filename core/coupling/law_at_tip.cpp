@@ -32,7 +32,7 @@ TipWall LawAtTip::through_spring(double k_vc) const {
 
 TipWall LawAtTip::on_device(double stiffness, const char* bound) const {
   const double stepped = stepped_wall(encoder_step * std::sqrt(tip.lever2), friction);
-  if (stepped < stiffness) return {stepped, "a step of the encoder pushes the hand"};
+  if (stepped < stiffness) return {stepped, "one encoder step pushes the hand"};
   return {stiffness, bound};
 }
 

@@ -20,8 +20,8 @@ struct ObserverSettings {
   static constexpr std::array<Field<P>, 3> settings() {
     return {{{"observer.alpha", "\xCE\xB1", "Observer gain \xCE\xB1", &P::alpha, "N m s/rad", 1e-6,
               1e3, 1e-3, 1, true, true,
-              "Gain of the human force observer, L = alpha M^-1, (17)-(18). Larger follows the "
-              "hand faster (w_f = alpha / m) and raises eta_min."},
+              "Gain of the human force observer, L = alpha M^-1, (17)-(18). A larger gain follows "
+              "the hand faster (w_f = alpha / m) and raises eta_min."},
              {"observer.anti_windup", "anti-windup", "Observer knows the motors' limit",
               &P::anti_windup, "-", 0, 1, 0, 1, false, true,
               "Feed the observer with the torque the motors really gave (section 3.1). Without "

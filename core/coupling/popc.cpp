@@ -79,7 +79,7 @@ class Popc final : public Law<N> {
 
 TipWall PopcLaw::wall(const LawSettings& p, const LawAtTip& at) {
   return at.on_device(braked_wall(at.tip, at.loop, p.popc_damping),
-                      "the damping of arm and hand, and its own damper, held for a tick");
+                      "the damping of arm, hand and the law's own damper, held for a tick");
 }
 
 FeltAtTip PopcLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }

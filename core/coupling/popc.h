@@ -28,8 +28,8 @@ struct PopcLaw {
       .key = "popc",
       .label = "PO/PC",
       .meaning =
-          "walls on the device itself, with a damper that takes back what they gave (passivity "
-          "observer and controller, Hannaford and Ryu 2002).",
+          "walls on the device itself, with a damper that takes back the energy the walls gave "
+          "(passivity observer and controller, Hannaford and Ryu 2002).",
       .verdict = "Brakes what it gave, as far as it may. Coarse encoders mislead it.",
       .promise = Promise::observer,
       .on_device = true,
@@ -47,8 +47,8 @@ struct PopcLaw {
     static constexpr std::array<Field<P>, 2> settings() {
       return {{{"popc.damping", "PC's damper", "Largest damper of PO/PC", &P::popc_damping, "M1/T",
                 0.02, 1, 0.02, 1, false, true,
-                "PO/PC: the most that its damper may be, as a part of M1/T; over 1 + delay in "
-                "ticks."},
+                "PO/PC: largest damping of the law's damper, as a part of M1/T, divided by (1 + "
+                "delay in ticks)."},
                {"popc.reference", "reference", "Reference energy", &P::popc_reference, "-", 0, 1, 0,
                 1, false, true,
                 "PO/PC: the energy that came in is compared to what the walls store. Off: to zero, "

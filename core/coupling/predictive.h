@@ -52,27 +52,26 @@ struct PredictorSettings {
   static constexpr std::array<Field<P>, 5> settings() {
     return {
         {{"predictor.p", "memory p", "memory p", &P::memory, "-", 0, 0.9, 0, 0.9, false, true,
-          "Predictive coupling: memory of a filter whose memory fades, 0 none, as recordings of "
-          "Limpid 0.2 may have it. Default: with encoder steps none, each reading counts by the "
-          "step and by what the hand may do; with exact encoders 0.2."},
+          "Predictive coupling: memory of the predictor's filter, 0 for none. Recordings of Limpid "
+          "0.2 may have this setting. Default with exact encoders: 0.2. Default with encoder "
+          "steps: no memory; each reading counts by the step and by what the hand may do."},
          {"predictor.mu", "inertia \xCE\xBC", "inertia \xCE\xBC", &P::inertia, "-", 0.1, 3, 0.1, 3,
           true, true,
           "Predictive coupling: factor on the device's inertia in the predictor. Default: "
           "1."},
          {"predictor.hand_mass", "hand mass m_h", "hand mass m_h", &P::hand_mass, "kg", 0, 2, 0, 1,
           false, true,
-          "Predictive coupling: mass of hand and handle in the second predictor, which takes "
-          "over when it is the better one. 0 does without."},
-         {"model.delay", "known delay", "Delay that is known", &P::delay, "ticks", 0, 20, 0, 5,
-          false, true,
-          "Predictive coupling: delay between command and motor that it reckons with, in "
+          "Predictive coupling: mass of hand and handle in the second predictor. The law uses the "
+          "second predictor while this predictor is the better one. 0: no second predictor."},
+         {"model.delay", "known delay", "Known delay", &P::delay, "ticks", 0, 20, 0, 5, false, true,
+          "Predictive coupling: delay between command and motor that the law reckons with, in "
           "ticks."},
          {"model.delay_most", "possible delay", "possible delay", &P::delay_most, "ticks", 0, 20, 0,
           5, false, true,
-          "Predictive coupling: the most that the delay between command and motor may be, in "
-          "ticks. The energy given is accounted for every delay from model.delay to this one, and "
-          "eta above 1 is felt in a narrower band. Default: of the virtual arm device.delay; of a "
-          "real device one tick more than was identified, or 3."}}};
+          "Predictive coupling: largest possible delay between command and motor, in ticks. The "
+          "energy account covers every delay from model.delay to model.delay_most. A larger value "
+          "narrows the band in which eta above 1 is felt. Default: for the virtual arm "
+          "device.delay; for a real device one tick more than the identified delay, or 3."}}};
   }
 };
 
@@ -83,10 +82,10 @@ struct LedgerSettings {
   static constexpr std::array<Field<P>, 1> settings() {
     return {{{"ledger.energy", "ledger E\xE2\x82\x80", "Energy allowed E\xE2\x82\x80", &P::energy,
               "J", 1e-4, 0.02, 1e-3, 0.02, true, true,
-              "Predictive coupling: the human is given at most this energy beyond what came in, "
-              "since the loop was started, and at most four times of it in any part of that time. "
-              "When the reserve runs low the contact force, the cancelled damping and the added "
-              "inertia are cut."}}};
+              "Predictive coupling: the human is given at most this energy beyond the energy that "
+              "came in since the start of the loop, and at most four times this energy in any part "
+              "of that time. When the reserve runs low the law cuts the contact force, the "
+              "cancelled damping and the added inertia."}}};
   }
 };
 
@@ -99,7 +98,7 @@ struct PredictiveLaw {
       .label = "Predictive",
       .meaning =
           "device and proxy solved together for the coming tick, inertia shaped by passive "
-          "networks: stiff walls, light hands, friction, and a ledger of the energy given.",
+          "networks: stiff walls, light hands, friction, and an account of the energy given.",
       .verdict = "Recommended: no drift, stiff walls, light, passive.",
       .promise = Promise::ledger,
       .takes_eta = true,

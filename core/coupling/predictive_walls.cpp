@@ -58,30 +58,31 @@ std::string told(const BoundedWall& wall, PredictiveWallSetting setting, const L
   const double q_t = 1000 * setting.encoder_step * at.easiest.lever;  // [mm]
   switch (wall.by) {
     case WallBound::tried:
-      return fmt::format("the stiffest wall that was tried{}{}",
+      return fmt::format("the stiffest wall that was tested{}{}",
                          setting.encoder_step > 0 ? " with encoder steps" : "",
-                         at.loop.T > 1.001 * kTriedTick ? " at so long a tick" : "");
+                         at.loop.T > 1.001 * kTriedTick ? " at a tick of this length" : "");
     case WallBound::quick:
-      return fmt::format("the tip's {:.2g} g move far in a tick, and the hand is not known",
-                         1000 * at.easiest.mass);
-    case WallBound::proxy: return "the proxy's inertia is felt through k_vc from there on";
+      return fmt::format(
+          "the tip's mass of {:.2g} g moves far in a tick, and the hand is not known",
+          1000 * at.easiest.mass);
+    case WallBound::proxy: return "above this stiffness the proxy's inertia is felt through k_vc";
     case WallBound::step:
-      return fmt::format("step: one of {:.2g} mm of the encoder at the tip pushes with 0.25 N",
-                         q_t);
+      return fmt::format("step: an encoder step of {:.2g} mm at the tip pushes with 0.25 N", q_t);
     case WallBound::friction:
-      return fmt::format("friction: {:.2g} N at the tip still hold it inside a cell of {:.2g} mm",
+      return fmt::format("friction: {:.2g} N just hold the tip within an encoder step of {:.2g} mm",
                          setting.friction, q_t);
     case WallBound::cell:
       setting.friction = kUsualFriction;
       return fmt::format(
-          "cell: the tip swings within {:.2g} mm, unseen; with {} N of friction {:.0f} N/m", q_t,
-          kUsualFriction, predictive_wall(at.easiest, setting).stiffness);
-    case WallBound::hand: return "a hand that is heavier than the predictor takes it for";
+          "cell: the tip swings unseen within an encoder step of {:.2g} mm; {} N of friction would "
+          "allow {:.0f} N/m",
+          q_t, kUsualFriction, predictive_wall(at.easiest, setting).stiffness);
+    case WallBound::hand: return "the hand is heavier than the predictor assumes";
     case WallBound::delay: break;
   }
   const bool known = std::abs(at.loop.delay - setting.delay_foreseen) <= at.loop.T / 2 * (1 + 1e-9);
   return fmt::format("a delay of {:.1f} ms{}", 1e3 * at.loop.delay,
-                     known ? "" : "; it is not reckoned with (model.delay)");
+                     known ? "" : "; model.delay does not include this delay");
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ class Proposed final : public Law<N> {
 TipWall ProposedLaw::wall(const LawSettings&, const LawAtTip& at) {
   WallSetting loop = at.loop;
   loop.delay += at.felt.trip;
-  return {proposed_wall(at.tip, loop), "the damping there is against the lag of the contact"};
+  return {proposed_wall(at.tip, loop),
+          "the available damping against the delay of the contact force"};
 }
 
 FeltAtTip ProposedLaw::felt(const LawSettings& p, const LawAtTip& at, double f) {

@@ -123,10 +123,9 @@ class Sfa final : public Law<N> {
 
 TipWall SfaLaw::wall(const LawSettings& p, const LawAtTip& at) {
   const double soft = p.sfa_soft * every_hands_wall(at.tip, at.loop.T, at.loop.delay);
-  return {soft,
-          fmt::format("its soft spring; in this grip, at rest, an increment leaves {:.2g} of what "
-                      "a rigid wall lacks",
-                      1 - p.sfa_step * soft / (soft + at.hand_stiffness))};
+  return {soft, fmt::format("the law's soft spring; in this grip, at rest, an increment leaves a "
+                            "share of {:.2g} of the missing force",
+                            1 - p.sfa_step * soft / (soft + at.hand_stiffness))};
 }
 
 FeltAtTip SfaLaw::felt(const LawSettings&, const LawAtTip& at, double) { return at.arm_alone(); }

@@ -27,8 +27,8 @@ struct SfaLaw {
       .key = "sfa",
       .label = "Augmentation",
       .meaning =
-          "soft walls on the device itself, whose force grows in the hand until it is right "
-          "(successive force augmentation, Singh and others 2020).",
+          "soft walls on the device itself; the walls' force grows in the hand up to the right "
+          "force (successive force augmentation, Singh and others 2020).",
       .verdict = "Grows stiff in the hand; by our rule it gives energy for it.",
       .promise = Promise::none,
       .on_device = true,
@@ -56,8 +56,8 @@ struct SfaLaw {
             "yields."},
            {"sfa.extended", "extended", "Begin with the whole wall", &P::sfa_extended, "-", 0, 1, 0,
             1, false, true,
-            "Augmentation: a wall pushes in full until the hand first turns back or rests. Off: "
-            "it is soft from the start."}}};
+            "Augmentation: a wall pushes in full until the hand first moves back or rests. Off: "
+            "the wall is soft from the start."}}};
     }
   };
 

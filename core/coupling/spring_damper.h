@@ -17,12 +17,12 @@ struct SpringDamper {
   static constexpr std::array<Field<P>, 3> settings() {
     return {{{"coupling.k_vc", "k_vc", "Coupling spring k_vc", &P::k_vc, "N m/rad", 1e-3, 1e4, 0.1,
               100, true, true,
-              "Spring between device and proxy, (1)-(2). Stiffer keeps them closer, until "
+              "Spring between device and proxy, (1)-(2). A stiffer spring keeps both closer, until "
               "condition (3) breaks: b_d >= 2 b_vc + k_vc T and b_v >= k_vc T / 2."},
              {"coupling.b_vc", "b_vc", "Coupling damper b_vc", &P::b_vc, "N m s/rad", 0, 100, 1e-5,
               0.1, true, true,
-              "Damper between device and proxy, (1)-(2). It acts on a delayed velocity, so it "
-              "costs device damping twice: condition (3)."},
+              "Damper between device and proxy, (1)-(2). The damper acts on a delayed velocity, so "
+              "condition (3) asks for twice this damping from the device."},
              {"coupling.b_v", "b_v", "Proxy damper b_v", &P::b_v, "N m s/rad", 0, 100, 1e-4, 1,
               true, true,
               "Damping of the proxy, (2). Felt through the coupling; condition (3) asks for "
@@ -49,11 +49,11 @@ struct LinkSettings {
         {{"link.delay", "link delay", "Link delay, each way", &P::link_delay, "ticks", 0,
           kMostLinkDelay, 0, 100, false, true,
           "Delay between device and proxy, each way, as if the world were far away. The predictive "
-          "coupling solves both together and has no link."},
+          "coupling solves device and proxy together and has no link."},
          {"link.jitter", "link jitter", "Link jitter", &P::link_jitter, "ticks", 0, kMostLinkJitter,
           0, 20, false, true,
-          "Each packet between device and proxy takes up to this many ticks more, at random. Each "
-          "side uses the newest packet that it has."},
+          "Each packet between device and proxy takes up to this many ticks more, at random. "
+          "Device and proxy use the newest packet that has arrived."},
          {"link.loss", "link loss", "Packets lost", &P::link_loss, "-", 0, 0.9, 0, 0.5, false, true,
           "Share of the packets between device and proxy that never arrive; a side without a new "
           "packet keeps the last one."},

@@ -44,23 +44,23 @@ struct TankLaw {
 
     template <class P>
     static constexpr std::array<Field<P>, 4> settings() {
-      return {
-          {{"tank.energy", "tanks E\xE2\x82\x80", "Energy of both tanks", &P::tank_energy, "J",
-            1e-4, 1, 1e-3, 0.02, true, true,
-            "Tank coupling: what both tanks hold at the start, half of it each. Coupling and "
-            "device never give more than this beyond what came in."},
-           {"tank.most", "tank's most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1, true,
-            true,
-            "Tank coupling: the most that each tank keeps of what came in. So much may be given in "
-            "any part of the time."},
-           {"tank.share", "tank's share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1,
-            true, true,
-            "Tank coupling: in each tick a tank sends this share of what it holds above its half "
-            "of tank.energy to the other one."},
-           {"tank.damping", "refill", "Refilling damper", &P::tank_damping, "1/s", 0, 200, 0, 200,
-            false, true,
-            "Tank coupling: where the device's tank holds less than its half of tank.energy, a "
-            "damper of up to this rate times the device's inertia fills it from the hand."}}};
+      return {{{"tank.energy", "tanks E\xE2\x82\x80", "Energy of both tanks", &P::tank_energy, "J",
+                1e-4, 1, 1e-3, 0.02, true, true,
+                "Tank coupling: energy of both tanks at the start, half in each tank. Coupling and "
+                "device never give more than this energy beyond the energy that came in."},
+               {"tank.most", "tank's most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1,
+                true, true,
+                "Tank coupling: the most energy that each tank keeps. The coupling may give this "
+                "energy in any part of the time."},
+               {"tank.share", "tank's share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1,
+                true, true,
+                "Tank coupling: share of the surplus that a tank sends to the other tank in each "
+                "tick. The surplus is the tank's energy above half of tank.energy."},
+               {"tank.damping", "refill", "Refilling damper", &P::tank_damping, "1/s", 0, 200, 0,
+                200, false, true,
+                "Tank coupling: damper that fills the device's tank from the hand while the tank "
+                "holds less than half of tank.energy. The damping is up to this rate times the "
+                "device's inertia."}}};
     }
   };
 

@@ -100,7 +100,7 @@ class Tdpn final : public Law<N> {
 
 TipWall TdpnLaw::wall(const LawSettings& p, const LawAtTip& at) {
   TipWall wall = at.through_spring(p.k_vc);
-  if (at.link.linked()) wall.bound += "; falls with the link's delay";
+  if (at.link.linked()) wall.bound += "; a longer link delay makes the wall softer";
   return wall;
 }
 

@@ -27,8 +27,8 @@ struct TdpnLaw {
       .key = "tdpn",
       .label = "Two-port TDPA",
       .meaning =
-          "velocity there and force back, with dampers that keep both ports passive (Ryu, Artigas "
-          "and Preusche 2010).",
+          "device velocity to the proxy and force back, with dampers that keep both ports passive "
+          "(Ryu, Artigas and Preusche 2010).",
       .verdict = "Brakes what both ends gave, as far as it may; drifts.",
       .promise = Promise::observer,
       .for_links = true,
@@ -47,12 +47,12 @@ struct TdpnLaw {
     static constexpr std::array<Field<P>, 2> settings() {
       return {{{"tdpn.damping", "TDPA's damper", "Largest damper of TDPA", &P::tdpn_damping, "M1/T",
                 0.02, 1, 0.02, 1, false, true,
-                "Two-port TDPA: the most that the device's damper may be, as a part of M1/T; over "
-                "1 + delay in ticks."},
+                "Two-port TDPA: largest damping of the device's damper, as a part of M1/T, divided "
+                "by (1 + delay in ticks)."},
                {"tdpn.drift", "drift", "Drift taken back", &P::tdpn_drift, "-", 0, 0.2, 0, 0.2,
                 false, true,
-                "Two-port TDPA: part of the drift between device and proxy that is taken back in a "
-                "tick, as far as energy is left."}}};
+                "Two-port TDPA: part of the drift between device and proxy that the law takes back "
+                "in a tick, as far as energy is left."}}};
     }
   };
 

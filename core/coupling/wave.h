@@ -52,7 +52,7 @@ struct WaveLaw {
       return {{{"wave.b", "line b", "Impedance of the line", &P::wave_b, "N m s/rad", 1e-5, 10,
                 1e-3, 0.1, true, true,
                 "Wave variables: impedance b of the line. Default: b_v, which the proxy's damper "
-                "matches. Larger is stiffer through a delay, and drags more."},
+                "matches. A larger b feels stiffer through a delay, and drags more."},
                {"wave.matched", "matched", "Line matched at the device", &P::wave_matched, "-", 0,
                 1, 0, 1, false, true,
                 "Wave variables: a damper b beside the device takes up what comes back. Off: waves "

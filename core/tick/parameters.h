@@ -34,18 +34,19 @@ struct CompensationSettings {
 
   template <class P>
   static constexpr std::array<Field<P>, 3> settings() {
-    return {{{"model.gravity", "hold the weight", "Motors hold the weight", &P::holds_weight, "-",
-              0, 1, 0, 1, false, true,
-              "The motors hold the arm's own weight, as its file and device.down have it. Off: the "
-              "device holds it by itself, by counterweights for example."},
-             {"model.friction", "friction taken off", "Friction that motors cancel",
-              &P::friction_share, "-", 0, kMostShare, 0, kMostShare, false, true,
-              "Share of the joints' Coulomb friction that the motors cancel. It stays passive "
-              "while they "
-              "cancel less than there is: leave a margin for what you do not know."},
-             {"model.springs", "hold the springs", "Motors hold the springs", &P::holds_springs,
-              "-", 0, 1, 0, 1, false, true,
-              "The motors hold against the device's own springs, as its file has them."}}};
+    return {
+        {{"model.gravity", "hold the weight", "Motors hold the weight", &P::holds_weight, "-", 0, 1,
+          0, 1, false, true,
+          "The motors hold the arm's own weight, as given by the arm's file and device.down. Off: "
+          "the device holds its weight without the motors, by counterweights for example."},
+         {"model.friction", "friction taken off", "Friction that motors cancel", &P::friction_share,
+          "-", 0, kMostShare, 0, kMostShare, false, true,
+          "Share of the joints' Coulomb friction that the motors cancel. The device stays passive "
+          "while the motors cancel less than the true friction: leave a margin for the friction "
+          "that you do not know."},
+         {"model.springs", "hold the springs", "Motors hold the springs", &P::holds_springs, "-", 0,
+          1, 0, 1, false, true,
+          "The motors hold against the device's own springs, as given by the arm's file."}}};
   }
 };
 
@@ -78,7 +79,8 @@ struct LoopSettings : LinkSettings {
     constexpr std::array<Field<P>, 2> kOwn{
         {{"proxy.inertia_ratio", "M\xE2\x82\x82/M\xE2\x82\x81",
           "Proxy inertia M\xE2\x82\x82/M\xE2\x82\x81", &P::inertia_ratio, "-", 1e-8, 100, 1e-5, 1,
-          true, true, "Inertia of the proxy as a part of the device's (section 4.1: 1e-4)."},
+          true, true,
+          "Inertia of the proxy as a part of the device's inertia (section 4.1: 1e-4)."},
          {"loop.tick", "tick T", "tick T", &P::tick, "s", 1e-5, 0.1, 1e-4, 0.01, true, false,
           "Time between two ticks of the loop, T."}}};
     return joined(LinkSettings::settings<P>(), kOwn);
@@ -123,8 +125,7 @@ struct DeviceSettings {
          {"device.delay", "delay", "Device delay", &P::device_delay, "ticks", 0, kMostDelay, 0, 5,
           false, true,
           "Ticks from a command to the torque of the virtual device's motors. model.delay tells "
-          "the "
-          "predictive coupling how many it has to expect."},
+          "the predictive coupling the delay to expect."},
          {"device.encoder_step", "encoder step", "Encoder step", &P::encoder_step, "rad", 0,
           kMostEncoderStep, 0, 2e-3, false, true,
           "Step of the joint encoders; 0 is exact. An Omni has 4e-4 rad. For a real device Limpid "
@@ -141,16 +142,15 @@ struct DeviceSettings {
          {"device.gravity", "weight", "Virtual arm has weight", &P::weighs, "-", 0, 1, 0, 1, false,
           true,
           "The virtual arm has the weight of its file, and falls without a hand. Off: "
-          "counterweights "
-          "hold it. model.gravity lets the motors hold it."},
+          "counterweights hold the arm. model.gravity lets the motors hold the arm."},
          {"device.springs", "springs", "Virtual arm has springs", &P::springy, "-", 0, 1, 0, 1,
           false, true,
-          "The virtual arm has the springs of its file, as an identified one has. model.springs "
-          "lets the motors hold against them."},
+          "The virtual arm has the springs of its file, as an identified arm has. model.springs "
+          "lets the motors hold against these springs."},
          {"device.down", "down", "Down, seen from the base", choice<P, &P::down>(kDowns), "-", 0, 6,
           0, 6, false, true,
-          "Where down is in the frame of the arm's base, for an arm that hangs or lies on its "
-          "side; file: as its file says, else -z."}}};
+          "Direction of gravity in the frame of the arm's base, for an arm that hangs or lies on "
+          "its side. file: the direction in the arm's file, or -z if the file has none."}}};
   }
 };
 
@@ -170,18 +170,17 @@ struct PlantSettings {
     return {
         {{"plant.torque_scale", "torque scale", "Scale of the motors' torque", &P::torque_scale,
           "-", 0.1, 10, 0.5, 2, true, true,
-          "Torque that the virtual arm's motors give, divided by what they are told. No law knows "
-          "this setting, nor any other plant setting."},
+          "Torque that the virtual arm's motors give, divided by the commanded torque. No law "
+          "knows this setting, nor any other plant setting."},
          {"plant.current_loop", "current loop", "Bandwidth of the current loop", &P::current_loop,
           "Hz", 0, 1e4, 0, 1000, false, true,
           "The motors' torque follows the command as a first-order lag of this bandwidth; 0: at "
           "once. Amplifiers have 200 to 2000 Hz."},
          {"plant.resonance", "resonance", "Resonance of the transmission", &P::resonance, "Hz", 0,
           1000, 0, 300, false, true,
-          "Each motor, with its encoder, drives its joint through a spring; this is its frequency "
-          "while the joint is held. 0: a rigid transmission. A part of the arm's inertia counts "
-          "as "
-          "the motors'."},
+          "Each motor, with its encoder, drives its joint through a spring. This setting is the "
+          "motor's resonance frequency while the joint is held. 0: a rigid transmission. A part of "
+          "the arm's inertia counts as the motors'."},
          {"plant.cogging", "cogging", "Cogging torque", &P::cogging, "N m", 0, 10, 0, 0.02, false,
           true, "Amplitude of the motors' cogging torque, 60 periods a turn of the joint."},
          {"plant.friction", "unknown friction", "Friction that no law knows", &P::unknown_friction,
@@ -193,9 +192,8 @@ struct PlantSettings {
           "that of an eccentric disc on a motor geared by ten does."},
          {"plant.zero", "zero", "Error of the encoders' zero", &P::zero_error, "rad", -0.5, 0.5,
           -0.1, 0.1, false, true,
-          "Every encoder reads so much too much, as after a wrong calibration. Moved while the "
-          "loop "
-          "runs it is an encoder that slips."}}};
+          "Every encoder reads too much by this angle, as after a wrong calibration. A change "
+          "while the loop runs acts as an encoder that slips."}}};
   }
 };
 

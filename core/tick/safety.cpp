@@ -45,8 +45,8 @@ const char* explain(ForceState state) {
     case ForceState::unwatched: return "the window did not answer for 0.2 s";
     case ForceState::stalled: return "the loop stood still for more than 5 ms";
     case ForceState::frozen:
-      return "the readings stand still while the motors push: move the device";
-    case ForceState::wrong: return "the device said that it is where it cannot be";
+      return "the readings do not change while the motors push: move the device";
+    case ForceState::wrong: return "the device reported an impossible position";
   }
   return "";
 }

@@ -41,10 +41,14 @@ inline constexpr auto kSafetyLimits = [] {
                     {least, L{}.*member, true});
   };
   return std::array{
-      limit("joint_speed", "joint speed", &L::joint_speed, 0.5, "rad/s", "Of the fastest joint."),
-      limit("tip_speed", "tip speed", &L::tip_speed, 0.05, "m/s", "Of the device's tip."),
-      limit("tip_force", "tip force", &L::tip_force, 0.1, "N", "Of the motors at the tip."),
-      limit("energy", "energy in one second", &L::energy, 0.02, "J", "That the motors put out."),
+      limit("joint_speed", "joint speed", &L::joint_speed, 0.5, "rad/s",
+            "Largest speed of the fastest joint."),
+      limit("tip_speed", "tip speed", &L::tip_speed, 0.05, "m/s",
+            "Largest speed of the device's tip."),
+      limit("tip_force", "tip force", &L::tip_force, 0.1, "N",
+            "Largest force of the motors at the tip."),
+      limit("energy", "energy in one second", &L::energy, 0.02, "J",
+            "Largest energy that the motors put out in one second."),
       limit("range", "part of the range", &L::range, 0.1, "-",
             "Part of each joint's range, around its middle."),
   };

@@ -71,7 +71,7 @@ class Lock {
       } else if (errno != EINTR) {
         const int code = errno;
         ::close(descriptor_);
-        fail(file, code == EWOULDBLOCK ? "another program has held it for two seconds"
+        fail(file, code == EWOULDBLOCK ? "another program has held the file locked for two seconds"
                                        : std::strerror(code));
       }
     }
@@ -204,8 +204,8 @@ void check_folder(const fs::path& out) {
 void check_name(const fs::path& out) {
   if (const std::size_t size = out.filename().native().size(); size > kLongestName) {
     throw FileError(
-        fmt::format("{}: a name of {} bytes; allowed: at most {}, as more goes behind "
-                    "it while it is written",
+        fmt::format("{}: a name of {} bytes; allowed: at most {}, because Limpid adds letters to "
+                    "the name while it writes the file",
                     out.string(), size, kLongestName));
   }
 }
@@ -220,8 +220,8 @@ void check_place(const fs::path& out, bool force) {
     throw FileError(fmt::format("{}: is a directory", out.string()));
   }
   if (fs::exists(out, error) && !fs::is_regular_file(out, error)) {
-    throw FileError(
-        fmt::format("{}: is no ordinary file, and would be replaced by one", out.string()));
+    throw FileError(fmt::format(
+        "{}: is not an ordinary file, and must not be replaced by an ordinary file", out.string()));
   }
   if (!force && fs::exists(out, error)) {
     throw FileError(fmt::format("{}: exists; --force overwrites it", out.string()));
@@ -233,8 +233,10 @@ void publish(const fs::path& finished, const fs::path& out, bool force) {
   sync(finished, O_RDWR);
   std::error_code error;
   if (!force && fs::exists(out, error)) {
-    throw FileError(fmt::format("{}: appeared meanwhile and was left alone; --force overwrites it",
-                                out.string()));
+    throw FileError(
+        fmt::format("{}: another program made this file in the meantime; Limpid has not changed "
+                    "it; --force overwrites the file",
+                    out.string()));
   }
   fs::rename(finished, out, error);
   if (error) fail(out, "cannot rename to it", error.value());

@@ -24,16 +24,16 @@ void warn_of_joint(const Joint& joint, UrdfPlaces& places) {
   if (joint.friction > 0 && joint.friction >= joint.effort) {
     const char* const of_force = slides(joint) ? "N" : "N m";
     places.warn_joint(joint.name,
-                      fmt::format("friction {:.3g} {}, effort {:.3g} {}: its motor cannot overcome "
-                                  "its friction, and no force of it is felt; lower the friction in "
-                                  "<dynamics> or raise the effort in <limit>",
+                      fmt::format("friction {:.3g} {}, effort {:.3g} {}: the motor cannot overcome "
+                                  "the joint's friction, so no force of this motor is felt; lower "
+                                  "the friction in <dynamics> or raise the effort in <limit>",
                                   joint.friction / unit, of_force, joint.effort / unit, of_force));
   }
   if (joint.upper - joint.lower < kLeastRange) {
     places.warn_joint(
         joint.name,
-        fmt::format("limits from {:.6g} to {:.6g} {}: it has hardly any room to move; "
-                    "widen its <limit>, or make it a fixed joint",
+        fmt::format("limits from {:.6g} to {:.6g} {}: the joint can hardly move; widen the joint's "
+                    "<limit>, or make the joint a fixed joint",
                     unit * joint.lower, unit * joint.upper, slides(joint) ? "m" : "rad"));
   }
 }
@@ -173,11 +173,11 @@ class Chain {
   [[noreturn]] void refuse_still() const {
     for (const auto& [name, joint] : model_.joints_) {
       if (!moves(*joint)) continue;
-      places_.refuse(fmt::format(
-          "no joint that moves on the way to '{}'; others move: name the link that the hand holds "
-          "with --tip LINK, such as '{}'",
-          way_.empty() ? model_.getRoot()->name : way_.back()->child_link_name,
-          joint->child_link_name));
+      places_.refuse(
+          fmt::format("no joint moves the link '{}'; other links move: name the link that the hand "
+                      "holds with --tip LINK, such as '{}'",
+                      way_.empty() ? model_.getRoot()->name : way_.back()->child_link_name,
+                      joint->child_link_name));
     }
     places_.refuse(fmt::format(
         "no joint that moves; needed: 1 to {}, revolute, continuous or prismatic, with limits that "
@@ -263,7 +263,8 @@ class Chain {
           fmt::format("{}; allowed: revolute, continuous, prismatic, fixed", kind_of(joint)));
     }
     if (arm_.dof() == kMaxDof) {
-      places_.refuse_joint(joint.name, fmt::format("one too many; at most {}", kMaxDof));
+      places_.refuse_joint(joint.name,
+                           fmt::format("one joint too many; at most {} joints that move", kMaxDof));
     }
     arm_.joints.push_back(moving_joint(joint, origin));
     Link link;
@@ -322,7 +323,7 @@ class Chain {
     constexpr std::size_t kNamed = 6;
     const std::size_t named = std::min(held_.size(), kNamed);
     places_.warn(fmt::format(
-        "held still, beside the chain to '{}': {}{}", arm_.tip_link,
+        "held still, because they are not in the chain to '{}': {}{}", arm_.tip_link,
         fmt::join(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(named), ", "),
         held_.size() > named ? fmt::format(" and {} more joints", held_.size() - named) : ""));
   }
@@ -344,7 +345,7 @@ void warn_of_immobile(const ArmDescription& arm, UrdfPlaces& places) {
   const NamedFrame* const other = beside_axis(arm);
   places.warn_link(
       arm.tip_link,
-      fmt::format("the tip lies on the axis of '{}', and no joint moves it: a hand at the tip "
+      fmt::format("the tip lies on the axis of '{}', so no joint moves the tip: a hand at the tip "
                   "cannot move the arm; name a link beside the axis with --tip LINK{}",
                   arm.joints.back().name,
                   other != nullptr ? fmt::format(" ('{}' is one)", other->name)

@@ -35,7 +35,9 @@ void check_tree(const urdf::ModelInterface& model, const UrdfPlaces& places) {
   for (const auto& [name, link] : model.links_) {
     int depth = 0;
     for (auto at = link; at->getParent() != nullptr; at = at->getParent()) {
-      if (++depth > kDeepestChain) places.refuse_link(name, "too many links before it");
+      if (++depth > kDeepestChain) {
+        places.refuse_link(name, "too many links in the chain before this link");
+      }
     }
   }
 }
@@ -78,10 +80,11 @@ class Search {
     }
     try {
       places_.refuse_link(
-          link.name, fmt::format("the arm branches here, to '{}' and '{}'; name the tip with "
-                                 "--tip LINK, and the other branches are held still; its tips, "
-                                 "with the joints to each: {}",
-                                 one, other, all));
+          link.name,
+          fmt::format(
+              "the arm branches here, to '{}' and '{}'; name the tip with --tip LINK, and the "
+              "other branches are held still; tips, with the number of joints to each tip: {}",
+              one, other, all));
     } catch (const FileError& error) {
       throw TipsToChoose(error, places_.where, std::move(tips));
     }
@@ -205,7 +208,7 @@ Way named(const urdf::ModelInterface& model, const std::string& tip, const UrdfP
   }
   std::ranges::reverse(way);
   if (std::ranges::none_of(way, [](const auto& joint) { return moves(*joint); })) {
-    places.refuse_link(tip, "no joint moves it; it cannot be the tip");
+    places.refuse_link(tip, "no joint moves this link, so the link cannot be the tip");
   }
   return way;
 }

@@ -122,7 +122,7 @@ void check_body(const Link& link, const UrdfPlaces& places) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
   const double largest = link.inertia.cwiseAbs().maxCoeff();
   if (solver.eigenvalues().minCoeff() < -1e-9 * largest) {
-    places.refuse_link(link.name, "inertia is not that of any body (a negative moment)");
+    places.refuse_link(link.name, "the inertia is impossible (a negative moment)");
   }
 }
 
@@ -266,11 +266,13 @@ std::string urdf_dynamics(const TiXmlElement& robot, UrdfPlaces& places) {
   }
   if (!guessed.unlimited.empty()) {
     places.warn(
-        fmt::format("limits of zeros: {}; taken as none", fmt::join(guessed.unlimited, ", ")));
+        fmt::format("limits of zeros: {}; taken as no limits", fmt::join(guessed.unlimited, ", ")));
   }
   if (!guessed.fixed.empty()) {
-    places.warn(fmt::format("slides without a <limit>: {}; held still; a <limit> lets them move",
-                            fmt::join(guessed.fixed, ", ")));
+    places.warn(
+        fmt::format("slides without a <limit>: {}; these joints are held still; a <limit> lets "
+                    "these joints move",
+                    fmt::join(guessed.fixed, ", ")));
   }
   TiXmlDocument document;
   document.InsertEndChild(out);
@@ -329,8 +331,8 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
   places.warn(
-      fmt::format("no inertia of their own: {}; taken as a thousandth of what hangs on them "
-                  "[kg m^2]; an <inertial> says better",
+      fmt::format("links without inertia: {}; taken as a thousandth of the inertia that hangs on "
+                  "each link [kg m^2]; write the true inertia as <inertial>",
                   list(guessed)));
 }
 
@@ -353,10 +355,9 @@ void complete_efforts(ArmDescription& arm, UrdfPlaces& places) {
   }
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
-  places.warn(
-      fmt::format("no effort in <limit>: {}; taken as twice what holds the arm stretched "
-                  "out",
-                  list(guessed)));
+  places.warn(fmt::format(
+      "no effort in <limit>: {}; taken as twice the torque that holds the stretched arm",
+      list(guessed)));
 }
 
 std::string own_tip(const TiXmlElement& robot) {

@@ -26,25 +26,27 @@ constexpr bool is_push(int phase) { return phase % 2 == 1; }
 
 const char* explain(AxisVerdict verdict) {
   switch (verdict) {
-    case AxisVerdict::unknown: return "It has not been pushed yet.";
-    case AxisVerdict::right: return "It moves as it is pushed.";
-    case AxisVerdict::reversed: return "It moves the other way; its force will be turned round.";
+    case AxisVerdict::unknown: return "The axis has not been pushed yet.";
+    case AxisVerdict::right: return "The axis moves in the direction of the push.";
+    case AxisVerdict::reversed:
+      return "The axis moves against the push; Limpid will reverse the sign of this axis's force.";
     case AxisVerdict::wrong_axis:
       return "Another axis moved: this device pushes along its axes in a way Limpid does not know, "
              "so it cannot be used as an arm.";
     case AxisVerdict::nothing_moved:
-      return "It did not move both ways. Hold it less firmly, near its middle, and try again; a "
-             "pad whose motors only shake the hand is not an arm.";
+      return "The axis did not move in both directions. Hold the device less firmly, near its "
+             "middle, and try again. A gamepad whose motors only shake the hand is not an arm.";
     case AxisVerdict::too_far:
-      return "It moved further or faster than so little force should move it. Its full force is "
-             "more than "
-             "was said, or it does not obey: it cannot be used as an arm.";
+      return "The axis moved further or faster than so little force should move it. Its full force "
+             "is larger than declared, or the device does not follow commands. The device cannot "
+             "be used as an arm.";
     case AxisVerdict::restless:
-      return "It moved by itself. Let go of it, or hold it still, and try again.";
-    case AxisVerdict::no_motor: return "It has no motor.";
+      return "The axis moved without a push. Let go of the device, or hold the device still, and "
+             "try again.";
+    case AxisVerdict::no_motor: return "The axis has no motor.";
     case AxisVerdict::beyond_limit:
-      return "It passed a limit of speed, range or energy that is set for it. Bring it near its "
-             "middle, let go of it or hold it lightly, and try again.";
+      return "The axis passed a limit of speed, range or energy. Bring the device near its middle, "
+             "let go or hold the device lightly, and try again.";
     case AxisVerdict::given_up: return "The check was interrupted; nothing is stored.";
   }
   return "";
@@ -52,8 +54,10 @@ const char* explain(AxisVerdict verdict) {
 
 const char* what_to_do(AxisStage stage) {
   switch (stage) {
-    case AxisStage::resting: return "Bring it near its middle and let go, or hold it lightly.";
-    case AxisStage::pushing: return "It is being pushed a little. Do not hold against it.";
+    case AxisStage::resting:
+      return "Bring the device near its middle and let go, or hold the device lightly.";
+    case AxisStage::pushing:
+      return "The motor pushes the axis a little. Do not hold against the motion.";
     case AxisStage::done: return "";
   }
   return "";
@@ -69,7 +73,8 @@ AxisCheck::AxisCheck(const DeviceTraits& traits) : device_(traits.name), dof_(tr
     const double step = i < traits.resolution.size() ? traits.resolution[i] : 0;
     const double way = traits.upper[i] - traits.lower[i];
     if (!(way > 0 && traits.effort[i] >= 0)) {
-      throw std::invalid_argument("a joint without a range cannot be checked");
+      throw std::invalid_argument(
+          "a joint with an empty range cannot be checked; needed: a range above 0");
     }
     most_[i] = kShare * traits.effort[i];
     if (most_[i] == 0) {  // the hand may move it as it likes

@@ -65,8 +65,9 @@ int open_file(const fs::path& path) {
   }
   struct stat is {};
   if (file >= 0 && fstat(file, &is) == 0 && S_ISREG(is.st_mode) && is.st_nlink <= 1) return file;
-  const std::string why =
-      file >= 0 || errno == ELOOP ? "it must be a plain file, and is not" : std::strerror(errno);
+  const std::string why = file >= 0 || errno == ELOOP
+                              ? "this is not a plain file, but must be a plain file"
+                              : std::strerror(errno);
   if (file >= 0) close(file);
   throw HidError(fmt::format("{}: {}, so nobody can tell whether another program uses the device",
                              path.string(), why));
@@ -136,9 +137,10 @@ fs::path claim_folder(std::span<const fs::path> among) {
   }
   std::string names;
   for (const fs::path& folder : among) names += (names.empty() ? "" : " or ") + folder.string();
-  throw HidError(fmt::format(
-      "no folder says which program uses a device; needed: {}, in which every user may make files",
-      names));
+  throw HidError(
+      fmt::format("no folder to note which program uses a device; needed: {}, in which every user "
+                  "may make files",
+                  names));
 }
 
 // Has the same places for all users, whatever their environment says.

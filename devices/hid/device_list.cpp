@@ -246,7 +246,7 @@ std::unique_ptr<Device> open_hid_device_on(const FoundDevice& found, const OpenT
     const HidProtocolEntry* entry = find_protocol(descriptor, transport->vendor());
     // Another device may have come to this path since the list was made.
     if (entry == nullptr || &entry->kind != found.kind || (!id.empty() && id != found.place.id)) {
-      throw HidError("it has been unplugged");
+      throw HidError("the device has been unplugged");
     }
     auto protocol = entry->make(descriptor, settings);
     return std::make_unique<HidDevice>(std::move(transport), std::move(protocol), found.place, ask,
@@ -318,8 +318,8 @@ std::vector<FoundDevice> list_inverse_devices(const std::optional<InverseName>& 
   std::vector<FoundDevice> found;
   for (const ServiceAddress& place : places) {
     const bool here = wanted && wanted->address == place;
-    std::string missing =
-        here && wanted->id.empty() ? "the service has no Inverse3" : "the service does not have it";
+    std::string missing = here && wanted->id.empty() ? "the service has no Inverse3"
+                                                     : "the service does not have this device";
     std::vector<std::string> ids;
     try {
       ids = ids_at(place);

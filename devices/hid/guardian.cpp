@@ -125,7 +125,8 @@ Guardian::Guardian(int device, const std::vector<Report>& stop_reports, int clai
     return;
   }
   if (watch_ != nullptr) munmap(watch_, sizeof(Watch));
-  throw HidError(fmt::format("no process to guard the device: {}", std::strerror(error)));
+  throw HidError(fmt::format("the process that guards the device cannot be started: {}",
+                             std::strerror(error)));
 }
 
 Guardian::~Guardian() {

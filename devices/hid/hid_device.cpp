@@ -49,8 +49,8 @@ void HidDevice::run(const AskForPriority& ask, std::promise<void> guarded) noexc
     become_realtime(ask);
     if (sched_getscheduler(0) == SCHED_IDLE) {
       throw HidError(
-          "its thread would have a lower priority than all others, as the thread that opened it "
-          "had lowered its own");
+          "the device's thread would have a lower priority than all other threads, because the "
+          "thread that opened the device had lowered its own priority");
     }
     const std::vector<Report>& stop = protocol_->stop_reports();
     if (traits_.pushes && !path_.empty()) {

@@ -50,8 +50,8 @@ bool PidJoystick::describes(const ReportDescriptor& descriptor) {
 std::string PidJoystick::objection(const ReportDescriptor& descriptor) {
   const ReportField* position = find_position(descriptor, 0);
   if (!position || !position->within(kGamePad)) return {};
-  return "it calls itself a game pad: its motors shake the hand but do not move the stick, so that "
-         "it cannot be an arm";
+  return "the device calls itself a game pad: the motors shake the hand but do not move the stick, "
+         "so the device cannot be an arm";
 }
 
 PidJoystick::PidJoystick(const ReportDescriptor& descriptor, const PidSettings& settings)

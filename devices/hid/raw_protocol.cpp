@@ -24,7 +24,9 @@ constexpr double kBeyond = 0.1;        // part of its range that a joint may be 
 using Payload = std::span<const std::uint8_t>;
 
 void check(bool good, const std::string& found, const char* allowed) {
-  if (!good) throw HidError(fmt::format("the device says {}; {}", found, allowed));
+  if (!good) {
+    throw HidError(fmt::format("the device's description is wrong: {}; {}", found, allowed));
+  }
 }
 
 std::string printable(Payload bytes) {
@@ -67,9 +69,9 @@ DeviceTraits read_common(Payload body, const RawLayout& layout) {
   const int watchdog = load_le<std::uint16_t>(body, RawAt::watchdog);
   if (traits.pushes) {
     check(traits.rate >= 500 && traits.rate <= 8000, fmt::format("its rate is {} Hz", traits.rate),
-          "one with motors must have 500 to 8000");
+          "a device with motors must have 500 to 8000 Hz");
     check(watchdog >= 1 && watchdog <= 10, fmt::format("its watchdog takes {} ms", watchdog),
-          "one with motors must have 1 to 10");
+          "a device with motors must have 1 to 10 ms");
   }
   return traits;
 }
@@ -85,7 +87,7 @@ void read_joint(Payload body, std::size_t joint, DeviceTraits& traits) {
   if (!traits.pushes) return;
   const double effort = milli(load_le<std::uint16_t>(body, Raw1Feature::limits + 2 * joint));
   check(effort > 0, fmt::format("joint {} can push with 0 N m", joint + 1),
-        "one with motors must have a torque limit above 0");
+        "a joint with a motor must have a torque limit above 0");
   traits.effort.push_back(effort);
 }
 
@@ -141,7 +143,7 @@ DeviceTraits read_traits_of_any_kind(Payload body) {
     read_joint_of_any_kind(body, i, traits);
   }
   const bool any = std::ranges::any_of(traits.effort, [](double each) { return each > 0; });
-  check(!traits.pushes || any, "it has motors, and no joint has one",
+  check(!traits.pushes || any, "the device has motors, but no joint has a motor",
         "a device with motors must have a largest torque or force above 0");
   traits.name =
       printable(body.subspan(Raw2Feature::name, Raw2Feature::made_by - Raw2Feature::name));

@@ -60,7 +60,9 @@ class SocketTransport : public HidTransport {
   explicit SocketTransport(const std::string& path) : file_(connect_to(path)) {
     if (!take_description(kFirstPacket)) {
       close(file_);
-      throw HidError(path + ": it closes the connection; another program may be using it");
+      throw HidError(
+          path +
+          ": the device's program closes the connection; another program may be using the device");
     }
   }
   SocketTransport(const SocketTransport&) = delete;
@@ -133,7 +135,9 @@ class ProgramTransport final : public SocketTransport {
     if (came && first.size() > 2 && first[1] == static_cast<std::uint8_t>(refusal)) {
       throw HidError(std::string(first.begin() + 2, first.end()));
     }
-    if (!came || first.empty()) throw HidError("the program that drives it does not answer");
+    if (!came || first.empty()) {
+      throw HidError("the program that drives the device does not answer");
+    }
     described_ = true;
   }
   ~ProgramTransport() override {

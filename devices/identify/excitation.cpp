@@ -35,7 +35,7 @@ const char* explain(ExcitationEnd end) {
     case ExcitationEnd::running: return "under way";
     case ExcitationEnd::complete: return "complete";
     case ExcitationEnd::cancelled: return "cancelled";
-    case ExcitationEnd::not_well: return "the device stopped answering as it should";
+    case ExcitationEnd::not_well: return "the device no longer answered correctly";
     case ExcitationEnd::let_go: return "the device's hand switch opened";
     case ExcitationEnd::limit: return "a limit of safety was reached";
     case ExcitationEnd::held: return "a joint did not follow: something holds the device";
@@ -50,13 +50,13 @@ Excitation::Excitation(const ArmDescription& arm, const DeviceTraits& traits,
   if (!traits.pushes) throw std::invalid_argument(fmt::format("{} has no motors", traits.name));
   if (std::ranges::find(traits.effort, 0.0) != traits.effort.end()) {
     throw std::invalid_argument(
-        fmt::format("{} has a joint without a motor, and can only be identified if it can move all "
-                    "of them",
+        fmt::format("{} has a joint without a motor; only a device with a motor at every joint can "
+                    "be identified",
                     traits.name));
   }
   if (traits.dof != n) {
-    throw std::invalid_argument(
-        fmt::format("{} has {} joints, the arm '{}' {}", traits.name, traits.dof, arm.name, n));
+    throw std::invalid_argument(fmt::format("{} has {} joints, but the arm '{}' has {}",
+                                            traits.name, traits.dof, arm.name, n));
   }
   safety_.limit(plan.limits);
   const Vector zero = Vector::Zero(n);

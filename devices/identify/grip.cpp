@@ -398,7 +398,7 @@ std::string doubt(const Grip& grip, bool rubs) {
                    : wide(grip.mass, kLeastMass)       ? "mass"
                                                        : nullptr;
   if (of == nullptr) return {};
-  return fmt::format("the bound of its {} is wide: {}", of, advice(grip, rubs));
+  return fmt::format("the bounds of the hand's {} are wide: {}", of, advice(grip, rubs));
 }
 
 // Widens the bounds by what the lines of each axis alone say otherwise, beyond their own bounds: no
@@ -428,7 +428,7 @@ std::string spread(const HeldDevice& device, const DeviceTrust& trust, Grip& gri
     value.of.bound += value.more;
     uneven = uneven || wide(value.of, value.least);
   }
-  return uneven ? "the hand is not alike in all directions: " + along : "";
+  return uneven ? "the hand differs between directions: " + along : "";
 }
 
 }  // namespace

@@ -53,8 +53,8 @@ Found scale_in(const MatrixXd& A, const VectorXd& b) {
       inverse[inverse.size() - 1] * pseudo.row(pseudo.rows() - 1).norm() * value * value;
   if (!(value > kLeastScale && value < kMostScale) || !(deviation < kUnsure * value)) {
     throw std::invalid_argument(
-        fmt::format("the share of the commanded torque that the motors give cannot be found: "
-                    "{:.2g} +- {:.2g}; needed: {} to {}, with less uncertainty",
+        fmt::format("the motors' share of the commanded torque is not certain: {:.2g} +- {:.2g}; "
+                    "needed: {} to {}, with less uncertainty",
                     value, deviation, kLeastScale, kMostScale));
   }
   return {value, deviation};

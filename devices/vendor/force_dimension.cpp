@@ -163,21 +163,21 @@ class ForceDimension final : public VendorBackEnd {
 
   std::string needs_calibration() override {
     if (sdk_.drdIsInitialized(id_)) return {};
-    return "the device has to find its zero: it then moves by itself, through its whole range, for "
-           "some seconds. Take hands and things out of its reach";
+    return "the device must find its zero: the device then moves by itself, through its whole "
+           "range, for some seconds. Take hands and things out of the device's reach";
   }
 
   void calibrate() override {
-    demand(sdk_.drdAutoInit(id_), "it does not find its zero");
-    if (!sdk_.drdIsInitialized(id_)) throw VendorError("it did not find its zero");
+    demand(sdk_.drdAutoInit(id_), "the device does not find its zero");
+    if (!sdk_.drdIsInitialized(id_)) throw VendorError("the device did not find its zero");
   }
 
   void begin(Servo& servo) override {
     // Leaves the motors to us, without force.
-    demand(sdk_.drdStop(true, id_), "its own control cannot be stopped");
+    demand(sdk_.drdStop(true, id_), "the device's own control cannot be stopped");
     demand(sdk_.dhdEnableForce(kOff, id_), "its force cannot be switched off");
     demand(sdk_.dhdSetBrakes(kOff, id_), "its brakes cannot be released");
-    demand(sdk_.dhdSetGravityCompensation(kOn, id_), "it does not carry its own weight");
+    demand(sdk_.dhdSetGravityCompensation(kOn, id_), "the device does not carry its own weight");
     demand(sdk_.dhdSetMaxForce(most_, id_), "its force cannot be limited");
     if (sdk_.dhdHasGripper(id_)) sdk_.dhdEmulateButton(kOn, id_);
     // Without expert mode the watchdog is refused and nothing is said.
@@ -189,14 +189,14 @@ class ForceDimension final : public VendorBackEnd {
 
   void read(VendorReading& reading) override {
     double x = 0, y = 0, z = 0;
-    demand(sdk_.dhdGetPosition(&x, &y, &z, id_), "it does not say where it is");
+    demand(sdk_.dhdGetPosition(&x, &y, &z, id_), "the device does not report its position");
     reading.x = {-x, -y, z};
     if (has_wrist_) read_wrist(reading);
     const int buttons = sdk_.dhdGetButtonMask(id_);
     reading.buttons = static_cast<std::uint32_t>(buttons);
     if (frames_++ % kStatusEvery != 0) return;
     std::array<int, kMostStatus> status{};
-    demand(sdk_.dhdGetStatus(status.data(), id_), "it does not say how it is");
+    demand(sdk_.dhdGetStatus(status.data(), id_), "the device does not report its state");
     reading.no_force = why_off(status[kStatusForce] != 0, status[kStatusForceOffCause]);
   }
 
@@ -207,7 +207,7 @@ class ForceDimension final : public VendorBackEnd {
       enabled_ = force.enabled;
     }
     const TipVector& f = force.force;
-    demand(sdk_.dhdSetForce(-f[0], -f[1], f[2], id_), "it takes no force");
+    demand(sdk_.dhdSetForce(-f[0], -f[1], f[2], id_), "the device accepts no force");
   }
 
   void close() noexcept override {
@@ -221,7 +221,7 @@ class ForceDimension final : public VendorBackEnd {
   // Without a wrist the library's frame never turns, which says nothing of the tool.
   void read_wrist(VendorReading& reading) const {
     double rows[3][3] = {};
-    demand(sdk_.dhdGetOrientationFrame(rows, id_), "it does not say how it is turned");
+    demand(sdk_.dhdGetOrientationFrame(rows, id_), "the device does not report its orientation");
     const Mat3 turned = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&rows[0][0]);
     // Limpid's axes in the library's: forward is away from the person, left is against y.
     reading.orientation = tool_orientation(Vec3(-1, -1, 1).asDiagonal(), turned);

@@ -77,7 +77,7 @@ void follow(int lines, Following& following, const LoadProgress& progress) {
     // The limit counts time on the wall: a program that waits takes no processor time.
     const std::chrono::seconds most{kPatience + 20 * following.limits.seconds};
     if (Clock::now() - begun > most) {
-      following.error = "is not read: what reads it says nothing for too long";
+      following.error = "is not read: the program that reads the model gave no answer for too long";
       return;
     }
     pollfd waiting{lines, POLLIN, 0};

@@ -17,7 +17,7 @@ TEST(DeviceWords, SayWhatADeviceSaysOfItself) {
   reading.no_force = NoForce::button;
   const std::string words = device_words(reading);
   EXPECT_THAT(words, HasSubstr("not calibrated"));
-  EXPECT_THAT(words, HasSubstr("button of its own"));
+  EXPECT_THAT(words, HasSubstr("a button on the device"));
   EXPECT_THAT(words, HasSubstr("80 %"));
 }
 

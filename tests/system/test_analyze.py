@@ -175,7 +175,7 @@ class Analyze(SystemTest):
             <dynamics damping="0.01"/></joint></robot>""")
         said = limpid("analyze", "--device", arm)
         self.assertEqual(said.status, 0, said.err)
-        self.assertIn("no joint moves 'tip'", said.out)
+        self.assertIn("no joint moves the tip 'tip'", said.out)
         for wrong in ("nan", "inf"):
             self.assertNotIn(wrong, said.out)
         self.assertIsNone(self.analyze("--device", arm)["tip"])

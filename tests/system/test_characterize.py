@@ -39,7 +39,7 @@ class Characterize(SystemTest):
         self.assertEqual((numbers["delay"]["value"], numbers["delay"]["assumed"]), (1, False))
         self.assertTrue(numbers["encoder_step"]["assumed"])
         self.assertIn("ASSUMED: exact", result.out)
-        self.assertIn("----  direct: stiffest wall by (b_d + b_h)/(T/2 + delay)", result.out)
+        self.assertIn("----  direct: stiffest wall, divided by (b_d + b_h)/(T/2 + delay)", result.out)
         for end in ("report.html", "characterize.svg", "characterize.csv"):
             self.assertTrue((out / end).exists(), end)
 
@@ -51,7 +51,7 @@ class Characterize(SystemTest):
         step, delay = numbers["encoder_step"], numbers["delay"]
         self.assertEqual((step["value"], step["from"], step["assumed"]), (4.19e-4, "the arm's file", False))
         self.assertEqual((delay["value"], delay["assumed"]), (1, True))
-        self.assertIn("assumed by the arm's file", delay["from"])
+        self.assertIn("assumed in the arm's file", delay["from"])
 
     def test_a_device_that_is_never_pushed(self) -> None:
         book = self.folder / "config/limpid/devices.toml"
@@ -86,10 +86,10 @@ class Characterize(SystemTest):
         file = self.folder / "file"
         file.write_text("")
         for words, said in ((("nothing.urdf",), "nothing.urdf"), ((), "needed: an arm's file"),
-                            (("omni.urdf", "--coupling", "tank"), "every law is measured"),
-                            (("omni.urdf", "--set", "hand.stiffness=3"), "hand.stiffness: every law"),
-                            (("--device", "socket:none"), "socket:none: is not connected; nothing is. Plug it in: "
-                                                          "it says its encoders itself.")):
+                            (("omni.urdf", "--coupling", "tank"), "measures every law"),
+                            (("omni.urdf", "--set", "hand.stiffness=3"), "hand.stiffness: cannot be chosen here"),
+                            (("--device", "socket:none"), "nothing is. Plug the device in: "
+                                                          "a connected device reports the encoder steps itself.")):
             with self.subTest(words=words):
                 result = limpid("characterize", *words, "--out", out)
                 self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
@@ -105,12 +105,12 @@ class Characterize(SystemTest):
             book.write_text(f'[device."socket:played"]\n{key} = "/home/me/identified.urdf"\n')
             result = limpid("characterize", "--device", "socket:played", "--out", self.folder / "out")
             self.assertEqual((result.status, len(result.error_lines)), (2, 1), result.err)
-            self.assertIn("socket:played: is not connected; nothing is. Plug it in", result.err)
-            self.assertIn("Without it: limpid characterize /home/me/identified.urdf --set "
+            self.assertIn("socket:played: is not connected; nothing is. Plug the device in", result.err)
+            self.assertIn("Without the device: limpid characterize /home/me/identified.urdf --set "
                           "device.encoder_step=STEP", result.err)
         book.write_text('[device."socket:played"]\ntaken_for = "built-in"\n')
         result = limpid("characterize", "--device", "socket:played", "--out", self.folder / "out")
-        self.assertNotIn("Without it", result.err)
+        self.assertNotIn("Without the device", result.err)
 
     def test_ctrl_c_leaves_a_whole_message(self) -> None:
         out = self.folder / "stopped"

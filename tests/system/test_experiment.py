@@ -111,7 +111,7 @@ class Stopping(SystemTest):
                 time.sleep(0.01)
             self.assertEqual(started.stop(how), 1)
             said = started.process.communicate()[1].decode()
-        self.assertEqual(said, "limpid: stopped; the same command goes on from here\n")
+        self.assertEqual(said, "limpid: stopped; the same command continues from here\n")
         self.assertFalse((out / "passivity.json").exists())
         return {key: key.with_suffix(".h5").stat().st_mtime_ns
                 for key in (out / "passivity").glob("*.key")}  # fmt: skip

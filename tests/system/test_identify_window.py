@@ -87,7 +87,7 @@ class IdentifyWithLoad(WindowTest):
     def drawn_scale(self) -> float:
         """Scale of the simulated device's motor torques, as the command reports it."""
         done = limpid("identify", "simulated", "--load", "0.05", "--out", self.home / "out")
-        return float(re.search(r"([\d.]+) was drawn", done.out)[1])
+        return float(re.search(r"([\d.]+) is the true value", done.out)[1])
 
     def begin(self) -> None:
         self.key("Return")
@@ -167,7 +167,7 @@ class AxesOfADevice(PaddleWindow):
             self.begin_check()
             self.wait("its end", lambda s: not s["device_panel"]["checking"]
                       and (s["device_panel"]["check"] or s["identify"]["plugged"]))
-        self.wait_for_notice("Its axes move as they are pushed.")
+        self.wait_for_notice("The device's axes move as the motors push.")
         self.wait("the device in the loop", lambda s: s["identify"]["plugged"])
         self.assertFalse(self.state()["force"])
         self.wait("why it has none", lambda s: s["device_panel"]["explains_force"])

@@ -146,7 +146,7 @@ class InTheWindow(WindowTest):
         self.arm_until_it_lifts()
         self.service.tell("drop")
         self.service.wait(lambda line: line == "end")
-        self.wait_for_notice("The device is gone")
+        self.wait_for_notice("The device is disconnected")
         self.service.wait(lambda line: line == "session")
         self.wait("contact again", lambda s: s["contact"] > 0)
         self.check_without_force("not armed again")
@@ -185,7 +185,7 @@ class InTheWindow(WindowTest):
         self.arm_until_it_lifts()
         self.service.wait_for_all_so_far()
         holder = f"process {self.app.pid} (limpid "
-        for words, why in (((), "Another window has a device already"),
+        for words, why in (((), "Another window of Limpid uses a device already"),
                            ((str(ASSETS / "scenes" / "table.toml"),), "was started with a file")):
             with self.subTest(words=words):
                 device = self.another_window(*words)["device_panel"]

@@ -76,7 +76,7 @@ class Live(unittest.TestCase):
         begun = time.monotonic()
         with Lateness() as lateness:
             result = limpid(*words)
-        no_force, too_long = "gets no force" in result.err, "too long to say" in result.err
+        no_force, too_long = "gets no force" in result.err, "for too long" in result.err
         if not no_force and not too_long:
             return result
         self.assertRegex(result.err, "no reading for 5 ms|loop stood still", "of another kind")
@@ -93,7 +93,7 @@ class Live(unittest.TestCase):
         for words, said in (
                 (("--yes",), "no device is chosen"),
                 (("nothing", "--yes"), "nothing: is not connected"),
-                ((), "nobody can be asked"),
+                ((), "no terminal to ask"),
                 (("--yes", "--hand", "x.csv"), "--hand: not together with --live"),
                 (("--yes", "--twin"), "--twin: not together with --live")):
             with self.subTest(words=words):
@@ -144,7 +144,7 @@ class Live(unittest.TestCase):
         self.plug()
         (self.folder / "config/limpid/devices.toml").unlink()
         said = self.refused()
-        self.assertIn("replay: its axes must be checked before it may push", said)
+        self.assertIn("replay: the axes must be checked before the device may push", said)
         self.assertIn("Device panel", said)
 
     def test_refuses_a_device_whose_limits_cannot_be_understood_and_keeps_the_file(self) -> None:
@@ -168,20 +168,20 @@ class Live(unittest.TestCase):
 
     def test_is_told_once_which_arm_a_device_is_and_says_it_at_each_connection(self) -> None:
         self.plug()
-        self.assertIn("until you say which arm it is", limpid("devices").out)
+        self.assertIn("until you choose", limpid("devices").out)
         wrong = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/joystick.urdf")
         self.assertEqual(wrong.status, 2)
         self.assertIn("of 2 joints, and has 3 joints", wrong.err)
         right = limpid("devices", "socket:replay", "--arm", ASSETS / "devices/omni.urdf")
         self.assertEqual(right.status, 0, right.err)
-        self.assertIn("is taken for the arm omni: so it was said", right.out)
-        self.assertIn("omni.urdf, as was said", limpid("devices").out)
-        self.assertIn("so it was said", limpid("run", "--live", "--yes", "--duration", "0.1").err)
+        self.assertIn("is used as the arm omni: this arm was chosen", right.out)
+        self.assertIn("omni.urdf, as chosen", limpid("devices").out)
+        self.assertIn("this arm was chosen", limpid("run", "--live", "--yes", "--duration", "0.1").err)
         self.assertEqual(limpid("devices", "socket:replay", "--arm", "unsaid").status, 0)
         book = (self.folder / "config/limpid/devices.toml").read_text()
         self.assertIn("checked = true", book)
         self.assertNotIn("omni", book)
-        self.assertIn("until you say which arm it is", limpid("run", "--live", "--yes", "--duration", "0.1").err)
+        self.assertIn("until you choose", limpid("run", "--live", "--yes", "--duration", "0.1").err)
 
     def test_leaves_a_device_alone_that_another_program_has(self) -> None:
         self.plug()

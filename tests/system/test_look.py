@@ -95,7 +95,7 @@ class Look(unittest.TestCase):
             with self.subTest(version=version), Played(f"played{version}", version) as device:
                 found = self.look(f"socket:played{version}", "--seconds", "6", "--force")
                 self.assert_never_pushed(device)
-                self.assertIn("it never pushes", self.said)
+                self.assertIn("gets no force", self.said)
                 self.assertEqual((found["joints"][0]["name"], found["pushes"], found["axes_checked"]),
                                  ("turret", True, False))
                 self.assertIn("a built-in arm", found["arm_why"])
@@ -140,8 +140,8 @@ class Look(unittest.TestCase):
                 self.assertGreater(found[key], 1.5, key)
             self.assertGreater(found["no_force_s"][1], 1.5)
             text = limpid("devices", "look", "socket:played", "--record", self.out, "--force", "--seconds", "1").out
-            for said in ("pressed: 1, 3", "switched off by a button", "not calibrated for", "none on its switch",
-                         "25 % of what", "turret [rad]", "nobody has checked them", "got no force"):
+            for said in ("pressed: 1, 3", "a button on the device", "not calibrated for", "no hand on the switch",
+                         "25 % of the hottest", "turret [rad]", "not checked yet", "got no force"):
                 self.assertIn(said, text)
 
     def test_a_device_without_motors_is_read(self) -> None:
@@ -156,7 +156,7 @@ class Look(unittest.TestCase):
             threading.Timer(2.5, device.over.set).start()
             threading.Timer(2.6, device.device._hang_up).start()
             found = self.look("socket:played", "--seconds", "60", status=1)
-        self.assertIn("the device is gone", self.said)
+        self.assertIn("the device is disconnected", self.said)
         self.assertTrue(found["gone"])
         with h5py.File(self.out) as file:
             self.assertGreater(len(file["time"]), 1000)
@@ -179,7 +179,7 @@ class Look(unittest.TestCase):
         self.assertEqual(result.status, 2)
         self.assertIn("--record", result.err)
         result = limpid("devices", "socket:played", "look", "--record", self.out)
-        self.assertIn("stand behind it", result.err)
+        self.assertIn("write device and options after", result.err)
 
     def test_ctrl_c_leaves_a_whole_session(self) -> None:
         with Played("played") as device:
@@ -233,7 +233,7 @@ class OfAService(unittest.TestCase):
             text, said = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 0, said)
             found = json.loads(text)
-            self.assertIn("it says so itself", found["arm_why"])
+            self.assertIn("the device reports this arm itself", found["arm_why"])
             self.assertEqual((found["pushes"], found["force_given"]), (True, False))
             self.assertGreater(found["readings"], 300)
             spans = [joint["most"] - joint["least"] for joint in found["joints"]]
@@ -265,7 +265,7 @@ class OfAMaker(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found = json.loads(done.stdout)
                 self.assertIn(library, found["driven_by"])
-                self.assertIn("it says so itself", found["arm_why"])
+                self.assertIn("the device reports this arm itself", found["arm_why"])
                 self.assertFalse(any(any(held.force) or held.on for held in motors_in(folder)))
                 # A spring of 40 N/m, 0.1 kg and 3 N s/m under 0.6 N at 12 rad/s.
                 swing = 0.6 / math.hypot(40 - 0.1 * 12**2, 3 * 12)

@@ -46,10 +46,10 @@ class ReaderProgramTest(SystemTest):
         self.assertIn("status 3", self.read_with("exit 3"))
 
     def test_one_that_says_anything(self) -> None:
-        self.assertIn("answers wrongly", self.read_with("cat /proc/self/exe | tail -c +100; exit 0"))
+        self.assertIn("sent wrong data", self.read_with("cat /proc/self/exe | tail -c +100; exit 0"))
 
     def test_one_that_never_ends_what_nobody_reads(self) -> None:
-        self.assertIn("answers wrongly", self.read_with(r"printf '\1\0\0\0\0\0\0\0'; exec cat /dev/zero"))
+        self.assertIn("sent wrong data", self.read_with(r"printf '\1\0\0\0\0\0\0\0'; exec cat /dev/zero"))
 
     def test_one_that_is_missing(self) -> None:
         self.assertIn("limpid-session, which reads it, cannot be started", self.read_with(None))

@@ -231,7 +231,7 @@ class Places(WithAnArm):
         self.part(out).symlink_to(mine)
         done = limpid("run", *self.arm, "--duration", "0.1", "--record", out, "--force")
         self.assertEqual(done.status, 2)
-        self.assertIn("is a link", done.err)
+        self.assertIn("is a symbolic link", done.err)
         self.assertEqual(mine.read_text(), "mine")
         mine.unlink()
         done = limpid("run", *self.arm, "--duration", "0.1", "--record", out)

@@ -56,7 +56,7 @@ class TestServe(RemoteTest):
             loop.twin({"ledger.energy": 0.02})
 
     def test_the_tick_stays_as_it_is(self) -> None:
-        with self.assertRaisesRegex(limpid.RequestError, "loop.tick: stays as it is"):
+        with self.assertRaisesRegex(limpid.RequestError, "loop.tick: cannot change"):
             self.connect().set({"loop.tick": 0.002})
 
     def test_errors_name_the_key_what_was_found_and_what_is_allowed(self) -> None:
@@ -66,7 +66,7 @@ class TestServe(RemoteTest):
             ("[1]", "one JSON object"),
             ('{"id": 1}', "do: is missing; allowed: hello, get"),
             ('{"do": "jump"}', 'do: "jump" is not known; allowed: hello'),
-            ('{"do": "set", "valeus": {}}', 'set: "valeus" is no key of it; allowed: values, twin'),
+            ('{"do": "set", "valeus": {}}', 'set: "valeus" is not a key of this command; allowed: values, twin'),
             ('{"do": "set", "values": 3}', "set: values: 3 is not allowed"),
             ('{"do": "set", "values": {"coupling.eta": [1]}}', "coupling.eta: [1] is not allowed"),
             ('{"do": "follow", "channels": ["no"]}', 'channels: "no" is no channel'),
@@ -271,7 +271,7 @@ class TestServe(RemoteTest):
         loop = self.connect()
         file = self.home / "mine.png"
         file.write_text("mine")
-        with self.assertRaisesRegex(limpid.RequestError, "picture: file: .*mine.png.* is there already; .*replace"):
+        with self.assertRaisesRegex(limpid.RequestError, "picture: file: .*mine.png.* exists already; .*replace"):
             loop.picture(file)
         self.assertEqual(file.read_text(), "mine")
         loop.picture(file, replace=True)

@@ -180,7 +180,7 @@ class TestRemoteWindow(WindowTest):
         self.wait("recording", lambda s: s["recording"])
         self.loop.mark("here")
         self.go_on(0.5)
-        with self.assertRaisesRegex(limpid.RequestError, "stop the recording before"):
+        with self.assertRaisesRegex(limpid.RequestError, "stop the recording first"):
             self.loop.open(scene="spheres.toml")
         done = self.loop.stop()
         self.assertEqual((done["file"], done["dropped"]), (file, 0))
@@ -549,7 +549,7 @@ class TestRemoteWindow(WindowTest):
         self.loop.follow([])
         file = Path(self.loop.picture(self.home / "a.png"))
         self.assertEqual(file.read_bytes()[:4], b"\x89PNG")
-        with self.assertRaisesRegex(limpid.RequestError, "is there already"):
+        with self.assertRaisesRegex(limpid.RequestError, "exists already"):
             self.loop.picture(file)
         self.loop.picture(file, replace=True)
 

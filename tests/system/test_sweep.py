@@ -213,7 +213,7 @@ class Survival(SystemTest):
                 time.sleep(0.02)
             self.assertEqual(started.stop(signal.SIGINT), 1)
             said = started.process.communicate()[1].decode()
-        self.assertEqual(said, "limpid: stopped; the same command goes on from here\n")
+        self.assertEqual(said, "limpid: stopped; the same command continues from here\n")
         with h5py.File(out / "table.h5") as table:
             done = table["/done"][:] == 1
             self.assertTrue(0 < done.sum() < self.points)
@@ -229,7 +229,7 @@ class Survival(SystemTest):
         out = place / "sweep"
         result = limpid("sweep", self.plan, "--out", out, timeout=300)
         self.assertEqual(result.status, 1)
-        self.assertRegex(result.err, r"No space left on device; the same command goes on from here")
+        self.assertRegex(result.err, r"No space left on device; the same command continues from here")
         self.assertEqual(list(out.rglob("*.new")), [])
         subprocess.run(["mount", "-o", "remount,size=32m", str(place)], check=True)
         result = limpid("sweep", self.plan, "--out", out, timeout=300)

@@ -67,7 +67,7 @@ class SweepWindow(WindowTest):
         self.wait("the mouse on it", lambda s: s["sweep"].get("pointed_at") == number)
         self.xdotool("click", "1")
         self.wait_for_notice(f"Point {number}: kind proposed, wall {WALLS[wall]} N/m, "
-                             f"eta {ETAS[eta]:g}. As in the table, to the last bit.")
+                             f"eta {ETAS[eta]:g}. The result equals the table to the last bit.")
         self.wait("playback", lambda s: s["playing"] and s["dialog"] == "")
 
 
@@ -238,7 +238,7 @@ class NewSweep(WindowTest):
         ticks = self.state()["ticks"]
         self.wait("the loop to go on meanwhile", lambda s: s["ticks"] > ticks + 300)
         self.key("Escape")
-        self.wait("a banner", lambda s: any("The sweep goes on: " in b["text"] for b in s["banners"]))
+        self.wait("a banner", lambda s: any("The sweep is running: " in b["text"] for b in s["banners"]))
         self.key("F6")
         self.wait("the map", lambda s: s["dialog"] == "sweep" and "map" in s["sweep"])
         self.on_the_map("Stop")

@@ -61,7 +61,7 @@ class Headless(WithAnArm):
     def test_a_third_run_needs_a_second_one(self) -> None:
         result = limpid("run", *self.arm, "--lane3")
         self.assertEqual(result.status, 2, result)
-        self.assertIn("--lane3: needs --twin beside it", result.err)
+        self.assertIn("--lane3: needs --twin as well", result.err)
 
     def test_the_picture_of_an_unstable_run_is_of_before(self) -> None:
         image = self.out(".png")

@@ -559,7 +559,7 @@ class InLimpid(WithLimpid):
                     self.assertGreater(took, 0.15, "killed too soon")
                 _, said = process.communicate(timeout=60)
                 self.assertNotEqual(process.returncode, 0)
-                self.assertIn("the device is gone", said)
+                self.assertIn("the device is disconnected", said)
 
     def test_no_force_after_a_jump_that_the_device_cannot_make(self) -> None:
         for device in BOTH:

@@ -327,7 +327,7 @@ class Experiments(WindowTest):
         self.click_on(name, "Close (Esc)")
         self.wait("it to close", lambda s: not s["popup"] and s["dialog"] == "experiments")
         self.key("Escape")
-        self.wait("a banner", lambda s: any("Experiments go on: " in b["text"]
+        self.wait("a banner", lambda s: any("Experiments are running: " in b["text"]
                                             for b in s["banners"]))
         kind = self.state()["kind"]
         self.key("c")  # the window is free

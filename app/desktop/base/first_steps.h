@@ -19,12 +19,12 @@ struct FirstStepInfo {
 // Steps in the order in which they are worth trying; hints and "Your turn" go by them.
 inline constexpr std::array kFirstSteps{
     FirstStepInfo{FirstStep::pull, 'd', "Pull the arm by its tip", "left drag"},
-    FirstStepInfo{FirstStep::push, 'w', "Push it nearer and farther", "wheel while dragging"},
-    FirstStepInfo{FirstStep::press, 'p', "Press it onto something", "left drag"},
+    FirstStepInfo{FirstStep::push, 'w', "Push the tip nearer and farther", "wheel while dragging"},
+    FirstStepInfo{FirstStep::press, 'p', "Press the tip onto something", "left drag"},
     FirstStepInfo{FirstStep::law, 'c', "Switch the coupling", "C"},
-    FirstStepInfo{FirstStep::eta, 'e', "Make it lighter or heavier", "[ and ]"},
+    FirstStepInfo{FirstStep::eta, 'e', "Make the arm lighter or heavier", "[ and ]"},
     FirstStepInfo{FirstStep::twin, 't', "Two couplings on one hand", "B"},
-    FirstStepInfo{FirstStep::play, 'r', "Record what you do, and play it", "R, then P"},
+    FirstStepInfo{FirstStep::play, 'r', "Record your motion, and play it", "R, then P"},
 };
 
 bool done(const Settings& settings, FirstStep step);

@@ -106,9 +106,10 @@ std::string NamedTexts::rename(const std::string& from, const std::string& to) {
   return change([&](Tables& own) {
     const toml::table* renamed = own.all[from].as_table();
     if (renamed == nullptr) {
-      throw FileError(fmt::format("{} is not there any more: another window changed it.", from));
+      throw FileError(
+          fmt::format("{} does not exist any more: another window changed the list.", from));
     }
-    if (own.all.contains(to)) throw FileError(fmt::format("There is one called {} already.", to));
+    if (own.all.contains(to)) throw FileError(fmt::format("The name {} is used already.", to));
     own.all.insert(to, *renamed);
     own.all.erase(from);
   });

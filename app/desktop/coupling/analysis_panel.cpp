@@ -131,8 +131,8 @@ void AnalysisPanel::draw_walls(const Parameters& p) const {
       over ? fmt::format("Too stiff: {} renders well only up to {:.0f} N/m here. The bound: {}.",
                          info(p.kind).key, mine.stiffness, mine.bound)
            : "",
-      soft ? "Felt softer than that: this coupling's spring is in between."
-           : "Within what this coupling renders well");
+      soft ? "The hand feels a softer wall: this coupling's spring lies between hand and wall."
+           : "This coupling renders this stiffness well");
 }
 
 void AnalysisPanel::draw_felt(const Parameters& p, double band) const {
@@ -199,14 +199,16 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
     due_ = 0;
   }
   note_number_item();
-  tooltip("The human's bandwidth: \xCE\xB7_min counts only the frequencies below it.");
+  tooltip("The human's bandwidth. Only frequencies below this bandwidth count for \xCE\xB7_min.");
   const auto limit = [&](const char* label, double value, const char* help) {
     read_out(label, fmt::format("{:.3f}", value), {}, help);
   };
-  limit("\xCE\xB7_min, all frequencies", analysis_.eta_min, "(25), the worst mode at this pose");
+  limit("\xCE\xB7_min, all frequencies", analysis_.eta_min,
+        "Limit of (25), for the worst mode at this pose");
   limit("\xCE\xB7_min, this band", analysis_.eta_min_band.value_or(0),
-        "Re H_L >= 0 is asked only below the human's bandwidth");
-  limit("\xCE\xB7_min in this grip", analysis_.eta_min_grip, "Routh: stable in the hand above it");
+        "Least passive \xCE\xB7 if Re H_L >= 0 has to hold only below the human's bandwidth");
+  limit("\xCE\xB7_min in this grip", analysis_.eta_min_grip,
+        "Routh's limit: above this \xCE\xB7 the loop is stable in this grip");
   std::string modes;
   for (const LockedMode& mode : analysis_.modes) {
     modes += fmt::format("{}{:.2f}", modes.empty() ? "" : ", ", 1e4 * mode.m);
@@ -218,10 +220,13 @@ void AnalysisPanel::draw_observed(const Parameters& p, double& band) {
            {}, "Eigenvalues of M1 + M2 at this pose");
   std::complex<double> worst(-1e300, 0);
   for (const auto& pole : poles_) worst = pole.real() > worst.real() ? pole : worst;
-  read_out("slowest pole in this grip", pole_text(worst),
-           worst.real() > 0 ? "A pole in the right half plane: unstable while the hand holds." : "",
-           "For the locked system (hand, device and avatar as one) held by the grip, in continuous "
-           "time");
+  read_out(
+      "slowest pole in this grip", pole_text(worst),
+      worst.real() > 0
+          ? "The loop is unstable while a hand holds the arm: a pole lies in the right half plane."
+          : "",
+      "For the locked system (hand, device and avatar as one) held by the grip, in continuous "
+      "time");
 }
 
 void AnalysisPanel::draw_nyquist(const Parameters& p) const {

@@ -106,9 +106,10 @@ std::string ChatterWatch::text() const {
                              ? " of the twin"
                              : fmt::format(" of the {} run", lane_ordinal(found_->lane));
   const auto& wall = found_->wall;
-  if (!wall) return fmt::format("It chatters: the {} law{} gives energy.", law.key, of);
-  return fmt::format("It chatters: {} ({:.4g} N/m) is stiffer than the {} law{} holds here.",
-                     wall->name, wall->stiffness, law.key, of);
+  if (!wall) return fmt::format("The loop chatters: the {} law{} gives energy.", law.key, of);
+  return fmt::format(
+      "The loop chatters: {} ({:.4g} N/m) is stiffer than the {} law{} can hold at this place.",
+      wall->name, wall->stiffness, law.key, of);
 }
 
 void ChatterWatch::take_predictive() {

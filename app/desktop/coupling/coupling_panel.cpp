@@ -54,8 +54,8 @@ std::string proxy_needs(const Parameters& p, const Analysis& a) {
 
 std::string device_broken(const Parameters& p, const Analysis& a) {
   if (!a.condition3.known) {
-    return "Condition (3): no bound is known where packets are lost (link loss): the last packet "
-           "that is held may be of any age.\nThe tank law is passive all the same.";
+    return "Condition (3): no bound is known where packets are lost (link loss). A side keeps its "
+           "last packet, which may be of any age.\nThe tank law stays passive with lost packets.";
   }
   if (a.condition3.holds || a.condition3.device_margin >= 0) return {};
   return fmt::format("Condition (3): b_d is {:.4g} N m s/rad short of {}.\nLower k_vc or b_vc.",
@@ -139,7 +139,7 @@ void comparison_list(Parameters& p) {
                         ImGuiComboFlags_HeightLarge);
   if (now.for_comparison) ImGui::PopStyleColor(4);
   if (!open) {
-    tooltip("Laws that other programs and papers have, live on the same hand.");
+    tooltip("Laws of other programs and papers, live on the same hand, for comparison.");
     return;
   }
   for (std::uint8_t i = 0; i < kLaws; ++i) {
@@ -183,17 +183,16 @@ void draw_fit(Parameters& p, const ArmDescription& arm, const Analysis& a) {
   }
   const std::string text = fit_text(own);
   const char* const help =
-      "From the arm's damping b_d, its delay and the link's: k_vc, b_vc, b_v so that condition (3) "
-      "just holds, "
-      "\xCE\xB1 so that \xCE\xB7_min is the paper's. An arm whose file says no damping gets one "
-      "that suits "
-      "its inertia.";
+      "Gains from the arm's damping b_d, the arm's delay and the link's delay. With these k_vc, "
+      "b_vc and b_v condition (3) just holds. With this \xCE\xB1 the limit \xCE\xB7_min is the "
+      "paper's. An arm whose file says no damping gets a damping that suits the arm's inertia.";
   if (fit == p) {
     read_out("Gains for this arm", text.empty() ? "the paper's" : "fitted", {}, help);
     return;
   }
   if (ImGui::Button("Fit gains to this arm", {ImGui::GetContentRegionAvail().x, 0})) p = fit;
-  tooltip((std::string(help) + (text.empty() ? "\nThe paper's suit it." : "\n" + text)).c_str());
+  tooltip((std::string(help) + (text.empty() ? "\nThe paper's gains suit this arm." : "\n" + text))
+              .c_str());
 }
 
 // Draws a delay between device and proxy, as if the world were far away.
@@ -266,9 +265,8 @@ void draw_observer(const Parameters& p, const Analysis& a) {
                 p.eta, a.eta_min_compliant)
           : std::string();
   read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_compliant), unstable,
-           "Below it the loop is unstable in a hand of this stiffness and damping: Routh's limit, "
-           "with the proxy "
-           "behind the coupling's spring");
+           "Below this \xCE\xB7 the loop is unstable in a hand of this stiffness and damping "
+           "(Routh's limit, with the proxy behind the coupling's spring)");
 }
 
 void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
@@ -277,10 +275,11 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
   heading("Passivity");
   if (a.measured || real) {
     read_out("These figures are", a.measured ? "measured" : "assumed", {},
-             a.measured ? "They follow from the inertia, damping and delay that limpid identify "
-                          "found of the device."
-                        : "They follow from what the arm's file says of inertia and damping; the "
-                          "delay is taken to be what is set. limpid identify measures them.");
+             a.measured
+                 ? "The figures below follow from the inertia, damping and delay that limpid "
+                   "identify measured on this device."
+                 : "The figures below follow from inertia and damping in the arm's file, and from "
+                   "the delay that is set. limpid identify measures inertia, damping and delay.");
   }
   if (info(p.kind).observes) draw_observer(p, a);
   const auto verdict = [](const std::string& broken, double margin) {
@@ -307,26 +306,28 @@ void draw_shares(const CouplingReading& now, const LawInfo& law) {
   heading(law.label);
   if (law.torque_share != nullptr) {
     share("Torque rendered", now.torque_governor,
-          "A part of the walls' torque is held back: they feel softer than set.", law.torque_share);
+          "The law holds back a part of the walls' torque. The walls feel softer than set.",
+          law.torque_share);
   }
   if (law.damper_share != nullptr) {
-    share("Damper not needed", now.damping_governor, "It takes back what the walls gave.",
-          law.damper_share);
+    share("Damper not needed", now.damping_governor,
+          "A damper takes back energy that the walls gave.", law.damper_share);
   }
 }
 
 void draw_tanks(const CouplingReading& now) {
   heading("Energy tanks");
-  read_out("In both", energy_text(now.reserve), {},
-           "In the device's and the proxy's tank, and on its way between them: what may still be "
-           "given");
+  read_out("In both tanks", energy_text(now.reserve), {},
+           "Energy in the device's tank, in the proxy's tank and on the link between the tanks. "
+           "The law may still give this energy.");
   share("Proxy moves freely", now.contact_governor,
         "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
-        "Its damping by that with what its tank adds");
+        "The proxy's own damping, divided by the sum of this damping and the damper that the tank "
+        "adds");
   share("Torque rendered", now.torque_governor,
-        "The device's tank is low: of the torque only so much is let through as it can pay for. "
-        "Moving the device fills it.",
-        "100 % while the device's tank can pay for the tick that comes");
+        "The device's tank is low. The law lets through only the torque that the tank can pay for. "
+        "Moving the device fills the tank.",
+        "100 % while the device's tank can pay for the next tick");
 }
 
 // Draws what a re-run will change, and buttons that take all settings of the recording or the loop.
@@ -340,12 +341,13 @@ void draw_differences(Parameters& p, const Parameters& recorded, const Parameter
       return text.empty() ? "the arm's" : text;
     };
     read_out(info.caption, fmt::format("{} \xE2\x86\x92 {}", shown(before), shown(after)), {},
-             "In the recording, and in the re-run");
+             "Left: the value in the recording. Right: the value in the re-run.");
     any = true;
   }
   if (!any) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped("As recorded: change a setting, then E shows what it changes.");
+    ImGui::TextWrapped(
+        "All settings are as recorded. Change a setting, then press E to see the effect.");
     ImGui::PopStyleColor();
   }
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
@@ -363,47 +365,48 @@ void draw_differences(Parameters& p, const Parameters& recorded, const Parameter
 
 // Draws the bounds on the human's energy, for a law that keeps account of it.
 void draw_ledger(const CouplingReading& now) {
-  heading("Energy ledger");
+  heading("Energy account");
   read_out("Reserve", energy_text(now.reserve), {},
-           "What the human may still be given; more after dissipating, 20 mJ at most");
+           "Energy that the law may still give the hand. Dissipated energy raises this reserve, up "
+           "to 20 mJ.");
   share("Wall force rendered", now.contact_governor,
-        "The reserve runs low: the ledger holds a part of the wall's force back, so that the "
+        "The reserve is low. The energy account holds back a part of the wall's force, so that the "
         "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
-        "keep it from acting.",
-        "100 % unless the reserve runs low; then the proxy leaves the device for a while");
+        "keep the reserve up.",
+        "100 % unless the reserve is low. While the reserve is low the proxy separates from the "
+        "device.");
   share("Damping removed", now.damping_governor,
-        "The reserve runs low: less of the device's damping is cancelled.",
-        "Share of the damping slider's value that is in use");
-  share(
-      "Torque rendered", now.torque_governor,
-      "The hand was given nearly all that it may be given: the ledger holds all torque back until "
-      "the hand has put some in again. Force that is armed anew, and a loop that starts anew, "
-      "begin with a full ledger. A known delay (model.delay) or a lower stiffness keep it from "
-      "acting.",
-      "100 % unless the hand was given nearly 5 mJ more than it put in");
+        "The reserve is low. The law cancels less of the device's damping.",
+        "Share of the damping cancellation that the energy account allows");
+  share("Torque rendered", now.torque_governor,
+        "The hand was given nearly all the energy that the energy account allows. The account "
+        "holds back all torque until the hand has put energy in again. Arming the force again, or "
+        "starting the loop again, fills the account. A known delay (model.delay) or a lower "
+        "stiffness avoids the loss of torque.",
+        "100 % unless the hand was given nearly 5 mJ more than the hand put in");
 }
 
 // Draws in how many ticks forces were not found, if there were any.
 void draw_unsolved(const CouplingReading& now) {
   if (now.unsettled > 0) {
     const char* why =
-        "Motors at their limit and contacts had no common solution in these ticks: the proxy stood "
-        "still for each of them. That is passive. Softer walls, fewer of them at a time, less "
-        "friction or stronger motors avoid it.";
+        "In these ticks the solver found no forces that suit contacts and motors at their limit. "
+        "The proxy stood still for each such tick, which is passive. Softer walls, fewer walls at "
+        "a time, less friction or stronger motors avoid such ticks.";
     read_out("Ticks without a solution", fmt::format("{:.0f}", now.unsettled), why, why);
   }
   if (now.left_out > 0) {
     const char* why =
-        "Objects meet at more points than the loop has room for. At these they do not push, and "
-        "may "
-        "sink into each other. Fewer objects that lie on each other avoid it.";
+        "Objects touch at more points than the loop has room for. At the points left out the "
+        "objects do not push and may sink into each other. Fewer objects that lie on each other "
+        "avoid this error.";
     read_out("Contact points left out", fmt::format("{:.0f}", now.left_out), why, why);
   }
   if (now.stood_still > 0) {
     const char* why =
-        "The forces in a mechanism were not found in these ticks, so its bodies stood still for "
-        "each of them. That takes energy only. Masses that are less unlike, softer stops and a "
-        "shorter tick avoid it.";
+        "In these ticks the solver found no forces for a mechanism. The mechanism's bodies stood "
+        "still for each such tick, which only removes energy. Masses that are more alike, softer "
+        "stops and a shorter tick avoid such ticks.";
     read_out("Ticks in which objects stood still", fmt::format("{:.0f}", now.stood_still), why,
              why);
   }
@@ -412,11 +415,12 @@ void draw_unsolved(const CouplingReading& now) {
 // Returns a way out of a coupling that gives energy.
 const char* way_out(const Parameters& p) {
   if (info(p.kind).on_device)
-    return "A softer wall, a hand that damps, or the predictive law, avoid it.";
-  if (p.linked()) return "A shorter link, a softer k_vc, more damping, or the tank, avoid it.";
+    return "Remedy: a softer wall, a hand that damps, or the predictive law.";
+  if (p.linked())
+    return "Remedy: a shorter link delay, a softer k_vc, more damping, or the tank law.";
   return info(p.kind).observes
-             ? "Raise \xCE\xB7, lower the observer's gain, or take the predictive law."
-             : "A softer k_vc, more damping (condition (3)), or the predictive law, avoid it.";
+             ? "Remedy: raise \xCE\xB7, lower the observer's gain, or take the predictive law."
+             : "Remedy: a softer k_vc, more damping (condition (3)), or the predictive law.";
 }
 
 // Returns the part of E_c that is the coupling's own, and why it is a fault; empty if it is none.
@@ -432,9 +436,9 @@ OwnEnergy own_energy(const CouplingReading& now, const Parameters& p, const Anal
   const double own = at_fault ? now.energy.without_limits() : now.energy.own();
   if (!judged || own <= kGivenEnergy) return {own, "", at_fault};
   return {own,
-          fmt::format(
-              "The coupling has given {} more than it took: it is not passive in this grip.\n{}",
-              energy_text(own), way_out(p)),
+          fmt::format("The coupling has given {} more energy than the coupling took. The coupling "
+                      "is not passive in this grip.\n{}",
+                      energy_text(own), way_out(p)),
           at_fault};
 }
 
@@ -442,31 +446,32 @@ OwnEnergy own_energy(const CouplingReading& now, const Parameters& p, const Anal
 void draw_givers(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   const EnergyAccount& energy = now.energy;
   const auto [own, broken, at_fault] = own_energy(now, p, a);
-  read_out(
-      "The coupling's own", energy_text(own), broken,
-      "The part of E_c that the coupling itself gave. It stays below zero while the coupling is "
-      "passive. What switching laws and motors at their limit put in is counted separately.");
+  read_out("The coupling's own", energy_text(own), broken,
+           "The part of E_c that the coupling itself gave. This part stays below zero while the "
+           "coupling is passive. Energy from switching laws and from motors at their limit is "
+           "counted separately.");
   const auto apart = [](const char* label, double joules, const char* help) {
     if (std::abs(joules) > kGivenEnergy) read_out(label, energy_text(joules), {}, help);
   };
   apart("From switching", energy.by_changes(),
-        "Of E_c: changing a law or a setting while the coupling is stretched puts energy in, as "
-        "bending a spring does. It is no fault of the coupling.");
+        "The part of E_c from changes of law and settings. A change while the coupling is "
+        "stretched puts energy in, as bending a spring does. The coupling is not at fault.");
   apart("Before the last change", energy.forgiven(),
-        "Of E_c: what settings gave that are no longer there.");
+        "The part of E_c that the coupling gave with earlier settings.");
   apart("From compensation", now.compensation,
         "The part of E_c that the motors gave for the device's weight, springs and friction.");
   if (at_fault) return;
   apart("From motors at their limit", energy.by_limits(),
-        "Of E_c: a motor at its limit gives another torque than the coupling asks for. It is no "
-        "fault of the coupling.");
+        "The part of E_c from motors at their limit. Such a motor gives another torque than the "
+        "coupling asks for. The coupling is not at fault.");
 }
 
 // Draws E_c as in the plots, and its sources.
 void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   read_out("Energy given E_c", energy_text(now.energy_total), {},
-           "Energy that the coupling gave since the start, with the device's own damping, as in "
-           "the plots. The lines below say what gave it.");
+           "Energy that the coupling gave since the start, minus the energy that the device's own "
+           "damping took. The plots show the same E_c. The lines below name the sources of this "
+           "energy.");
   draw_givers(now, p, a);
 }
 
@@ -479,8 +484,8 @@ void draw_limited(const CouplingReading& now) {
     text += fmt::format("{}joint {}", text.empty() ? "" : ", ", joint + 1);
   }
   read_out("Motor at its limit", text, {},
-           "The coupling asks for more torque than the motor can give, (section 3.1). Press less, "
-           "or raise Device > Motors' largest torque.");
+           "The coupling asks for more torque than the motor can give (section 3.1 of the paper). "
+           "Press less hard, or raise Device > Motors' largest torque.");
   if (now.contact > 0) {
     ImGui::TextWrapped(
         "The hand presses harder than the motors can push, so hand and avatar drift "
@@ -521,9 +526,9 @@ void draw_passive(const CouplingReading& now, const Parameters& p, const Analysi
   }
   if (!found.passive) return read_out("Passive", "not known", {}, found.by.c_str());
   const std::string broken =
-      *found.passive
-          ? ""
-          : fmt::format("It can give energy without end, by {}.\n{}", found.by, way_out(p));
+      *found.passive ? ""
+                     : fmt::format("The coupling can give energy without end. Reason: {}.\n{}",
+                                   found.by, way_out(p));
   read_out("Passive", *found.passive ? "yes" : "no", broken,
            fmt::format("Why: {}.", found.by).c_str());
 }
@@ -534,11 +539,11 @@ void draw_apart(const CouplingReading& reading) {
            "How far the tips of your device and of its avatar, the proxy, are apart.");
   read_out("Apart in the joints",
            fmt::format("{:.2f} m{}", 1e3 * reading.error, reading.error_unit), {},
-           "Coordination error |x_E|: joint angles of the device minus those of the proxy. The "
-           "first plot shows it.");
+           "Coordination error |x_E|: joint angles of the device minus joint angles of the proxy. "
+           "The first plot shows |x_E|.");
   read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
-           "How hard the scene pushes on the proxy. What hangs on the magnet does not count; f2 in "
-           "the plots has it.");
+           "Force of the scene on the proxy. An object on the magnet does not count here, but "
+           "counts in f2 of the plots.");
 }
 
 void draw_show(const char* label, const char* help, const Act& act) {
@@ -568,8 +573,8 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
   draw_apart(reading);
   read_out("Energy given E_c", energy_text(reading.energy_total),
            own_energy(reading, p, now.analysis).broken,
-           "What the coupling gave since the start. It stays below zero while the coupling is "
-           "passive. The second plot shows it.");
+           "Energy that the coupling gave since the start. E_c stays below zero while the coupling "
+           "is passive. The second plot shows E_c.");
   draw_passive(reading, p, now.analysis);
 }
 

@@ -14,9 +14,10 @@ namespace limpid {
 namespace {
 
 constexpr const char* kAbout =
-    "The motors add a small force for 9 s and see how the tip answers. Hold the device as you will "
-    "use it, still and away from walls. The virtual arm's hand holds still by itself.\n"
-    "Nothing begins before you press this. It ends by itself, or with the force.";
+    "The motors add a small force for 9 s, and Limpid measures how the tip answers. Hold the "
+    "device as you will use it, still and away from walls. The virtual arm's hand holds still by "
+    "itself.\nPress this button to begin. The measurement ends by itself, or when the force goes "
+    "off.";
 
 void wrapped(const std::string& text, Rgb rgb) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(rgb));

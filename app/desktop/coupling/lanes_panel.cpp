@@ -31,7 +31,8 @@ void choose(const RunNames& names, std::size_t& edited) {
     if (ImGui::Button(names.name(run).c_str(), {width, 0})) edited = run;
     if (chosen) ImGui::PopStyleColor();
     if (const int law = names.law(run); law >= 0) underline_button(law_ink(colours, law));
-    tooltip(fmt::format("The sliders below set this one: {}.", names.name(run)).c_str());
+    tooltip(
+        fmt::format("Click here: the sliders below then set the run {}.", names.name(run)).c_str());
     ImGui::PopID();
   }
 }

@@ -23,7 +23,7 @@ std::string millijoules(double joules) { return fmt::format("{:.4f} mJ", 1e3 * j
 
 void draw_contacts(const std::vector<ContactForce>& contacts) {
   if (contacts.empty()) {
-    ImGui::TextDisabled("Nothing is touched.");
+    ImGui::TextDisabled("The proxy touches nothing.");
     return;
   }
   constexpr std::array kHeads{"x [mm]", "y [mm]", "z [mm]", "force [N]"};
@@ -54,29 +54,29 @@ void draw_tick(const Stage& stage, std::span<const double> row) {
   const auto one = [&](Column c) { return at(c)[0]; };
   const RowView& rows = stage.rows();
   const auto x1 = at(Column::device_position), x2 = at(Column::proxy_position);
-  read_out("t", fmt::format("{:.4f} s", one(Column::time)), {}, "When the tick begins");
+  read_out("t", fmt::format("{:.4f} s", one(Column::time)), {}, "Time at which the tick begins");
   draw_contacts(rows.contacts(layout, row));
   read_out("gap of the tips", fmt::format("{:.4f} mm", 1e3 * (rows.tip(x1) - rows.tip(x2)).norm()),
-           {}, "How far device and proxy are apart");
+           {}, "Distance between the tips of device and proxy");
   read_out("force of the motors",
            fmt::format("{:.3f} N", rows.tip_force(x1, at(Column::motor_torque)).norm()), {},
-           "On the device's tip, as far as it can be had from the torques");
+           "Force of the motors on the device's tip, computed from the motors' torques");
   const auto kind = static_cast<CouplingKind>(one(Column::kind));
   if (info(kind).solves_together) {
     read_out("solved", solved_text(one(Column::solved)), {},
-             "How contacts, friction and the motors' limits were found to agree");
+             "How the solver made contacts, friction and the motors' limits agree");
     read_out("reserve", millijoules(one(Column::energy_ledger)), {},
-             "What the ledger lets the law give still");
+             "Energy that the law may still give, by the energy account");
     read_out("wall force let through", fmt::format("{:.1f} %", 100 * one(Column::governor)));
   }
   if (layout.has(Column::objects_sweeps)) {
     read_out("sweeps", fmt::format("{:.0f}", one(Column::objects_sweeps)), {},
-             "Over all contacts, until the forces of what moves were found");
+             "Passes over all contacts until the forces on moving objects were found");
     read_out("awake", fmt::format("{:.0f} of {}", one(Column::objects_awake), layout.bodies()), {},
-             "Objects that move");
+             "Number of objects that move, of all movable objects");
     read_out("objects gained", millijoules(one(Column::objects_gain)), {},
-             "Energy of the objects, minus what they had at first and what they were given; below "
-             "0: they lost it");
+             "Energy of the objects, minus their energy at the start and the energy given to the "
+             "objects. Below 0: the objects lost energy.");
   }
   read_out("stored in contacts", millijoules(one(Column::contact_potential)));
   read_out("controller, E_c", millijoules(one(Column::energy_total)));

@@ -76,16 +76,16 @@ void draw_time_histogram(const LatencyHistogram& histogram, double late, const c
 
 LateTicks late_ticks(bool motors) {
   if (motors) {
-    return {"Ticks that began after the next one was due",
-            "Ticks skipped because the one before began too late; with motors they are never made "
-            "up for",
-            "Ticks that were due while another one was late were skipped: motors never get several "
-            "ticks in a burst. The loop went on that much later."};
+    return {"Ticks that began after the next tick was due",
+            "Ticks skipped because the tick before began too late. With motors the loop never "
+            "makes up for skipped ticks.",
+            "The loop skipped ticks that were due during a late tick. Motors never get several "
+            "ticks in a burst. The loop continued later by the skipped time."};
   }
-  return {"Ticks that began after the next one was due; they are caught up",
+  return {"Ticks that began after the next tick was due. The loop catches up on these ticks.",
           "Ticks given up after long stalls",
-          "After a stall of over 20 ticks the loop went on later instead of catching up; simulated "
-          "time lost that much against the clock."};
+          "After a stall of over 20 ticks the loop continued later and did not catch up. Simulated "
+          "time fell back against the clock by the ticks given up."};
 }
 
 void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_time) {
@@ -95,7 +95,7 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
   const LatencyHistogram& wake = loop.thread().wake_latency();
   read_out("wake-up p50 / p99",
            fmt::format("{:.0f} / {:.0f} us", 1e6 * wake.quantile(0.5), 1e6 * wake.quantile(0.99)),
-           {}, "How long after its deadline a tick begins");
+           {}, "Time from a tick's deadline to the tick's begin");
   draw_time_histogram(
       wake, 1e-3,
       "Wake-up latency of the haptic thread, 1 us to 100 ms, both axes logarithmic; "
@@ -117,7 +117,7 @@ void draw_timing(const LiveLoop& loop, const std::string& quality, double frame_
   read_out("picture quality", quality, {},
            "View > Picture quality. Automatic: as good as this computer draws smoothly");
   read_out("frame", fmt::format("{:.1f} ms", 1e3 * frame_time), {},
-           "Work for one picture; the loop does not wait for it");
+           "Time to draw one picture. The control loop does not wait for pictures.");
 }
 
 void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const Parameters& p,
@@ -139,7 +139,7 @@ void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const
                  ? fmt::format("Slower than the loop, {}: ticks in between see nothing new.",
                                milliseconds(p.tick))
                  : "",
-             "How often the device says where it is");
+             "How often the device reports its position");
     read_out("jitter",
              fmt::format("{}, 99 % within {}", milliseconds(f.jitter),
                          milliseconds(pace.intervals().quantile(0.99))),
@@ -159,14 +159,16 @@ void DeviceTiming::draw_cost(const DevicePace::Figures& pace, const ArmDescripti
            : assumed ? "not measured"
                      : milliseconds(p.delay * p.tick) + ", as set",
            {},
-           "Time from a reading to the torque that answers it, beyond the tick. limpid identify "
-           "measures it; until then the walls below assume no delay.");
+           "Delay from a reading to the torque that answers this reading, in addition to the tick. "
+           "limpid identify measures this delay. Without a measurement the walls below assume no "
+           "delay.");
   const TipWall& wall = now_.wall(p.kind);
   const auto pair = [](double now, double prompt) {
     return fmt::format("{:.0f} of {:.0f} N/m", std::min(now, prompt), prompt);
   };
   read_out("stiffest wall", pair(wall.stiffness, prompt_.wall(p.kind).stiffness), {},
-           fmt::format("With this delay, of what {} would render without any. Bounded by {}.",
+           fmt::format("Stiffest wall with this delay, of the stiffest wall that the {} law would "
+                       "render without delay. The bound: {}.",
                        info(p.kind).key, wall.bound)
                .c_str());
   const double T = std::max(p.tick, pace.mean);

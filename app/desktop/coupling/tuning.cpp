@@ -38,20 +38,22 @@ void Tuning::next_law() {
 void Tuning::toggle_twin() {
   const std::size_t before = settings_.lanes.count;
   run_lanes(before > 1 ? 1 : 2);
-  notices_.say(before == 1 ? "Two couplings on one hand. The tabs choose which one the sliders set."
-               : before == 2 ? "The twin is gone. B brings it back."
-                             : "Only one run is shown. B shows the second one again.");
+  notices_.say(before == 1
+                   ? "Two couplings on one hand. The tabs choose the coupling that the sliders set."
+               : before == 2 ? "The twin (second run) has ended. B starts the twin again."
+                             : "Only the first run is left. B starts a second run again.");
 }
 
 void Tuning::add_lane() {
   run_lanes(settings_.lanes.count + 1);
-  notices_.say(fmt::format("{} couplings on one hand. The tabs choose which one the sliders set.",
-                           settings_.lanes.count == 2 ? "Two" : "Three"));
+  notices_.say(
+      fmt::format("{} couplings on one hand. The tabs choose the coupling that the sliders set.",
+                  settings_.lanes.count == 2 ? "Two" : "Three"));
 }
 
 void Tuning::drop_lane() {
   run_lanes(settings_.lanes.count - 1);
-  notices_.say(fmt::format("The {} run is gone.", lane_ordinal(settings_.lanes.count)));
+  notices_.say(fmt::format("The {} run has ended.", lane_ordinal(settings_.lanes.count)));
 }
 
 // Lets this many lanes run. A lane that would be like another one gets a law that none has.
@@ -84,7 +86,7 @@ void Tuning::reset() {
   const bool usual = settings_.parameters() == Parameters{};
   notices_.say(usual
                    ? "All settings are back at their default values. Where the paper gives a "
-                     "value, that is the default."
+                     "value, the default is the paper's value."
                    : "All settings have their usual values again, with gains fitted to this arm.");
 }
 
@@ -93,7 +95,7 @@ void Tuning::use_preset(const std::string& name) {
   if (preset == nullptr) return;
   end_break();
   apply_preset(edited(), preset->text, name);
-  notices_.say(fmt::format("Settings: {}. Ctrl+Z brings back what was before.", name));
+  notices_.say(fmt::format("Settings: {}. Ctrl+Z brings back the earlier settings.", name));
 }
 
 // Fits the gains, as those for the arm before may be far too stiff. A device's compensation of its

@@ -79,14 +79,15 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
   const bool in_place = live.loop().device_in_place();
   const bool asks = hub.may_say_arm() && hub.asks_for_arm();
   begin_step(state, "Its arm", in_place && !asks ? live.stage().arm().name : std::string());
-  tooltip("Its ranges and levers bound the force.");
+  tooltip("The arm's ranges and link lengths bound the force.");
   bool file = false;
   if (asks) {
     ImGui::TextWrapped(
-        "Which arm is it? Until you say so it is a built-in arm, with little force.");
+        "Which arm is this device? Until you choose an arm, Limpid uses a built-in arm with little "
+        "force.");
     tooltip(
-        "Of more than three joints there is no built-in one: then there is no force until you say "
-        "which it is.");
+        "No built-in arm has more than three joints. A device with more joints gets no force until "
+        "you choose its arm.");
     if (noted_button(kBuiltInArmButton)) devices.say_arm({kBuiltInArm, ""});
     tooltip(
         "assets/devices: paddle.urdf, joystick.urdf or omni.urdf, by the number of its joints.");
@@ -98,7 +99,7 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
     file = noted_button(kArmOfFileButton);
   } else if (hub.may_say_arm()) {
     if (ImGui::SmallButton("Another arm...")) devices.say_arm({});
-    tooltip("Asks again which arm the device is.");
+    tooltip("Asks again which arm this device is.");
   }
   end_step();
   return file;
@@ -145,17 +146,21 @@ bool draw_measured(DeviceController& devices, Parameters& p, StepState state) {
              "Measured with a load at the tip. Commands to the motors are scaled by it.");
   }
   const bool wanted = ImGui::Button(found ? "Identify again..." : "Identify...");
-  tooltip("Moves it by itself and finds inertia, friction, weight and delay.");
+  tooltip("Moves the device by itself and measures inertia, friction, weight and delay.");
   if (std::isnan(notes.delay)) {
-    read_out("delay", "not measured", {}, "Identifying the device finds it.");
+    read_out("delay", "not measured", {}, "Identify the device to measure the delay.");
   } else {
-    read_out("delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
-             "From a reading to the torque that answers it, beyond the tick.");
+    read_out(
+        "delay", fmt::format("{:.1f} ms, measured", 1e3 * notes.delay), {},
+        "Delay from a reading to the torque that answers this reading, in addition to the tick.");
     const Parameters with = reckoning_with(p, notes.delay);
     const std::string text =
         fmt::format("Reckon with {} tick{} of delay", with.delay, with.delay == 1 ? "" : "s");
     if (with.delay != p.delay && ImGui::Button(text.c_str())) p = with;
-    tooltip(fmt::format("The predictive law reckons with {} now (model.delay).", p.delay).c_str());
+    tooltip(
+        fmt::format("The predictive law reckons with a delay of {} now (model.delay, in ticks).",
+                    p.delay)
+            .c_str());
   }
   end_step();
   return wanted;
@@ -166,7 +171,9 @@ void draw_force(const LiveStage& live, const Parameters& p, StepState state) {
   const LiveLoop& loop = live.loop();
   const bool in_place = loop.device_in_place();
   begin_step(state, "Force", in_place ? explain(loop.snapshot().force_state) : "");
-  tooltip("Force is off until the hand has the device and F arms it; it then fades in.");
+  tooltip(
+      "Force is off until the hand holds the device and F arms the force. The force then fades "
+      "in.");
   const std::string words = in_place ? device_words(loop.snapshot().reading) : std::string();
   if (!words.empty()) ImGui::TextWrapped("%s", words.c_str());
   const std::string warm = warm_text(live.stage().arm(), loop.taken(p), loop.layout(), live.row());

@@ -38,7 +38,8 @@ void DeviceController::update() {
   }
   if (std::exchange(blocked_, false)) problem_.clear();
   if (!awaits_check()) return connect();
-  if (problem_.empty()) problem_ = "Its axes have to be checked before it may push.";
+  if (problem_.empty())
+    problem_ = "The device's axes have to be checked before the device may push.";
 }
 
 std::string DeviceController::obstacle() const {
@@ -58,8 +59,8 @@ void DeviceController::decide_who_chooses() {
   if (std::exchange(decided_, true) || !waits_.empty()) return;
   if (const std::string other = hub_.go_first(); !other.empty()) {
     wait_for_choice(
-        fmt::format("Another window has a device already ({}), so that this one connects to none "
-                    "by itself.",
+        fmt::format("Another window of Limpid uses a device already ({}). So this window connects "
+                    "to no device by itself.",
                     other));
   }
 }
@@ -123,14 +124,16 @@ void DeviceController::watch() {
   const Arming before = std::exchange(arming_, snapshot.arming);
   if (live_.loop().device_in_place() && arming_ == Arming::tripped && before != Arming::tripped) {
     const std::string words = device_words(snapshot.reading);
-    notices_.say(fmt::format("Force is off: {}.{}{} F arms it again.",
+    notices_.say(fmt::format("Force is off: {}.{}{} F arms the force again.",
                              explain(snapshot.force_state), words.empty() ? "" : " ", words),
                  true);
   }
   if (!snapshot.connected) {
     problem_ = "not connected";
-    notices_.say("The device is gone. It is taken up again when it comes back, without force.",
-                 true);
+    notices_.say(
+        "The device is disconnected. Plug the device in again: Limpid then uses the device again, "
+        "at first without force.",
+        true);
     live_.loop().plug(nullptr);
     return;
   }
@@ -156,12 +159,12 @@ void DeviceController::take_connected() {
     if (hub_.note_said_arm(traits)) save();
     requests_.open(std::move(*ready));
     problem_.clear();
-    notices_.say(
-        traits.pushes
-            ? fmt::format("{} is in the loop{}. Take it in your hand, then F arms the force.",
-                          traits.name,
-                          traits.made_by.empty() ? "" : ", driven by " + traits.made_by)
-            : fmt::format("{} leads the hand.", traits.name));
+    notices_.say(traits.pushes
+                     ? fmt::format("{} is in the loop{}. Take the device in your hand, then press "
+                                   "F to arm the force.",
+                                   traits.name,
+                                   traits.made_by.empty() ? "" : ", driven by " + traits.made_by)
+                     : fmt::format("{} leads the hand.", traits.name));
   } catch (const UncheckedError&) {
     unchecked_ = connecting_id_;
     problem_.clear();
@@ -205,9 +208,10 @@ void DeviceController::follow_check() {
     problem_ = report_of(*check, progress_->end);
     check_failed_ = !check->passed();
     if (!remember_check(*check, hub_.notes(hub_.in_use()))) {
-      return notices_.say("The check has not passed; the device stays out of the loop.", true);
+      return notices_.say("The check of the axes has not passed. The device stays out of the loop.",
+                          true);
     }
-    notices_.say("Its axes move as they are pushed.\n" + problem_);
+    notices_.say("The device's axes move as the motors push.\n" + problem_);
     problem_.clear();
     unchecked_.clear();
     save();

@@ -51,8 +51,9 @@ void hand_choices(DeviceController& devices, const PadChoice& pads) {
     known = known || pad.id == pads.chosen;
   }
   if (known) return;
-  hand_choice(devices, pads, "virtual arm, by the gamepad of before", pads.chosen,
-              "Not plugged in; the mouse leads the hand until it is.");
+  hand_choice(
+      devices, pads, "virtual arm, by the last gamepad", pads.chosen,
+      "The last gamepad is not plugged in. The mouse leads the hand until the gamepad is back.");
 }
 
 void choices(DeviceController& devices, const PadChoice& pads) {
@@ -68,19 +69,21 @@ void choices(DeviceController& devices, const PadChoice& pads) {
     ImGui::PopID();
     known = known || found.place.id == devices.hub().in_use();
   }
-  if (!known) choice(devices, "the one used before", devices.hub().in_use(), "Not plugged in.");
+  if (!known)
+    choice(devices, "the last device", devices.hub().in_use(),
+           "The last device is not plugged in.");
 }
 
 // Draws which part of the device's own forces the motors compensate.
 void compensation(const ArmDescription& arm, Parameters& p) {
   if (!section("Compensation", true)) return;
   tooltip(
-      "What the device itself pulls with, and the motors can take off the hand. It is armed, fades "
-      "and stops with all other force.");
+      "Forces of the device itself (weight, springs, friction) that the motors can take off the "
+      "hand. This compensation is armed, fades and stops with all other force.");
   const CompensationSettings wanted = suggested_compensation(arm);
   CompensationSettings& now = p;
   if (arm.delay && now != wanted) {
-    if (ImGui::Button("Take off what was measured")) now = wanted;
+    if (ImGui::Button("Cancel the measured forces")) now = wanted;
     tooltip(fmt::format("Weight {}, springs {}, {:.0f} % of the friction.",
                         wanted.holds_weight ? "held" : "not there",
                         wanted.holds_springs ? "held" : "not there", 100 * wanted.friction_share)
@@ -95,7 +98,8 @@ void compensation(const ArmDescription& arm, Parameters& p) {
   if (p.holds_weight) draw_parameters(p, arm, {"device.down"});
   const auto where_there = [&](const char* key, bool there, const char* none) {
     if (there) return draw_parameters(p, arm, {key});
-    read_out(find_parameter(key)->caption, none, {}, "limpid identify finds what there is.");
+    read_out(find_parameter(key)->caption, none, {},
+             "limpid identify measures weight, springs and friction.");
   };
   where_there("model.springs", spring > 0, "none known");
   where_there("model.friction", friction > 0, "no friction known");
@@ -144,7 +148,7 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
               angle * (slides ? 1e3 * kSlideUnit : kDegrees));
   ImGui::SameLine(8.5f * ImGui::GetFontSize());
   changed = ImGui::Checkbox("invert", &axis.inverted) || changed;
-  tooltip("Turns the axis round, its torque with it.");
+  tooltip("Reverses the sign of the axis and of its torque.");
   ImGui::SameLine();
   changed = ImGui::Checkbox("reverse force", &axis.reversed) || changed;
   tooltip(
@@ -156,7 +160,7 @@ bool axis_row(AxisAdjustment& axis, std::size_t i, double angle, const Joint* jo
     axis.zero += angle / axis.factor();
     changed = true;
   }
-  tooltip("Where it is now becomes zero.");
+  tooltip("The present position becomes zero.");
   changed = settled_slider(*find_field(kAxisFields, "scale"), axis, 4.5f) || changed;
   ImGui::PopID();
   return changed;
@@ -175,7 +179,7 @@ bool joystick_settings(DeviceNotes& notes) {
 // Returns true once a limit was changed.
 bool limit_sliders(SafetyLimits& limits) {
   if (!ImGui::TreeNode("Limits of force")) return false;
-  tooltip("They can be lowered for this device. Their first values are the largest allowed.");
+  tooltip("You can lower these limits for this device. The first values are the largest allowed.");
   bool changed = false;
   for (const auto& limit : kSafetyLimits) changed = settled_slider(limit, limits, 9) || changed;
   ImGui::TreePop();

@@ -45,7 +45,7 @@ std::string IdentifyController::why_not() const {
   if (live_.recording()) return "Stop the recording first.";
   if (simulated()) return {};
   if (live_.loop().device_plugged() && !live_.loop().device_in_place()) {
-    return "It has no motors that could move it.";
+    return "The device has no motors that could move it.";
   }
   if (!live_.loop().device_plugged()) {
     return devices_.problem().empty() ? "The device is not in the loop." : devices_.problem();
@@ -143,7 +143,7 @@ void IdentifyController::follow_work() {
     done_ = std::move(*done);
     phase_ = Phase::found;
     if (std::exchange(left_, false)) {
-      notices_.say(fmt::format("{} is identified. F7 shows what was found.", name_));
+      notices_.say(fmt::format("{} is identified. F7 shows the values found.", name_));
     }
   }
 }
@@ -177,7 +177,8 @@ void IdentifyController::keep() {
   if (!wrong.empty()) return fail(wrong);
   stop();
   devices_.connect_anew();  // the loop may still have it with the values of before
-  notices_.say("Remembered: " + name_ + " is what was found from now on.");
+  notices_.say("Remembered: " + name_ +
+               " has the values found by this identification from now on.");
 }
 
 }  // namespace limpid

@@ -58,17 +58,17 @@ std::string going_on(const IdentifyProgress& progress, const ArmDescription& arm
 
 void draw_motion(IdentifyController& controller, const ArmDescription& arm) {
   const IdentifyProgress& progress = controller.progress();
-  ImGui::TextWrapped("It moves by itself: %s.", going_on(progress, arm).c_str());
+  ImGui::TextWrapped("The device moves by itself: %s.", going_on(progress, arm).c_str());
   progress_bar(std::clamp(progress.time / progress.duration, 0.0, 1.0),
                ImGui::GetContentRegionAvail().x);
-  muted("Holding on to it ends it, too.");
+  muted("Holding the device stops the identification, too.");
   if (ImGui::Button("Stop (Esc)")) controller.stop();
 }
 
 void draw_load(IdentifyController& controller, double load) {
-  ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to it, and let go.",
+  ImGui::TextWrapped("Now fix the %.0f g to the tip, firmly and close to the tip. Then let go.",
                      1e3 * load);
-  if (controller.simulated()) muted("The simulated device has it once you go on.");
+  if (controller.simulated()) muted("The simulated device has this mass as soon as you go on.");
   if (noted_button(kGoOn) || accepted()) controller.go_on();
   ImGui::SameLine();
   if (ImGui::Button("Stop (Esc)")) controller.stop();
@@ -111,8 +111,8 @@ void draw_drift(const std::vector<Drift>& all) {
     text += fmt::format("{}{}: {} \xE2\x86\x92 {} {}", text.empty() ? "" : "\n", d.what,
                         text_of(d.before, 1), text_of(d.now, 1), d.unit);
   }
-  if (text.empty()) return muted("Nothing has changed since last time.");
-  ImGui::TextUnformatted("Changed since last time:");
+  if (text.empty()) return muted("No value has changed since the last identification.");
+  ImGui::TextUnformatted("Changed since the last identification:");
   ImGui::TextWrapped("%s", with_plus_minus(text).c_str());
 }
 
@@ -127,16 +127,18 @@ bool draw_found(IdentifyController& controller) {
   if (!done.no_pictures.empty()) muted("Without pictures: " + done.no_pictures);
   ImGui::Spacing();
   if (controller.simulated()) {
-    muted("This was a simulated device that is unlike its file; nothing is remembered of it.");
+    muted(
+        "This was a simulated device that differs from its file. Limpid does not keep these "
+        "values.");
   } else {
-    if (ImGui::Button("Use it (Enter)") || accepted()) {
+    if (ImGui::Button("Use the new values (Enter)") || accepted()) {
       controller.keep();
       return controller.wrong().empty();
     }
     tooltip("From now on Limpid uses the values that were found for this device.");
     ImGui::SameLine();
   }
-  if (noted_button(controller.simulated() ? kAgain : "Leave it as it was")) controller.stop();
+  if (noted_button(controller.simulated() ? kAgain : "Keep the old values")) controller.stop();
   return false;
 }
 
@@ -156,9 +158,9 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
       "friction, weight, springs and delay. Couplings, margins and compensation rest on them.");
   ImGui::Spacing();
   part_slider("of each joint's range", request_.plan.range, 0.05f, 0.9f,
-              "How far it moves, about the middle of its range.");
+              "How far each joint moves, around the middle of the joint's range.");
   part_slider("of the motors' limits", request_.plan.torque, 0.05f, 1,
-              "The most that its motors may give meanwhile.");
+              "Largest torque that the motors may give during the identification.");
   int down = static_cast<int>(down_);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
   ImGui::Combo("down, seen from the base", &down, kDownLabels.data(),
@@ -180,10 +182,10 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
   const std::string why_not = controller.why_not();
   muted(!why_not.empty() ? why_not
         : controller.simulated()
-            ? "No device is in use: a simulated one that is unlike its file is moved, "
-              "to try it on."
-            : fmt::format("It takes about {:.0f} s. Clear the space around it and "
-                          "let go of it; nobody holds it meanwhile.",
+            ? "No device is in use. For a trial Limpid moves a simulated device that differs from "
+              "its file."
+            : fmt::format("The identification takes about {:.0f} s. Clear the space around the "
+                          "device, and let go of the device. Nobody may hold the device meanwhile.",
                           controller.duration(request_.plan)));
   if (!controller.wrong().empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).broken));

@@ -40,8 +40,8 @@ PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Cam
     const bool known = std::ranges::find(pads_, pad.id, &Pad::id) != pads_.end();
     if (known || !known_ || pad.id == wanted) continue;
     notices_.say(
-        fmt::format("{} is plugged in. Device, in the panel at the right (F3), lets it lead the "
-                    "hand.",
+        fmt::format("{} is plugged in. Choose this gamepad under Device, in the panel at the right "
+                    "(F3), to lead the hand.",
                     pad.name));
   }
   pads_ = std::move(pads);
@@ -50,8 +50,10 @@ PadHand::Asked Pads::follow(std::vector<Pad> pads, const Heard& heard, const Cam
   const bool there = pad != pads_.end();
   if (!there || heard.device) {
     if (!there && !wanted.empty() && !leading_.empty()) {
-      notices_.say(fmt::format("{} is gone; the mouse leads the hand until it is back.", leading_),
-                   true);
+      notices_.say(
+          fmt::format("{} is unplugged. The mouse leads the hand until the gamepad is back.",
+                      leading_),
+          true);
     }
     leading_.clear();
     hand_.lose(live_.controls());

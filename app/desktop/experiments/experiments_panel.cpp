@@ -155,7 +155,7 @@ fs::path ExperimentsPanel::draw(bool& open, ScreenRect view) {
           "and every trial are kept in %s.",
           experiments_dir().c_str());
       ImGui::Spacing();
-      ImGui::TextWrapped("Run one at the left: its figure and its checks are shown here.");
+      ImGui::TextWrapped("Run an experiment at the left. Its figure and checks then appear here.");
     }
     ImGui::EndChild();
   }

@@ -191,7 +191,7 @@ void NewSweepDialog::draw_values(Axis& axis, const char* id) {
   note_place(fmt::format("{} count", id).c_str());
   if (axis.draft.from > 0) {
     ImGui::Checkbox("spaced evenly in ratio", &axis.draft.logarithmic);
-    tooltip("As 1, 10, 100; else evenly in number, as 1, 50, 100.");
+    tooltip("On: values as 1, 10, 100. Off: values as 1, 50, 100.");
   }
   ImGui::PopID();
 }
@@ -275,8 +275,8 @@ void NewSweepDialog::draw(bool& open, const SweepBasis& basis, SweepController& 
   }
   if (!std::exchange(shown_, true)) begin(basis);
   ImGui::TextWrapped(
-      "Many runs beside the window over one setting, or two, and a map of what comes of it. Arm, "
-      "scene and all other settings are the present ones.");
+      "A sweep makes many runs in the background, over one or two settings, and draws a map of the "
+      "results. Arm, scene and all other settings are the present ones.");
   ImGui::Spacing();
   if (ImGui::BeginTable("asked", 2)) {
     const float em = ImGui::GetFontSize();
@@ -285,14 +285,14 @@ void NewSweepDialog::draw(bool& open, const SweepBasis& basis, SweepController& 
     label("Vary", "The setting from left to right of the map");
     choose_field(first_, "##first", false);
     draw_values(first_, "first");
-    label("and", "The setting upwards, if any");
+    label("and", "The setting from bottom to top of the map, if any");
     choose_field(second_, "##second", true);
     draw_values(second_, "second");
-    label("Measure", "What each run is judged by. Whether it diverged is always noted.");
+    label("Measure", "The measure of each run. Limpid always notes whether a run diverged.");
     draw_measure();
-    label("Hand", "What leads the device in each run, the same every time");
+    label("Hand", "The motion that leads the device, the same in each run");
     draw_hand();
-    label("Length", "Of each run; 0: as long as the hand's path");
+    label("Length", "Length of each run. 0: as long as the hand's path.");
     ImGui::SetNextItemWidth(5 * em);
     ImGui::InputDouble("s, 0: as the hand", &seconds_, 0, 0, "%.3g");
     note_number_item();

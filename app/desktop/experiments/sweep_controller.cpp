@@ -98,7 +98,7 @@ void compare(const OpenedSweep& sweep, std::uint64_t point, std::optional<double
     return;
   }
   if (!sweep.table.done[point]) {
-    loaded.said = name + ". It is not in the table yet.";
+    loaded.said = name + ". The table does not have this point yet.";
     return;
   }
   const std::size_t width = sweep.table.columns.size();
@@ -106,12 +106,12 @@ void compare(const OpenedSweep& sweep, std::uint64_t point, std::optional<double
       differences(plan, again, std::span(sweep.table.values).subspan(point * width, width));
   loaded.bad = !other.empty();
   if (other.empty()) {
-    loaded.said = name + ". As in the table, to the last bit.";
+    loaded.said = name + ". The result equals the table to the last bit.";
   } else if (sweep.build != hex(build_digest())) {
     loaded.said = fmt::format("{}. Another build of limpid ({}) made the table: {}.", name,
                               sweep.build, other);
   } else {
-    loaded.said = fmt::format("{}. Not as in the table: {}.", name, other);
+    loaded.said = fmt::format("{}. The result differs from the table: {}.", name, other);
   }
 }
 

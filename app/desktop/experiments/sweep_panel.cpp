@@ -434,7 +434,7 @@ std::string number_text(const SweepColumn& column, double value) {
 
 void draw_measured(const OpenedSweep& sweep, const SweepMap& map, const MapSpot& spot) {
   const SweepTable& table = sweep.table;
-  if (!spot.there()) return value_row("", "not there yet");
+  if (!spot.there()) return value_row("", "not computed yet");
   if (spot.count > 1 || !table.done[spot.point]) {
     const SweepColumn& column = table.columns[map.choice.column];
     const std::string unit = column.unit == "-" || column.unit == "yes/no" ? "" : " " + column.unit;
@@ -532,7 +532,8 @@ void draw_state(const OpenedSweep& sweep, Playback& playback, bool& open) {
   }
   ImGui::AlignTextToFramePadding();
   if (!sweep.why_no_run.empty()) {
-    ImGui::TextColored(colour_vector(colours.broken), "Only to be looked at: %s",
+    ImGui::TextColored(colour_vector(colours.broken),
+                       "The points of this sweep cannot be run again: %s",
                        sweep.why_no_run.c_str());
   } else if (sweep.build != hex(build_digest())) {
     ImGui::TextColored(
@@ -563,7 +564,7 @@ bool draw_work(SweepController& controller) {
     ImGui::EndDisabled();
   } else if (waits) {
     if (noted_button("Go on")) controller.go_on();
-    tooltip("Makes the points that are not there yet.");
+    tooltip("Computes the points that are missing.");
   }
   if (runner.busy() || waits) ImGui::SameLine();
   const bool anew = noted_button("New sweep...");

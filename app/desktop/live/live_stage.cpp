@@ -57,9 +57,10 @@ void LiveStage::open(ArmDescription arm, SceneDocument document, const MeshModel
 void LiveStage::open_beside(SceneDocument document, const MeshModels& models, const Parameters& p,
                             double shown) {
   if (const int bodies = count_bodies(document.scene); bodies != loop().layout().bodies()) {
-    throw std::runtime_error(fmt::format(
-        "This scene has {} objects that move, the one under way {}: unplug the device first.",
-        bodies, loop().layout().bodies()));
+    throw std::runtime_error(
+        fmt::format("This scene has {} objects that move, but the present scene has {}. Unplug the "
+                    "device before you open this scene.",
+                    bodies, loop().layout().bodies()));
   }
   auto fresh = make_stage(stage_->arm(), std::move(document), models, p, shown);
   touch(fresh->document().scene);
@@ -83,9 +84,9 @@ void LiveStage::drop_pictures() {
 }
 
 std::string LiveStage::why_time_is_fixed() const {
-  return loop().device_in_place()
-             ? "A real device is in the arm's place: its time cannot be stopped."
-             : "";
+  return loop().device_in_place() ? "A real device is in the arm's place. The simulation cannot be "
+                                    "paused with a real device."
+                                  : "";
 }
 
 std::string LiveStage::pace_text() const {
@@ -118,7 +119,7 @@ void LiveStage::start_over() {
   controls().pull = {};
   ++controls().resets;
   const bool off = loop().device_in_place() || !force_armed();
-  notices_.say(off ? "Started over, at rest and without force; F arms it."
+  notices_.say(off ? "Started over, at rest and without force. F arms the force."
                    : "Started over, at rest.");
 }
 
@@ -128,7 +129,7 @@ void LiveStage::let_go(std::unique_ptr<Device> device) {
 }
 
 std::string LiveStage::why_lanes_are_fixed() const {
-  if (recording()) return "Stop the recording before a run comes or goes.";
+  if (recording()) return "Stop the recording before you add or end a run.";
   if (loop().device_in_place()) {
     return "A second run needs the virtual arm: one hand cannot hold two real devices.";
   }
@@ -167,7 +168,7 @@ void LiveStage::note(const Moment& at, const std::string& text) {
   if (at.row && loop().recording() && loop().recorder() == at.recording) {
     loop().mark({*at.row, text});
   } else if (at.row) {
-    notices_.say("The recording that it was to be kept with has ended: the mark is in the plots.");
+    notices_.say("The recording has ended. The mark is only in the plots, not in the recording.");
   }
   if (stage_->history.marks().size() == History::kMostMarks) {
     notices_.say_once(fmt::format("The plots show the newest {} marks only; a recording keeps all.",

@@ -33,7 +33,8 @@ fs::path SessionDialog::list(const char* name, const fs::path& folder) {
     if (entry.path().extension() == ".h5" && meant) files.push_back(entry.path());
   }
   std::ranges::sort(files, std::greater{});
-  if (files.empty()) ImGui::TextDisabled("%s", typed_.empty() ? "none yet" : "none of that name");
+  if (files.empty())
+    ImGui::TextDisabled("%s", typed_.empty() ? "none yet" : "no recording of this name");
   if (first_.empty() && !files.empty()) first_ = files.front();
   fs::path chosen;
   for (const fs::path& file : files) {

@@ -153,7 +153,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
   if (with_steps) {
     if (button("|<", "To the beginning (Home)")) player.seek(0);
     if (button("<", "One tick back (left arrow)")) player.step(-1);
-    if (button(">", "One tick on (right arrow)")) player.step(1);
+    if (button(">", "One tick forward (right arrow)")) player.step(1);
   }
   if (with_loop && button("Loop", "Begin again at the end (L)", player.loop)) {
     player.loop = !player.loop;
@@ -172,7 +172,7 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
     ImGui::TextUnformatted(clock.c_str());
     ImGui::SameLine();
   }
-  if (button("Back to live", "Leave the recording; the device is yours again (Backspace).")) {
+  if (button("Back to live", "Leaves the recording. You lead the device again (Backspace).")) {
     act("session.back_to_live");
   }
   return changed;
@@ -206,16 +206,16 @@ void recording_controls(const LiveStage& live, double tick, const Act& act) {
 void time_controls(LiveStage& live, const Act& act) {
   if (!live.why_time_is_fixed().empty()) return;
   const bool paused = live.paused();
-  if (button("Pause", "The simulation stands still until it is pressed again (K).", paused)) {
+  if (button("Pause", "Pauses the simulation until you press this button again (K).", paused)) {
     act("loop.pause");
   }
   if (paused) {
-    if (button(">", "One tick on (right arrow), with Shift ten")) act("loop.step");
+    if (button(">", "One tick forward (right arrow), with Shift ten ticks")) act("loop.step");
     return;
   }
   int& slow = live.controls().slow;
   slow = static_cast<int>(std::lround(1 / choose("##slow", 1.0 / slow, {1, 0.1, 0.01}, "x")));
-  tooltip("Speed of the simulation. In slow motion the hand's target moves as fast as before.");
+  tooltip("Speed of the simulation. In slow motion the hand's target still moves at full speed.");
   ImGui::SameLine();
 }
 
@@ -259,7 +259,8 @@ std::optional<std::size_t> draw_transport(Playback& playback, LiveStage& live, d
       ImGui::SameLine();
       progress_bar(playback.loading_part(), kProgress * current_scale());
       ImGui::SameLine();
-      if (button("Cancel", "Stop it; what is there stays.")) playback.cancel_loading();
+      if (button("Cancel", "Cancels this work. The window keeps its present content."))
+        playback.cancel_loading();
     }
   } else if (playback.on()) {
     mark = playback_controls(playback, act);

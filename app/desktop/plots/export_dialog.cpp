@@ -140,7 +140,7 @@ std::string ExportDialog::why_not() const {
   }
   std::error_code none;
   const fs::path file = expanded(file_);
-  if (file_.empty() || fs::is_directory(file, none)) return "It needs the name of a file.";
+  if (file_.empty() || fs::is_directory(file, none)) return "The export needs the name of a file.";
   if (!fs::is_directory(fs::absolute(file).parent_path(), none)) {
     return fmt::format("There is no folder {}.", file.parent_path().string());
   }

@@ -154,7 +154,8 @@ void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) 
   constexpr std::array kKinds{
       Kind{PlotKind::time, "over time", "The channels over time."},
       Kind{PlotKind::cross, "against a channel",
-           "The channels against another one, which \"along x\" in the list below chooses."},
+           "The channels against another channel. Choose this channel with \"along x\" in the list "
+           "below."},
       Kind{PlotKind::spectrum, "spectrum",
            "Amplitude over frequency of the stretch of time that the plots show."}};
   ImGui::PushItemWidth(-1);
@@ -178,7 +179,7 @@ void PlotChooser::draw_kinds(PlotChoice& choice, const TraceChannels& channels) 
 void PlotChooser::draw_filter(PlotChoice& choice, const TraceChannels& channels) {
   ImGui::PushItemWidth(-1);
   const bool entered = ImGui::InputTextWithHint(
-      "##filter", "filter, as torque 2; Enter takes the first, Enter again is done", &filter_,
+      "##filter", "filter, as torque 2; Enter: first channel, Enter again: close", &filter_,
       ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::PopItemWidth();
   done_ = entered && filter_.empty();
@@ -191,12 +192,12 @@ void PlotChooser::draw_filter(PlotChoice& choice, const TraceChannels& channels)
 
 void PlotChooser::draw_list(PlotChoice& choice, const TraceChannels& channels) const {
   const std::vector<const ChannelInfo*> found = meant_by(filter_, channels);
-  if (found.empty()) muted("No channel has these words.");
+  if (found.empty()) muted("No channel matches the words of the filter.");
   std::string heading;
   for (const ChannelInfo* channel : found) {
     const bool looked_at =
         filter_.empty() && std::ranges::find(kMostLookedAt, channel->key) != kMostLookedAt.end();
-    const std::string group = looked_at ? "Looked at most" : channel->group;
+    const std::string group = looked_at ? "Most used channels" : channel->group;
     if (group != heading) {
       if (!heading.empty()) ImGui::Spacing();
       ImGui::PushFont(font(Face::semibold));

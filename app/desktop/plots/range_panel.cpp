@@ -95,7 +95,7 @@ void RangePanel::draw(Stage& stage, Player* player, const PlotSaving& saving, Sc
   if (player != nullptr) {
     ImGui::SameLine();
     if (noted_button("Play this")) player->play_between(range.start, range.stop);
-    tooltip("From its beginning to its end; with Loop again and again.");
+    tooltip("Plays the selected time from beginning to end. With Loop the playback repeats.");
   }
   ImGui::SameLine();
   if (noted_button("Clear (Esc)")) group.select(std::nullopt);

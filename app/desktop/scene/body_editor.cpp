@@ -93,7 +93,7 @@ std::string_view edit_limits(BodyJoint& joint) {
     joint.high = limited ? room : kInfinity;
     what = "stops";
   }
-  tooltip("Limits of its motion on both sides; 0 is where it starts.");
+  tooltip("Limits of the joint's motion on both sides. 0 is the place at the start.");
   if (!limited) return what;
   constexpr double kApart = 1e-4;  // least distance of the stops [m or rad]
   const double far = 100;
@@ -140,13 +140,14 @@ std::string_view edit_joint(Body& body, const Scene& scene, std::size_t place) {
     what = "to";
   }
   if (has_axis(joint) && drag3("Axis x, y, z", joint.axis, 0.01, -1, 1, "%.3f",
-                               "Along it, or about it; in the world, at the start.")) {
+                               "The object slides along this axis or turns about this axis. "
+                               "Directions are the world's, at the start.")) {
     what = "axis";
   }
   Vec3 point = 1e3 * joint.point;
   if (turns(joint) &&
       drag3("Joint at x, y, z [mm]", point, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
-            "%.1f", "From the object's own middle, along its own axes.")) {
+            "%.1f", "Measured from the object's middle, along the object's axes.")) {
     joint.point = 1e-3 * point;
     what = "point";
   }
@@ -163,11 +164,12 @@ std::string_view edit_joint(Body& body, const Scene& scene, std::size_t place) {
 bool edit_spring(BodySpring& spring, const Scene& scene, std::string_view& what) {
   const auto body = [](const std::string& name) { return !name.empty(); };
   if (choose_body(
-          "From", spring.between[0], scene, "One of its ends.",
+          "From", spring.between[0], scene, "The object at the first end of the spring.",
           [&](const std::string& name) { return body(name) && name != spring.between[1]; })) {
     what = "from";
   }
-  if (choose_body("To", spring.between[1], scene, "Its other end.",
+  if (choose_body("To", spring.between[1], scene,
+                  "The object, or the world, at the second end of the spring.",
                   [&](const std::string& name) { return name != spring.between[0]; })) {
     what = "to";
   }
@@ -175,8 +177,10 @@ bool edit_spring(BodySpring& spring, const Scene& scene, std::string_view& what)
   for (std::size_t i = 0; i < 2; ++i) {
     Vec3 point = 1e3 * spring.points[i];
     if (drag3(kEnds[1 - i], point, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum, "%.1f",
-              i == 0 ? "Where it holds the first one, from that one's middle, along its own axes."
-                     : "The same of the second one; of the world from the arm's base.")) {
+              i == 0 ? "Place of the spring on the first object, from that object's middle, along "
+                       "that object's axes."
+                     : "Place of the spring on the second object, from that object's middle. In "
+                       "the world: from the arm's base.")) {
       spring.points[i] = 1e-3 * point;
       what = i == 0 ? "first point" : "second point";
     }
@@ -231,12 +235,12 @@ std::string_view edit_moments(Object& object) {
     body.center = own ? std::optional(mass_properties(object).center) : std::nullopt;
     what = "own center";
   }
-  tooltip("Otherwise it has that of a solid of its shape and its parts.");
+  tooltip("Off: the object has the centre of mass of a solid with the same shape and parts.");
   if (body.center) {
     Vec3 center = 1e3 * *body.center;
     if (drag3("Centre of mass x, y, z [mm]", center, 0.1, 1e3 * kPosition.minimum,
               1e3 * kPosition.maximum, "%.2f",
-              "From the object's own middle, along its own axes.")) {
+              "Measured from the object's middle, along the object's axes.")) {
       body.center = 1e-3 * center;
       what = "center";
     }
@@ -247,19 +251,19 @@ std::string_view edit_moments(Object& object) {
         own ? std::optional<Vec3>(mass_properties(object).inertia.diagonal()) : std::nullopt;
     what = "own inertia";
   }
-  tooltip("Otherwise it has those of a solid of its shape and its parts.");
+  tooltip("Off: the object has the moments of inertia of a solid with the same shape and parts.");
   if (!body.inertia) return what;
   constexpr double kShown = 1e7;  // g cm^2 in a kg m^2
   Vec3 shown = kShown * *body.inertia;
   const double pace = std::max(1e-4, 0.005 * shown.maxCoeff());
   if (drag3("Inertia about x, y, z [g cm\xC2\xB2]", shown, pace, 1e-4, kShown * kInertia.maximum,
-            "%.5g", "About axes through the centre of mass, along the object's own.")) {
+            "%.5g", "About axes through the centre of mass, parallel to the object's axes.")) {
     body.inertia = shown / kShown;
     what = "inertia";
   }
   if (!possible_inertia(*body.inertia)) {
-    read_out("inertia", "no body has it",
-             "None of the three may be more than the other two together.");
+    read_out("inertia", "no body has this inertia",
+             "None of the three moments of inertia may be more than the sum of the other two.");
   }
   return what;
 }
@@ -275,7 +279,7 @@ std::string edit_body(Object& object, const Scene& scene, std::size_t place) {
     if (moves) object.body = Body{.mass = kMass.hold(kWood * volume(object), Body{}.mass)};
     return "moves";
   }
-  tooltip("It can be pushed, and falls. It begins with the mass of wood.");
+  tooltip("The object can be pushed, and falls. At first the object has the mass of wood.");
   if (!moves) return what;
   Body& body = *object.body;
   what = edit_fields(std::array{kBodyMass}, body);
@@ -301,7 +305,7 @@ void draw_springs(Document& document) {
   if (ImGui::Button("Add spring", {-1, 0}) && document.may_edit()) {
     document.add_spring(new_spring(document.editor()));
   }
-  tooltip("From the selected object that moves to where it is now.");
+  tooltip("Adds a spring from the selected object to the object's present place.");
 }
 
 }  // namespace limpid

@@ -156,7 +156,7 @@ void Document::remove_selected() {
   if (!editor_.selected() || !may_edit()) return;
   const std::string name = editor_.selected_object()->name;
   const std::string also = editor_.remove(*editor_.selected());
-  notices_.say(fmt::format("Removed {}. {}Ctrl+Z brings it back.", name, also));
+  notices_.say(fmt::format("Removed {}. {}Ctrl+Z brings the object back.", name, also));
 }
 
 void Document::duplicate_selected() {
@@ -251,11 +251,11 @@ bool Document::save_as(const fs::path& file) {
     // Saving changes only names of files: it is no step for undo.
     known_.scene = editor_.version();
     remember_file(fs::absolute(file).lexically_normal().string());
-    notices_.say(kept.empty()
-                     ? fmt::format("Saved {}", file_)
-                     : fmt::format("Saved {}. Comments are not written: the file as it was "
-                                   "is {}",
-                                   file_, kept.string()));
+    notices_.say(
+        kept.empty()
+            ? fmt::format("Saved {}", file_)
+            : fmt::format("Saved {}. Comments are not kept. The old file with comments is {}",
+                          file_, kept.string()));
     return true;
   } catch (const std::exception& e) {
     notices_.say(e.what(), true);

@@ -36,7 +36,7 @@ const PartShape& part_shape(const Shape& shape) {
 
 bool choose_part_shape(Shape& shape) {
   bool changed = false;
-  caption("Shape", "Another one begins at 2 cm.");
+  caption("Shape", "A newly chosen shape begins with a size of 2 cm.");
   if (!ImGui::BeginCombo("##shape", part_shape(shape).name)) return false;
   for (const PartShape& each : part_shapes()) {
     const bool present = each.shape.index() == shape.index();
@@ -54,12 +54,12 @@ std::string_view edit_part(BodyPart& part, RotationField& rotation) {
   if (const auto size = edit_size(part.shape); !size.empty()) what = size;
   Vec3 place = 1e3 * part.pose.translation();
   if (drag3("Position x, y, z [mm]", place, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
-            "%.1f", "From the object's own middle, along its own axes.")) {
+            "%.1f", "Measured from the object's middle, along the object's axes.")) {
     part.pose.translation() = 1e-3 * place;
     what = "place";
   }
   if (rotation.edit(part.pose)) what = "rotation";
-  if (edit_color(part.color, "Otherwise it has the object's.")) what = "color";
+  if (edit_color(part.color, "Off: the part has the object's colour.")) what = "color";
   return what;
 }
 
@@ -97,7 +97,7 @@ std::string PartsEditor::edit(Object& object) {
     parts.push_back({.shape = part_shapes()[0].shape});
     what = fmt::format("part {} added", parts.size());
   }
-  tooltip("One more shape that moves with it, fixed to it.");
+  tooltip("Adds a shape that is fixed to the object and moves with the object.");
   return what;
 }
 

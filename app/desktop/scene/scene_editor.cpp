@@ -55,8 +55,8 @@ std::string let_go(Scene& scene, const std::string& name) {
   const auto springs = std::erase_if(scene.springs, [&](const BodySpring& spring) {
     return spring.between[0] == name || spring.between[1] == name;
   });
-  if (springs == 1) said += "Its spring went with it. ";
-  if (springs > 1) said += fmt::format("Its {} springs went with it. ", springs);
+  if (springs == 1) said += "The object's spring was removed, too. ";
+  if (springs > 1) said += fmt::format("The object's {} springs were removed, too. ", springs);
   return said;
 }
 

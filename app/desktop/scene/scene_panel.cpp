@@ -64,7 +64,7 @@ bool position(Pose& pose, const char* label,
 
 bool choose_material(Material& material) {
   bool changed = false;
-  caption("Material", "A usual one, to begin with; what it is made of stands below.");
+  caption("Material", "A usual material to begin with. The fields below show its values.");
   const UsualMaterial* const present = usual_material(material);
   if (!ImGui::BeginCombo("##material", present ? present->name : "its own")) return false;
   for (const UsualMaterial& each : kUsualMaterials) {
@@ -87,7 +87,8 @@ std::string_view edit_material(Material& material) {
 // Edits unit and axes of the model's file.
 bool choose_axes(Mesh& mesh) {
   bool changed = false;
-  caption("Unit of the file", "What its coordinates are in. Many formats do not say.");
+  caption("Unit of the file",
+          "Unit of the coordinates in the file. Many formats do not name the unit.");
   const ModelUnit* const present = model_unit(mesh.unit);
   if (ImGui::BeginCombo("##unit", present ? present->name : "")) {
     for (const ModelUnit& each : kModelUnits) {
@@ -157,17 +158,17 @@ void draw_buttons(bool any_selected, const Act& act, const ScenePanel::AddObject
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 size((ImGui::GetContentRegionAvail().x - 3 * gap) / 4, 0);
   if (ImGui::Button("Add", size)) ImGui::OpenPopup("add");
-  tooltip("Something more to touch.");
+  tooltip("Adds an object to the scene.");
   ImGui::BeginDisabled(!any_selected);
   ImGui::SameLine();
   if (ImGui::Button("Copy", size)) act("scene.copy");
-  tooltip("Another one beside it (Ctrl+D).");
+  tooltip("Adds a copy beside the object (Ctrl+D).");
   ImGui::SameLine();
   if (ImGui::Button("Remove", size)) act("scene.remove");
-  tooltip("Delete. Ctrl+Z brings it back.");
+  tooltip("Removes the object (Delete). Ctrl+Z brings the object back.");
   ImGui::SameLine();
   if (ImGui::Button("Look", size)) act("scene.look");
-  tooltip("Turns the camera to it (double click).");
+  tooltip("Turns the camera to the object (double click).");
   ImGui::EndDisabled();
   if (ImGui::BeginPopup("add")) {
     if (ImGui::MenuItem("Model...", "Ctrl+M")) act("scene.add_model");
@@ -206,7 +207,7 @@ void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescript
   std::string what(std::visit([&](auto& shape) { return edit(object, shape); }, object.shape));
   const bool coloured =
       !has_shape<Mesh>(object) && !has_shape<JointStop>(object) && !has_shape<Plane>(object);
-  if (coloured && edit_color(object.color, "Otherwise it has a plain one.")) what = "color";
+  if (coloured && edit_color(object.color, "Off: the object has a plain colour.")) what = "color";
   if (const auto moved = edit_body(object, document.scene(), place); !moved.empty()) what = moved;
   if (object.body) {
     if (const auto part = parts_.edit(object); !part.empty()) what = part;
@@ -229,10 +230,11 @@ void ObjectEditor::draw_name(Document& document, std::size_t place) {
 
 std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
   std::string_view what = edit_material(object.material);
-  if (position(object.pose, "Point on it x, y, z [mm]", "The plane goes through it.")) {
+  if (position(object.pose, "Point on it x, y, z [mm]", "The plane goes through this point.")) {
     what = "place";
   }
-  if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f", "Out of the material.")) {
+  if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f",
+            "Direction out of the material.")) {
     what = "normal";
   }
   return what;
@@ -252,7 +254,7 @@ std::string_view ObjectEditor::edit(Object& object, Mesh& mesh) {
   std::string_view what = edit_placed(object);
   double millimetres = 1e3 * mesh.size() * extent_;
   if (drag_number("Scale", mesh.scale, 0.004 * mesh.scale, 1e-6, 1e4, "%.5g",
-                  "1: as large as its file says.")) {
+                  "1: the size in the model's file.")) {
     what = "scale";
   }
   if (drag_number("Largest extent", millimetres, kMillimetreSpeed, 0.1, 1e5, "%.1f mm",
@@ -286,17 +288,17 @@ std::string_view ObjectEditor::edit(Object& object, JointStop& stop) {
   }
   if (const auto key = edit_fields(kJointStopFields, stop); !key.empty()) what = key;
   bool above = stop.direction > 0;
-  if (ImGui::Checkbox("stops what goes above", &above)) {
+  if (ImGui::Checkbox("stops motion above", &above)) {
     stop.direction = above ? 1 : -1;
     what = "side";
   }
-  tooltip("Otherwise it stops what goes below the angle.");
+  tooltip("On: stops motion above the angle. Off: stops motion below the angle.");
   return what;
 }
 
 void ScenePanel::draw_recorded(const SceneDocument& document) {
   draw_title(document);
-  draw_why_fixed("The recording's scene; it stays as it was.");
+  draw_why_fixed("The scene of the recording. This scene cannot be changed.");
   ImGui::BeginDisabled();
   draw_list(document.scene, nullptr, false, {});
   ImGui::EndDisabled();
@@ -309,7 +311,7 @@ void ScenePanel::draw(Document& document, const ArmDescription& arm, bool fixed,
   if (editor.dirty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("changed");
-    tooltip("There are changes that are not saved. Ctrl+S saves them.");
+    tooltip("The scene has changes that are not saved. Ctrl+S saves the scene.");
   }
   if (fixed) draw_why_fixed("Cannot be changed while recording.");
   ImGui::BeginDisabled(fixed);

@@ -118,7 +118,7 @@ bool RotationField::edit(Pose& pose) {
         (rpy_of(turned_) * (180 / std::numbers::pi) * 1e6).array().round() / 1e6 + 0.0;  // not -0
   }
   if (!drag3("Rotation roll, pitch, yaw [\xC2\xB0]", degrees_, kDegreeSpeed, -360, 360, "%.1f",
-             "About the fixed axes x, y and z, one after the other.")) {
+             "Turned about the fixed axes x, y and z, in this order.")) {
     return false;
   }
   turned_ = settled(rotation(degrees_ * (std::numbers::pi / 180)));

@@ -37,8 +37,8 @@ void step_setting(Desktop& d, const char* key, int direction) {
   const bool of_law = std::string_view(key).starts_with("coupling.") ||
                       std::string_view(key).starts_with("observer.");
   if (of_law && std::ranges::find(law.sliders, std::string_view(key)) == law.sliders.end()) {
-    d.notices.say_once(fmt::format("{} is {:.3g} now. {} does not use it.", info.caption,
-                                   parameter_number(p, info), law.label),
+    d.notices.say_once(fmt::format("{} is {:.3g} now. The law {} does not use this setting.",
+                                   info.caption, parameter_number(p, info), law.label),
                        false);
   }
 }
@@ -286,7 +286,7 @@ std::string not_paused(const Desktop& d) {
 }
 
 std::string not_broken(const Desktop& d) {
-  return passivity_broken(d.settings) ? "" : "Passivity is whole.";
+  return passivity_broken(d.settings) ? "" : "Passivity is not broken.";
 }
 
 std::string no_chatter(const Desktop& d) {
@@ -357,9 +357,9 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.tuning.break_passivity(); }, {.why_not = may_not_break}),
     row("coupling.end_break", "End broken passivity", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.tuning.end_break(); }, {.why_not = not_broken}),
-    row("coupling.mend_chatter", "The predictive law against chatter", nullptr, nullptr, nullptr,
-        [](Desktop& d) { d.chatter.take_predictive(); }, {.why_not = no_chatter}),
-    row("coupling.forget_chatter", "Say no more of the chatter", nullptr, nullptr, nullptr,
+    row("coupling.mend_chatter", "Take the predictive law against chatter", nullptr, nullptr,
+        nullptr, [](Desktop& d) { d.chatter.take_predictive(); }, {.why_not = no_chatter}),
+    row("coupling.forget_chatter", "Hide the message about chatter", nullptr, nullptr, nullptr,
         [](Desktop& d) { d.chatter.forget(); }, {.why_not = no_chatter}),
     row("scene.soften_wall", "Soften the wall so that it does not chatter", nullptr, nullptr,
         nullptr, [](Desktop& d) { d.chatter.soften_wall(); }, {.why_not = no_chatter}),
@@ -410,7 +410,7 @@ constexpr std::array kCommands{
         [](Desktop& d) { d.transform.lock(1); }, {.reach = Reach::transform}),
     row("object.along_z", "Along z alone", nullptr, "Z", "",
         [](Desktop& d) { d.transform.lock(2); }, {.reach = Reach::transform}),
-    row("object.accept", "Let it be as it is now", nullptr, "Enter, Keypad Enter", "",
+    row("object.accept", "Keep the object as it is now", nullptr, "Enter, Keypad Enter", "",
         [](Desktop& d) { d.transform.accept(); }, {.reach = Reach::transform}),
     row("scene.copy", "Copy selected object", "Edit", "Ctrl+D",
         "copy or remove the selected object", [](Desktop& d) { d.document.duplicate_selected(); },
@@ -533,9 +533,9 @@ constexpr std::array kCommands{
         "pauses the simulation; while paused: steps by one tick, by ten ticks",
         [](Desktop& d) { d.live.pause(!d.live.paused()); },
         {.why_not = time_fixed, .checked = [](const Desktop& d) { return d.live.paused(); }}),
-    row("loop.step", "On by a tick", nullptr, "Right", "", [](Desktop& d) { d.live.step(1); },
+    row("loop.step", "Forward by a tick", nullptr, "Right", "", [](Desktop& d) { d.live.step(1); },
         {.repeats = true, .why_not = not_paused}),
-    row("loop.step_ten", "On by ten ticks", nullptr, "Shift+Right", "",
+    row("loop.step_ten", "Forward by ten ticks", nullptr, "Shift+Right", "",
         [](Desktop& d) { d.live.step(10); }, {.repeats = true, .why_not = not_paused}),
     row("session.tick_back", "Step back by a tick", nullptr, "Left", "in playback: step by a tick",
         [](Desktop& d) { player(d).step(-1); },

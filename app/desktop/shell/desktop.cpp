@@ -119,13 +119,13 @@ std::optional<Banner> live_force(const LiveStage& live) {
   const Snapshot& now = live.loop().snapshot();
   const std::string why = explain(now.force_state);
   if (now.arming == Arming::waiting) {
-    return force_banner("Force waits, and fades in with the hand", why, false);
+    return force_banner("Force waits for the hand, then fades in", why, false);
   }
   if (now.armed()) return std::nullopt;
   const bool recording = live.loop().recording();
   Banner banner = force_banner(recording ? "Recording without force" : "Force is off", why,
                                recording || now.arming == Arming::tripped);
-  banner.text += " F arms it.";
+  banner.text += " F arms the force.";
   banner.buttons = {{"Arm (F)", "device.force"}};
   return banner;
 }
@@ -287,8 +287,7 @@ void Desktop::update(double dt) {
     cut_force();
     notices.say(
         "The loop became unstable; force is off. Choose a larger \xCE\xB7 or a smaller \xCE\xB1, "
-        "start "
-        "over (Backspace), then F.",
+        "start over (Backspace), then press F to arm the force.",
         true);
   }
   notices.forget_old();
@@ -434,7 +433,7 @@ std::vector<Banner> Desktop::banners() const {
   if (passivity_broken(settings)) {
     all.push_back({.id = "banner of the break",
                    .text = "Passivity is broken on purpose: a stiff hand holds the arm, and energy "
-                           "grows. All settings come back when it ends.",
+                           "grows. All settings come back at the end.",
                    .bad = true,
                    .buttons = {{"End it (C)", "coupling.end_break"}}});
   }
@@ -455,12 +454,12 @@ std::vector<Banner> Desktop::banners() const {
   }
   if (!experiments_under_way.empty() && dialog.name() != "experiments") {
     all.push_back({.id = "banner of the experiments",
-                   .text = "Experiments go on: " + experiments_under_way + ".",
+                   .text = "Experiments are running: " + experiments_under_way + ".",
                    .buttons = {{"Show (F5)", "experiments.show"}}});
   }
   if (sweep.runner().busy()) {
     all.push_back({.id = "banner of the sweep's work",
-                   .text = "The sweep goes on: " + sweep.runner().under_way() + ".",
+                   .text = "The sweep is running: " + sweep.runner().under_way() + ".",
                    .buttons = {{"Show (F6)", "sweep.show"}}});
   }
   if (kept.any()) {

@@ -289,7 +289,7 @@ DrawDialog preset_list(Desktop& d) {
       {.title = "Presets",
        .what = "preset",
        .help = "Coupling and gains by name; with several runs, those of the run that the sliders "
-               "set. Ctrl+Z brings back what was before."},
+               "set. Ctrl+Z brings back the earlier settings."},
       [](Desktop& desktop, const std::string& name) { desktop.tuning.use_preset(name); },
       [](Desktop& desktop) { return preset_text(desktop.tuning.edited()); });
 }

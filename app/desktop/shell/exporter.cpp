@@ -129,8 +129,10 @@ void Exporter::open_written() {
 
 void Exporter::show_written() {
   live_.save_beside([file = std::exchange(written_, {})]() -> PlotNotice {
-    if (show_in_folder(file)) return {fmt::format("It is in {}", file.parent_path().string())};
-    return {fmt::format("It is in {}; no file manager answers here.", file.parent_path().string()),
+    if (show_in_folder(file))
+      return {fmt::format("The file is in {}", file.parent_path().string())};
+    return {fmt::format("The file is in {}. No file manager answers on this computer.",
+                        file.parent_path().string()),
             true};
   });
 }

@@ -115,7 +115,7 @@ NamedDialog::Asked NamedDialog::draw_name(const NamedTexts& texts, bool entered)
   if (!pressed && !entered) return {};
   if (!pressed && known) return {Request::use, name_};
   if (name_.empty()) {
-    complaint_ = "It needs a name.";
+    complaint_ = "Type a name first.";
   } else if (known && !replaces) {
     complaint_ = fmt::format("{} comes with Limpid; choose another name.", name_);
   } else {

@@ -89,9 +89,10 @@ DrawSection imperfections_section(Desktop& d) {
   return [&d](const Act&) {
     if (with_device(d)) {
       return ImGui::TextWrapped(
-          "These are the virtual arm's; a device is in use, which has its own.");
+          "These settings belong to the virtual arm. The device in use has its own values.");
     }
-    ImGui::TextWrapped("Of the virtual arm's motors and encoders. No law knows them.");
+    ImGui::TextWrapped(
+        "Errors of the virtual arm's motors and encoders. No law knows these errors.");
     say_for_rerun(d);
     draw_parameters(d.settings.parameters(), d.shown.stage().arm(),
                     {"plant.torque_scale", "plant.current_loop", "plant.resonance", "plant.cogging",

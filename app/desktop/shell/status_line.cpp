@@ -26,15 +26,17 @@ StatusPart force_part(const Snapshot& now) {
   const Palette& colours = current_palette();
   const std::string why = explain(now.force_state);
   switch (now.arming) {
-    case Arming::on: return {"force on [Esc]", colours.text, "Esc or space cut it at once"};
+    case Arming::on: return {"force on [Esc]", colours.text, "Esc or space cuts the force at once"};
     case Arming::fading: return {"force fades [Esc]", colours.text, "Force: " + why};
     case Arming::waiting:
-      return {"force waits [Esc]", colours.text, "It fades in with the hand: " + why};
+      return {"force waits [Esc]", colours.text,
+              "The force fades in when the hand holds the device: " + why};
     case Arming::tripped:
-      return {"force off [F]", colours.broken, "Force is off: " + why + ". F arms it again."};
+      return {"force off [F]", colours.broken,
+              "Force is off: " + why + ". F arms the force again."};
     case Arming::off: break;
   }
-  return {"force off [F]", colours.text, "F arms it"};
+  return {"force off [F]", colours.text, "F arms the force"};
 }
 
 // Returns rate, missed ticks and coupling, the most important last.
@@ -51,11 +53,13 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
   }
   // The recording's button is in the bar below only while the loop is shown.
   if (!played.empty() && loop.recording()) {
-    parts.push_back({"recording [R]", colours.broken, "The loop is recorded meanwhile; R ends it"});
+    parts.push_back(
+        {"recording [R]", colours.broken, "The loop is recorded meanwhile. R ends the recording."});
   }
   if (led) {
     parts.push_back({"led by a program", colours.accent,
-                     "A program has set law, settings or scene. Yours come back when it ends."});
+                     "A program has set law, settings or scene. Your settings come back when the "
+                     "program ends."});
   }
   if (!pace.empty()) {
     parts.push_back({pace, colours.accent, "Only the simulation; the control loop keeps running."});

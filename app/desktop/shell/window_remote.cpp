@@ -161,7 +161,9 @@ void WindowRemote::follow_lead() {
 }
 
 Answer WindowRemote::open(const Keys& keys, LineServer::Client client) {
-  if (d_.live.recording()) throw RemoteError("open: stop the recording before");
+  if (d_.live.recording()) {
+    throw RemoteError("open: not while a recording runs; stop the recording first");
+  }
   if (d_.document.editor().dirty() && !keys.has("session")) {
     throw RemoteError(
         "open: the scene has changes that nobody has saved; a person decides on them");
@@ -225,7 +227,9 @@ Answer WindowRemote::play(const fs::path& file) {
 }
 
 Answer WindowRemote::record(const Keys& keys) {
-  if (d_.live.recording()) throw RemoteError("record: a recording is under way; stop it before");
+  if (d_.live.recording()) {
+    throw RemoteError("record: a recording runs already; stop that recording first");
+  }
   if (!d_.live.may_record())
     throw RemoteError(
         "record: the previous recording is still being written; try again in a moment");
@@ -269,7 +273,9 @@ Answer WindowRemote::stop() {
 
 // Starts over, or goes back to live: both have the same key.
 Answer WindowRemote::start_over() {
-  if (d_.live.recording()) throw RemoteError("start_over: stop the recording before");
+  if (d_.live.recording()) {
+    throw RemoteError("start_over: not while a recording runs; stop the recording first");
+  }
   run(d_.playback.on() ? "session.back_to_live" : "device.start_over");
   return place();
 }

@@ -500,7 +500,7 @@ void World::take_up(const SceneEditor& editor) {
   const int bodies = count_bodies(editor.scene());
   if (bodies == d_.live.loop().layout().bodies()) return d_.live.touch(editor.scene());
   if (d_.live.loop().device_in_place()) {
-    d_.notices.say("Unplug the device before objects that move come or go.", true);
+    d_.notices.say("Unplug the device before you add or remove objects that move.", true);
     return;
   }
   try {

@@ -75,7 +75,7 @@ void draw_next_step(Settings& settings) {
                      static_cast<int>(tried) + (next != kFirstSteps.end() ? 1 : 0),
                      kFirstSteps.size());
   ImGui::SameLine();
-  ImGui::TextUnformatted(next != kFirstSteps.end() ? next->what : "all of it is done");
+  ImGui::TextUnformatted(next != kFirstSteps.end() ? next->what : "all steps are done");
   ImGui::SameLine();
   if (next != kFirstSteps.end()) {
     ImGui::TextColored(colour_vector(colours.muted), "%s", next->how);

@@ -121,8 +121,8 @@ BodyJoint joint_of(const TomlTable& t) {
 }
 
 std::string mass_text(double mass) {
-  return fmt::format("a density that makes a mass from {} up to {} kg, not {:.3g} kg",
-                     kMass.minimum, kMass.maximum, mass);
+  return fmt::format("a density that gives a mass from {} to {} kg, not {:.3g} kg", kMass.minimum,
+                     kMass.maximum, mass);
 }
 
 // Reads mass or density. A mesh has no volume until it is built: its density is kept until then.
@@ -130,7 +130,7 @@ void read_mass(const TomlTable& t, Object& object, SceneDocument& out) {
   const auto density = t.number("density", kDensity);
   const bool mass = t.find(kBodyMass.key) != nullptr;
   read_field(t, kBodyMass, *object.body, false);
-  if (mass && density) t.refuse_as("density", "density beside mass", "one of them");
+  if (mass && density) t.refuse_as("density", "mass or density, not both", "one of them");
   if (!mass && !density) t.refuse_missing("mass (or density)");
   if (!density) return;
   if (has_shape<Mesh>(object)) {
@@ -172,7 +172,7 @@ Object body_of(const TomlTable& t, SceneDocument& out) {
 }
 
 std::string bodies_text(const std::vector<std::string>& names) {
-  return names.empty() ? "a body; there is none"
+  return names.empty() ? "the name of a body; the file has no bodies"
                        : fmt::format("the name of a body: {}", fmt::join(names, ", "));
 }
 
@@ -188,7 +188,7 @@ void check_joints(const std::vector<TomlTable>& tables, const Scene& scene) {
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (joint_leads_round(scene, first + i)) {
-      tables[i].table("joint")->refuse("to", "a body that does not hang on this one");
+      tables[i].table("joint")->refuse("to", "a body that does not itself hang on this body");
     }
   }
 }
@@ -207,7 +207,7 @@ BodySpring spring_of(const TomlTable& t, const std::vector<std::string>& names) 
     if (i == 1 && name.empty()) continue;
     if (std::ranges::find(names, name) == names.end()) t.refuse("between", bodies_text(names));
   }
-  if (spring.between[0] == spring.between[1]) t.refuse("between", "two bodies, not one twice");
+  if (spring.between[0] == spring.between[1]) t.refuse("between", "two different bodies");
   if (const auto points = t.vectors("points", kPosition)) {
     if (points->size() != 2) t.refuse("points", "a list of 2, each [x, y, z]");
     std::ranges::copy(*points, spring.points.begin());

@@ -11,22 +11,23 @@ namespace limpid {
 
 inline constexpr std::array kMaterialFields{
     Field<Material>("stiffness", "Stiffness", &Material::stiffness, scene_limits::kStiffness,
-                    "How hard it pushes back. Double click to type, right click for the default "
-                    "value. A hard surface is felt as hard as the coupling lets through.",
+                    "How hard the object pushes back. Double click to type, right click for the "
+                    "default value. The coupling limits how hard a surface can be felt.",
                     {1, 1e4, true}, {.needed = true}),
-    Field<Material>("damping", "Damping", &Material::damping, scene_limits::kDamping,
-                    "What it takes up while it is pressed in or let out; 0 gives all back. "
-                    "Rendered by the predictive coupling, as far as the tick allows.",
-                    {0, 20}),
+    Field<Material>(
+        "damping", "Damping", &Material::damping, scene_limits::kDamping,
+        "Damping while the surface is pressed or released; at 0 the surface returns all energy. "
+        "Only the predictive coupling renders this damping, as far as the tick allows.",
+        {0, 20}),
     Field<Material>("friction_static", "Friction, sticking", &Material::friction_static,
                     scene_limits::kFriction,
-                    "Up to this part of the pressing force the tip sticks. Rendered by the "
-                    "predictive coupling.",
+                    "Friction force up to which the tip sticks, as a part of the pressing force. "
+                    "Rendered by the predictive coupling.",
                     {0, 1}),
     Field<Material>("friction_kinetic", "Friction, slipping", &Material::friction_kinetic,
                     scene_limits::kFriction,
-                    "The part of the pressing force that holds the tip back while it slips. "
-                    "Rendered by the predictive coupling.",
+                    "Friction force while the tip slips, as a part of the pressing force. Rendered "
+                    "by the predictive coupling.",
                     {0, 1}),
 };
 
@@ -37,19 +38,23 @@ inline constexpr Field<Material> kStopStiffness("stiffness", "Stiffness", &Mater
                                                 {.needed = true});
 
 inline constexpr Field<Body> kBodyMass("mass", "Mass", &Body::mass, scene_limits::kMass,
-                                       "Up to 100 kg.");
+                                       "Mass of the object, up to 100 kg.");
 inline constexpr std::array kBodyFields{
     Field<Body>("magnet", "a magnet picks it up", &Body::magnet, scene_limits::kShare,
-                "While the device's button, or its key, is held and the tip is at it."),
+                "The magnet holds the object while the device's button, or its key, is pressed and "
+                "the tip is at the object."),
     Field<Body>("restitution", "Bounce", &Body::restitution, scene_limits::kShare,
-                "The part of its speed that it keeps when it hits something. 0: none.", {0, 1}),
+                "The part of its speed that the object keeps after a collision. 0: the object does "
+                "not bounce.",
+                {0, 1}),
     Field<Body>("contact_stiffness", "Contact stiffness", &Body::contact_stiffness,
                 scene_limits::kStiffness,
-                "In contacts with other objects. The tip feels the stiffness above."),
+                "Stiffness in contacts with other objects. The tip feels the stiffness above."),
     Field<Body>("center", "Centre of mass", &Body::center, scene_limits::kPosition,
-                "From the object's own middle, along its own axes."),
+                "Distance from the object's middle, along the object's own axes."),
     Field<Body>("inertia", "Inertia", &Body::inertia, scene_limits::kInertia,
-                "About axes through the centre of mass, along the object's own."),
+                "Moments of inertia about axes through the centre of mass, parallel to the "
+                "object's own axes."),
 };
 
 inline constexpr bool turns(const BodyJoint& joint) {
@@ -64,46 +69,50 @@ inline constexpr std::array kJointFields{
     Field<BodyJoint>("kind", "Hangs on", choice<BodyJoint, &BodyJoint::kind>(kJointKinds), {0, 2},
                      "A slider moves along a line, a hinge turns, a ball joint turns any way.", {},
                      {.needed = true}),
-    Field<BodyJoint>("to", "of", &BodyJoint::to, {}, "What the joint's other half is fixed to."),
+    Field<BodyJoint>("to", "of", &BodyJoint::to, {},
+                     "The object, or the world, to which the joint's other half is fixed."),
     Field<BodyJoint>("point", "Joint at", &BodyJoint::point, scene_limits::kPosition,
-                     "From the object's own middle, along its own axes.", {}, {.when = turns}),
+                     "Distance from the object's middle, along the object's own axes.", {},
+                     {.when = turns}),
     Field<BodyJoint>("damping", "Damping", &BodyJoint::damping, scene_limits::kJointDamping,
-                     "What it takes up, by how fast the joint moves."),
+                     "Force that brakes the joint, in proportion to the joint's speed."),
     Field<BodyJoint>("friction", "Dry friction", &BodyJoint::friction, scene_limits::kJointForce,
-                     "What it takes to move the joint at all."),
+                     "Force that is needed to move the joint at all."),
 };
 inline constexpr std::array kStopFields{
     Field<BodyJoint>("stop_stiffness", "Stops' stiffness", &BodyJoint::stop_stiffness,
                      scene_limits::kStopsStiffness, "How hard a stop pushes back.", {},
                      {.when = has_axis}),
-    Field<BodyJoint>(
-        "stop_restitution", "Stops' bounce", &BodyJoint::stop_restitution, scene_limits::kShare,
-        "The part of its speed that it keeps when it hits a stop.", {0, 1}, {.when = has_axis}),
+    Field<BodyJoint>("stop_restitution", "Stops' bounce", &BodyJoint::stop_restitution,
+                     scene_limits::kShare,
+                     "The part of its speed that the joint keeps when it hits a stop.", {0, 1},
+                     {.when = has_axis}),
 };
 inline constexpr std::array kForceFields{
     Field<JointForce>("spring", "Spring", &JointForce::spring, scene_limits::kJointSpring,
-                      "Pulls it towards its place of rest."),
+                      "A spring that pulls the joint towards its place of rest."),
     Field<JointForce>("rest", "Rest", &JointForce::rest, scene_limits::kTravel,
-                      "Where the spring pulls nothing; 0 is where it starts."),
+                      "Place where the spring has no force; 0 is the joint's place at the start."),
 };
 // Keys of the table `detent`.
 inline constexpr std::array kDetentFields{
     Field<JointForce>("force", "Detent", &JointForce::detent_force, scene_limits::kJointForce,
-                      "The largest force of steps that it clicks into; 0: it does not click.", {},
+                      "The largest force of the detent's steps; 0: the joint does not click.", {},
                       {.needed = true}),
     Field<JointForce>("period", "Detent's period", &JointForce::detent_period,
-                      scene_limits::kPeriod, "From one step to the next.", {}, {.needed = true}),
+                      scene_limits::kPeriod, "Distance from one step of the detent to the next.",
+                      {}, {.needed = true}),
 };
 
 inline constexpr std::array kSpringFields{
     Field<BodySpring>("length", "Length", &BodySpring::length, scene_limits::kSpringLength,
-                      "While it pulls nothing."),
+                      "Length of the spring without force."),
     Field<BodySpring>("stiffness", "Stiffness", &BodySpring::stiffness,
-                      scene_limits::kSpringStiffness, "Per metre."),
+                      scene_limits::kSpringStiffness, "Force per metre of extension."),
     Field<BodySpring>("damping", "Damping", &BodySpring::damping, scene_limits::kDamping,
-                      "While its length changes."),
+                      "Damping force while the spring's length changes."),
     Field<BodySpring>("breaks_at", "Breaks at", &BodySpring::breaks_at, scene_limits::kBreaking,
-                      "The pull that tears it; 0: it never does."),
+                      "The pull at which the spring breaks; 0: the spring never breaks."),
 };
 
 // Sizes of a shape.
@@ -122,8 +131,9 @@ inline constexpr std::array kCapsuleFields{
                    {}, {.needed = true}),
     Field<Capsule>("length", "Length", &Capsule::length, scene_limits::kLength,
                    "Between the middles of its ends", {}, {.needed = true})};
-inline constexpr std::array kMeshFields{Field<Mesh>(
-    "scale", "Scale", &Mesh::scale, scene_limits::kScale, "1: as large as its file says.")};
+inline constexpr std::array kMeshFields{
+    Field<Mesh>("scale", "Scale", &Mesh::scale, scene_limits::kScale,
+                "1: the model has the size that the file says.")};
 
 inline constexpr std::array kSides{"above", "below"};
 inline constexpr std::array kJointStopFields{
@@ -135,7 +145,7 @@ inline constexpr std::array kJointStopFields{
             kSides,
             [](const JointStop& stop) -> std::uint8_t { return stop.direction > 0 ? 0 : 1; },
             [](JointStop& stop, std::uint8_t side) { stop.direction = side == 0 ? 1 : -1; }},
-        {0, 1}, "From which it is touched.", {}, {.needed = true})};
+        {0, 1}, "The side from which the stop is touched.", {}, {.needed = true})};
 
 constexpr const auto& fields_of(const Sphere&) { return kSphereFields; }
 constexpr const auto& fields_of(const Box&) { return kBoxFields; }

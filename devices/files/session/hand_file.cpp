@@ -197,7 +197,7 @@ BodyPull HandPath::pull_sample(std::size_t k, double T) const {
 
 HandPath hand_of(const Session& session, const std::string& where) {
   if (session.size() == 0) {
-    throw FileError(fmt::format("{}: no rows, so no hand to follow", where));
+    throw FileError(fmt::format("{}: the file has no rows, so there is no hand to follow", where));
   }
   HandPath path;
   path.source = where;

@@ -127,7 +127,7 @@ std::string cut_off(const std::filesystem::path& file) {
   std::error_code none;
   const std::uint64_t there = std::filesystem::file_size(file, none);
   if (none || there >= promised) return {};
-  return fmt::format("it ends after {:.3g} MB of {:.3g}; was it copied to its end?",
+  return fmt::format("the file ends after {:.3g} MB of {:.3g}; was the file copied completely?",
                      1e-6 * static_cast<double>(there), 1e-6 * static_cast<double>(promised));
 }
 

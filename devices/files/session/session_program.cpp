@@ -41,12 +41,12 @@ void put_run(Writer& to, const Session& run) {
 
 void take_run(Reader& from, std::uint64_t rows, Session& run) {
   run.world = from.list<std::vector<double>>();
-  if (run.world.size() > kMostWorld) throw Broken("more of bodies than there can be");
+  if (run.world.size() > kMostWorld) throw Broken("more body states than are possible");
   const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < changes; ++i) {
     const auto row = from.number<std::uint64_t>();
     if (row > rows || (i > 0 && row < run.changes.back().row)) {
-      throw Broken("changes that do not follow each other");
+      throw Broken("changes of settings that are not in the order of rows");
     }
     run.changes.push_back({row, from.text()});
   }
@@ -97,11 +97,11 @@ SessionInfo take_info(Reader& from) {
   }
   const auto slides = from.list<std::vector<unsigned char>>();
   if (!slides.empty() && slides.size() != static_cast<std::size_t>(info.dof)) {
-    throw Broken("joints that the arm does not have");
+    throw Broken("more joints than the arm has");
   }
   for (const unsigned char slide : slides) info.slides.push_back(slide != 0);
   const std::size_t bodies = from.taken(sizeof(std::uint64_t));
-  if (bodies > kMostBodies) throw Broken("more bodies than there can be");
+  if (bodies > kMostBodies) throw Broken("more bodies than are possible");
   for (std::size_t i = 0; i < bodies; ++i) info.bodies.push_back(from.text());
   return info;
 }
@@ -121,9 +121,9 @@ std::uint64_t take_rows(Reader& from, const Session& about, std::uint64_t claime
     std::array<std::span<const double>, kMostLanes> pieces;
     for (std::size_t i = 0; i < about.lanes(); ++i) {
       lists[i] = from.list<std::vector<double>>();
-      if (lists[i].size() % stride != 0) throw Broken("rows that are not whole");
+      if (lists[i].size() % stride != 0) throw Broken("incomplete rows");
       if (lists[i].size() != lists[0].size()) {
-        throw Broken("runs that are not as long as each other");
+        throw Broken("runs of different lengths");
       }
       pieces[i] = lists[i];
     }
@@ -169,8 +169,9 @@ auto ask(const char* what, const fs::path& file, Take take, std::vector<Given> g
     return take(from);
   } catch (const wire::Broken& broken) {
     const std::string why = why_ended(child.end());
-    refuse(file,
-           why.empty() ? fmt::format("what reads it answers wrongly: {}", broken.what()) : why);
+    refuse(file, why.empty() ? fmt::format("the program that reads the file sent wrong data: {}",
+                                           broken.what())
+                             : why);
   } catch (const NoRoom& none) {
     refuse(file, fmt::format("larger than this computer has room for: {}", none.what()));
   } catch (const std::bad_alloc&) {
@@ -246,7 +247,7 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
   session.info = take_info(from);
   session.layout = session.info.layout();
   const std::size_t beside = from.taken(sizeof(std::uint64_t));
-  if (beside >= kMostLanes) throw Broken("more runs than there can be");
+  if (beside >= kMostLanes) throw Broken("more runs than are possible");
   for (std::size_t i = 0; i < beside; ++i) add_lane(session, from.text());
   const auto claimed = from.number<std::uint64_t>();
   for (std::size_t i = 0; i < session.lanes(); ++i) take_run(from, claimed, session.lane(i));
@@ -255,7 +256,7 @@ Session take_session(Reader& from, const std::function<void(const Session&, std:
   drop_lost(session, rows, claimed);
   session.marks = take_marks(from);
   for (const Mark& mark : session.marks) {
-    if (mark.tick >= rows) throw Broken("a mark behind the end");
+    if (mark.tick >= rows) throw Broken("a mark after the end of the recording");
   }
   return session;
 }

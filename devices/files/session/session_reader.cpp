@@ -83,14 +83,14 @@ hdf5::File open(const fs::path& file) {
   hdf5::check_before_opening(file);
   if (is_leftover(file)) {
     hdf5::File opened = open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ);
-    if (!opened) refuse(file, "no row was recorded before it was killed, or the file is damaged");
+    if (!opened) refuse(file, "the recording ended before the first row, or the file is damaged");
     return opened;
   }
   hdf5::File opened = open_as(file, H5F_ACC_RDONLY);
   if (opened) return opened;
   const std::string reason = hdf5::why_not_opened(file);
   if (open_as(file, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ)) {
-    refuse(file, "was never closed; rename it to end in .part and use `limpid recover`");
+    refuse(file, "was never closed; let the file's name end in .part and use `limpid recover`");
   }
   refuse(file, "cannot open: " + reason);
 }
@@ -131,8 +131,8 @@ std::vector<std::string> read_bodies(hid_t root, const fs::path& file) {
   if (H5Aexists(poses.get(), kBodyNames) > 0) {
     names = hdf5::read_texts(poses.get(), kBodyNames, kMostBodies, file);
     if (names.size() != extent[1]) {
-      refuse(file, fmt::format("{}: {} names; needed: {}, one of each body", path, names.size(),
-                               extent[1]));
+      refuse(file, fmt::format("{}: {} names of bodies; needed: {}, one name for each body", path,
+                               names.size(), extent[1]));
     }
   }
   while (names.size() < extent[1]) names.push_back(fmt::format("object {}", names.size() + 1));
@@ -182,7 +182,8 @@ std::vector<hdf5::Group> groups_beside(hid_t root, const fs::path& file) {
   }
   for (std::size_t i = groups.size() + 2; i <= kMostLanes; ++i) {
     if (!hdf5::has(root, lane_name(i), file)) continue;
-    refuse(file, fmt::format("/{}: there, but /{} is not", lane_name(i), lane_name(i - 1)));
+    refuse(file,
+           fmt::format("/{}: exists, but /{} does not exist", lane_name(i), lane_name(i - 1)));
   }
   return groups;
 }
@@ -364,8 +365,8 @@ class RunReader {
                      scaled, rounding_ ? roundings_.data() + k * scaled.size() : nullptr, layout_,
                      row)) {
         why =
-            "not of these numbers: the file is damaged, or another program changed it (one that "
-            "changes values on purpose deletes /check)";
+            "does not fit these numbers: the file is damaged, or another program changed the file "
+            "(a program that changes values on purpose must delete /check)";
       }
       if (why == nullptr) continue;
       if (is_leftover(file_)) return k;

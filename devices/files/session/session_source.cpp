@@ -99,7 +99,8 @@ std::optional<CheckSums> CheckSums::open(hid_t root, const std::filesystem::path
   sums.columns_ = columns_in(hdf5::read_text(dataset.get(), kCheckColumns, file));
   const std::size_t columns = sums.columns_.size();
   if (block < 1 || block > kMostBlockRead || columns == 0 || columns > kMostColumns) {
-    refuse(file, fmt::format("{}: {} rows, {} columns; needed: some", kCheckPath, block, columns));
+    refuse(file, fmt::format("{}: {} rows, {} columns; needed: at least one row and one column",
+                             kCheckPath, block, columns));
   }
   sums.block_ = static_cast<std::size_t>(block);
   sums.source_ = open_source(root, kCheckPath, columns, file);
@@ -129,9 +130,10 @@ CheckSums::Checked CheckSums::check(const RowLayout& layout, std::span<const dou
       const char* path = kColumnInfo[column].path;
       if (!hdf5::has(root_, path, file_)) continue;  // somebody left it out
       return {at,
-              fmt::format("{}: {} differ from what was recorded: the file is damaged, or another "
-                          "program changed it (one that changes values on purpose deletes /check)",
-                          path, these)};
+              fmt::format(
+                  "{}: {} differ from the recorded values: the file is damaged, or another program "
+                  "changed the file (a program that changes values on purpose must delete /check)",
+                  path, these)};
     }
   }
   return {size, ""};

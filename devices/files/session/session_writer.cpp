@@ -38,7 +38,9 @@ int open_no_link(const fs::path& file, int flags) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0644);
   if (descriptor >= 0) return descriptor;
   if (errno == ELOOP) {
-    throw FileError(fmt::format("{}: is a link, which is not followed; remove it", file.string()));
+    throw FileError(
+        fmt::format("{}: is a symbolic link; Limpid does not write through links; remove the link",
+                    file.string()));
   }
   fail(file, "cannot open", errno);
 }
@@ -171,10 +173,10 @@ SessionWriter::SessionWriter(fs::path out, const SessionInfo& info, bool force, 
   const bool left = fs::exists(fs::symlink_status(file_->part));
   if (left) WriteLock(file_->part, WriteLock::Make::no);  // refuses if somebody records there
   if (!force && left) {
-    throw FileError(fmt::format(
-        "{0}: left by a recording that was not closed; `limpid recover {0}` saves it, --force "
-        "overwrites it",
-        file_->part.string()));
+    throw FileError(
+        fmt::format("{0}: belongs to a recording that was not closed; `limpid recover {0}` saves "
+                    "that recording, --force overwrites the file",
+                    file_->part.string()));
   }
   file_->lock.emplace(file_->part, WriteLock::Make::yes);
   try {
@@ -244,7 +246,8 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
         for (std::size_t i = 0; i < rows.size(); ++i) file->append(rows[i], i);
       });
   if (!file) {
-    throw FileError(fmt::format("{}: nothing was recorded; it can be deleted", part.string()));
+    throw FileError(
+        fmt::format("{}: nothing was recorded; this file can be deleted", part.string()));
   }
   for (std::size_t i = 0; i < rest.lanes(); ++i) {
     for (const SettingChange& change : rest.lane(i).changes) file->append(change, i);
@@ -253,8 +256,10 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
   const std::uint64_t rows = file->rows();
   file->close();
   if (!force && fs::exists(out)) {
-    throw FileError(fmt::format("{}: appeared meanwhile and was left alone; --force overwrites it",
-                                out.string()));
+    throw FileError(
+        fmt::format("{}: another program made this file in the meantime; Limpid has not changed "
+                    "it; --force overwrites the file",
+                    out.string()));
   }
   draft->keep();
   fs::remove(part);

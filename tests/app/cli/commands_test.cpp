@@ -81,7 +81,7 @@ TEST_F(Commands, RunOfATwinHasTwoRunsOfTwoLaws) {
       done({"run", "--twin", "coupling.eta=0.7", "--duration", "0.02", "--coupling", "proposed"}),
       ContainsRegex("proposed 1.*proposed 0.7"));
   EXPECT_THAT(refused({"run", "--twin", "loop.tick=0.0005", "--duration", "0.02"}),
-              HasSubstr("all runs go in the same ticks"));
+              HasSubstr("all runs must have the same tick"));
 }
 
 TEST_F(Commands, RunKeepsFilesThatAreThereUnlessForced) {
@@ -195,7 +195,7 @@ TEST_F(Commands, RunHasVariationsOfPathsAlone) {
   EXPECT_NE(hand({"--variation", "1", "--seed", "2"}), first);
   EXPECT_EQ(hand({"--variation", "0"}), hand({}));
   EXPECT_THAT(refused({"run", "--hand", "cup.h5", "--variation", "1"}),
-              HasSubstr("cup.h5 does more than follow a path"));
+              HasSubstr("cup.h5 is more than a path"));
 }
 
 TEST_F(Commands, RunOnADeviceHasNoOtherHand) {
@@ -215,11 +215,11 @@ TEST_F(Commands, InfoSaysWhatARecordingHolds) {
   done({"run", "--duration", "0.25", "--eta", "0.8", "--coupling", "proposed", "--seed", "7",
         "--variation", "1", "--scene", "stack.toml", "--record", "a.h5"});
   const std::string text = done({"info", "a.h5"});
-  for (const char* line :
-       {"a.h5\n", "length                   0.250 s\n",
-        "coupling at first        proposed, eta 0.8\n",
-        "arm                      3 joints, tick 0.001 s, seed 7\n",
-        "contacts                 the 4 hardest of every tick, x, y, z one after the other\n"}) {
+  for (const char* line : {"a.h5\n", "length                   0.250 s\n",
+                           "coupling at first        proposed, eta 0.8\n",
+                           "arm                      3 joints, tick 0.001 s, seed 7\n",
+                           "contacts                 the 4 strongest contacts of every tick, x, y, "
+                           "z one after the other\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
   EXPECT_THAT(text,
@@ -411,7 +411,7 @@ TEST_F(Commands, AnalyzeKnowsWhatIsNotPassiveAndWhatIsNotKnown) {
   EXPECT_THAT(broken, ContainsRegex("condition \\(3\\) +BROKEN"));
   const std::string lossy = done(
       {"analyze", "--coupling", "standard", "--set", "link.delay=2", "--set", "link.loss=0.1"});
-  EXPECT_THAT(lossy, HasSubstr("no bound is known, as packets are lost (link.loss)"));
+  EXPECT_THAT(lossy, HasSubstr("no bound is known because packets are lost (link.loss)"));
   EXPECT_THAT(lossy, ContainsRegex("link +packets are lost"));
   const std::string late = done({"analyze", "--coupling", "standard", "--set", "link.delay=2"});
   EXPECT_THAT(late, ContainsRegex("link +up to [0-9.]+ ms old each way"));
@@ -433,7 +433,7 @@ TEST_F(Commands, CheckNamesTheFlawsOfAScene) {
             "above friction_static"},
            {plane_at("-0.04") + "stiffness = 20000", "is stiffer than"},
            {plane_at("0.5") + "stiffness = 600", "mm inside"},
-           {"title = \"x\"\n", "nothing is there to touch"}}) {
+           {"title = \"x\"\n", "the scene has nothing to touch"}}) {
     write("scene.toml", text);
     const Said found = run({"check", "scene.toml"});
     EXPECT_EQ(found.status, 1) << flaw;
@@ -503,8 +503,11 @@ TEST_F(Commands, CheckOfAnArmListsJointsInTheirUnits) {
   EXPECT_THAT(said.out,
               ContainsRegex("reach +0.19 m from the origin of joint 'hinge' to 'tip', 0.5 kg"));
   EXPECT_THAT(said.out, HasSubstr("picture      capsules from joint to joint\n"));
-  EXPECT_THAT(said.out, ContainsRegex("limits +torque as the effort above, within .* tip: 10 N"));
-  EXPECT_THAT(said.out, ContainsRegex("condition \\(3\\) holds; eta from [0-9.]+ on is passive"));
+  EXPECT_THAT(said.out,
+              ContainsRegex("limits +torque as the effort above, reached within .* tip: 10 N"));
+  EXPECT_THAT(
+      said.out,
+      ContainsRegex("condition \\(3\\) holds; the proposed law is passive at eta of [0-9.]+ and"));
   EXPECT_THAT(run({"check", "arm.urdf", "--set", "device.torque_limit=0.5"}).out,
               ContainsRegex("limits +torque 0.5 N m, "));
   EXPECT_THAT(run({"check", "arm.urdf", "--set", "coupling.k_vc=5000"}).out,
@@ -518,18 +521,18 @@ TEST_F(Commands, CheckOfAnArmDoubtsWhatNoBodyHas) {
   };
   const std::string usual = "lower=\"0\" upper=\"0.04\"";
   EXPECT_THAT(check(usual, "0.1", "ixx=\"100\" iyy=\"100\" izz=\"100\""),
-              HasSubstr("link 'a': 100 kg m^2 and 0.1 kg are a ring of 31.6 m radius"));
+              HasSubstr("link 'a': 100 kg m^2 with 0.1 kg would be a ring of 31.6 m radius"));
   EXPECT_THAT(check(usual, "0.1", "ixx=\"1e-5\" iyy=\"1e-5\" izz=\"1e-3\""),
-              HasSubstr("more than the other two together"));
+              HasSubstr("at most the sum of the other two"));
   EXPECT_THAT(check(usual, "0.3", kPlate), Not(HasSubstr("warning      link")));
   EXPECT_THAT(check("lower=\"0\" upper=\"1000\"", "0.3", kPlate),
-              HasSubstr("joint 'slide': a slide of 1e+03 m; give it the travel"));
+              HasSubstr("joint 'slide' slides over 1e+03 m; write the joint's real travel"));
 }
 
 TEST_F(Commands, CheckRefusesWhatItDoesNotKnow) {
   write("a.txt", "words");
   EXPECT_THAT(refused({"check", "a.txt"}),
-              HasSubstr("a.txt: no file that is known; needed: an arm"));
+              HasSubstr("a.txt: this kind of file is not known; needed: an arm"));
   EXPECT_THAT(refused({"check", (fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5").string()}),
               HasSubstr("`limpid info "));
   EXPECT_THAT(refused({"check", "none.urdf"}), HasSubstr("none.urdf: no such file"));

@@ -264,7 +264,7 @@ TEST_F(Work, OfTheDoctorEndsWithTheWorstThatItFound) {
       EXPECT_THAT(text.out, HasSubstr("-> " + finding["mend"].get<std::string>()));
     }
   }
-  constexpr const char* kEnds[] = {"all is well\n", "all works; something would be better\n",
+  constexpr const char* kEnds[] = {"all is well\n", "all works; some things can be improved\n",
                                    "something does not work\n"};
   EXPECT_THAT(text.out, EndsWith(std::string("\n\n") + kEnds[text.status]));
 }
@@ -281,7 +281,7 @@ TEST_F(Work, OfIdentifyingNeedsADeviceAndAFolder) {
   EXPECT_THAT(refused({"identify", "simulated", "--out", "o", "--masses-right"}),
               HasSubstr("the simulated device has other masses"));
   EXPECT_THAT(refused({"identify", "--out", "o", "--yes", "--load", "0.1"}),
-              HasSubstr("--yes: with --load somebody has to be asked"));
+              HasSubstr("--yes: not together with --load: a person must be asked"));
   EXPECT_EQ(run({"identify", "--out", "o", "--range", "0.04"}).status, 2);
   EXPECT_EQ(run({"identify", "--out", "o", "--range", "0.91"}).status, 2);
   EXPECT_EQ(run({"identify", "--out", "o", "--torque", "1.01"}).status, 2);
@@ -296,8 +296,8 @@ TEST_F(Work, OfIdentifyingFindsOutASimulatedDevice) {
   const std::size_t motors = said.find("\nmotors ");
   ASSERT_NE(motors, std::string::npos);
   ASSERT_EQ(std::sscanf(said.c_str() + motors,
-                        "\nmotors give %lf +- %lf times what they are told\n%lf was drawn", &gives,
-                        &off, &drawn),
+                        "\nmotors give %lf +- %lf times the commanded torque\n%lf is the true",
+                        &gives, &off, &drawn),
             3)
       << said;
   EXPECT_NEAR(gives, drawn, std::max(4 * off, 0.01));

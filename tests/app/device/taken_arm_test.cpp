@@ -81,7 +81,7 @@ TEST_F(ATakenArm, IsABuiltInOneWithLittleForceUntilSomebodyHasSaidWhichItIs) {
   EXPECT_EQ(taken.arm.urdf, shipped("omni.urdf").urdf);
   expect_within_the_device(taken.arm);
   for (const Joint& joint : taken.arm.joints) EXPECT_LE(joint.effort, 0.5);
-  EXPECT_THAT(taken.why, HasSubstr("until you say"));
+  EXPECT_THAT(taken.why, HasSubstr("until you choose"));
   notes.limits.tip_force = 2;
   for (const Joint& joint : taken_arm(notes, &kRaw, traits).arm.joints) {
     EXPECT_LE(joint.effort, 0.1);
@@ -170,7 +170,7 @@ TEST_F(ATakenArm, OfADeviceThatSaysItselfWhichItIsIsThatOne) {
   notes.arm = write("strange.urdf", urdf_text(strange, "strange"));
   const TakenArm taken = taken_arm(notes, &kInverse, cursor);
   EXPECT_EQ(taken.arm.urdf, own.urdf);
-  EXPECT_THAT(taken.why, HasSubstr("has other joints than its own"));
+  EXPECT_THAT(taken.why, HasSubstr("has other joints than the device's own arm"));
 }
 
 TEST_F(ATakenArm, IsRefusedWhereTheDeviceIsNeverInItsRange) {
@@ -181,8 +181,8 @@ TEST_F(ATakenArm, IsRefusedWhereTheDeviceIsNeverInItsRange) {
     taken_arm({}, &kRaw, away);
     ADD_FAILURE() << "force anywhere";
   } catch (const UnknownArmError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("joint turret goes from -1 to 1 rad by the arm omni, and "
-                                        "from 2 to 3 by A device itself"));
+    EXPECT_THAT(error.what(), HasSubstr("joint turret goes from -1 to 1 rad in the arm omni, but "
+                                        "from 2 to 3 in the device A device"));
     EXPECT_THAT(error.what(), HasSubstr("--arm"));
   }
 }

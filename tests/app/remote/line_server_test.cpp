@@ -244,7 +244,7 @@ TEST_F(LineServerTest, DropsLinesThatFindNoRoomCountsThemAndHearsTheCutAmongThem
   for (std::size_t i = 0; i < answered + 1; ++i) {
     if (const std::string each = peer.line(); each != "ok") told += each;
   }
-  EXPECT_THAT(told, HasSubstr("51 lines found no room"));
+  EXPECT_THAT(told, HasSubstr("51 lines were dropped"));
 }
 
 TEST_F(LineServerTest, TakesTheLastLineOfOneThatHasHungUp) {

@@ -52,7 +52,7 @@ TEST(Protocol, NamesWhatWasFoundAndWhatIsAllowed) {
   EXPECT_THAT(refusal(R"({"do":"arm"})"), HasSubstr(R"(do: "arm" is not known; allowed: hello)"));
   EXPECT_THAT(refusal(R"({"do":3})"), HasSubstr("do: 3 is not known"));
   EXPECT_THAT(refusal(R"({"do":"cut","now":1})"),
-              HasSubstr(R"(cut: "now" is no key of it; allowed: none)"));
+              HasSubstr(R"(cut: "now" is not a key of this command; allowed: none)"));
   EXPECT_THAT(refusal(R"({"do":"hello","id":1.5})"), HasSubstr("id: 1.5 is not allowed"));
   const std::string longest(65, 'x');
   EXPECT_THAT(refusal(R"({"do":"hello","id":")" + longest + "\"}"), HasSubstr("up to 64"));

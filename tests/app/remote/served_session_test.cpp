@@ -117,10 +117,10 @@ TEST_F(Served, RecordsWhatRuns) {
   const std::string file = (dir / "a.h5").string();
   EXPECT_EQ(ask({{"do", "record"}, {"file", file}})["file"], file);
   EXPECT_EQ(state()["recording"], true);
-  EXPECT_THAT(refused({{"do", "record"}}), HasSubstr("is under way"));
-  EXPECT_THAT(refused({{"do", "open"}, {"scene", "x"}}), HasSubstr("stop the recording before"));
-  EXPECT_THAT(refused({{"do", "start_over"}}), HasSubstr("stop the recording before"));
-  EXPECT_THAT(refused({{"do", "twin"}}), HasSubstr("stop the recording before"));
+  EXPECT_THAT(refused({{"do", "record"}}), HasSubstr("runs already"));
+  EXPECT_THAT(refused({{"do", "open"}, {"scene", "x"}}), HasSubstr("stop the recording first"));
+  EXPECT_THAT(refused({{"do", "start_over"}}), HasSubstr("stop the recording first"));
+  EXPECT_THAT(refused({{"do", "twin"}}), HasSubstr("stop the recording first"));
   ask({{"do", "mark"}, {"text", "here"}});
   for (int i = 0; i < 20; ++i) turn();
   const json done = ask({{"do", "stop"}});
@@ -206,7 +206,7 @@ TEST_F(Served, RefusesSessionsWhoseTickTakesTheComputer) {
     return next;
   };
   EXPECT_THAT(refused({{"do", "open"}, {"session", "x.h5"}}),
-              HasSubstr("would take the computer; allowed: 0.0001 to 0.1"));
+              HasSubstr("is too short for the live loop; allowed: 0.0001 to 0.1"));
 }
 
 TEST_F(Served, DrawsPicturesBesideTheLoop) {
@@ -243,7 +243,7 @@ TEST_F(Served, LeavesTheForceOfARealDeviceToItsSecondButton) {
   EXPECT_TRUE(until(armed));
   ask({{"do", "cut"}});
   EXPECT_TRUE(until([&] { return !armed(); }));
-  EXPECT_THAT(refused({{"do", "open"}, {"arm", "omni.urdf"}}), HasSubstr("a real device is in"));
+  EXPECT_THAT(refused({{"do", "open"}, {"arm", "omni.urdf"}}), HasSubstr("leads a real device"));
   EXPECT_THAT(refused({{"do", "twin"}}), HasSubstr("one hand cannot hold two real devices"));
 }
 

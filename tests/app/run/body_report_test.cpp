@@ -185,7 +185,7 @@ TEST(BodyReport, CountsWhatSpringsHoldAtTheStart) {
   scene.objects.back().body->joint = joint;
   EXPECT_NEAR(spring_energy(scene), 12.52 + 25 * drawn * drawn, 1e-12);
   const BodyReport report = report_on_bodies(scene, arm());
-  EXPECT_THAT(report.warnings, testing::Contains(HasSubstr("springs that are drawn")));
+  EXPECT_THAT(report.warnings, testing::Contains(HasSubstr("springs that are stretched")));
 }
 
 // A spring of 3.6 J turns 9e-9 kg m^2 by sqrt(2 3.6/9e-9) = 28,284 rad/s: 28.3 rad in a
@@ -245,7 +245,7 @@ TEST(BodyReport, WarnsOfAllThat) {
                  root.z() - 0.3),
       arm());
   ASSERT_EQ(report.facts.size(), 4u);
-  EXPECT_THAT(report.facts[0], HasSubstr("3 of them, 0 springs"));
+  EXPECT_THAT(report.facts[0], HasSubstr("3 objects, 0 springs"));
   EXPECT_THAT(report.facts[1], HasSubstr("1 kg"));
   ASSERT_EQ(report.warnings.size(), 4u);
   EXPECT_THAT(report.warnings[0], HasSubstr("[1, 1, 3]"));

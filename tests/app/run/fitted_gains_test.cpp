@@ -41,7 +41,7 @@ TEST(FittedGains, SayHowReadingsDifferFromTheFiles) {
   arm.encoder_step = 4.19e-4;
   arm.assumed_delay = 1e-3;
   EXPECT_EQ(readings_text(arm, {}),
-            "its file says encoder steps of 0.419 mrad and a delay of 1 ms; these settings have "
+            "the arm's file says encoder steps of 0.419 mrad and a delay of 1 ms; the settings say "
             "exact encoders and no delay");
   EXPECT_EQ(readings_text(arm, with_readings_of(arm, {})), "");
   for (Joint& joint : arm.joints) joint.kind = Joint::Kind::prismatic;

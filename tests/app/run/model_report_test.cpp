@@ -109,13 +109,13 @@ TEST_F(AModelsReport, WarnsOfSizesThatNobodyTouches) {
 
 TEST_F(AModelsReport, WarnsOfFacesThatLookInwards) {
   EXPECT_THAT(report_on_model(stl({20, 30, 40}, true)).warnings,
-              ElementsAre(StartsWith("its faces look inwards")));
+              ElementsAre(StartsWith("the faces point inwards")));
 }
 
 // Four of a plate's twelve triangles are its two large faces.
 TEST_F(AModelsReport, WarnsOfThinWalls) {
   EXPECT_THAT(report_on_model(stl({100, 100, 0.4})).warnings,
-              ElementsAre(StartsWith("33 % of its surface is a wall thinner than 0.5 %")));
+              ElementsAre(StartsWith("33 % of the model's surface is a wall thinner than 0.5 %")));
   EXPECT_THAT(report_on_model(stl({100, 100, 0.6})).warnings, IsEmpty());
 }
 

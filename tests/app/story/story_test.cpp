@@ -130,7 +130,7 @@ TEST(StoryScripts, RefuseAHandThatTheArmCannotFollow) {
 
 TEST(StoryScripts, RefuseSettingsThatCannotHoldForOneRunOrFromThere) {
   expect_refused(with("twin = [\"coupling.eta = 0.4\"]", "twin = [\"hand.stiffness = 9\"]"),
-                 "belongs under set");
+                 "write this setting under set");
   expect_refused(with("set = [\"hand.stiffness = 700\"]", "set = [\"loop.tick = 0.002\"]"),
                  "in the first step only");
 }

@@ -90,7 +90,7 @@ TEST(UrdfTree, GoesToTheTipThatIsNamedAndHoldsTheOtherBranchStill) {
   EXPECT_NEAR(parse(two_arms, "r2").links[1].mass, 2, 1e-15);
   EXPECT_THAT(refusal([&] { parse(two_arms, "r9"); }),
               testing::AllOf(HasSubstr("'r9'"), HasSubstr("l2, r3")));
-  EXPECT_THAT(refusal([&] { parse(two_arms, "base"); }), HasSubstr("no joint moves it"));
+  EXPECT_THAT(refusal([&] { parse(two_arms, "base"); }), HasSubstr("no joint moves this link"));
 }
 
 TEST(UrdfTree, NamesTheEndsToChooseFrom) {

@@ -126,11 +126,12 @@ TEST_F(FakeSystem, OpensNothingButTheKindThatItFound) {
     return std::string("opened");
   };
   EXPECT_EQ(opened(found[0], test::space_navigator()), "opened");
-  EXPECT_EQ(opened(found[0], test::pid_joystick::whole()), "SpaceNavigator: it has been unplugged");
-  EXPECT_EQ(opened(found[1], test::space_navigator()), "Stick: it has been unplugged");
+  EXPECT_EQ(opened(found[0], test::pid_joystick::whole()),
+            "SpaceNavigator: the device has been unplugged");
+  EXPECT_EQ(opened(found[1], test::space_navigator()), "Stick: the device has been unplugged");
   const Bytes mouse{0x05, 0x01, 0x09, 0x02, 0xA1, 0x01, 0x09, 0x30, 0x15, 0x81,
                     0x25, 0x7F, 0x75, 0x08, 0x95, 0x01, 0x81, 0x06, 0xC0};
-  EXPECT_EQ(opened(found[1], mouse), "Stick: it has been unplugged");
+  EXPECT_EQ(opened(found[1], mouse), "Stick: the device has been unplugged");
 }
 
 // Holds for devices of the same kind, too: stored settings belong to the other one.

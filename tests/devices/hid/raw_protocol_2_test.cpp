@@ -255,7 +255,7 @@ TEST(Raw2, RefusesDevicesThatAreNotFitForAHand) {
   EXPECT_EQ(complaint(good), "none");
   EXPECT_EQ(complaint(raw_2_feature(std::vector<Raw2Joint>(8, {true, 1, 1}))), "none");
   EXPECT_THAT(complaint(raw_2_feature(std::vector<Raw2Joint>(9))), HasSubstr("9 joints"));
-  EXPECT_THAT(complaint(raw_2_feature({{false, 1, 0}})), HasSubstr("no joint has one"));
+  EXPECT_THAT(complaint(raw_2_feature({{false, 1, 0}})), HasSubstr("no joint has a motor"));
   EXPECT_EQ(complaint(raw_2_feature({{false, 1, 0}}, false)), "none");
   const auto with = [&](std::size_t at, float value) {
     Raw2Description bad = good;

@@ -141,7 +141,7 @@ TEST(Grip, OfAnUnevenHandHasTheBoundForIt) {
   const Grip grip = find_grip(test::omni(), {},
                               exact_record(test::omni(), {740, 3.1, 0.12, {0.8, 1, 1.2}}, 0.001));
   EXPECT_NEAR(grip.stiffness.value, 740, grip.stiffness.bound);
-  EXPECT_THAT(grip.unknown, testing::StartsWith("the hand is not alike in all directions: 5"));
+  EXPECT_THAT(grip.unknown, testing::StartsWith("the hand differs between directions: 5"));
 }
 
 TEST(Grip, OfAHandThatIsNoSpringDamperAndMassHasTheBoundForIt) {
@@ -300,7 +300,7 @@ TEST(Grip, SaysWhichOfItsValuesIsNotKnown) {
   of.p.encoder_step = kOmniStep;
   const Grip grip = of.run();
   EXPECT_TRUE(grip.measured);
-  EXPECT_THAT(grip.unknown, testing::StartsWith("the bound of its damping is wide"));
+  EXPECT_THAT(grip.unknown, testing::StartsWith("the bounds of the hand's damping are wide"));
 }
 
 TEST(Grip, OfHandsThatMoveByThemselvesIsRightOrNotKnown) {

@@ -88,7 +88,7 @@ TEST_F(CouplingWords, AreOfTheLawThatIsChosen) {
     EXPECT_THAT(words(), HasSubstr(verdict.substr(0, 12)));
     EXPECT_EQ(find("Passivity").has_value(), has_conditions(kind)) << label;
     EXPECT_EQ(find("Energy tanks").has_value(), kind == CouplingKind::tank);
-    EXPECT_EQ(find("Energy ledger").has_value(), kind == CouplingKind::predictive);
+    EXPECT_EQ(find("Energy account").has_value(), kind == CouplingKind::predictive);
     EXPECT_TRUE(find("Energy given E_c")) << label;
   }
 }
@@ -115,7 +115,7 @@ TEST_F(CouplingWords, AreFewInTheSimpleWindow) {
     EXPECT_EQ(value("Apart in the joints"), "2.70 mrad");
     EXPECT_EQ(value("Contact force"), "1.25 N");
     EXPECT_TRUE(find("Energy given E_c"));
-    for (const char* left : {"Advanced", "Link", "Passivity", "Energy ledger", "Energy tanks",
+    for (const char* left : {"Advanced", "Link", "Passivity", "Energy account", "Energy tanks",
                              "The coupling's own", "Condition (3), device"}) {
       EXPECT_FALSE(find(left)) << left << " of " << law.key;
     }
@@ -230,7 +230,8 @@ TEST_F(CouplingWords, SayWhetherFiguresAreMeasuredWhereThatMatters) {
   real_ = true;
   draw();
   EXPECT_EQ(value("These figures are"), "assumed");
-  EXPECT_THAT(hint("These figures are"), HasSubstr("limpid identify measures them."));
+  EXPECT_THAT(hint("These figures are"),
+              HasSubstr("limpid identify measures inertia, damping and delay."));
   a_.measured = true;
   draw();
   EXPECT_EQ(value("These figures are"), "measured");
@@ -267,7 +268,7 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
         "Contact points left out", "Ticks in which objects stood still"}) {
     EXPECT_TRUE(broken(bad)) << bad;
   }
-  EXPECT_THAT(hint("Damping removed"), HasSubstr("less of the device's damping is cancelled"));
+  EXPECT_THAT(hint("Damping removed"), HasSubstr("cancels less of the device's damping"));
   now_.contact_governor = 0.996;
   draw();
   EXPECT_FALSE(broken("Wall force rendered")) << "it reads 100 %";
@@ -276,7 +277,7 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
 TEST_F(CouplingWords, OfTanksSayWhatTheyHoldBack) {
   p_.kind = CouplingKind::tank;
   draw();
-  EXPECT_EQ(value("In both"), "20.0 mJ");
+  EXPECT_EQ(value("In both tanks"), "20.0 mJ");
   EXPECT_EQ(value("Proxy moves freely"), "100 %");
   now_.contact_governor = 0.5;
   now_.torque_governor = 0.75;
@@ -352,7 +353,7 @@ TEST_F(CouplingWords, OfARerunHaveNothingOfTheLoop) {
   Parameters live = p_;
   live.eta = 0.3;
   show([&] { draw_coupling_of_rerun(p_, recorded, live, {.analysis = a_, .arm = arm_}); });
-  EXPECT_THAT(sentences(), HasSubstr("As recorded: change a setting"));
+  EXPECT_THAT(sentences(), HasSubstr("Change a setting, then press E"));
   EXPECT_TRUE(find("Passivity"));
   EXPECT_FALSE(find("Break passivity"));
   EXPECT_FALSE(find("Energy given E_c"));

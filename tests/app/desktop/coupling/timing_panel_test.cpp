@@ -12,15 +12,15 @@ using testing::Not;
 // stall.
 TEST(TimingPanel, SaysThatWithMotorsLateTicksAreGivenUpAtOnce) {
   const LateTicks words = late_ticks(true);
-  EXPECT_THAT(words.missed, Not(HasSubstr("are caught up")));
-  EXPECT_THAT(words.slipped, HasSubstr("with motors they are never made up for"));
-  EXPECT_THAT(words.after_a_slip, HasSubstr("were skipped"));
+  EXPECT_THAT(words.missed, Not(HasSubstr("catches up on these ticks")));
+  EXPECT_THAT(words.slipped, HasSubstr("never makes up for skipped ticks"));
+  EXPECT_THAT(words.after_a_slip, HasSubstr("skipped ticks"));
   EXPECT_THAT(words.after_a_slip, Not(HasSubstr("20 ticks")));
 }
 
 TEST(TimingPanel, SaysThatTheVirtualArmCatchesUpUntilAStall) {
   const LateTicks words = late_ticks(false);
-  EXPECT_THAT(words.missed, HasSubstr("they are caught up"));
+  EXPECT_THAT(words.missed, HasSubstr("catches up on these ticks"));
   EXPECT_THAT(words.after_a_slip, HasSubstr("over 20 ticks"));
 }
 

@@ -57,7 +57,7 @@ TEST_F(DeviceFields, ShowAnglesInDegreesAndSlidesInMillimetres) {
 
 TEST_F(DeviceFields, TurnAnAxisRoundItsTorqueOrBoth) {
   draw();
-  EXPECT_THAT(hint("invert"), HasSubstr("Turns the axis round, its torque with it."));
+  EXPECT_THAT(hint("invert"), HasSubstr("Reverses the sign of the axis and of its torque."));
   EXPECT_THAT(hint("reverse force"), HasSubstr("After a change here the axes are checked again"));
   click_on("invert", 1);
   EXPECT_TRUE(anew_);
@@ -71,7 +71,7 @@ TEST_F(DeviceFields, TurnAnAxisRoundItsTorqueOrBoth) {
 
 TEST_F(DeviceFields, TakeThePresentPlaceForZero) {
   draw();
-  EXPECT_EQ(hint("zero here"), "Where it is now becomes zero.");
+  EXPECT_EQ(hint("zero here"), "The present position becomes zero.");
   click_on("zero here", 0);
   EXPECT_TRUE(anew_);
   EXPECT_NEAR(notes_.axes[0].zero, 0.1 + 0.5 / notes_.axes[0].factor(), 1e-12);
@@ -104,7 +104,7 @@ TEST_F(DeviceFields, OfLimitsNameEachOfThem) {
   for (const auto& limit : kSafetyLimits) {  // long ones are cut in this font
     EXPECT_THAT(words(), HasSubstr(std::string(limit.caption).substr(0, 12)));
   }
-  EXPECT_THAT(hint("Limits of force"), HasSubstr("They can be lowered"));
+  EXPECT_THAT(hint("Limits of force"), HasSubstr("You can lower these limits"));
 }
 
 }  // namespace

@@ -273,7 +273,7 @@ TEST_F(SceneFields, SayWhatTheyAre) {
     EXPECT_THAT(words(), HasSubstr(std::string(label).substr(0, 15)));
   }
   EXPECT_EQ(hint("A scene"), "What it is for.");
-  EXPECT_THAT(hint("Mass"), HasSubstr("Up to 100 kg."));
+  EXPECT_THAT(hint("Mass"), HasSubstr("Mass of the object, up to 100 kg."));
 }
 
 TEST_F(SceneFields, OfWhatMovesBeginWithTheMassOfWood) {
@@ -407,7 +407,7 @@ TEST_F(SceneFields, OfARecordingOnlyShowIt) {
   scene.scene.add(body_of(Sphere{0.01}));
   show([&] { ScenePanel::draw_recorded(scene); });
   EXPECT_THAT(words(), StartsWith("untitled\n"));
-  EXPECT_THAT(words(), HasSubstr("The recording's scene; it stays as it was."));
+  EXPECT_THAT(words(), HasSubstr("The scene of the recording. This scene cannot be changed."));
   EXPECT_TRUE(find("it"));
   EXPECT_FALSE(find("Add"));
 }

@@ -313,7 +313,7 @@ TEST_F(ADesktop, SaysThatADeviceIsGoneAndClosesItBesideTheWindow) {
   const auto wire = pushed();
   frames(60);
   wire->here = false;
-  EXPECT_TRUE(until([&] { return said("The device is gone"); }));
+  EXPECT_TRUE(until([&] { return said("The device is disconnected"); }));
   EXPECT_EQ(arming(), Arming::tripped);
   EXPECT_TRUE(until([&] { return wire->closed == 1; }));
 }
@@ -565,14 +565,14 @@ TEST_F(ADesktop, TakesADeviceForABuiltInArmWhateverIsOpenUntilSomebodyHasSaidWhi
   const ArmDescription first = open();
   EXPECT_EQ(first.urdf, test::omni().urdf);
   for (const Joint& joint : first.joints) EXPECT_LE(joint.effort, 0.5);
-  EXPECT_TRUE(said("is taken for the arm omni"));
+  EXPECT_TRUE(said("is used as the arm omni"));
   const NamedArm asked = desktop->world.arm_file();
   EXPECT_EQ(asked.file, file.string()) << "that the question offers";
   desktop->devices.hub().say_arm(asked.file, asked.tip, nullptr);
   const ArmDescription second = open();
   EXPECT_EQ(second.name, "long");
   for (const Joint& joint : second.joints) EXPECT_LE(joint.effort, 3) << "the device's own limit";
-  EXPECT_TRUE(said("is taken for the arm long"));
+  EXPECT_TRUE(said("is used as the arm long"));
 }
 
 // The device is plugged in again with another full force, from changed settings.
@@ -921,11 +921,11 @@ TEST_F(ADesktop, SaysOverThePictureThatThereIsNoForceAndWhy) {
   desktop->cut_force();
   ASSERT_TRUE(until([&] { return arming() == Arming::off; }));
   ASSERT_EQ(desktop->banners().size(), 1u);
-  EXPECT_EQ(desktop->banners()[0].text, "Force is off: not armed. F arms it.");
+  EXPECT_EQ(desktop->banners()[0].text, "Force is off: not armed. F arms the force.");
   ASSERT_EQ(desktop->banners()[0].buttons.size(), 1u);
   EXPECT_STREQ(desktop->banners()[0].buttons[0].command, "device.force");
   record_something();
-  EXPECT_EQ(desktop->banners()[0].text, "Recording without force: not armed. F arms it.");
+  EXPECT_EQ(desktop->banners()[0].text, "Recording without force: not armed. F arms the force.");
   EXPECT_TRUE(desktop->banners()[0].bad);
   desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
@@ -979,7 +979,8 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
     const Banner& banner = banners.back();
     EXPECT_TRUE(banner.bad);
     EXPECT_EQ(banner.text,
-              "It chatters: table top (5000 N/m) is stiffer than the proposed law holds here.");
+              "The loop chatters: table top (5000 N/m) is stiffer than the proposed law can hold "
+              "at this place.");
     ASSERT_EQ(banner.buttons.size(), 3u);
     EXPECT_EQ(banner.buttons[0].label, "Predictive");
     // The stiffness is that of `analyze` for the built-in arm, in two digits.

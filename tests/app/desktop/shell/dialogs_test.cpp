@@ -61,7 +61,7 @@ TEST_F(Dialog, OfPresetsListsUsesKeepsRenamesAndRemoves) {
   run("settings.presets");
   frames(3);
   click("Save the present one", "Presets");
-  EXPECT_THAT(words("Presets"), HasSubstr("It needs a name."));
+  EXPECT_THAT(words("Presets"), HasSubstr("Type a name first."));
   click("Close (Esc)", "Presets");
   run("settings.presets");
   frames(4);
@@ -409,7 +409,7 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
         "a second time with a load at the tip", "Begin (Enter)", "Close (Esc)"}) {
     EXPECT_THAT(shown, HasSubstr(label));
   }
-  EXPECT_THAT(shown, HasSubstr("No device is in use: a simulated one"));
+  EXPECT_THAT(shown, HasSubstr("Limpid moves a simulated device"));
   EXPECT_FALSE(find("load", "Identify the device"));
   click("a second time with a load at the tip", "Identify the device");
   EXPECT_TRUE(find("load", "Identify the device"));
@@ -417,7 +417,7 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   click("Begin (Enter)", "Identify the device");
   ASSERT_TRUE(until([&] { return desktop->identify.moving(); }));
   frames(3);
-  EXPECT_THAT(words("Identify the device"), HasSubstr("It moves by itself: "));
+  EXPECT_THAT(words("Identify the device"), HasSubstr("The device moves by itself: "));
   EXPECT_FALSE(find("Close (Esc)", "Identify the device")) << "it has to be stopped first";
   click("Stop (Esc)", "Identify the device");
   EXPECT_TRUE(until([&] { return !desktop->identify.moving(); }));

@@ -129,8 +129,8 @@ TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
   click(cell(1, 2, 1, 3));
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   EXPECT_TRUE(
-      said("Point 1: kind standard, stiffness 1000 N/m, eta 0.7. As in the table, to the "
-           "last bit."));
+      said("Point 1: kind standard, stiffness 1000 N/m, eta 0.7. The result equals the "
+           "table to the last bit."));
   EXPECT_EQ(desktop->dialog.name(), "");
   EXPECT_TRUE(fs::exists(folder() / "points/1.h5"));
   frames(4);
@@ -171,7 +171,7 @@ TEST_F(MapOfASweep, FollowsATableThatFills) {
   EXPECT_THAT(words(), HasSubstr("4 of 18 points, filling"));
   point_at(cell(0, 2, 2, 3));
   EXPECT_THAT(pointed(), HasSubstr("point\n5\n"));
-  EXPECT_THAT(pointed(), HasSubstr("not there yet"));
+  EXPECT_THAT(pointed(), HasSubstr("not computed yet"));
   EXPECT_THAT(pointed(), Not(HasSubstr("hand torque, rms\n")));
   test::swept(plan, folder());
   EXPECT_TRUE(until([&] { return find("18 of 18 points").has_value(); }));

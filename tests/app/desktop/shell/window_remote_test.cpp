@@ -149,10 +149,10 @@ TEST_F(LedWindow, RecordsUnderTheNameThatIsAskedFor) {
   const std::string file = (dir / "a.h5").string();
   EXPECT_EQ(ask({{"do", "record"}, {"file", file}})["file"], file);
   EXPECT_TRUE(desktop->live.recording());
-  EXPECT_THAT(refused({{"do", "record"}}), HasSubstr("a recording is under way"));
+  EXPECT_THAT(refused({{"do", "record"}}), HasSubstr("a recording runs already"));
   EXPECT_THAT(refused({{"do", "open"}, {"scene", "spheres.toml"}}),
-              HasSubstr("stop the recording before"));
-  EXPECT_THAT(refused({{"do", "start_over"}}), HasSubstr("stop the recording before"));
+              HasSubstr("stop the recording first"));
+  EXPECT_THAT(refused({{"do", "start_over"}}), HasSubstr("stop the recording first"));
   EXPECT_TRUE(ask({{"do", "mark"}, {"text", "here"}}).contains("time"));
   turns(5);
   const json done = ask({{"do", "stop"}});

@@ -288,7 +288,8 @@ TEST_F(Words, OfPlaybackLeadThroughTheRecording) {
        {"In this recording", "For the re-run (E)", "Coupling", "Grip stiffness"}) {
     EXPECT_THAT(panel, HasSubstr(title));
   }
-  EXPECT_THAT(sentences(kSidePanel), HasSubstr("The recording's scene; it stays as it was."));
+  EXPECT_THAT(sentences(kSidePanel),
+              HasSubstr("The scene of the recording. This scene cannot be changed."));
   EXPECT_THAT(sentences(kSidePanel),
               HasSubstr("For the re-run; what was recorded is on the left."));
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("playing table.h5"));
@@ -329,7 +330,7 @@ TEST_F(Words, OfTheStatusLineAreLawRateAndForce) {
   desktop->cut_force();
   EXPECT_TRUE(
       until([&] { return words("##MainMenuBar").find("force off [F]") != std::string::npos; }));
-  EXPECT_EQ(hint("force off [F]", "##MainMenuBar"), "F arms it");
+  EXPECT_EQ(hint("force off [F]", "##MainMenuBar"), "F arms the force");
   desktop->settings.parameters().kind = CouplingKind::standard;
   frames(3);
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("STANDARD"));
@@ -363,7 +364,7 @@ TEST_F(Words, OfYourTurnTickWhatWasDone) {
   note_done(desktop->settings, FirstStep::pull);
   frames(4);
   EXPECT_THAT(words("Your turn"), HasSubstr("Your turn, 2 of 7:"));
-  EXPECT_THAT(words("Your turn"), HasSubstr("Push it nearer and farther"));
+  EXPECT_THAT(words("Your turn"), HasSubstr("Push the tip nearer and farther"));
   click("Close", "Your turn");
   EXPECT_FALSE(desktop->settings.your_turn);
   width = 1440;

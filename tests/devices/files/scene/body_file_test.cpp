@@ -220,7 +220,8 @@ TEST(BodyFile, RefusesWhatABodyCannotBe) {
       {start + "box = [1, 1, 1]\n", {"x.toml:1: body.mass (or density): missing"}},
       {start + "sphere = 0.1\nmass = 1e-7\n", {"body.mass", "1e-07", "1e-06 up to 100 kg"}},
       {start + "sphere = 0.1\nmass = 101\n", {"body.mass", "101"}},
-      {start + "sphere = 0.1\nmass = 1\ndensity = 1\n", {"body.density", "beside mass"}},
+      {start + "sphere = 0.1\nmass = 1\ndensity = 1\n",
+       {"body.density", "mass or density, not both"}},
       {start + "sphere = 1\ndensity = 1000\n", {"body.density", "1000", "up to 100 kg"}},
       {start + "sphere = 1\ndensity = 0\n", {"body.density", "0", "above 0"}},
       {body("inertia = [1, 0, 1]\n"), {"x.toml:6: body.inertia", "[1, 0, 1]", "above 0"}},
@@ -269,9 +270,9 @@ TEST(BodyFile, RefusesWhatAJointCannotBe) {
       {joint(axis + "travel = []\n"), {"body.joint.travel", "at least one"}},
       {joint(axis + "travel = [0, 1]\n"), {"body.joint.travel", "lists of 2"}},
       {joint(axis + "to = \"b\"\n"), {"x.toml:9: body.joint.to", "\"b\"", "name of a body: a"}},
-      {joint(axis + "to = \"a\"\n"), {"x.toml:9: body.joint.to", "does not hang on"}},
+      {joint(axis + "to = \"a\"\n"), {"x.toml:9: body.joint.to", "does not itself hang on"}},
       {joint(axis + "to = \"b\"\n") + body("[body.joint]\nkind = \"ball\"\nto = \"a\"\n", "b"),
-       {"x.toml:9: body.joint.to", "\"b\"", "does not hang on"}},
+       {"x.toml:9: body.joint.to", "\"b\"", "does not itself hang on"}},
   });
 }
 
@@ -283,7 +284,7 @@ TEST(BodyFile, RefusesWhatASpringCannotBe) {
       {spring + "between = [\"a\", \"b\", \"a\"]\n", {"spring.between", "one or two"}},
       {spring + "between = [\"a\", \"c\"]\n", {"spring.between", "name of a body: a, b"}},
       {spring + "between = [\"\", \"a\"]\n", {"spring.between", "name of a body"}},
-      {spring + "between = [\"a\", \"a\"]\n", {"spring.between", "one twice"}},
+      {spring + "between = [\"a\", \"a\"]\n", {"spring.between", "two different bodies"}},
       {spring + "between = [\"a\"]\npoints = [[0, 0, 0]]\n", {"x.toml:13: spring.points", "of 2"}},
       {spring + "between = [\"a\"]\npoints = [[0, 0], [0, 0]]\n", {"spring.points", "of 3"}},
       {spring + "between = [\"a\"]\nlength = -1\n", {"spring.length", "-1"}},
@@ -291,7 +292,7 @@ TEST(BodyFile, RefusesWhatASpringCannotBe) {
       {spring + "between = [\"a\"]\ndamping = -1\n", {"spring.damping", "-1"}},
       {spring + "between = [\"a\"]\nbreaks_at = 0\n", {"spring.breaks_at", "above 0"}},
       {spring + "between = [\"a\"]\nrest = 0\n", {"spring.rest", "no such key"}},
-      {"[[spring]]\nbetween = [\"a\"]\n", {"x.toml:2: spring.between", "there is none"}},
+      {"[[spring]]\nbetween = [\"a\"]\n", {"x.toml:2: spring.between", "the file has no bodies"}},
   });
 }
 

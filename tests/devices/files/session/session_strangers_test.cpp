@@ -124,7 +124,7 @@ TEST_F(StrangersSession, HasNoRunWithoutTheOneBefore) {
   change([](hid_t file) {
     H5Gclose(H5Gcreate2(file, "/lane3", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   });
-  EXPECT_THAT(said(), HasSubstr("a.h5: /lane3: there, but /twin is not"));
+  EXPECT_THAT(said(), HasSubstr("a.h5: /lane3: exists, but /twin does not exist"));
 }
 
 // HDF5 opens the other file when it checks whether the link's target exists: a pipe would make it
