@@ -74,9 +74,12 @@ class Layers : public testing::Test {
     const auto i = 4 * static_cast<std::size_t>(y * kWidth + x);
     return {rgba[i], rgba[i + 1], rgba[i + 2]};
   }
-  Colour seen(const ViewState& state, const Vec3& point) {
+  Colour in_picture(const std::vector<unsigned char>& rgba, const Vec3& point) const {
     const Eigen::Vector2i pixel = camera_.project(point).value().cast<int>();
-    return at(picture(state), pixel.x(), pixel.y());
+    return at(rgba, pixel.x(), pixel.y());
+  }
+  Colour seen(const ViewState& state, const Vec3& point) {
+    return in_picture(picture(state), point);
   }
   static std::shared_ptr<const Model> block(const Vec3& size, const Paint& paint = {},
                                             const std::function<void(Model&)>& change = {}) {
@@ -617,6 +620,30 @@ TEST_F(StillShadows, OfTheTipAreOnTheSceneOnly) {
   both.shade->position = table;
   EXPECT_NEAR(seen(both, on_arm).sum(), seen(arm, on_arm).sum(), 3);
   EXPECT_NEAR(light(table + Vec3(0.1, 0, 0)), seen(nothing(), table + Vec3(0.1, 0, 0)).sum(), 3);
+}
+
+// A picture with all signs leaves nothing behind that changes the next one.
+TEST_F(Layers, LeaveTheNextPictureAsItWouldBe) {
+  put_wall();
+  ViewState all = nothing();
+  for (const Layer& layer : layers()) layer.add(all);
+  all.show_forces = all.show_grid = true;
+  for (const Layer& layer : layers()) {
+    ViewState next = nothing();
+    layer.add(next);
+    view_->set_quality({.msaa = 4, .shadow_size = 0, .soft = false});
+    const auto fresh = picture(next);
+    for (const bool shaded : {false, true}) {
+      all.shade.reset();
+      if (shaded) all.shade = ContactShade{kPoint, -Vec3::UnitY()};
+      picture(all);
+      view_->set_quality({.msaa = 4, .shadow_size = 0, .soft = false});
+      EXPECT_EQ(picture(next), fresh) << layer.name << ", " << shaded;
+    }
+    // Nor does the shade change what is drawn after it.
+    next.shade = ContactShade{Vec3(0, 0.3, -0.2), Vec3::UnitZ()};
+    EXPECT_LE(apart(seen(next, layer.where), in_picture(fresh, layer.where)), 2) << layer.name;
+  }
 }
 
 // A mesh of a body that is not there, or not yet, does no harm.

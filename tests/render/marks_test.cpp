@@ -327,5 +327,14 @@ TEST(LinesOfAPicture, SuitTheGround) {
   }
 }
 
+// Without a like to be beside a ghost is outlined as a whole.
+TEST(Ghosts, HaveAnOutlineWhereTheirLikesAreNotDrawn) {
+  ViewState state;
+  state.device = arm_at(0.1);
+  const auto ghosts = ghosts_of(state, 1e-3);
+  ASSERT_EQ(ghosts.size(), 1u);
+  EXPECT_THAT(ghosts[0].outline, testing::ElementsAre(1, 1));
+}
+
 }  // namespace
 }  // namespace limpid
