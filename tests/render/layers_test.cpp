@@ -646,6 +646,69 @@ TEST_F(Layers, LeaveTheNextPictureAsItWouldBe) {
   }
 }
 
+// Stops of joints and the arm's probes are of glass: both are seen, and what is behind them.
+TEST_F(Layers, HaveStopsAndProbesOfGlass) {
+  Scene stop, probe;
+  stop.add({.shape = JointStop{.joint = 1, .angle = 0.2, .direction = 1}});
+  probe.probes = {{"rod", 1, Vec3(0.05, -0.02, 0), Vec3(0.15, -0.02, 0), 0.02}};
+  ViewState state = nothing();
+  state.proxy.links = behind(0).links;
+  for (const Scene* scene : {&stop, &probe}) {
+    const auto drawn = [&](const Scene& of, bool before_a_block) {
+      show(of);
+      if (before_a_block) {
+        put({{block(Vec3(0.6, 0.02, 0.6), {{0.05f, 0.6f, 0.05f}}), pose_at(Vec3(0.2, 0.3, 0))}});
+      }
+      return picture(state);
+    };
+    const auto plain = drawn(Scene{}, false), glass = drawn(*scene, false),
+               block_alone = drawn(Scene{}, true), through = drawn(*scene, true);
+    int seen_as_glass = 0, hidden = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        if (apart(at(plain, x, y), at(glass, x, y)) < 8) continue;
+        if (apart(at(plain, x, y), at(block_alone, x, y)) < 20) continue;  // the arm is there
+        ++seen_as_glass;
+        hidden += apart(at(glass, x, y), at(through, x, y)) < 5;
+      }
+    }
+    EXPECT_GT(seen_as_glass, 30);
+    EXPECT_LT(hidden, seen_as_glass / 10);
+  }
+}
+
+// The outline of a ghost beside the proxy is seen, and through a wall as well, though fainter.
+TEST_F(Layers, HaveAnOutlineOfTheGhostThroughAWall) {
+  ViewState with = nothing(), without;
+  with.device.links = behind(0.05).links;
+  with.proxy = behind(0.05);
+  for (Pose& link : with.device.links) link.translation().z() += 0.06;
+  with.device.tip = Vec3(0.4, 0.05, 0.06);
+  const auto orange = [&] {
+    int strong = 0, any = 0;
+    const auto rgba = picture(with);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const Colour c = at(rgba, x, y);
+        strong += apart(c, of(palette::kDevice)) < 40;
+        any += c.x() - c.z() > 60;
+      }
+    }
+    return std::pair(strong, any);
+  };
+  put({});
+  const auto [open_strong, open_any] = orange();
+  EXPECT_GT(open_strong, 60) << "as strong as its colour";
+  put({{block(Vec3(0.6, 0.02, 0.4)), pose_at(Vec3(0.2, -0.05, 0))}});
+  const auto [strong, any] = orange();
+  EXPECT_GT(any, 60);
+  EXPECT_LT(strong, open_strong / 3);
+  // At the proxy's place it would surround the proxy: there is none.
+  with.device = with.proxy;
+  put({});
+  EXPECT_LT(orange().first, 10);
+}
+
 // A mesh of a body that is not there, or not yet, does no harm.
 TEST_F(Layers, HaveNoMeshOfABodyThatIsNotThere) {
   const Bounds before = view_->bounds();

@@ -350,7 +350,10 @@ TEST(ModelFile, SaysHowItsReaderEnded) {
 TEST(ModelFile, OutlivesAPlyOfFourBillionVertices) {
   std::string text = ply();
   text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
-  EXPECT_EQ(refusal(bytes_of(text), "a.ply").find("a.ply: "), 0u);
+  EXPECT_EQ(refusal(bytes_of(text), "a.ply"), "a.ply: says that it has more than fits into it");
+  text = dae();
+  text.replace(text.find("count=\"12\""), 10, "count=\"4000000000\"");
+  EXPECT_EQ(refusal(bytes_of(text), "a.dae"), "a.dae: says that it has more than fits into it");
 }
 
 TEST(ModelFile, GivesUpWhenItIsNotWanted) {
