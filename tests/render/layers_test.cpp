@@ -459,7 +459,9 @@ TEST_F(Looks, RepeatMirrorOrClampTheirPicture) {
       {Image::Wrap::mirror, {false, true}},
       {Image::Wrap::clamp, {false, false}}};
   for (const bool across : {true, false}) {
-    for (const auto& [wrap, red] : red_behind) {
+    for (const auto& each : red_behind) {
+      const Image::Wrap wrap = each.first;
+      const auto& red = each.second;
       const auto at = [&](float place) {
         return plate([&](Model& m) {
           for (Vertex& v : m.vertices)
@@ -750,8 +752,9 @@ TEST_F(Layers, LeaveOpenGlAsTheyFoundIt) {
                                                  {GL_SCISSOR_TEST, "clips"},
                                                  {GL_POLYGON_OFFSET_FILL, "moves in depth"}};
     for (const auto& [name, what] : switches) EXPECT_FALSE(glIsEnabled(name)) << what;
-    for (const GLenum name : {GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_ARRAY_BUFFER_BINDING,
-                              GL_RENDERBUFFER_BINDING}) {
+    for (const GLenum name :
+         std::initializer_list<GLenum>{GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING,
+                                       GL_ARRAY_BUFFER_BINDING, GL_RENDERBUFFER_BINDING}) {
       EXPECT_EQ(number(name), 0) << name;
     }
     GLint block = -1;
@@ -776,8 +779,9 @@ TEST_F(Layers, AreTheSameWhateverTheCallerHasSwitchedOn) {
   ViewState all = nothing();
   for (const Layer& layer : layers()) layer.add(all);
   const auto plain = picture(all);
-  for (const GLenum on : {GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_TEST, GL_CULL_FACE,
-                          GL_FRAMEBUFFER_SRGB}) {
+  for (const GLenum on :
+       std::initializer_list<GLenum>{GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_TEST,
+                                     GL_CULL_FACE, GL_FRAMEBUFFER_SRGB}) {
     put_wall();  // so that it is drawn anew
     glEnable(on);
     glScissor(3, 4, 5, 6);

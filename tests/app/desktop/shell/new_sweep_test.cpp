@@ -175,9 +175,11 @@ TEST_F(ANewSweep, IsStartedAndShown) {
   frames(3);
   EXPECT_TRUE(find(chosen.words, kDialog));
   click("Start (Enter)", kDialog);
-  ASSERT_TRUE(until([&] {
+  const auto complete = [&] {
     return desktop->sweep.sweep() != nullptr && desktop->sweep.sweep()->table.complete();
-  })) << desktop->sweep.why_not_started();
+  };
+  for (int i = 0; i < 4 && !complete(); ++i) until(complete);  // a busy computer takes its time
+  ASSERT_TRUE(complete()) << desktop->sweep.why_not_started();
   EXPECT_EQ(desktop->dialog.name(), "sweep");
   const OpenedSweep& sweep = *desktop->sweep.sweep();
   EXPECT_EQ(sweep.table.points(), 2u);
