@@ -134,5 +134,36 @@ TEST(ArmLook, DrawsAnArmWithoutPicturesAsCapsules) {
   EXPECT_EQ(items.base.size(), 1u);
 }
 
+// More joints make thinner links, within 3 mm and 3 cm; the last one ends in a ball as thick as the
+// links before it.
+TEST(ArmLook, DrawsThinnerCapsulesForMoreJoints) {
+  const auto half_width = [](const Item& item) {
+    return item.model.bounds().sizes().minCoeff() / 2;
+  };
+  double before = 0.03;
+  for (const int joints : {2, 4, 6}) {
+    ArmDescription arm = test::random_arm(joints, 1);
+    SceneItems items;
+    items.reach = 0.3;
+    add_arm(arm, items);
+    const double foot = half_width(items.base.at(0)) / 1.5;
+    EXPECT_LT(foot, before) << joints;
+    before = foot;
+    const Vec3 end = arm.tip.translation();
+    double beyond = 0;
+    for (const Vertex& v : items.moving.back().model.vertices) {
+      beyond = std::max(beyond, (v.position.cast<double>() - end).dot(end.normalized()));
+    }
+    EXPECT_NEAR(beyond, foot, 0.02 * foot) << "a ball at the tip";
+    EXPECT_EQ(items.moving.back().link, joints - 1);
+  }
+  for (const auto& [reach, radius] : {std::pair(1e-3, 0.003), std::pair(100.0, 0.03)}) {
+    SceneItems items;
+    items.reach = reach;
+    add_arm(test::random_arm(2, 1), items);
+    EXPECT_NEAR(half_width(items.base.at(0)), 1.5 * radius, 0.03 * radius);
+  }
+}
+
 }  // namespace
 }  // namespace limpid

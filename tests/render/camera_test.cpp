@@ -151,5 +151,32 @@ TEST(Camera, GoesToAViewTheShortWay) {
   }
 }
 
+// On the way all parts are halfway at half of the time; of the distance it is the geometric mean,
+// as of all that is zoomed.
+TEST(Camera, IsHalfwayAtHalfOfTheTime) {
+  Camera camera;
+  camera.resize(1000, 800);
+  camera.frame(Bounds(Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)));
+  camera.finish();
+  const double near = camera.distance();
+  const Vec3 from = camera.target();
+  camera.frame(Bounds(Vec3(0.6, -0.4, -0.4), Vec3(1.4, 0.4, 0.4)));
+  Camera there = camera;
+  there.finish();
+  double took = 0;  // until it is there
+  for (Camera test = camera; (test.eye() - there.eye()).norm() > 1e-12; took += 0.0025) {
+    test.advance(0.0025);
+    ASSERT_LT(took, 5);
+  }
+  camera.advance(took / 2);
+  EXPECT_NEAR(camera.distance(), std::sqrt(near * there.distance()), 0.01 * there.distance());
+  EXPECT_NEAR((camera.target() - (from + there.target()) / 2).norm(), 0, 0.01);
+  // The move begins and ends at rest: a tenth of the time is much less than a tenth of the way.
+  Camera begins = there;
+  begins.frame(Bounds(Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)));
+  begins.advance(took / 10);
+  EXPECT_LT((begins.target() - there.target()).norm(), 0.05 * (from - there.target()).norm());
+}
+
 }  // namespace
 }  // namespace limpid

@@ -97,5 +97,28 @@ TEST(Finish, KeepsThePictureOutsideOfWhatChanges) {
   }
 }
 
+// GL_SAMPLES of the framebuffer that is drawn to.
+TEST(AFrameTarget, HasAsManySamplesAsItIsAskedForOrAllThereAre) {
+  const test::FaultlessContext context(kSize, kSize);
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  ASSERT_GE(most, 4) << "OpenGL 3 has that many";
+  FrameTarget target(LIMPID_SOURCE_DIR "/shaders");
+  for (const auto& [asked, given] : {std::pair(4, 4), {1, 0}, {1000, most}, {0, 0}}) {
+    EXPECT_TRUE(target.begin(kSize, kSize, asked)) << asked << ": it is a new one";
+    GLint samples = -1, viewport[4] = {};
+    glGetIntegerv(GL_SAMPLES, &samples);
+    EXPECT_EQ(samples, given);
+    glGetIntegerv(GL_VIEWPORT, viewport);
+    EXPECT_EQ(viewport[2], kSize);
+    EXPECT_EQ(viewport[3], kSize);
+    if (asked > 0) {
+      EXPECT_FALSE(target.begin(kSize, kSize, asked)) << "the same again";
+    }
+  }
+  EXPECT_TRUE(target.begin(kSize + 1, kSize, 1));
+  EXPECT_TRUE(target.begin(kSize + 1, kSize + 1, 1));
+}
+
 }  // namespace
 }  // namespace limpid

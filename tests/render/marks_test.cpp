@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "render/gl/line_batch.h"
 #include "render/lit_pass.h"
@@ -325,6 +326,90 @@ TEST(LinesOfAPicture, SuitTheGround) {
     EXPECT_EQ(light_of((*on)[1].color_from) > 1.5f, bright) << "the error, against the ground";
     EXPECT_EQ(light_of((*on)[0].color_from) < 1.5f, bright) << "its edge, against the error";
   }
+}
+
+// Without a like to be beside a ghost is outlined as a whole.
+TEST(Ghosts, HaveAnOutlineWhereTheirLikesAreNotDrawn) {
+  ViewState state;
+  state.device = arm_at(0.1);
+  const auto ghosts = ghosts_of(state, 1e-3);
+  ASSERT_EQ(ghosts.size(), 1u);
+  EXPECT_THAT(ghosts[0].outline, testing::ElementsAre(1, 1));
+}
+
+// The light's picture is the sphere around the box: its rim is the edge of the map.
+TEST(AShadowMap, CoversTheSphereAroundABox) {
+  const test::FaultlessContext context(8, 8);
+  ShadowMap map(512);
+  const Bounds box(Vec3(-0.3, 0.1, -0.2), Vec3(0.5, 0.4, 0.6));
+  const glm::vec3 to_light = glm::normalize(glm::vec3(-0.3f, -0.55f, 1));
+  map.aim(box, to_light);
+  const glm::vec3 middle(box.center().x(), box.center().y(), box.center().z());
+  const float radius = 0.5f * static_cast<float>(box.diagonal().norm());
+  EXPECT_NEAR(map.texel(), 2 * radius / 512, 1e-7);
+  const glm::vec3 across = glm::normalize(glm::cross(to_light, glm::vec3(0, 1, 0)));
+  for (const glm::vec3& side : {across, glm::cross(to_light, across)}) {
+    const glm::vec4 rim = map.clip() * glm::vec4(middle + radius * side, 1);
+    EXPECT_NEAR(glm::length(glm::vec2(rim)), 1, 1e-5);
+    EXPECT_LT(std::abs(rim.z), 1);
+  }
+  const glm::vec4 near = map.clip() * glm::vec4(middle + radius * to_light, 1),
+                  far = map.clip() * glm::vec4(middle - radius * to_light, 1);
+  EXPECT_LT(near.z, far.z) << "what is nearer to the light is before";
+  EXPECT_GT(near.z, -1);
+  EXPECT_LT(far.z, 1);
+  for (const glm::vec4& corner : {glm::vec4(-1, -1, -1, 1), glm::vec4(1, 1, 1, 1)}) {
+    const glm::vec4 looked = map.lookup() * glm::inverse(map.clip()) * corner;
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(looked[i], corner[i] < 0 ? 0 : 1, 1e-4);
+  }
+}
+
+// Lines at multiples of 5 cm in both directions, from edge to edge, fainter towards the edges;
+// those at multiples of 10 cm are stronger.
+TEST(TheGrid, HasALineEachFiveCentimetres) {
+  const test::FaultlessContext context(8, 8);
+  LineBatch batch;
+  const Bounds area(Vec3(-0.22, 0.03, -0.1), Vec3(0.18, 0.23, -0.1));
+  add_grid(area, Theme::dark, batch);
+  std::map<int, std::vector<LineBatch::Line>> across, along;  // by multiples of 5 cm
+  for (const LineBatch::Line& line : batch.lines()) {
+    EXPECT_NEAR(line.from.z, -0.1, 1e-3);
+    EXPECT_NEAR(line.to.z, line.from.z, 1e-6);
+    const bool upright = std::abs(line.from.x - line.to.x) < 1e-6;
+    const float at = (upright ? line.from.x : line.from.y) / 0.05f;
+    EXPECT_NEAR(at, std::round(at), 1e-4);
+    (upright ? across : along)[static_cast<int>(std::lround(at))].push_back(line);
+  }
+  const auto numbers = [](const auto& lines) {
+    std::vector<int> all;
+    for (const auto& [number, pieces] : lines) all.push_back(number);
+    return all;
+  };
+  EXPECT_THAT(numbers(across), testing::ElementsAre(-4, -3, -2, -1, 0, 1, 2, 3));
+  EXPECT_THAT(numbers(along), testing::ElementsAre(1, 2, 3, 4));
+  for (const auto& [number, pieces] : across) {
+    EXPECT_NEAR(pieces.front().from.y, 0.03, 1e-6);
+    EXPECT_NEAR(pieces.back().to.y, 0.23, 1e-6);
+    for (std::size_t i = 1; i < pieces.size(); ++i) EXPECT_EQ(pieces[i].from, pieces[i - 1].to);
+    for (const LineBatch::Line& piece : pieces) {
+      EXPECT_LE(piece.color_from.a, 0.201f);
+      EXPECT_EQ(piece.color_from.r, 1) << "white on dark";
+    }
+    EXPECT_LT(pieces.front().color_from.a, pieces[pieces.size() / 2].color_from.a);
+    EXPECT_LT(pieces.back().color_to.a, pieces[pieces.size() / 2].color_from.a);
+  }
+  const auto strength = [&](int number) {
+    const auto& pieces = across.at(number);
+    return pieces[pieces.size() / 2].color_from.a;
+  };
+  EXPECT_GT(strength(0), 2 * strength(-1));
+  EXPECT_GT(strength(0), strength(-4)) << "fainter near the edge";
+  LineBatch light;
+  add_grid(area, Theme::light, light);
+  EXPECT_EQ(light.lines().at(0).color_from.r, 0) << "black on light";
+  LineBatch wide;
+  add_grid(Bounds(Vec3(-50, -50, 0), Vec3(50, 50, 0)), Theme::dark, wide);
+  EXPECT_LT(wide.lines().size(), 2000u) << "not thousands of lines";
 }
 
 }  // namespace

@@ -103,5 +103,28 @@ TEST(AutoQuality, IgnoresTimesThatAreNone) {
   }
 }
 
+// Each level waits anew for as many good seconds as the first one, and so does one after a reset.
+TEST(AutoQuality, WaitsAsLongForEachStepUp) {
+  const auto seconds_to_change = [](AutoQuality& quality) {
+    int frames = 0;
+    do {
+      ++frames;
+    } while (!quality.frame(0.010));
+    return frames * 0.010;
+  };
+  AutoQuality quality(3);
+  const double first = seconds_to_change(quality);
+  EXPECT_NEAR(seconds_to_change(quality), first, 0.05);
+  EXPECT_NEAR(seconds_to_change(quality), first, 0.05);
+  AutoQuality other(3);
+  EXPECT_EQ(play(other, first - 0.5, [](int) { return 0.010; }), 0);
+  other.reset();
+  EXPECT_NEAR(seconds_to_change(other), first, 0.05);
+  AutoQuality broken(3);
+  EXPECT_EQ(play(broken, first - 0.5, [](int) { return 0.010; }), 0);
+  EXPECT_EQ(play(broken, 1.2, [](int) { return 0.021; }), 0) << "not fast for a second";
+  EXPECT_GE(seconds_to_change(broken), first - 0.3);
+}
+
 }  // namespace
 }  // namespace limpid

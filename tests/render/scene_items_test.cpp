@@ -190,5 +190,51 @@ TEST(Surroundings, TakeInWhatIsNearTheArmAndThePartOfAMeshThatIs) {
   EXPECT_NEAR(with.min().z(), std::min(bare.min().z(), middle.z() - room), 1e-9);
 }
 
+TEST(SceneItems, OfASceneTakeThePlaceOfThoseBefore) {
+  const test::TempDir dir;
+  std::ofstream(dir / "seen.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const VisualPicture seen{dir / "seen.obj", pose_at(Vec3(0.1, 0, 0)), 0.1};
+  Scene scene;
+  scene.add({.pose = pose_at(Vec3(0, 0, -0.1)), .shape = Plane{}});
+  scene.add({.shape = Sphere{0.02}, .body = Body{}});
+  scene.add({.shape = JointStop{.joint = 1, .angle = 0.3, .direction = 1}});
+  scene.probes.push_back({"tip", 1, Vec3::Zero(), Vec3(0.1, 0, 0), 0.01});
+  const ArmDescription arm = test::omni();
+  SceneItems items = collect_items(arm, scene, std::span(&seen, 1));
+  const auto counts = [&] {
+    return std::array{items.base.size(),   items.moving.size(),      items.world.size(),
+                      items.bodies.size(), items.starts.size(),      items.walls.size(),
+                      items.probes.size(), items.level_planes.size()};
+  };
+  const auto first = counts();
+  EXPECT_EQ(first[3] + first[4] + first[5] + first[6] + first[7], 5u);
+  EXPECT_EQ(first[2], 2u) << "the plane and what is only looked at";
+  collect_scene_items(arm, scene, std::span(&seen, 1), items);
+  EXPECT_EQ(counts(), first);
+  collect_scene_items(arm, Scene{}, {}, items);
+  EXPECT_EQ(counts(), (std::array<std::size_t, 8>{first[0], first[1]}));
+}
+
+// A probe is drawn where it touches, and never thinner than can be seen.
+TEST(SceneItems, HaveTheProbesOfTheArm) {
+  Scene scene;
+  const Vec3 from(0.01, 0.02, 0.03), to(0.11, 0.02, 0.03);
+  scene.probes = {{"rod", 2, from, to, 0.01}, {"point", 0, from, from, 0}};
+  const SceneItems items = collect_items(test::omni(), scene, {});
+  ASSERT_EQ(items.probes.size(), 2u);
+  EXPECT_EQ(items.probes[0].link, 2);
+  const Vec3 r = Vec3::Constant(0.01);
+  expect_same_bounds(items.probes[0].model.bounds(), Bounds(from - r, to + r));
+  EXPECT_EQ(items.probes[1].link, 0);
+  EXPECT_GT(items.probes[1].model.bounds().sizes().minCoeff(), 0.003);
+}
+
+// The room before the arm is as wide to both sides of its foot.
+TEST(Surroundings, FrameAsMuchRoomOnBothSidesOfTheArm) {
+  const Bounds room = collect_items(test::omni(), Scene{}, {}).arm_bounds;
+  const double foot = test::omni().joints[0].origin.translation().y();
+  EXPECT_NEAR(room.max().y() - foot, foot - room.min().y(), 0.005);
+}
+
 }  // namespace
 }  // namespace limpid

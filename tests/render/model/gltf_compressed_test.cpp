@@ -429,5 +429,22 @@ TEST(GltfCompressed, StaysTouchableWithoutAPictureOfAnUnknownKind) {
   EXPECT_NE(model.warnings[0].find("KHR_texture_basisu"), std::string::npos);
 }
 
+// Each of these numbers is needed: without it nothing is decompressed.
+TEST(GltfCompressed, RefusesMeshoptWithoutItsNumbers) {
+  const Bytes whole = meshopt_file("");
+  const std::string all(whole.begin(), whole.end());
+  for (const std::string missing : {R"("count":6,"mode")", R"("byteStride":12)",
+                                    R"("mode":"ATTRIBUTES")", R"("byteLength":)"}) {
+    std::string text = all;
+    const std::size_t at = missing == R"("byteLength":)"
+                               ? text.find(missing, text.find("EXT_meshopt_compression\":{"))
+                               : text.find(missing);
+    ASSERT_NE(at, text.npos) << missing;
+    text[at + 1] = 'X';  // a key that nobody reads
+    EXPECT_THROW(parse_gltf(Bytes(text.begin(), text.end()), "part.glb"), std::runtime_error)
+        << missing;
+  }
+}
+
 }  // namespace
 }  // namespace limpid

@@ -287,5 +287,122 @@ TEST(GltfContent, TakesColoursOfWholeNumbersForParts) {
     EXPECT_TRUE(v.color.isApprox(Eigen::Vector3f(1, 0, 0.2f), 1e-5f)) << v.color.transpose();
 }
 
+// Numbers of things count from zero: indices may be the first accessor of a file.
+TEST(GltfContent, ReadsIndicesFromTheFirstAccessor) {
+  GltfBuilder file;
+  const int indices =
+      file.accessor(file.view(std::vector<std::uint16_t>{4, 1, 3}), 5123, "SCALAR", 3);
+  ASSERT_EQ(indices, 0);
+  file.positions({9, 9, 9, 0, 0, 0, 9, 9, 9, 1, 0, 0, 0, 1, 0});
+  file.primitive = R"(,"indices":0)";
+  EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 1);
+}
+
+// The elements that a sparse accessor leaves alone may lie apart from each other.
+TEST(GltfContent, AppliesTheExceptionsOfASparseAccessorWithGaps) {
+  GltfBuilder file;
+  const int positions = file.view(std::vector<float>{0, 0, 0, 7, 7, 1, 0, 0, 7, 7, 0, 1, 0, 7, 7},
+                                  R"(,"byteStride":20)");
+  const int which = file.view(std::vector<std::uint16_t>{2});
+  const int values = file.view(std::vector<float>{0, 3, 0});
+  const std::string sparse =
+      R"(,"sparse":{"count":1,"indices":{"bufferView":)" + std::to_string(which) +
+      R"(,"componentType":5123},"values":{"bufferView":)" + std::to_string(values) + "}}";
+  file.attribute("POSITION", file.accessor(positions, 5126, "VEC3", 3, sparse));
+  EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 3);
+}
+
+// 3.6.2.2: an accessor may begin within its view, and its elements lie apart.
+TEST(GltfContent, ReadsElementsBetweenOthers) {
+  GltfBuilder file;
+  const int view = file.view(std::vector<float>{7, 7, 0, 0, 0, 7, 7, 1, 0, 0, 7, 7, 0, 1, 0},
+                             R"(,"byteStride":20)");
+  file.attribute("POSITION", file.accessor(view, 5126, "VEC3", 3, R"(,"byteOffset":8)"));
+  EXPECT_FLOAT_EQ(area(parse_gltf(file.binary(), "part.glb")), 1);
+}
+
+// 3.7.2.1: integers stand for their part of the largest one; the least is -1, not below.
+TEST(GltfContent, ReadsNumbersOfEveryKind) {
+  const auto first_colour = [](int view, int kind, GltfBuilder& file) {
+    file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    file.attribute("COLOR_0", file.accessor(view, kind, "VEC4", 3, R"(,"normalized":true)"));
+    file.primitive = R"(,"material":0)";
+    file.more = R"(,"materials":[{}])";
+    return parse_gltf(file.binary(), "part.glb").vertices[0].color;
+  };
+  const Eigen::Vector3f expected(0, 0.6f, 1);
+  GltfBuilder bytes, shorts, signs, signed_shorts;
+  EXPECT_TRUE(first_colour(bytes.view(Bytes{0, 153, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0}), 5121, bytes)
+                  .isApprox(expected, 1e-5f));
+  EXPECT_TRUE(first_colour(shorts.view(std::vector<std::uint16_t>{0, 39321, 65535, 65535, 0, 0, 0,
+                                                                  0, 0, 0, 0, 0}),
+                           5123, shorts)
+                  .isApprox(expected, 1e-5f));
+  EXPECT_TRUE(
+      first_colour(signs.view(std::vector<std::int8_t>{-128, 76, 127, 127, 0, 0, 0, 0, 0, 0, 0, 0}),
+                   5120, signs)
+          .isApprox(expected, 5e-3f));
+  EXPECT_TRUE(first_colour(signed_shorts.view(std::vector<std::int16_t>{-32768, 19660, 32767, 32767,
+                                                                        0, 0, 0, 0, 0, 0, 0, 0}),
+                           5122, signed_shorts)
+                  .isApprox(expected, 1e-4f));
+}
+
+// 3.9.2: a factor beyond its range is taken to the range.
+TEST(GltfContent, ReadsTheFactorsOfAMaterial) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  file.primitive = R"(,"material":0)";
+  file.more = R"(,"materials":[{"alphaMode":"BLEND","emissiveFactor":[0.1,0.2,0.3],)"
+              R"("pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,1.5,0.4],)"
+              R"("metallicFactor":0.6,"roughnessFactor":-1}}])";
+  const Model model = parse_gltf(file.binary(), "part.glb");
+  for (const Vertex& v : model.vertices) {
+    EXPECT_TRUE(v.color.isApprox(Eigen::Vector3f(0.1f, 0.2f, 1), 1e-6f));
+    EXPECT_TRUE(v.surface.isApprox(Eigen::Vector2f(0.6f, 0), 1e-6f));
+    EXPECT_FLOAT_EQ(v.opacity, 0.4f);
+  }
+  const Finish& finish = model.parts[0].material;
+  EXPECT_EQ(finish.glow, (std::array{0.1f, 0.2f, 0.3f}));
+  EXPECT_FALSE(finish.two_sided);
+  EXPECT_EQ(finish.color, -1);
+  EXPECT_EQ(finish.normal, -1);
+}
+
+// A texture with coordinates other than the first one's is left out, and one of an unknown kind.
+TEST(GltfContent, SaysWhichTexturesAreLeftOut) {
+  GltfBuilder file = textured_square();
+  file.more += R"(,"materials":[{"normalTexture":{"index":0,"texCoord":1},)"
+               R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+  Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_EQ(model.parts[0].material.normal, -1);
+  EXPECT_EQ(model.parts[0].material.color, 0);
+  EXPECT_EQ(model.warnings,
+            std::vector<std::string>{"a texture with coordinates of its own is left out"});
+  file = textured_square();
+  file.more = R"(,"textures":[{"extensions":{"ACME_texture":{}}}],"materials":[{)"
+              R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+  model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_EQ(model.parts[0].material.color, -1);
+  EXPECT_EQ(model.warnings, std::vector<std::string>{
+                                "a texture of a kind that is not read is left out: ACME_texture"});
+}
+
+// A node's own transform: turned, then moved, its parent's after it; or a matrix, column by column.
+TEST(GltfContent, PlacesNodesInTheirParents) {
+  GltfBuilder file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  file.nodes = R"({"children":[1],"translation":[10,0,0]},)"
+               R"({"mesh":0,"translation":[0,2,0],"rotation":[0,0,0.70710678,0.70710678],)"
+               R"("scale":[3,1,1]})";
+  Model model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_TRUE(model.vertices[1].position.isApprox(Eigen::Vector3f(10, 5, 0), 1e-5f));
+  EXPECT_TRUE(model.vertices[2].position.isApprox(Eigen::Vector3f(9, 2, 0), 1e-5f));
+  file.nodes = R"({"mesh":0,"matrix":[0,3,0,0,-1,0,0,0,0,0,1,0,10,2,0,1]})";
+  model = parse_gltf(file.binary(), "part.glb");
+  EXPECT_TRUE(model.vertices[1].position.isApprox(Eigen::Vector3f(10, 5, 0), 1e-5f));
+  EXPECT_TRUE(model.vertices[2].position.isApprox(Eigen::Vector3f(9, 2, 0), 1e-5f));
+}
+
 }  // namespace
 }  // namespace limpid

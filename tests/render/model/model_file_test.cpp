@@ -10,8 +10,10 @@
 #include <bit>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "render/model/model_program.h"
 #include "tests/render/model/gltf_builder.h"
@@ -348,7 +350,10 @@ TEST(ModelFile, SaysHowItsReaderEnded) {
 TEST(ModelFile, OutlivesAPlyOfFourBillionVertices) {
   std::string text = ply();
   text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
-  EXPECT_EQ(refusal(bytes_of(text), "a.ply").find("a.ply: "), 0u);
+  EXPECT_EQ(refusal(bytes_of(text), "a.ply"), "a.ply: says that it has more than fits into it");
+  text = dae();
+  text.replace(text.find("count=\"12\""), 10, "count=\"4000000000\"");
+  EXPECT_EQ(refusal(bytes_of(text), "a.dae"), "a.dae: says that it has more than fits into it");
 }
 
 TEST(ModelFile, GivesUpWhenItIsNotWanted) {
@@ -396,6 +401,46 @@ TEST(ModelFile, KnowsTheUnitAndTheAxisThatAFileSays) {
     const Vector3f high = model.bounds().max().cast<float>();
     EXPECT_TRUE(high.isApprox(Vector3f(0.01f, 0.02f, 0.03f), 1e-5f)) << "the file's own axes";
   }
+}
+
+// glTF 2.0, 4.4 and 3.6.2.4: chunks fill whole words, and numbers lie at multiples of their size.
+TEST_F(ModelFolder, IsConvertedIntoAValidGlb) {
+  const std::string text = obj("mtllib a.mtl\nvt 0 0\nusemtl red\n", "usemtl seen\n");
+  const ConvertedModel made =
+      convert_model(bytes_of(text), *model_kind("a.obj"), "a.obj", folder_, {});
+  EXPECT_TRUE(made.outside);
+  EXPECT_TRUE(made.warnings.empty());
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, made.glb.data() + at, 4);
+    return value;
+  };
+  ASSERT_GT(made.glb.size(), 28u);
+  EXPECT_EQ(word(0), 0x46546C67u);
+  EXPECT_EQ(word(4), 2u);
+  EXPECT_EQ(word(8), made.glb.size());
+  const std::size_t json = word(12), binary = 20 + json;
+  EXPECT_EQ(word(16), 0x4E4F534Au);
+  EXPECT_EQ(json % 4, 0u);
+  EXPECT_EQ(word(binary) % 4, 0u);
+  EXPECT_EQ(word(binary + 4), 0x004E4942u);
+  EXPECT_EQ(binary + 8 + word(binary), made.glb.size());
+  const auto gltf =
+      nlohmann::json::parse(made.glb.begin() + 20, made.glb.begin() + 20 + static_cast<long>(json));
+  EXPECT_EQ(gltf["asset"]["version"], "2.0");
+  EXPECT_LE(gltf["buffers"][0]["byteLength"].get<std::size_t>(), word(binary));
+  std::size_t end = 0;
+  for (const auto& view : gltf["bufferViews"]) {
+    const auto at = view["byteOffset"].get<std::size_t>();
+    EXPECT_EQ(at % 4, 0u);
+    EXPECT_GE(at, end) << "no two share bytes";
+    end = at + view["byteLength"].get<std::size_t>();
+    EXPECT_LE(end, gltf["buffers"][0]["byteLength"].get<std::size_t>());
+  }
+  EXPECT_EQ(gltf["images"][0]["mimeType"], "image/png");
+  EXPECT_EQ(gltf["materials"].size(), 2u);
+  EXPECT_EQ(gltf["meshes"][0]["primitives"].size(), 2u);
+  expect_red_and_picture(parse_model(made.glb, "a.glb"));
 }
 
 }  // namespace

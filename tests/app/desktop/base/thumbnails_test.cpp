@@ -37,5 +37,25 @@ TEST(Thumbnails, TheOldestGoAndOtherFilesStay) {
   keep_newest(folder / "none", 3);  // an absent folder is no error
 }
 
+// A scene's picture lies beside it. A session's is the one made of it, else the one that came
+// along.
+TEST(Thumbnails, OfScenesAndSessionsAreWhereTheyLie) {
+  const test::TempDir temp;
+  setenv("XDG_CACHE_HOME", (temp / "cache").c_str(), 1);
+  EXPECT_EQ(picture_of(temp / "scenes/table.toml"), temp / "scenes/thumbnails/table.png");
+  const fs::path session = temp / "sessions/table.h5";
+  const fs::path made = thumbnail_of(session), shipped = temp / "scenes/thumbnails/table.png";
+  EXPECT_EQ(picture_of(session), made) << "neither is there";
+  fs::create_directories(shipped.parent_path());
+  std::ofstream(shipped) << "x";
+  EXPECT_EQ(picture_of(session), shipped) << "one came along";
+  fs::create_directories(made.parent_path());
+  std::ofstream(made) << "x";
+  EXPECT_EQ(picture_of(session), made) << "both are there";
+  fs::remove(shipped);
+  EXPECT_EQ(picture_of(session), made);
+  unsetenv("XDG_CACHE_HOME");
+}
+
 }  // namespace
 }  // namespace limpid

@@ -128,5 +128,56 @@ TEST_F(AnalysisWords, AreOfTheBandThatIsChosen) {
   EXPECT_TRUE(find(fmt::format("felt at {:.3g} Hz", band_)));
 }
 
+// The tooltip of each chart names the numbers that it draws.
+TEST_F(AnalysisWords, ExplainEachChart) {
+  p_.kind = CouplingKind::proposed;
+  p_.eta = 0.6;
+  set_wall(400);
+  draw();
+  const TipLimits l = limits();
+  const TipWall mine = wall(l);
+  const auto within = [&](const std::string& title) {
+    const auto at = find(title);
+    EXPECT_TRUE(at) << title << " is not in:\n" << words();
+    if (!at) return std::string();
+    show_mouse({at->middle().x, at->max.y + 40});
+    frames();
+    std::string said;
+    for (const test::DrawnText& each : test::drawn_texts()) {
+      if (each.window.starts_with("##Tooltip")) said += (said.empty() ? "" : " ") + each.text;
+    }
+    away();
+    return said;
+  };
+  const std::string walls = within("stiffest wall [N/m]");
+  EXPECT_THAT(walls, HasSubstr(fmt::format("{:.0f} N/m", mine.stiffness)));
+  EXPECT_THAT(walls, HasSubstr(mine.bound));
+  EXPECT_THAT(walls, HasSubstr(fmt::format("{:.0f} N/m", l.every_hand)));
+  EXPECT_THAT(walls, HasSubstr("Colgate and Schenkel"));
+  const std::string inertia = within("inertia felt [g at the tip] over frequency [Hz]");
+  EXPECT_THAT(inertia, HasSubstr("at eta 0.6"));
+  EXPECT_THAT(inertia, HasSubstr(fmt::format("natural {:.3g} g", 1e3 * l.felt.m)));
+  const std::string damping = within("damping felt [N s/m] over frequency [Hz]");
+  EXPECT_THAT(damping, HasSubstr(fmt::format("{:.2g} N s/m", l.felt.least_damping(0.6, p_.band))));
+  EXPECT_THAT(damping, HasSubstr(fmt::format("up to {:.3g} Hz", p_.band)));
+}
+
+TEST_F(AnalysisWords, ExplainEachFigure) {
+  p_.kind = CouplingKind::proposed;
+  set_wall(400);
+  draw();
+  for (const auto& [label, words] :
+       {std::pair("stiffest in this scene", "Within what this coupling renders well"),
+        {"felt at 7 Hz", "Inertia and damping at the tip"},
+        {"?_min, all frequencies", "the worst mode at this pose"},
+        {"?_min, this band", "only below the human's bandwidth"},
+        {"?_min in this grip", "Routh"},
+        {"modes of M_L", "Eigenvalues of M1 + M2"},
+        {"slowest pole in this grip", "held by the grip"}}) {
+    EXPECT_THAT(hint(label), HasSubstr(words)) << label;
+  }
+  EXPECT_THAT(words(), HasSubstr("for ")) << "on whose account they are";
+}
+
 }  // namespace
 }  // namespace limpid

@@ -1,5 +1,7 @@
 // Fields of the scene's panel: each changes its own number, in its unit and within its range, and
 // says what it is.
+#include "devices/files/scene/scene_fields.h"
+
 #include <numbers>
 
 #include "app/desktop/scene/scene_panel.h"
@@ -7,6 +9,7 @@
 #include "core/touch/mass_properties.h"
 #include "tests/app/desktop/widgets/read_panel.h"
 #include "tests/support/built_in.h"
+#include "tests/support/meshes.h"
 
 namespace limpid {
 namespace {
@@ -468,6 +471,87 @@ TEST_F(SceneFields, OfABallMoveItsCentreAndSize) {
   type_into("Radius", "7");
   EXPECT_EQ(object().pose.translation(), Vec3(0, -0.005, 0));
   EXPECT_NEAR(std::get<Sphere>(object().shape).radius, 0.007, 1e-12);
+}
+
+// A square whose edges are 1 in its file, and the fields about that file.
+class ModelFields : public SceneFields {
+ protected:
+  void open_model() {
+    const test::Triangles square = test::grid(1, 1);
+    auto model = std::make_shared<Model>();
+    for (const Eigen::Vector3f& v : square.vertices) model->vertices.push_back({v, v});
+    model->indices = square.indices;
+    model->parts = {{0, static_cast<std::uint32_t>(square.indices.size())}};
+    Object object = test::obstacle(square);
+    object.name = "it";
+    test::mesh_of(object).model = "square.stl";
+    SceneDocument scene;
+    scene.scene.add(object);
+    document_.open(arm_, std::move(scene), MeshModels{model}, true);
+    document_.editor().select(0);
+    show([this] {
+      panel_.draw(
+          document_, arm_, fixed_, [](std::string_view) {}, [](const Object&) {});
+      document_.note_changes();
+    });
+  }
+  const Mesh& mesh() const { return test::mesh_of(object()); }
+  // Opens a list by its caption, and clicks one of its words.
+  void choose(const char* caption, const char* word) {
+    const auto at = find(caption);
+    ASSERT_TRUE(at) << words();
+    click(ImVec2{0.7f * kWidth, at->middle().y});
+    click(word, "##Combo");
+  }
+};
+
+TEST_F(ModelFields, SetItsScaleOrItsLargestExtent) {
+  open_model();
+  type_into("Scale", "2.5");
+  EXPECT_NEAR(mesh().scale, 2.5, 1e-12);
+  type_into("Largest extent", "50");
+  EXPECT_NEAR(mesh().size() * 1, 0.05, 1e-12) << "of a square whose edge is 1";
+  EXPECT_THAT(hint("Scale"), HasSubstr("as large as its file says"));
+}
+
+TEST_F(ModelFields, SetTheUnitAndTheAxesOfItsFile) {
+  open_model();
+  choose("Unit of the file", "mm");
+  EXPECT_EQ(mesh().unit, 0.001);
+  EXPECT_EQ(mesh().scale, 1);
+  choose("Unit of the file", "in");
+  EXPECT_EQ(mesh().unit, 0.0254);
+  EXPECT_FALSE(mesh().y_up);
+  choose("Axis up", "y");
+  EXPECT_TRUE(mesh().y_up);
+  choose("Axis up", "z");
+  EXPECT_FALSE(mesh().y_up);
+  EXPECT_THAT(hint("Unit of the file"), HasSubstr("What its coordinates are in"));
+  EXPECT_THAT(hint("Axis up"), HasSubstr("points up"));
+}
+
+TEST_F(ModelFields, SayWhatItIsMadeOf) {
+  open_model();
+  EXPECT_EQ(value("triangles"), "2");
+  EXPECT_THAT(hint("triangles"), HasSubstr("square.stl"));
+  const std::string health = mesh().triangles->health().text();
+  ASSERT_NE(health, "") << "a square is open";
+  EXPECT_THAT(sentences(), HasSubstr(health.substr(0, health.find(' '))));
+  EXPECT_FALSE(find("A closed surface."));
+}
+
+TEST_F(SceneFields, OfAMaterialAreThoseOfAUsualOne) {
+  open({body_of(Sphere{0.02})});
+  for (const UsualMaterial& usual : std::span(kUsualMaterials).first(4)) {
+    const auto at = find("Material");
+    ASSERT_TRUE(at) << words();
+    click(ImVec2{0.7f * kWidth, at->middle().y});
+    click(usual.name, "##Combo");
+    EXPECT_EQ(usual_material(object().material), &usual) << usual.name;
+    EXPECT_TRUE(find(usual.name)) << "its name is shown";
+  }
+  type_into("Mass", "5");
+  EXPECT_EQ(usual_material(object().material), &kUsualMaterials[3]) << "only the mass changed";
 }
 
 }  // namespace

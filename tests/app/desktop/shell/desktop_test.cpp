@@ -619,6 +619,24 @@ TEST_F(ADesktop, WritesBesideTheWindowAndSaysWhatBecameOfIt) {
   EXPECT_TRUE(desktop->notices.all().back().bad);
 }
 
+// A real device is not armed by somebody who sees a recording; that is said as a warning.
+TEST_F(ADesktop, ArmsNoRealDeviceOverARecording) {
+  const auto wire = plug_in(3);
+  ASSERT_TRUE(until([&] { return loop().snapshot().connected; }));
+  desktop->playback.open(fs::path(LIMPID_ASSETS_DIR) / "sessions/table.h5");
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  ASSERT_TRUE(loop().device_in_place());
+  desktop->notices.clear();
+  desktop->toggle_force();
+  ASSERT_FALSE(desktop->notices.all().empty());
+  EXPECT_THAT(desktop->notices.all().back().text, testing::HasSubstr("Go back to live"));
+  EXPECT_TRUE(desktop->notices.all().back().bad);
+  EXPECT_FALSE(desktop->live.force_armed());
+  frames(30);
+  EXPECT_EQ(arming(), Arming::off);
+  EXPECT_EQ(wire->torque, 0);
+}
+
 TEST_F(ADesktop, ChangesNoDeviceInARecording) {
   record_something();
   desktop->devices.use("another");

@@ -292,5 +292,63 @@ TEST_F(AView, LeavesTheMouseToWhoHasTakenIt) {
   EXPECT_FALSE(asked_.turned || asked_.clicked);
 }
 
+// Shift ends a move in depth that has begun, also when it is let go again.
+TEST_F(AView, EndsAMoveInDepthWithShift) {
+  draw();
+  const Vec3 middle = tip() - 0.04 * camera_.forward() - 0.1 * camera_.right();
+  objects_.add({.name = "block", .pose = pose_at(middle), .shape = Sphere{0.008}});
+  const auto depth = [&] { return (controls_.goal - tip()).dot(camera_.forward()); };
+  point(seen(tip()));
+  press(0, true);
+  point(seen(middle));
+  draw();
+  const double begun = depth();
+  ASSERT_LT(begun, -1e-4);
+  ASSERT_GT(begun, -0.03) << "it is on its way";
+  show_modifiers(false, true, false);
+  draw();
+  const double held = depth();
+  show_modifiers(false, false, false);
+  for (int i = 0; i < 60; ++i) draw();
+  EXPECT_NEAR(depth(), held, 1e-6);
+  press(0, false);
+}
+
+// Once the mouse has moved, the hand takes an object's depth also where it was at the beginning.
+TEST_F(AView, TakesADepthWhereTheDragBeganOnceTheMouseHasMoved) {
+  draw();
+  const Eigen::Vector2d at = seen(tip());
+  point(at);
+  press(0, true);
+  point(at + Eigen::Vector2d(60, 0));
+  const Vec3 middle = tip() + 0.05 * camera_.forward();
+  objects_.add({.name = "ball", .pose = pose_at(middle), .shape = Sphere{0.008}});
+  for (int i = 0; i < 60; ++i) point(at);
+  EXPECT_NEAR((controls_.goal - tip()).dot(camera_.forward()), 0.05, 2e-3);
+  press(0, false);
+}
+
+// The wheel moves the plane in which the hand is dragged, and ends a move in depth.
+TEST_F(AView, PushesTheHandWithTheWheel) {
+  draw();
+  const auto depth = [&] { return (controls_.goal - tip()).dot(camera_.forward()); };
+  point(seen(tip()));
+  press(0, true);
+  const double distance = camera_.distance();
+  ImGui::GetIO().MouseWheel = 1;
+  draw();
+  ImGui::GetIO().MouseWheel = 0;
+  draw();
+  const double one = depth();
+  EXPECT_GT(one, 1e-4) << "away from the eye";
+  ImGui::GetIO().MouseWheel = -2;
+  draw();
+  ImGui::GetIO().MouseWheel = 0;
+  draw();
+  EXPECT_NEAR(depth(), -one, 1e-6);
+  EXPECT_EQ(camera_.distance(), distance) << "it does not zoom meanwhile";
+  press(0, false);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -1,0 +1,171 @@
+// Names, icons and outlines of objects, and objects that can be added.
+#include "app/desktop/scene/object_signs.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "app/style/palette.h"
+#include "app/style/theme.h"
+#include "tests/app/plot/imgui_frames.h"
+
+namespace limpid {
+namespace {
+
+TEST(NewObjects, AreOneOfEachShapeAndFourThatMove) {
+  std::set<std::string> labels, fixed;
+  int moving = 0, first = 0;
+  for (const NewObject& each : new_objects()) {
+    EXPECT_TRUE(labels.insert(each.label).second) << each.label;
+    EXPECT_FALSE(each.object.name.empty());
+    first += each.first_that_moves;
+    if (each.object.body) {
+      ++moving;
+      EXPECT_GT(each.object.body->mass, 0);
+      EXPECT_GT(each.object.material.friction_static, each.object.material.friction_kinetic);
+      EXPECT_NE(std::string(each.label).find("that moves"), std::string::npos);
+    } else {
+      fixed.insert(shape_name(each.object.shape));
+      EXPECT_EQ(moving, 0) << "those that move come last";
+    }
+  }
+  EXPECT_EQ(fixed,
+            (std::set<std::string>{"sphere", "box", "cylinder", "capsule", "plane", "joint stop"}));
+  EXPECT_EQ(moving, 4);
+  EXPECT_EQ(first, 1);
+  EXPECT_STREQ(shape_name(Mesh{}), "mesh");
+}
+
+// All vertices of a colour in the last frame.
+std::vector<ImVec2> strokes(ImU32 wanted) {
+  std::vector<ImVec2> all;
+  const ImDrawData& data = *ImGui::GetDrawData();
+  for (int n = 0; n < data.CmdListsCount; ++n) {
+    for (const ImDrawVert& v : data.CmdLists[n]->VtxBuffer) {
+      if (v.col == wanted) all.push_back(v.pos);
+    }
+  }
+  return all;
+}
+ScreenRect box_of(const std::vector<ImVec2>& points) {
+  ScreenRect box{{1e9f, 1e9f}, {-1e9f, -1e9f}};
+  for (const ImVec2& p : points) {
+    box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};
+    box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y)};
+  }
+  return box;
+}
+
+class SignsOfObjects : public ImGuiFrames {
+ protected:
+  SignsOfObjects() {
+    apply_theme(Theme::dark, 1);
+    frame([] {});
+    camera_.resize(400, 300);
+    camera_.look(Camera::View::side);
+    camera_.frame(Bounds(Vec3(-0.2, -0.1, -0.15), Vec3(0.2, 0.1, 0.15)));
+    camera_.finish();
+  }
+  std::vector<ImVec2> outline(const Object& object) {
+    frame([&] { draw_outline(object, camera_, view_, *ImGui::GetBackgroundDrawList()); });
+    return strokes(colour(current_palette().accent));
+  }
+  ImVec2 seen(const Vec3& point) const {
+    const Eigen::Vector2d p = *camera_.project(point);
+    return {view_.min.x + static_cast<float>(p.x()), view_.min.y + static_cast<float>(p.y())};
+  }
+  // Expects the outline to reach from one place of the world to another one, by a few pixels.
+  void expect_reach(const Object& object, const Vec3& half) {
+    const ScreenRect box = box_of(outline(object));
+    const Vec3 at = object.pose.translation();
+    const ImVec2 low = seen(at + Vec3(-half.x(), 0, -half.z())),
+                 high = seen(at + Vec3(half.x(), 0, half.z()));
+    const std::string name = shape_name(object.shape);
+    EXPECT_NEAR(box.min.x, low.x, 4) << name;
+    EXPECT_NEAR(box.max.x, high.x, 4) << name;
+    EXPECT_NEAR(box.min.y, high.y, 4) << name;
+    EXPECT_NEAR(box.max.y, low.y, 4) << name;
+  }
+  Camera camera_;
+  const ScreenRect view_{{50, 20}, {450, 320}};
+};
+
+TEST_F(SignsOfObjects, OutlineEachShapeWhereItIs) {
+  const Pose place = pose_at(Vec3(0.05, 0, 0.02));
+  expect_reach({.pose = place, .shape = Sphere{0.05}}, Vec3::Constant(0.05));
+  expect_reach({.pose = place, .shape = Box{{0.1, 0.02, 0.06}}}, {0.05, 0, 0.03});
+  expect_reach({.pose = place, .shape = Cylinder{0.03, 0.1}}, {0.03, 0, 0.05});
+  expect_reach({.pose = place, .shape = Capsule{0.03, 0.08}}, {0.03, 0, 0.07});
+  for (const Shape& shape : {Shape{Mesh{}}, Shape{JointStop{}}}) {
+    EXPECT_TRUE(outline({.pose = place, .shape = shape}).empty()) << shape_name(shape);
+  }
+}
+
+TEST_F(SignsOfObjects, OutlineAPlaneByARingAndItsNormal) {
+  const Object plane{.shape = Plane{Vec3::UnitX()}};
+  const ScreenRect box = box_of(outline(plane));
+  EXPECT_NEAR(box.max.x, seen(Vec3(0.03, 0, 0)).x, 4) << "along the normal";
+  EXPECT_NEAR(box.min.x, seen(Vec3::Zero()).x, 4) << "the ring is seen from its edge";
+  EXPECT_NEAR(box.min.y, seen(Vec3(0, 0, 0.03)).y, 4);
+  EXPECT_NEAR(box.max.y, seen(Vec3(0, 0, -0.03)).y, 4);
+}
+
+TEST_F(SignsOfObjects, OutlineTheirPartsWithTheirPose) {
+  Object object{.pose = pose_at(Vec3(-0.05, 0, 0)), .shape = Sphere{0.01}};
+  object.parts = {{pose_at(Vec3(0.1, 0, 0)), Sphere{0.02}}};
+  const ScreenRect box = box_of(outline(object));
+  EXPECT_NEAR(box.min.x, seen(Vec3(-0.06, 0, 0)).x, 4);
+  EXPECT_NEAR(box.max.x, seen(Vec3(0.07, 0, 0)).x, 4);
+  object.pose.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY()).toRotationMatrix();
+  const ScreenRect turned = box_of(outline(object));
+  EXPECT_NEAR(turned.max.y, seen(Vec3(0, 0, -0.12)).y, 4) << "x points down";
+}
+
+TEST_F(SignsOfObjects, OutlineNothingBehindTheEye) {
+  const Object behind{.pose = pose_at(camera_.eye() - 0.5 * camera_.forward()),
+                      .shape = Box{Vec3::Constant(0.1)}};
+  EXPECT_TRUE(outline(behind).empty());
+}
+
+TEST_F(SignsOfObjects, HaveIconsOfTheirShapesWithinTheirRoom) {
+  constexpr ImU32 kInk = IM_COL32(1, 2, 3, 255);
+  const ImVec2 middle{100, 80};
+  constexpr float kHalf = 10;
+  const auto icon = [&](const Shape& shape) {
+    frame([&] {
+      ImGui::SetNextWindowPos({0, 0});
+      ImGui::SetNextWindowSize({300, 300});
+      ImGui::Begin("icons");
+      draw_icon(shape, middle, kHalf, kInk);
+      ImGui::End();
+    });
+    return strokes(kInk);
+  };
+  std::set<std::string> pictures;
+  for (const Shape& shape : {Shape{Plane{}}, Shape{Sphere{}}, Shape{Box{}}, Shape{Cylinder{}},
+                             Shape{Capsule{}}, Shape{Mesh{}}, Shape{JointStop{}}}) {
+    const auto points = icon(shape);
+    const std::string name = shape_name(shape);
+    ASSERT_FALSE(points.empty()) << name;
+    const ScreenRect box = box_of(points);
+    const float room = kHalf + 3;
+    EXPECT_GE(box.min.x, middle.x - room) << name;
+    EXPECT_LE(box.max.x, middle.x + room) << name;
+    EXPECT_GE(box.min.y, middle.y - room) << name;
+    EXPECT_LE(box.max.y, middle.y + room) << name;
+    EXPECT_GT(box.width(), 0.8f * kHalf) << name;
+    EXPECT_GT(box.height(), 1.2f * kHalf) << name;
+    std::string picture;
+    for (const ImVec2& p : points) picture += fmt::format("{:.1f} {:.1f},", p.x, p.y);
+    EXPECT_TRUE(pictures.insert(picture).second) << name << " looks like another shape";
+  }
+  // Upright shapes are as wide to the left as to the right.
+  for (const Shape& shape : {Shape{Plane{}}, Shape{Sphere{}}, Shape{Box{}}, Shape{Cylinder{}},
+                             Shape{Capsule{}}, Shape{Mesh{}}}) {
+    const ScreenRect box = box_of(icon(shape));
+    EXPECT_NEAR(middle.x - box.min.x, box.max.x - middle.x, 1.5) << shape_name(shape);
+  }
+}
+
+}  // namespace
+}  // namespace limpid
