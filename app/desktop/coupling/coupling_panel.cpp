@@ -410,6 +410,14 @@ void draw_unsolved(const CouplingReading& now) {
     read_out("Ticks in which objects stood still", fmt::format("{:.0f}", now.stood_still), why,
              why);
   }
+  if (now.turned_less > 0) {
+    const char* why =
+        "A mechanism moved so fast that one of its bodies would have turned by more than a radian "
+        "in a tick. The body turned by a radian and lost the rest of its energy. Heavier bodies, "
+        "softer springs and a shorter tick avoid these ticks.";
+    read_out("Ticks in which objects turned less", fmt::format("{:.0f}", now.turned_less), why,
+             why);
+  }
 }
 
 // Returns a way out of a coupling that gives energy.

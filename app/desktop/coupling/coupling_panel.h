@@ -25,6 +25,7 @@ struct CouplingReading {
   double unsettled;    // ticks without a joint solution for contacts and motors at their limit
   double left_out;     // contacts of bodies for which there was no room
   double stood_still;  // ticks in which forces of bodies were not found
+  double turned_less;  // ticks in which mechanisms turned as far as they may
   double error = 0;    // |x_E| in its unit
   std::string error_unit = "rad";
   double gap = 0;      // of the tips of device and proxy [m]

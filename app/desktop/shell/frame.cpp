@@ -244,7 +244,8 @@ void Frame::draw_coupling(ScreenRect rect) {
                           at(Column::torque_governor),
                           at(Column::unsettled),
                           layout.bodies() > 0 ? at(Column::objects_left_out) : 0,
-                          layout.bodies() > 0 ? at(Column::objects_stood_still) : 0};
+                          layout.bodies() > 0 ? at(Column::objects_stood_still) : 0,
+                          layout.bodies() > 0 ? at(Column::objects_turned_less) : 0};
   for (int j = 0; j < layout.dof(); ++j) {
     if (channels.limited(row, j)) reading.limited.push_back(j);
   }

@@ -69,7 +69,8 @@ class CouplingWords : public ReadPanel {
                        .torque_governor = 1,
                        .unsettled = 0,
                        .left_out = 0,
-                       .stood_still = 0};
+                       .stood_still = 0,
+                       .turned_less = 0};
 };
 
 TEST_F(CouplingWords, AreOfTheLawThatIsChosen) {
@@ -250,12 +251,14 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
   EXPECT_FALSE(find("Ticks without a solution"));
   EXPECT_FALSE(find("Contact points left out"));
   EXPECT_FALSE(find("Ticks in which objects stood still"));
+  EXPECT_FALSE(find("Ticks in which objects turned less"));
   now_.contact_governor = 0.994;
   now_.damping_governor = 0.5;
   now_.torque_governor = 0.25;
   now_.unsettled = 3;
   now_.left_out = 1;
   now_.stood_still = 2;
+  now_.turned_less = 5;
   draw();
   EXPECT_EQ(value("Wall force rendered"), "99 %");
   EXPECT_EQ(value("Damping removed"), "50 %");
@@ -263,9 +266,11 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
   EXPECT_EQ(value("Ticks without a solution"), "3");
   EXPECT_EQ(value("Contact points left out"), "1");
   EXPECT_EQ(value("Ticks in which objects stood still"), "2");
+  EXPECT_EQ(value("Ticks in which objects turned less"), "5");
   for (const char* bad :
        {"Wall force rendered", "Damping removed", "Torque rendered", "Ticks without a solution",
-        "Contact points left out", "Ticks in which objects stood still"}) {
+        "Contact points left out", "Ticks in which objects stood still",
+        "Ticks in which objects turned less"}) {
     EXPECT_TRUE(broken(bad)) << bad;
   }
   EXPECT_THAT(hint("Damping removed"), HasSubstr("cancels less of the device's damping"));
