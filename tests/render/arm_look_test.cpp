@@ -165,5 +165,31 @@ TEST(ArmLook, DrawsThinnerCapsulesForMoreJoints) {
   }
 }
 
+// URDF's boxes, cylinders and spheres have their sizes; a box's edges are only a little round.
+TEST(ArmLook, DrawsPlainShapesOfUrdf) {
+  const auto half = [](Visual::Shape shape, const Vec3& size) {
+    Visual visual;
+    visual.link = 0;
+    visual.shape = shape;
+    visual.size = size;
+    return Vec3(drawn(visual).bounds().sizes() / 2);
+  };
+  const Vec3 box = half(Visual::Shape::box, {0.1, 0.2, 0.3});
+  EXPECT_LT((box - Vec3(0.05, 0.1, 0.15)).norm(), 1e-6);
+  EXPECT_LT((half(Visual::Shape::cylinder, {0.05, 0.4, 0}) - Vec3(0.05, 0.05, 0.2)).norm(), 2e-3);
+  EXPECT_LT((half(Visual::Shape::sphere, {0.07, 0, 0}) - Vec3::Constant(0.07)).norm(), 2e-3);
+  Visual visual;
+  visual.link = 0;
+  visual.shape = Visual::Shape::box;
+  visual.size = {0.1, 0.1, 0.1};
+  int flat = 0;
+  for (const Vertex& v : drawn(visual).vertices) flat += v.position.z() == 0.05f;
+  EXPECT_GE(flat, 4);
+  for (const Vertex& v : drawn(visual).vertices) {
+    const Eigen::Vector3f off = v.position.cwiseAbs();
+    EXPECT_GT(off.sum(), 0.15f - 3 * 0.011f) << "its corners are nearly those of the box";
+  }
+}
+
 }  // namespace
 }  // namespace limpid

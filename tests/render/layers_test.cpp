@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "render/gl/gpu_model.h"
 #include "render/gl/offscreen.h"
 #include "render/mesh_shapes.h"
 #include "render/palette.h"
@@ -494,6 +495,36 @@ TEST_F(Looks, OfObjectsAreTintedUnlessTheyHaveAColour) {
   EXPECT_LE(std::abs(red.y() - red.z()), 6);
   EXPECT_LE(plain.maxCoeff() - plain.minCoeff(), 60) << "no colour";
   EXPECT_LT(plain.x(), red.x());
+}
+
+// A model on the card has the box of what is drawn of it, and pieces of at most 16384 triangles,
+// each with its own box.
+TEST_F(Looks, AreOfPiecesThatKnowTheirBoxes) {
+  Model sheet;
+  constexpr std::uint32_t kTriangles = 20'000;
+  for (std::uint32_t i = 0; i < kTriangles; ++i) {
+    const auto x = static_cast<float>(i);
+    for (const Eigen::Vector3f& corner :
+         {Eigen::Vector3f(x, 0, 0), Eigen::Vector3f(x + 1, 0, 0), Eigen::Vector3f(x, 2, 3)}) {
+      sheet.indices.push_back(static_cast<std::uint32_t>(sheet.vertices.size()));
+      sheet.vertices.push_back({corner, Eigen::Vector3f::UnitZ()});
+    }
+  }
+  sheet.vertices.push_back({Eigen::Vector3f(0, 0, 900), Eigen::Vector3f::UnitZ()});  // not drawn
+  sheet.parts = {{0, 3 * kTriangles}};
+  const GpuModel model(sheet);
+  EXPECT_EQ(model.box().min(), Eigen::Vector3f(0, 0, 0));
+  EXPECT_EQ(model.box().max(), Eigen::Vector3f(kTriangles, 2, 3));
+  ASSERT_EQ(model.pieces(false).size(), 2u);
+  const GpuModel::Piece &first = model.pieces(false)[0], &second = model.pieces(false)[1];
+  EXPECT_EQ(first.first, 0u);
+  EXPECT_EQ(first.count, 3u * 16384);
+  EXPECT_EQ(second.first, first.count);
+  EXPECT_EQ(first.count + second.count, 3 * kTriangles);
+  EXPECT_EQ(first.box.max().x(), 16384);
+  EXPECT_EQ(second.box.min().x(), 16384);
+  EXPECT_EQ(second.box.max().x(), kTriangles);
+  EXPECT_EQ(model.pieces(true).size(), 2u) << "without a coarse version the same is drawn";
 }
 
 // Seen from above: the shadow of a thing that stands still is beside it on the table.

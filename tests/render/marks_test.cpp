@@ -412,5 +412,34 @@ TEST(TheGrid, HasALineEachFiveCentimetres) {
   EXPECT_LT(wide.lines().size(), 2000u) << "not thousands of lines";
 }
 
+// Bodies of a re-run and of each further run are ghosts where they are apart from the first one's.
+TEST(Ghosts, OfBodiesAreThoseThatAreApart) {
+  const auto at = [](double x) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = x;
+    return pose;
+  };
+  ViewState state;
+  state.bodies = {at(0), at(1)};
+  const std::vector<Pose> starts{at(0), at(1)};
+  EXPECT_TRUE(body_ghosts(state, starts, 1e-3).empty());
+  state.rerun_bodies = {at(0), at(1.5)};
+  state.beside.resize(2);
+  state.beside[0].bodies = {at(0.2), at(1)};
+  state.beside[1].bodies = {at(0), at(1)};
+  const auto ghosts = body_ghosts(state, starts, 1e-3);
+  ASSERT_EQ(ghosts.size(), 3u);
+  EXPECT_EQ(ghosts[0].color, palette::kRerun);
+  EXPECT_EQ(ghosts[1].color, palette::of_lane(palette::kProxy, 1, state.theme));
+  EXPECT_EQ(ghosts[2].color, palette::of_lane(palette::kProxy, 2, state.theme));
+  const bool shown[3][2] = {{false, true}, {true, false}, {false, false}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (int body = 0; body < 2; ++body) {
+      EXPECT_EQ(ghosts[i].has(body), shown[i][body]) << i << ", " << body;
+    }
+  }
+  EXPECT_NEAR(ghosts[0].links.at(1)[3][0], 1.5, 1e-6);
+}
+
 }  // namespace
 }  // namespace limpid

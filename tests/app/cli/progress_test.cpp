@@ -45,7 +45,7 @@ TEST(ALineOfProgress, IsNeverRoundedUpToTheEnd) {
 }
 
 TEST(ALineOfProgress, HasSecondsMinutesAndHours) {
-  // One unit a second: what is left is as many seconds.
+  // The rate is one unit a second: as many seconds are left.
   const auto left = [](double seconds) {
     const std::string line = progress_line({"x", seconds + 1, "", "r"}, 1, 1);
     return line.substr(line.rfind("r, ") + 3);

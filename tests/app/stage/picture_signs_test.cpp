@@ -8,6 +8,7 @@
 
 #include "app/style/palette.h"
 #include "app/style/theme.h"
+#include "core/coupling/laws.h"
 #include "tests/app/plot/imgui_frames.h"
 #include "tests/support/drawn_ink.h"
 #include "tests/support/drawn_text.h"
@@ -105,6 +106,41 @@ TEST_F(SignsOfAPicture, SayTheGapsOfFurtherRunsBelowEachOther) {
   EXPECT_LT(texts[0].max.y, seen(Vec3::Zero()).y);
   EXPECT_GT(texts[1].min.y, seen(Vec3::Zero()).y);
   EXPECT_GT(texts[2].min.y, texts[1].max.y);
+}
+
+TEST_F(SignsOfAPicture, SayWhichRunAGapIsOf) {
+  view_.device.tip = Vec3(0, 0, 0.002);
+  view_.beside.resize(2);
+  view_.beside[0].device.tip = Vec3(0, 0, 0.003);
+  view_.beside[1].device.tip = Vec3(0, 0, 0.004);
+  const RunNames names{{"one", "two", "three"}};
+  const auto texts =
+      draw([&](ImDrawList& list) { draw_gap(view_, camera_, {picture_}, list, names); });
+  ASSERT_EQ(texts.size(), 3u);
+  EXPECT_EQ(texts[0].text, "one: gap 2.00 mm");
+  EXPECT_EQ(texts[1].text, "two: gap 3.00 mm");
+  EXPECT_EQ(texts[2].text, "three: gap 4.00 mm");
+}
+
+TEST_F(SignsOfAPicture, NameARunAboveItsPartWithASampleOfItsCurves) {
+  const auto name = [&](const RunNames& names, std::size_t run) {
+    return draw([&](ImDrawList& list) { draw_run_name(names, run, picture_, list); }).at(0);
+  };
+  const test::DrawnText plain = name({{"one", "two"}}, 1);
+  EXPECT_EQ(plain.text, "two");
+  EXPECT_NEAR(plain.middle().x, 300, 3);
+  EXPECT_GT(plain.min.y, picture_.min.y);
+  EXPECT_LT(plain.max.y, picture_.min.y + 40);
+  const int law = static_cast<int>(CouplingKind::predictive);
+  const test::DrawnText coloured = name({{"one", "two"}, true, {0, law}}, 1);
+  EXPECT_GT(coloured.min.x, plain.min.x) << "the sample is before it";
+  EXPECT_EQ(coloured.min.y, plain.min.y);
+  const ImVec2 sample{coloured.min.x - 0.4f * em(), coloured.middle().y};
+  bool seen = false;
+  for (int i = 0; i < 30 && !seen; ++i) {
+    seen = has({sample.x - static_cast<float>(i), sample.y}, law_ink(current_palette(), law));
+  }
+  EXPECT_TRUE(seen) << "in the law's colour";
 }
 
 TEST_F(SignsOfAPicture, DrawAPullAsALineWithItsForce) {

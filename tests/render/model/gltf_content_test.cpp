@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "render/model/gltf_model.h"
 #include "render/model/simplify.h"
@@ -184,6 +185,23 @@ TEST(GltfContent, ReadsAMaterialWithItsTextures) {
   EXPECT_EQ(colors.wrap_u, Image::Wrap::clamp);
   EXPECT_EQ(colors.wrap_v, Image::Wrap::repeat);
   EXPECT_EQ(colors.rgba, (Bytes{255, 0, 0, 255}));
+}
+
+// 10497 repeats, 33648 mirrors, 33071 clamps, each way by itself.
+TEST(GltfContent, WrapsATextureEachWayByItself) {
+  for (const auto& [sampler, u, v] :
+       {std::tuple(R"({"wrapS":33071,"wrapT":33648})", Image::Wrap::clamp, Image::Wrap::mirror),
+        std::tuple(R"({"wrapS":33648,"wrapT":33071})", Image::Wrap::mirror, Image::Wrap::clamp),
+        std::tuple(R"({"wrapS":10497})", Image::Wrap::repeat, Image::Wrap::repeat)}) {
+    GltfBuilder file = textured_square();
+    const std::string usual = R"({"wrapS":33071})";
+    file.more.replace(file.more.find(usual), usual.size(), sampler);
+    file.more += R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
+    const Model model = parse_gltf(file.binary(), "part.glb");
+    ASSERT_EQ(model.images.size(), 1u);
+    EXPECT_EQ(model.images[0].wrap_u, u) << sampler;
+    EXPECT_EQ(model.images[0].wrap_v, v) << sampler;
+  }
 }
 
 // A file may ask for any height; a picture takes ten times the height at most.

@@ -1,4 +1,6 @@
 // Words of the whole window: menus, sections, dialogs and the bar below, in each of their states.
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -295,6 +297,24 @@ TEST_F(Words, OfPlaybackLeadThroughTheRecording) {
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("playing table.h5"));
   click("Back to live", "transport");
   EXPECT_FALSE(desktop->playback.on());
+}
+
+TEST_F(Words, OfPlaybackListItsSpeeds) {
+  play_table();
+  const Player& player = desktop->playback.shown()->player();
+  for (const auto& [text, speed] : {std::pair("0.1x", 0.1),
+                                    {"0.2x", 0.2},
+                                    {"0.5x", 0.5},
+                                    {"2x", 2.0},
+                                    {"5x", 5.0},
+                                    {"10x", 10.0},
+                                    {"1x", 1.0}}) {
+    const auto now = find(fmt::format("{:g}x", player.speed), "transport");
+    ASSERT_TRUE(now) << words("transport");
+    click(now->middle());
+    click(text, "##Combo");
+    EXPECT_EQ(player.speed, speed);
+  }
 }
 
 TEST_F(Words, OfTheVideoDialogReckonItsLength) {
