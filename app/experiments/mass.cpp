@@ -342,7 +342,8 @@ FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
 Outcome mass(TrialRunner& lab) {
   const std::vector<FeltBody> all = feel_bodies(lab);
   Outcome outcome;
-  outcome.figure.title = "The mass that is felt, and the least that can be held";
+  outcome.figure.title =
+      "The mass felt of a body that is held, and the smallest mass that can be held";
   outcome.figure.columns = 2;
   for (const double mass : kHeldMasses) outcome.figure.panels.push_back(felt_panel(all, mass));
   for (const FeltBody& one : all) {

@@ -82,7 +82,7 @@ Cornered cornered(const Session& s, double limit) {
 void judge(const CornerSet& set, const Cornered& worst, int at_limit, std::vector<Check>& checks) {
   const std::string where = fmt::format("{} corners, {}: ", set.count, set.label);
   checks.push_back(
-      at_least(where + "corners in which a motor met its limit", at_limit, set.count / 3));
+      at_least(where + "runs in which a motor met its limit", at_limit, set.count / 3));
   checks.push_back(at_most(where + "highest E_c [J]", worst.energy, kMostEnergy));
   checks.push_back(
       at_most(where + "largest energy given to the human [J]", worst.port, kMostEnergy));
@@ -240,10 +240,10 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
 
 void press_into_corners(TrialRunner& lab, Outcome& outcome) {
   const ArmDescription desktop = read_urdf(default_device());
-  FigurePanel torque{.title = "Pressed into random corners: contact torque",
+  FigurePanel torque{.title = "Pressed into random corners of walls: contact torque",
                      .x_label = "limit of every motor [N m]",
                      .y_label = "largest contact torque / limit [-]"};
-  FigurePanel jump{.title = "Pressed into random corners: the proxy's steps",
+  FigurePanel jump{.title = "Pressed into random corners of walls: the proxy's steps",
                    .x_label = "limit of every motor [N m]",
                    .y_label = "longest way in a tick [mrad]"};
   torque.x_range = jump.x_range = {0.08, 0.62};
@@ -321,7 +321,8 @@ Outcome saturation(TrialRunner& lab) {
   outcome.checks = {
       at_most("anti-windup, while held: rms error of the estimate, divided by the rms true torque",
               error(with, kHeldFrom, kPullOut) / human(with), 0.02),
-      at_least("wound up, while held: rms estimate divided by the rms true torque",
+      at_least("wound up, while the hand holds: rms of the estimated torque divided by rms of the "
+               "true torque",
                estimated(without) / human(without), 2),
       at_most("wound up: deviation of the estimate from the paper's d - (tau_c - tau_m), divided "
               "by the estimate",

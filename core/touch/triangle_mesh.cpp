@@ -185,7 +185,7 @@ struct TriangleMesh::Tree {
 std::string MeshHealth::text() const {
   std::string out;
   const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
-  if (degenerate > 0) add(counted(degenerate, "triangle") + " without an area left out");
+  if (degenerate > 0) add(counted(degenerate, "triangle") + " of zero area ignored");
   if (odd_edges > 0) add(counted(odd_edges, "edge") + " where the surface branches or turns over");
   if (open_edges > 0) add(counted(open_edges, "open edge") + ": touched as a sheet, on both sides");
   return out;

@@ -80,7 +80,8 @@ void read_joint(Payload body, std::size_t joint, DeviceTraits& traits) {
   const double lower = milli_signed(load_le<std::uint16_t>(body, Raw1Feature::ranges + 4 * joint));
   const double upper =
       milli_signed(load_le<std::uint16_t>(body, Raw1Feature::ranges + 4 * joint + 2));
-  check(lower < upper, fmt::format("joint {} goes from {} to {} rad", joint + 1, lower, upper),
+  check(lower < upper,
+        fmt::format("the range of joint {} is {} to {} rad", joint + 1, lower, upper),
         "the lower end must be below the upper");
   traits.lower.push_back(lower);
   traits.upper.push_back(upper);
@@ -115,7 +116,7 @@ void read_joint_of_any_kind(Payload body, std::size_t joint, DeviceTraits& trait
   const double lower = number_at(body, Raw2Feature::lower, joint);
   const double upper = number_at(body, Raw2Feature::upper, joint);
   check(lower < upper && lower >= -farthest && upper <= farthest,
-        fmt::format("joint {} goes from {} to {} {}", joint + 1, lower, upper, angle),
+        fmt::format("the range of joint {} is {} to {} {}", joint + 1, lower, upper, angle),
         slides ? "the lower end must be below the upper, both within 10 m"
                : "the lower end must be below the upper, both within 100 rad");
   const double resolution = number_at(body, Raw2Feature::resolution, joint);

@@ -264,7 +264,8 @@ void draw_observer(const Parameters& p, const Analysis& a) {
                 "unstable while the hand holds. Raise \xCE\xB7 or soften the grip.",
                 p.eta, a.eta_min_compliant)
           : std::string();
-  read_out("Least stable in this grip", fmt::format("{:.3f}", a.eta_min_compliant), unstable,
+  read_out("Least stable \xCE\xB7 in this grip", fmt::format("{:.3f}", a.eta_min_compliant),
+           unstable,
            "Below this \xCE\xB7 the loop is unstable in a hand of this stiffness and damping "
            "(Routh's limit, with the proxy behind the coupling's spring)");
 }

@@ -173,7 +173,7 @@ bool edit_spring(BodySpring& spring, const Scene& scene, std::string_view& what)
                   [&](const std::string& name) { return name != spring.between[0]; })) {
     what = "to";
   }
-  constexpr std::array kEnds{"Holds there x, y, z [mm]", "Holds here x, y, z [mm]"};
+  constexpr std::array kEnds{"Second end x, y, z [mm]", "First end x, y, z [mm]"};
   for (std::size_t i = 0; i < 2; ++i) {
     Vec3 point = 1e3 * spring.points[i];
     if (drag3(kEnds[1 - i], point, 0.25, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum, "%.1f",

@@ -70,8 +70,8 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
                         static_cast<double>(std::max<std::int64_t>(status.ticks, 1));
   parts.push_back({missed < 1e-3 ? "on time" : fmt::format("{:.1f} % of ticks late", 100 * missed),
                    missed > 0.01 ? colours.broken : colours.muted,
-                   fmt::format("{} ticks missed: they began after the next one was due.\n{} began "
-                               "more than 0.2 ms late, {} slipped: given up {}.",
+                   fmt::format("{} ticks began after the next tick was due.\n{} ticks began more "
+                               "than 0.2 ms late. {} ticks were skipped, {}.",
                                status.missed, status.late, status.slipped,
                                loop.device_in_place() ? "at once" : "after a stall")});
   std::string name = info(law.kind).label;

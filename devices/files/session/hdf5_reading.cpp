@@ -157,7 +157,7 @@ const char* kind_of_link(H5L_type_t type) {
   switch (type) {
     case H5L_TYPE_SOFT: return "a soft link";
     case H5L_TYPE_EXTERNAL: return "a link to another file";
-    default: return "a link that another program defined";
+    default: return "an HDF5 link of a type that another program defined";
   }
 }
 

@@ -56,7 +56,8 @@ class PackedCopy {
     attempt([&] {
       draft_.emplace(out);
       // A draft with a name would stay if the program is killed.
-      if (draft_->has_name()) throw FileError("no files without a name");
+      if (draft_->has_name())
+        throw FileError("this folder cannot hold a file without a name, as the packed copy needs");
       file_.emplace(out, draft_->descriptor(), info, Storage::packed);
     });
   }

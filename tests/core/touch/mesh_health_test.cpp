@@ -53,7 +53,7 @@ TEST(Health, CountsOpenEdgesOddOnesAndWhatHasNoArea) {
   const auto mesh = poor.mesh();
   EXPECT_EQ(mesh->health().degenerate, 2u);
   EXPECT_TRUE(mesh->health().closed());
-  EXPECT_EQ(mesh->health().text(), "2 triangles without an area left out");
+  EXPECT_EQ(mesh->health().text(), "2 triangles of zero area ignored");
   EXPECT_EQ(mesh->triangles(), 20u);
 }
 

@@ -265,9 +265,9 @@ TEST(Raw2, RefusesDevicesThatAreNotFitForAHand) {
   Raw2Description kind = good;
   kind[byte(9)] = 2;
   EXPECT_THAT(complaint(kind), HasSubstr("joint 2 is of kind 2"));
-  EXPECT_THAT(with(16, 2), HasSubstr("joint 1 goes from 2 to 1 rad"));
-  EXPECT_THAT(with(52, 11), HasSubstr("joint 2 goes from"));
-  EXPECT_THAT(with(52, kNan), HasSubstr("joint 2 goes from"));
+  EXPECT_THAT(with(16, 2), HasSubstr("the range of joint 1 is 2 to 1 rad"));
+  EXPECT_THAT(with(52, 11), HasSubstr("the range of joint 2 is"));
+  EXPECT_THAT(with(52, kNan), HasSubstr("the range of joint 2 is"));
   EXPECT_THAT(with(80, 0), HasSubstr("resolution of joint 1"));
   EXPECT_THAT(with(112, -1), HasSubstr("joint 1 can push with -1 N m"));
   EXPECT_THAT(with(116, kNan), HasSubstr("joint 2 can push with"));

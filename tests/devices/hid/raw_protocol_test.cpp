@@ -184,7 +184,8 @@ TEST(RawProtocol, RefusesDevicesThatAreNotFitForAHand) {
   EXPECT_THAT(with(4, 100), HasSubstr("100 Hz"));
   EXPECT_THAT(with(6, 11), HasSubstr("11 ms"));
   EXPECT_THAT(with(6, 0), HasSubstr("0 ms"));
-  EXPECT_THAT(with(8 + 4 + 2, static_cast<std::uint16_t>(-2000)), HasSubstr("joint 2 goes from"));
+  EXPECT_THAT(with(8 + 4 + 2, static_cast<std::uint16_t>(-2000)),
+              HasSubstr("the range of joint 2 is"));
   EXPECT_THAT(with(36 + 4, 0), HasSubstr("joint 3 can push with 0"));
   for (const float bad : {0.f, -1.f, std::numeric_limits<float>::quiet_NaN()}) {
     RawReport feature = good;

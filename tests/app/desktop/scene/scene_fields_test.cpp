@@ -311,9 +311,8 @@ TEST_F(SceneFields, OfASpringChangeTheirOwnNumber) {
     double (*of)(const BodySpring&);
   };
   constexpr OfSpring kFields[] = {
-      {"Holds here x, y, z [mm]", "11", 0.011, [](const BodySpring& s) { return s.points[0].y(); }},
-      {"Holds there x, y, z [mm]", "22", 0.022,
-       [](const BodySpring& s) { return s.points[1].y(); }},
+      {"First end x, y, z [mm]", "11", 0.011, [](const BodySpring& s) { return s.points[0].y(); }},
+      {"Second end x, y, z [mm]", "22", 0.022, [](const BodySpring& s) { return s.points[1].y(); }},
       {"Length", "33", 0.033, [](const BodySpring& s) { return s.length; }},
       {"Stiffness", "44", 44, [](const BodySpring& s) { return s.stiffness; }},
       {"Damping", "5.5", 5.5, [](const BodySpring& s) { return s.damping; }},
