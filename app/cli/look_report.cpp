@@ -151,7 +151,7 @@ std::string look_text(const LookedDevice& device, const DeviceSeen& seen) {
   if (!traits.made_by.empty()) text += look_line("driven by", traits.made_by);
   text +=
       look_line("motors",
-                traits.pushes ? "the device has motors, and got no force" : "it has none") +
+                traits.pushes ? "the device has motors, and got no force" : "the device has none") +
       look_line("axes", device.checked ? "adjusted as they were checked"
                                        : "as the device reports them; not checked yet") +
       look_line("joints", std::to_string(traits.dof)) +

@@ -152,7 +152,7 @@ class AnyArm(SystemTest):
                            'stiffness = 600.0\nunit = "m"\n')
         found = limpid("check", scene)
         self.assertEqual(found.status, 1, found.out + found.err)
-        self.assertIn("part: it is 40 m long, more than 10 m", found.out)
+        self.assertIn("part: the model is 40 m long, more than 10 m", found.out)
 
     def test_check_says_how_far_the_tip_gets_and_from_where(self) -> None:
         # Links of 0.3 and 0.25 m in a plane, the tip 0.02 m beside and 0.05 m below, 0.2 m of slide.

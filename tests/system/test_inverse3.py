@@ -135,7 +135,7 @@ class InTheWindow(WindowTest):
 
     def test_pushes_only_while_it_is_armed_and_starts_anew_without_force(self) -> None:
         self.wait_in_the_loop()
-        self.wait_for_notice("F arms the force")
+        self.wait_for_notice("press F to arm the force")
         self.service.tell(ON_TABLE)
         self.wait("contact", lambda s: s["contact"] > 0)
         self.check_without_force("not armed")

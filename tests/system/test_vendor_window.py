@@ -26,7 +26,7 @@ class InTheWindow(WindowTest):
 
     def test_is_armed_by_its_second_button_and_cut_by_escape(self) -> None:
         self.wait("the device in the loop", lambda s: s["arm"] == "openhaptics", 60)
-        self.wait_for_notice("F arms the force")
+        self.wait_for_notice("press F to arm the force")
         self.assertFalse(self.pushed())
         end = time.monotonic() + 60
         while not self.pushed() and time.monotonic() < end:

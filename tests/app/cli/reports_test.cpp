@@ -70,14 +70,14 @@ TEST(LookReport, SaysInLinesWhatWasSeen) {
   const std::string text = look_text(device, *seen(device, 0.2));
   for (const char* line :
        {"device +Stick, a test, stick:1\n", "arm +nobody knows another\n",
-        "driven by +limpid-vendor\n", "motors +it has some, and got no force\n",
-        "axes +as the device has them; nobody has checked them\n", "joints +2\n",
+        "driven by +limpid-vendor\n", "motors +the device has motors, and got no force\n",
+        "axes +as the device reports them; not checked yet\n", "joints +2\n",
         "readings +1001, 1000 a second .1000 declared.; between two 1.0[0-9] ms in the middle",
         "turns .rad. +0 to 0.4 +-0.5 to 0.25 +0.1 +0.001 ",
         "range +turns went beyond the range that it declares\n", "buttons +pressed: 1, 3\n",
-        "hand +none on its switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",
-        "fault +reported for 0.10 s\n",
-        "force of its own +0.50 s: ", "warmth +50 % of what its hottest motor bears, at most\n"}) {
+        "hand +no hand on the switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",
+        "fault +reported for 0.10 s\n", "device.s force off +0.50 s: ",
+        "warmth +at most 50 % of the hottest motor.s thermal limit"}) {
     EXPECT_THAT(text, ContainsRegex(line));
   }
   EXPECT_THAT(text, Not(HasSubstr("never moved")));
@@ -94,15 +94,15 @@ TEST(LookReport, SaysThatNothingWasWrong) {
   device.traits.upper[0] = 0.4;
   device.checked = true;
   const std::string text = look_text(device, *seen(device, 0, false));
-  for (const char* line :
-       {"motors +it has none\n", "axes +adjusted as they were checked\n",
-        "range +slides never moved: move each joint to its ends\n", "buttons +none was pressed\n",
-        "hand +on it all the time, or it has no switch\n", "calibration +no complaint\n",
-        "fault +none\n"}) {
+  for (const char* line : {"motors +the device has none\n", "axes +adjusted as they were checked\n",
+                           "range +slides never moved: move each joint to its ends\n",
+                           "buttons +no button was pressed\n",
+                           "hand +on the switch all the time, or the device has no switch\n",
+                           "calibration +no complaint\n", "fault +none\n"}) {
     EXPECT_THAT(text, ContainsRegex(line));
   }
   for (const char* none : {"driven by", "declared)", "went beyond", "turns never moved",
-                           "force of its own", "warmth", "wrong readings"}) {
+                           "device's force off", "warmth", "wrong readings"}) {
     EXPECT_THAT(text, Not(HasSubstr(none)));
   }
 }
@@ -115,8 +115,9 @@ TEST(LookReport, CountsReadingsThatCannotBe) {
   wrong.count = 2000;
   wrong.x[0] = 50;
   all->take(wrong, true, device.traits, 102);
-  EXPECT_THAT(look_text(device, *all),
-              ContainsRegex("wrong readings +1 said what cannot be, and are not in the table"));
+  EXPECT_THAT(
+      look_text(device, *all),
+      ContainsRegex("wrong readings +1 readings were impossible, and are not in the table"));
   EXPECT_EQ(look_json(device, *all)["wrong_readings"], 1);
 }
 
@@ -284,16 +285,16 @@ TEST(HandsReport, SaysOfEveryLawWhatIsKnown) {
   const auto key = [](std::uint8_t i) { return std::string(kLawKeys[i]); };
   for (const std::string& line :
        {std::string("in hands of 100 to 3000 N/m, 2 N s/m and 0.1 kg\n"),
-        "stable walls, " + key(0) + " +1234 N/m  by theory; the hand of 300 N/m\n",
+        "stable walls, " + key(0) + " +1234 N/m  by theory; in the hand of 300 N/m\n",
         "stable walls, " + key(1) + " +every wall  a\n",
         "passive walls, " + key(0) + " +not known  nobody knows\n",
         "passive walls, " + key(1) + " +none  b\n",
-        std::string("eta, proposed +0.7421  the least that is stable there\n"),
+        std::string("eta, proposed +0.7421  the smallest eta that is stable in all these hands\n"),
         std::string("Colgate +2000 N/m  rule one\n +source one\n"),
         std::string("Abbott +no bound  rule two\n +source two\n"),
         std::string("eta_min, proposed +0.5930  .25.\n"),
-        key(2) + " +least 0.5 at 12 Hz: fails from 7.5 Hz on; reckoned\n",
-        key(3) + " +least 1.5 at 3 Hz: holds; reckoned\n", key(0) + " +reckoned\n"}) {
+        key(2) + " +lowest value 0.5 at 12 Hz: fails from 7.5 Hz on; reckoned\n",
+        key(3) + " +lowest value 1.5 at 3 Hz: holds; reckoned\n", key(0) + " +reckoned\n"}) {
     EXPECT_THAT(text, ContainsRegex(line));
   }
 }

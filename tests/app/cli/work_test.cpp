@@ -102,7 +102,8 @@ TEST_F(Work, OfASweepNeedsWhatBelongsTogether) {
 
 TEST_F(Work, OfAnExperimentLeavesAReport) {
   const std::string said = done({"experiment", "inertia", "--out", "found"});
-  EXPECT_THAT(said, StartsWith("inertia: passed\n  ok    rms human torque at eta = 0.6 over"));
+  EXPECT_THAT(said,
+              StartsWith("inertia: passed\n  ok    rms human torque at eta = 0.6 divided by"));
   EXPECT_THAT(said, HasSubstr(", at most 0.1\n"));
   EXPECT_THAT(said, EndsWith("report: found/report.html\n"));
   EXPECT_THAT(text_of("found/report.html"), HasSubstr("1 of 1 experiments passed"));

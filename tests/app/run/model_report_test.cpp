@@ -97,9 +97,9 @@ TEST_F(AModelsReport, TakesASmallStlForMetres) {
 TEST_F(AModelsReport, WarnsOfSizesThatNobodyTouches) {
   EXPECT_THAT(
       report_on_model(stl({20000, 10, 10})).warnings,
-      Contains(HasSubstr("read as in mm, z up (guessed), it is 20 m long, more than 10 m")));
+      Contains(HasSubstr("read as in mm, z up (guessed), the model is 20 m long, more than 10 m")));
   EXPECT_THAT(report_on_model(stl({0.0005, 0.0002, 0.0002})).warnings,
-              Contains(HasSubstr("it is 0.5 mm long, less than 1 mm")));
+              Contains(HasSubstr("the model is 0.5 mm long, less than 1 mm")));
   Model model;
   model.vertices.resize(2);
   model.vertices[1].position = Eigen::Vector3f(1, 0, 0);

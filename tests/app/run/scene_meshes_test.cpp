@@ -104,8 +104,8 @@ TEST(SceneMeshes, WarnOfSizesThatNoHandTouches) {
   const auto large = size_lines(1, 100), small = size_lines(0.001, 0.1);
   ASSERT_EQ(large.size(), 1u);
   ASSERT_EQ(small.size(), 1u);
-  EXPECT_NE(large[0].find("sheet: it is 300 m long"), std::string::npos) << large[0];
-  EXPECT_NE(small[0].find("sheet: it is 0.3 mm long"), std::string::npos) << small[0];
+  EXPECT_NE(large[0].find("sheet: the model is 300 m long"), std::string::npos) << large[0];
+  EXPECT_NE(small[0].find("sheet: the model is 0.3 mm long"), std::string::npos) << small[0];
   for (const std::string& line : {large[0], small[0]}) {
     EXPECT_NE(line.find("unit (m, cm, mm, in or ft)"), std::string::npos) << line;
   }

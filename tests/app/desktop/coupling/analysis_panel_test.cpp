@@ -155,7 +155,7 @@ TEST_F(AnalysisWords, ExplainEachChart) {
   EXPECT_THAT(walls, HasSubstr(fmt::format("{:.0f} N/m", l.every_hand)));
   EXPECT_THAT(walls, HasSubstr("Colgate and Schenkel"));
   const std::string inertia = within("inertia felt [g at the tip] over frequency [Hz]");
-  EXPECT_THAT(inertia, HasSubstr("at eta 0.6"));
+  EXPECT_THAT(inertia, HasSubstr("at ? 0.6"));
   EXPECT_THAT(inertia, HasSubstr(fmt::format("natural {:.3g} g", 1e3 * l.felt.m)));
   const std::string damping = within("damping felt [N s/m] over frequency [Hz]");
   EXPECT_THAT(damping, HasSubstr(fmt::format("{:.2g} N s/m", l.felt.least_damping(0.6, p_.band))));
@@ -167,7 +167,7 @@ TEST_F(AnalysisWords, ExplainEachFigure) {
   set_wall(400);
   draw();
   for (const auto& [label, words] :
-       {std::pair("stiffest in this scene", "Within what this coupling renders well"),
+       {std::pair("stiffest in this scene", "This coupling renders this stiffness well"),
         {"felt at 7 Hz", "Inertia and damping at the tip"},
         {"?_min, all frequencies", "the worst mode at this pose"},
         {"?_min, this band", "only below the human's bandwidth"},

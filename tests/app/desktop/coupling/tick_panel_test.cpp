@@ -61,7 +61,7 @@ TEST_F(NumbersOfATick, AreThoseOfItsRow) {
   in(Column::energy_total)[0] = -3e-3;
   draw();
   EXPECT_EQ(value("t"), "1.2345 s");
-  EXPECT_TRUE(find("Nothing is touched."));
+  EXPECT_TRUE(find("The proxy touches nothing."));
   EXPECT_EQ(value("gap of the tips"), "0.0000 mm");
   EXPECT_EQ(value("force of the motors"), "0.000 N");
   EXPECT_EQ(value("solved"), "all at once");
@@ -70,11 +70,12 @@ TEST_F(NumbersOfATick, AreThoseOfItsRow) {
   EXPECT_EQ(value("stored in contacts"), "0.2500 mJ");
   EXPECT_EQ(value("controller, E_c"), "-3.0000 mJ");
   EXPECT_FALSE(find("sweeps")) << "nothing moves";
-  for (const auto& [label, words] : {std::pair("t", "When the tick begins"),
-                                     {"gap of the tips", "How far device and proxy"},
-                                     {"force of the motors", "On the device's tip"},
-                                     {"solved", "were found to agree"},
-                                     {"reserve", "lets the law give still"}}) {
+  for (const auto& [label, words] :
+       {std::pair("t", "Time at which the tick begins"),
+        {"gap of the tips", "Distance between the tips of device and proxy"},
+        {"force of the motors", "on the device's tip"},
+        {"solved", "limits agree"},
+        {"reserve", "the law may still give"}}) {
     EXPECT_THAT(hint(label), HasSubstr(words)) << label;
   }
   for (const auto& [number, words] : {std::pair(0.0, "one after the other"),
@@ -123,8 +124,8 @@ TEST_F(NumbersOfATick, CountWhatMoves) {
   EXPECT_EQ(value("sweeps"), "12");
   EXPECT_EQ(value("awake"), "1 of 1");
   EXPECT_EQ(value("objects gained"), "-2.0000 mJ");
-  EXPECT_THAT(hint("sweeps"), HasSubstr("Over all contacts"));
-  EXPECT_THAT(hint("objects gained"), HasSubstr("minus what they had at first"));
+  EXPECT_THAT(hint("sweeps"), HasSubstr("over all contacts"));
+  EXPECT_THAT(hint("objects gained"), HasSubstr("minus their energy at the start"));
 }
 
 // The panel of several runs, with its buttons.

@@ -409,7 +409,7 @@ TEST_F(SceneFields, OfARecordingOnlyShowIt) {
   scene.scene.add(body_of(Sphere{0.01}));
   show([&] { ScenePanel::draw_recorded(scene); });
   EXPECT_THAT(words(), StartsWith("untitled\n"));
-  EXPECT_THAT(words(), HasSubstr("The scene of the recording. This scene cannot be changed."));
+  EXPECT_THAT(words(), HasSubstr("The scene of the recording. This scene cannot be"));
   EXPECT_TRUE(find("it"));
   EXPECT_FALSE(find("Add"));
 }
@@ -510,7 +510,7 @@ TEST_F(ModelFields, SetItsScaleOrItsLargestExtent) {
   EXPECT_NEAR(mesh().scale, 2.5, 1e-12);
   type_into("Largest extent", "50");
   EXPECT_NEAR(mesh().size() * 1, 0.05, 1e-12) << "of a square whose edge is 1";
-  EXPECT_THAT(hint("Scale"), HasSubstr("as large as its file says"));
+  EXPECT_THAT(hint("Scale"), HasSubstr("the size in the model's file"));
 }
 
 TEST_F(ModelFields, SetTheUnitAndTheAxesOfItsFile) {
@@ -525,7 +525,7 @@ TEST_F(ModelFields, SetTheUnitAndTheAxesOfItsFile) {
   EXPECT_TRUE(mesh().y_up);
   choose("Axis up", "z");
   EXPECT_FALSE(mesh().y_up);
-  EXPECT_THAT(hint("Unit of the file"), HasSubstr("What its coordinates are in"));
+  EXPECT_THAT(hint("Unit of the file"), HasSubstr("Unit of the coordinates in the file"));
   EXPECT_THAT(hint("Axis up"), HasSubstr("points up"));
 }
 

@@ -222,7 +222,7 @@ TEST(BodyFile, RefusesWhatABodyCannotBe) {
       {start + "sphere = 0.1\nmass = 101\n", {"body.mass", "101"}},
       {start + "sphere = 0.1\nmass = 1\ndensity = 1\n",
        {"body.density", "mass or density, not both"}},
-      {start + "sphere = 1\ndensity = 1000\n", {"body.density", "1000", "up to 100 kg"}},
+      {start + "sphere = 1\ndensity = 1000\n", {"body.density", "1000", "to 100 kg"}},
       {start + "sphere = 1\ndensity = 0\n", {"body.density", "0", "above 0"}},
       {body("inertia = [1, 0, 1]\n"), {"x.toml:6: body.inertia", "[1, 0, 1]", "above 0"}},
       {body("center = [1, 0]\n"), {"x.toml:6: body.center", "[1, 0]"}},

@@ -50,8 +50,8 @@ TEST(RowLayout, HasRoomForWhatMoves) {
     EXPECT_TRUE(two.has(c));
   }
   // Each body has a pose and a velocity. All bodies share four energies, awake, sweeps, points left
-  // out, standstills, held, and the hand's magnet and pull: which body, where, where to.
-  EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 10 + 1 + 3 + 3);
+  // out, standstills, cut turns, held, and the hand's magnet and pull: which body, where, where to.
+  EXPECT_EQ(two.stride(), none.stride() + 2 * (7 + 6) + 11 + 1 + 3 + 3);
   EXPECT_EQ(none.offset(Column::body_pose), two.offset(Column::body_pose));
 }
 
