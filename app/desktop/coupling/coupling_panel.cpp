@@ -496,9 +496,12 @@ void draw_limited(const CouplingReading& now) {
            "The coupling asks for more torque than the motor can give (section 3.1 of the paper). "
            "Press less hard, or raise Device > Motors' largest torque.");
   if (now.contact > 0) {
-    ImGui::TextWrapped(
-        "The hand presses harder than the motors can push, so hand and avatar drift "
-        "apart. Lift the hand a little.");
+    constexpr double kApart = 1e-3;  // gap that is seen [m]
+    ImGui::TextWrapped("%s", now.gap > kApart
+                                 ? "The hand presses harder than the motors can push, so hand and "
+                                   "avatar drift apart. Lift the hand a little."
+                                 : "The hand presses harder than the motors can push, so the hand "
+                                   "feels less than the contact force. Lift the hand a little.");
   }
 }
 

@@ -25,7 +25,7 @@ Tuning::Tuning(Settings& settings, Notices& notices, LiveStage& live, DeviceCont
       live_(live),
       devices_(devices),
       playback_(playback),
-      analysed_(settings.lanes.parameters) {}
+      marked_(settings.lanes.parameters) {}
 
 void Tuning::next_law() {
   if (passivity_broken(settings_)) return end_break();
@@ -138,25 +138,30 @@ void Tuning::note_compensation() {
 }
 
 void Tuning::analyze_anew() {
-  const ArmDescription& arm = live_.stage().arm();
-  analysis_ =
-      analyze(arm, rest_pose(arm), live_.loop().taken(settings_.parameters()), std::nullopt);
+  analysed_.reset();
+  follow_edited();
+}
+
+// Analyzes the edited settings if they are other ones, or of another arm: live and playback have
+// their own.
+void Tuning::follow_edited() {
+  const Stage& shown = playback_.on() ? playback_.shown()->stage() : live_.stage();
+  const Parameters p = playback_.on() ? edited() : live_.loop().taken(edited());
+  if (analysed_ == p && analysed_stage_ == &shown) return;
+  analysed_ = p;
+  analysed_stage_ = &shown;
+  analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), p, std::nullopt);
 }
 
 void Tuning::update() {
   follow_lanes();
   const LaneParameters& now = settings_.lanes.parameters;
-  const bool same_rerun = !playback_.on() || of_rerun_ == analysed_of_rerun_;
-  if (now == analysed_ && analysed_lane_ == edited_lane() && same_rerun) return;
   for (std::size_t i = 0; i < settings_.lanes.count && !playback_.on(); ++i) {
-    mark_changes(now[i], analysed_[i], i == kMainLane ? "" : lane_mark(i));
+    if (now[i] == marked_[i]) continue;
+    mark_changes(now[i], marked_[i], i == kMainLane ? "" : lane_mark(i));
   }
-  analysed_ = now;
-  analysed_lane_ = edited_lane();
-  analysed_of_rerun_ = of_rerun_;
-  const Stage& shown = playback_.on() ? playback_.shown()->stage() : live_.stage();
-  const Parameters p = playback_.on() ? edited() : live_.loop().taken(edited());
-  analysis_ = analyze(shown.arm(), rest_pose(shown.arm()), p, std::nullopt);
+  marked_ = now;
+  follow_edited();
 }
 
 // Keeps all lanes on one hand, one device and one world, and names them in the plots.

@@ -90,6 +90,7 @@ class Tuning {
  private:
   void run_lanes(std::size_t count);
   void follow_lanes();
+  void follow_edited();
   void mark_changes(const Parameters& now, const Parameters& before, const std::string& whose);
 
   Settings& settings_;
@@ -101,10 +102,11 @@ class Tuning {
   std::optional<OfVirtualArm> of_virtual_;    // while a device is in the arm's place
   std::string device_;                        // id of that device
   double encoder_of_device_ = 0;              // of that device [rad]
-  Parameters of_rerun_, analysed_of_rerun_;
+  Parameters of_rerun_;
   Analysis analysis_;
-  LaneParameters analysed_;  // as marks and analysis know them
-  std::size_t analysed_lane_ = kMainLane;
+  std::optional<Parameters> analysed_;     // parameters of analysis_
+  const Stage* analysed_stage_ = nullptr;  // its arm's stage
+  LaneParameters marked_;                  // as the marks in the plots know them
   Analysis recorded_analysis_;
   std::optional<Parameters> recorded_analysed_;  // parameters of recorded_analysis_
 };

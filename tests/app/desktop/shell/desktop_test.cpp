@@ -1122,8 +1122,9 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   frames(20);
   desktop->world.toggle_recording();
   ASSERT_TRUE(until([&] { return said("Recorded"); }));
-  settings.parameters().eta = 3;
+  settings.parameters().eta = 0.2;
   settings.parameters().hand_stiffness = 99;
+  frames(3);
   run("session.play");
   ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
   PlayedSession& session = *desktop->playback.shown();
@@ -1145,6 +1146,12 @@ TEST_F(ADesktop, ShowsARecordingsOwnSettingsAtTheRowThatIsShown) {
   EXPECT_EQ(at(0).eta, 0.9);
   EXPECT_EQ(at(0.99).kind, CouplingKind::standard);
   EXPECT_EQ(desktop->tuning.edited().eta, 0.9) << "the re-run begins as the recording did";
+  frames(3);
+  EXPECT_TRUE(desktop->tuning.analysis().above_eta_min) << "of the re-run";
+  run("session.back_to_live");
+  frames(3);
+  EXPECT_EQ(desktop->tuning.edited().eta, 0.2);
+  EXPECT_FALSE(desktop->tuning.analysis().above_eta_min) << "of the live loop again";
 }
 
 TEST_F(ADesktop, NamesTheRunsOfARecordedTwinAsTheyAreAtTheCursor) {
