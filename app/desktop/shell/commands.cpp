@@ -310,7 +310,8 @@ constexpr std::array kCommands{
         "switches the force off at once; in playback without a real device: play or pause",
         [](Desktop& d) { d.cut_or_play(); }, {.reach = Reach::all_but_text, .blind = true}),
     row("window.escape", "Close what is open, or force off", nullptr, "Esc",
-        "closes what is open, then the playback; with nothing open, and always on a real device, "
+        "closes what is open, deselects, then ends the playback; with nothing open, and always on "
+        "a real device, "
         "force off",
         [](Desktop& d) { d.escape(); }, {.reach = Reach::all, .blind = true}),
     row("arm.open", "Open arm (URDF)...", "Device", nullptr, nullptr,
