@@ -298,15 +298,15 @@ void LiveLoop::step_beside(const Controls& controls, const RigInput& input) {
   };
   bool any = false;
   for (std::size_t i = 1; i < kMostLanes; ++i) any = any || joins(i);
-  const bool waits = any && !rig_->steady();
-  if (any && !waits && recording_to_ == nullptr) {
+  const bool steady = rig_->steady();
+  if (any && steady && recording_to_ == nullptr) {
     rig_->restart_here(parameters_, rebase_, input.hand.target);
     for (FurtherLane& lane : beside_) lane.restart_here(input.hand.target);
   }
   for (std::size_t i = 1; i < kMostLanes; ++i) {
     FurtherLane& lane = beside_[i - 1];
     const bool recorded = recording_to_ != nullptr && i < recording_to_->lanes();
-    const bool on = i < controls.lane_count && !(waits && joins(i));
+    const bool on = i < controls.lane_count && (steady || lane.runs());
     lane.step(recorded || on, controls.lanes[i], *rig_, input, row(i));
     if (lane.changed() && recorded) recording_to_->changed(lane.parameters(), i);
   }

@@ -34,8 +34,7 @@ RerunRows run_once_more(const Session& session, const std::string& where, const 
   }
   const std::array both{session_parameters(session, where), chosen};
   const std::vector<std::string> names = lane_names(both);
-  const bool changed = !changed_settings(session, where, chosen).empty();
-  again.name = "re-run: " + (changed ? names[1] : "as recorded");
+  again.name = "re-run: " + (both[0] == both[1] ? "as recorded" : names[1]);
   // A setting that changed on the way is not the name of the whole recording.
   again.recorded = session.changes.empty() ? "recorded: " + names[0] : "recorded";
   again.note = plan.note;

@@ -248,8 +248,11 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     for (std::size_t i = 0; i < firsts.size(); ++i) {
       Curve curve = run > 0 ? of_run(run, firsts[i], i, channels, names) : firsts[i];
       const bool recorded = run == 0 && !names.beside;
-      if (!name.empty() && firsts.size() == 1) curve.label = name;
-      if (!name.empty() && firsts.size() > 1 && !recorded) curve.label = name + " " + curve.label;
+      if (!name.empty() && firsts.size() == 1) {
+        curve.label = name;
+      } else if (!name.empty() && !recorded) {
+        curve.label = name + " " + curve.label;
+      }
       spec.curves.push_back(std::move(curve));
     }
   }

@@ -13,6 +13,7 @@
 #include "render/mesh_shapes.h"
 #include "render/palette.h"
 #include "render/scene_view.h"
+#include "tests/render/two_links.h"
 #include "tests/support/computer.h"
 #include "tests/support/faultless_context.h"
 
@@ -21,16 +22,6 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
 using Colour = Eigen::Vector3i;
-
-ArmDescription two_links() {
-  ArmDescription arm;
-  arm.joints.resize(2);
-  arm.links.resize(2);
-  for (Joint& joint : arm.joints) joint.axis = Vec3::UnitY();
-  arm.joints[1].origin.translation() = Vec3(0.2, 0, 0);
-  arm.tip.translation() = Vec3(0.2, 0, 0);
-  return arm;
-}
 
 // The arm stretched along x, so far behind the plane of its joints.
 ArmPose behind(double y) {
@@ -95,7 +86,7 @@ class Layers : public testing::Test {
          {block(Vec3(0.14, 0.02, 0.14)), pose_at(Vec3(0.3, -0.05, 0))}});
   }
 
-  const ArmDescription arm_ = two_links();
+  const ArmDescription arm_ = test::two_links();
   std::optional<test::FaultlessContext> context_;
   std::optional<SceneView> view_;
   Camera camera_;

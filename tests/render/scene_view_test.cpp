@@ -11,6 +11,7 @@
 #include "render/gl/offscreen.h"
 #include "render/mesh_shapes.h"
 #include "render/theme.h"
+#include "tests/render/two_links.h"
 #include "tests/support/computer.h"
 #include "tests/support/faultless_context.h"
 
@@ -20,17 +21,6 @@ namespace {
 constexpr int kWidth = 320, kHeight = 200;
 const std::filesystem::path kRoot = LIMPID_SOURCE_DIR;
 const std::vector<VisualPicture> kNoVisuals, kMissing{{"/nowhere/table.glb", Pose::Identity(), 1}};
-
-// Two links of 0.2 m in the xz plane, without visuals: drawn as capsules.
-ArmDescription two_links() {
-  ArmDescription arm;
-  arm.joints.resize(2);
-  arm.links.resize(2);
-  for (Joint& joint : arm.joints) joint.axis = Vec3::UnitY();
-  arm.joints[1].origin.translation() = Vec3(0.2, 0, 0);
-  arm.tip.translation() = Vec3(0.2, 0, 0);
-  return arm;
-}
 
 ArmPose pose_of(const ArmDescription& arm, double first, double second) {
   Pose a = arm.joints[0].origin;
@@ -63,7 +53,7 @@ class Picture : public testing::Test {
     return {rgba[at], rgba[at + 1], rgba[at + 2]};
   }
 
-  ArmDescription arm_ = two_links();
+  ArmDescription arm_ = test::two_links();
   std::optional<test::FaultlessContext> context_;
   std::optional<SceneView> view_;
   Camera camera_;

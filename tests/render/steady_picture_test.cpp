@@ -9,6 +9,7 @@
 #include "render/marks.h"
 #include "render/mesh_shapes.h"
 #include "render/scene_view.h"
+#include "tests/render/two_links.h"
 #include "tests/support/computer.h"
 #include "tests/support/faultless_context.h"
 
@@ -16,16 +17,6 @@ namespace limpid {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
-
-ArmDescription two_links() {
-  ArmDescription arm;
-  arm.joints.resize(2);
-  arm.links.resize(2);
-  for (Joint& joint : arm.joints) joint.axis = Vec3::UnitY();
-  arm.joints[1].origin.translation() = Vec3(0.2, 0, 0);
-  arm.tip.translation() = Vec3(0.2, 0, 0);
-  return arm;
-}
 
 ArmPose pose_of(const ArmDescription& arm, double first, double second) {
   Pose a = arm.joints[0].origin;
@@ -86,7 +77,7 @@ class SteadyPicture : public testing::Test {
     return wrong;
   }
 
-  ArmDescription arm_ = two_links();
+  ArmDescription arm_ = test::two_links();
   std::optional<test::FaultlessContext> context_;
   std::optional<SceneView> view_;
   Camera camera_;

@@ -387,38 +387,33 @@ void draw_ledger(const CouplingReading& now) {
         "100 % unless the hand was given nearly 5 mJ more than the hand put in");
 }
 
+// Draws a count of ticks or points in which something was not right, if there were any.
+void draw_count(const char* label, double count, const char* why) {
+  if (count > 0) read_out(label, fmt::format("{:.0f}", count), why, why);
+}
+
 // Draws in how many ticks forces were not found, if there were any.
 void draw_unsolved(const CouplingReading& now) {
-  if (now.unsettled > 0) {
-    const char* why =
-        "In these ticks the solver found no forces that suit contacts and motors at their limit. "
-        "The proxy stood still for each such tick, which is passive. Softer walls, fewer walls at "
-        "a time, less friction or stronger motors avoid such ticks.";
-    read_out("Ticks without a solution", fmt::format("{:.0f}", now.unsettled), why, why);
-  }
-  if (now.left_out > 0) {
-    const char* why =
-        "Objects touch at more points than the loop has room for. At the points left out the "
-        "objects do not push and may sink into each other. Fewer objects that lie on each other "
-        "avoid this error.";
-    read_out("Contact points left out", fmt::format("{:.0f}", now.left_out), why, why);
-  }
-  if (now.stood_still > 0) {
-    const char* why =
-        "In these ticks the solver found no forces for a mechanism. The mechanism's bodies stood "
-        "still for each such tick, which only removes energy. Masses that are more alike, softer "
-        "stops and a shorter tick avoid such ticks.";
-    read_out("Ticks in which objects stood still", fmt::format("{:.0f}", now.stood_still), why,
-             why);
-  }
-  if (now.turned_less > 0) {
-    const char* why =
-        "A mechanism moved so fast that one of its bodies would have turned by more than a radian "
-        "in a tick. The body turned by a radian and lost the rest of its energy. Heavier bodies, "
-        "softer springs and a shorter tick avoid these ticks.";
-    read_out("Ticks in which objects turned less", fmt::format("{:.0f}", now.turned_less), why,
-             why);
-  }
+  draw_count(
+      "Ticks without a solution", now.unsettled,
+      "In these ticks the solver found no forces that suit contacts and motors at their limit. "
+      "The proxy stood still for each such tick, which is passive. Softer walls, fewer walls at "
+      "a time, less friction or stronger motors avoid such ticks.");
+  draw_count(
+      "Contact points left out", now.left_out,
+      "Objects touch at more points than the loop has room for. At the points left out the "
+      "objects do not push and may sink into each other. Fewer objects that lie on each other "
+      "avoid this error.");
+  draw_count(
+      "Ticks in which objects stood still", now.stood_still,
+      "In these ticks the solver found no forces for a mechanism. The mechanism's bodies stood "
+      "still for each such tick, which only removes energy. Masses that are more alike, softer "
+      "stops and a shorter tick avoid such ticks.");
+  draw_count(
+      "Ticks in which objects turned less", now.turned_less,
+      "A mechanism moved so fast that one of its bodies would have turned by more than a radian "
+      "in a tick. The body turned by a radian and lost the rest of its energy. Heavier bodies, "
+      "softer springs and a shorter tick avoid these ticks.");
 }
 
 // Returns a way out of a coupling that gives energy.

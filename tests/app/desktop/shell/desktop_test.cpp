@@ -909,6 +909,10 @@ TEST_F(ADesktopWithKeys, OnTheVirtualArmEscClosesWhatIsOpenAndOnlyThenCutsTheFor
   ImGui::GetIO().WantTextInput = false;
   ImGui::GetCurrentContext()->WantTextInputNextFrame = -1;
   ImGui::GetCurrentContext()->ActiveId = 0;
+  desktop->document.editor().select(0);
+  desktop->escape();
+  EXPECT_FALSE(desktop->document.editor().selected());
+  EXPECT_TRUE(stays(Arming::on)) << "the object is let go of";
   desktop->escape();
   EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
 }
@@ -923,6 +927,11 @@ TEST_F(ADesktopWithKeys, OnARealDeviceEscClosesAndCutsTheForce) {
   ASSERT_TRUE(armed());
   desktop->escape();
   EXPECT_TRUE(until([&] { return arming() == Arming::off; }));
+  ASSERT_TRUE(armed());
+  desktop->document.editor().select(0);
+  desktop->escape();
+  EXPECT_TRUE(until([&] { return arming() == Arming::off; })) << "with an object selected, too";
+  EXPECT_EQ(wire->torque, 0);
 }
 
 TEST_F(ADesktopWithKeys, SpaceCutsTheForceThroughADialogAndLeavesItOpen) {
