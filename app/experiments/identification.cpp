@@ -62,7 +62,8 @@ std::string device_text(const Identification& identification) {
   return with_plus_minus(text);
 }
 
-// Rounds to the digits that the deviation leaves, at most four significant ones.
+// Rounds to the digits that the deviation leaves, at most four significant ones. A deviation below
+// the last of them counts as one there: none is shown smaller than it is.
 std::string text_of(const Found& found, double per_unit) {
   const auto size = [](double x) {
     return x > 0 ? static_cast<int>(std::floor(std::log10(x))) : 0;
@@ -71,8 +72,9 @@ std::string text_of(const Found& found, double per_unit) {
   const int most = std::clamp(3 - size(std::abs(value)), 0, 4);
   const int digits = deviation > 0 ? std::clamp(1 - size(deviation), 0, most) : most;
   const double unit = std::pow(10, digits);
+  const double shown = deviation > 0 ? std::max(deviation, 1 / unit) : deviation;
   return fmt::format("{:.{}f} +- {:.{}f}", std::round(value * unit) / unit + 0.0,  // no -0
-                     digits, deviation, digits);
+                     digits, shown, digits);
 }
 
 std::string with_plus_minus(std::string text) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "core/coupling/laws.h"
 
@@ -60,6 +61,13 @@ std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
        "what the scene puts on the proxy", contact},
       {"device/limited", "Device", "a motor at its limit", "at limit", "-",
        "1 while a motor gives its largest torque", device},
+      {"device/withheld", "Device", "motors give another torque than asked", "withheld", "-",
+       "1 while the motors give another torque than the coupling asks for: at a limit, or while "
+       "force is off or fades",
+       device, 0.5f, true, true},
+      {"energy/spring", "Energy", "held by the coupling's spring", "spring", "J",
+       "energy that the coupling's spring holds, which the spring may give back", energy, 0.7f,
+       true, true},
   };
   for (int j = 0; j < dof; ++j) {
     const std::string joint = std::to_string(j + 1);
@@ -172,10 +180,11 @@ void EnergyAccount::follow(const History& history, SampleIndex end, LaneOfHistor
     const double energy = static_cast<double>(value(Channel::energy_total)) -
                           static_cast<double>(value(Channel::energy_compensation));
     if (std::isnan(energy)) {  // this run had not begun yet
-      shares_.forget();
+      begun_ = false;
       continue;
     }
-    shares_.take(time, energy, value(Channel::limited) > 0.5f);
+    if (!std::exchange(begun_, true)) shares_.begin(value(Channel::spring));
+    shares_.take(time, energy, value(Channel::limited) > 0.5f || value(Channel::withheld) > 0.5f);
   }
 }
 
@@ -333,6 +342,8 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::human_estimate, torque(at(Column::hand_torque_estimate)));
   put(Channel::contact, torque(at(Column::contact_torque)));
   put(Channel::limited, any_at_limit(layout_, row, limits_) ? 1 : 0);
+  put(Channel::withheld, any_withheld(layout_, row) ? 1 : 0);
+  put(Channel::spring, spring_energy(layout_, row));
   const auto rest = joints.subspan(x1.size());
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     rest[i] = shown(columns_[i].scaled, row[columns_[i].at]);

@@ -31,6 +31,8 @@ enum class Channel : std::uint8_t {
   human_estimate,  // |f1_hat|
   contact,         // |f2|
   limited,         // 1 while a motor gives all it can, else 0
+  withheld,        // 1 while the motors give another torque than is asked for, else 0
+  spring,          // energy in the coupling's spring [J]
   joints,          // x_E of each joint [rad]; [m] of one that slides
 };
 
@@ -120,6 +122,7 @@ class EnergyAccount {
   double by_changes() const { return shares_.by_changes(); }
   double forgiven() const { return shares_.forgiven(); }
   double by_limits() const { return shares_.by_limits(); }
+  double stored() const { return shares_.stored(); }
   double own() const { return shares_.own(); }
   double without_limits() const { return shares_.without_limits(); }
 
@@ -128,6 +131,7 @@ class EnergyAccount {
 
   SampleIndex next_ = 0;
   double looked_until_ = -1;  // time up to which marks were looked at [s]
+  bool begun_ = false;        // the run has rows
   EnergyShares shares_;
 };
 

@@ -4,6 +4,15 @@
 
 namespace limpid {
 
+double spring_energy(const RowLayout& layout, std::span<const double> row) {
+  const auto tau = layout.in(row, Column::commanded_torque);
+  const auto x1 = layout.in(row, Column::device_position);
+  const auto x2 = layout.in(row, Column::proxy_position);
+  double twice = 0;
+  for (std::size_t j = 0; j < tau.size(); ++j) twice -= tau[j] * (x1[j] - x2[j]);
+  return std::max(0.0, 0.5 * twice);
+}
+
 void EnergyShares::change(double time) {
   settled_ = time + kSettling;
   forgiven_ += std::max(0.0, own());

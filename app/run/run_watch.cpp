@@ -65,8 +65,12 @@ void RunWatch::add(std::span<const double> row) {
   if (diverged_.wild()) return;  // instability has its own warning
   const double energy =
       layout_.in(row, Column::energy_total)[0] - layout_.in(row, Column::energy_compensation)[0];
-  if (!begun_at_) begun_at_ = energy;
-  shares_.take(time, energy - *begun_at_, any_at_limit(layout_, row, limits_));
+  if (!begun_at_) {
+    begun_at_ = energy;
+    shares_.begin(spring_energy(layout_, row));
+  }
+  shares_.take(time, energy - *begun_at_,
+               any_at_limit(layout_, row, limits_) || any_withheld(layout_, row));
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
   const auto tips = tips_.of(DerivedColumns::from(layout_, row));

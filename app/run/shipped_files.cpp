@@ -47,7 +47,7 @@ std::optional<fs::path> shipped_file(const std::string& named, const Kinds& kind
 std::string shipped_hint(const std::string& named, const Kinds& kinds) {
   if (named.find('/') != std::string::npos) return {};
   // Names are compared by their stems, as endings make them alike; those of the same ending come
-  // first.
+  // first. A name of another kind is meant only if its stem is right.
   const fs::path wanted = named;
   std::vector<std::string> stems, names;
   for (const bool same_ending : {true, false}) {
@@ -55,6 +55,7 @@ std::string shipped_hint(const std::string& named, const Kinds& kinds) {
       for (const std::string& name : shipped_names(kind)) {
         const fs::path file = name;
         if ((file.extension() == wanted.extension()) != same_ending) continue;
+        if (!same_ending && wanted.has_extension() && file.stem() != wanted.stem()) continue;
         stems.push_back(file.stem().string());
         names.push_back(name);
       }

@@ -69,15 +69,13 @@ void draw_caption(const ImRect& box, const FieldInfo& info, std::string text, Rg
   list.AddText({box.Max.x - width, box.Min.y}, colour(rgb), text.c_str());
 }
 
-// Says for a while which numbers are allowed, after another one was typed.
+// Says for a while which numbers are allowed, after something else was typed.
 class RangeReminder {
  public:
   explicit RangeReminder(ImGuiID id) : memory_(*ImGui::GetStateStorage()), since_(id + 3) {}
 
-  void look_at(const FieldInfo& info, double typed) {
-    const bool inside = typed >= info.least() && typed <= info.maximum;
-    memory_.SetFloat(since_, inside ? kNever : static_cast<float>(ImGui::GetTime()));
-  }
+  void speak() { memory_.SetFloat(since_, static_cast<float>(ImGui::GetTime())); }
+  void fall_silent() { memory_.SetFloat(since_, kNever); }
   bool speaks() const {
     const float since = memory_.GetFloat(since_, kNever);
     return since != kNever && static_cast<float>(ImGui::GetTime()) - since < kSpeaks;
@@ -109,7 +107,8 @@ bool parse_number(std::string text, double& value) {
 }
 
 // Takes a number typed over the slider; returns true while the input is open. The value changes
-// when typing is done, not with every key: nobody wants to feel the 0 on the way to 0.6.
+// when typing is done, not with every key: nobody wants to feel the 0 on the way to 0.6. What is
+// not allowed leaves the value as it is.
 bool typing(const ImRect& box, ImGuiID id, const FieldInfo& info, bool begin, double& value,
             bool& changed) {
   if (!begin && !ImGui::TempInputIsActive(id)) return false;
@@ -120,8 +119,15 @@ bool typing(const ImRect& box, ImGuiID id, const FieldInfo& info, bool begin, do
   ImGui::TempInputText(box, id, kSliderId, text.data(), static_cast<int>(text.size()),
                        ImGuiInputTextFlags_AutoSelectAll);
   const bool done = !begin && !ImGui::TempInputIsActive(id);
-  if (done && before != text.data()) changed = parse_number(text.data(), value);
-  if (changed) RangeReminder(id).look_at(info, value);
+  if (!done || before == text.data()) return true;
+  double typed = 0;
+  changed = parse_number(text.data(), typed) && typed >= info.least() && typed <= info.maximum;
+  if (changed) {
+    value = typed;
+    RangeReminder(id).fall_silent();
+  } else {
+    RangeReminder(id).speak();
+  }
   return true;
 }
 
@@ -320,7 +326,7 @@ bool number_slider(const FieldInfo& info, double& value, const SliderMarks& mark
   const Palette& p = current_palette();
   if (RangeReminder(id).speaks()) {
     ImGui::GetWindowDrawList()->AddText(box.Min, colour(p.broken),
-                                        ("allowed: " + range_text(info)).c_str());
+                                        ("not taken; allowed: " + range_text(info)).c_str());
   } else {
     draw_caption(box, info, with_unit(info, value),
                  broken              ? p.broken

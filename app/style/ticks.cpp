@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 namespace limpid {
 namespace {
@@ -41,6 +42,19 @@ Ticks time_ticks(double low, double high, int at_most) {
                       step != kClockSteps.end() ? *step : 3600 * nice_step(least / 3600, 1));
 }
 
+std::vector<double> log_ticks(double low, double high) {
+  std::vector<double> all;
+  const bool few = high / low < 300;
+  for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10) {
+    for (const double part : {1.0, 2.0, 5.0}) {
+      const double value = part * decade;
+      if ((part > 1 && !few) || value < low * 0.999 || value > high * 1.001) continue;
+      all.push_back(value);
+    }
+  }
+  return all;
+}
+
 int decimals_of(double step) {
   return std::max(0, -static_cast<int>(std::floor(std::log10(step) + kRounding)));
 }
@@ -59,6 +73,20 @@ std::string exponent_text(int exponent) {
     text += kRaised[static_cast<std::size_t>(digit - '0')];
   }
   return text;
+}
+
+std::string scaled_label(const std::string& label, int exponent) {
+  if (exponent == 0) return label;
+  const std::size_t unit = label.rfind('[') + 1;  // 0: no unit
+  // These begin with a symbol that takes prefixes: J, J/s, N, N m, N/m, rad, s, W.
+  const bool plain = unit > 0 && std::string_view("JNWrs").find(label[unit]) != std::string::npos;
+  const char* const prefix = exponent == -6   ? "µ"
+                             : exponent == -3 ? "m"
+                             : exponent == 3  ? "k"
+                             : exponent == 6  ? "M"
+                                              : nullptr;
+  if (!plain || prefix == nullptr) return label + " " + exponent_text(exponent);
+  return std::string(label).insert(unit, prefix);
 }
 
 std::string fixed_text(double value, int decimals) {

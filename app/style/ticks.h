@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace limpid {
 
@@ -25,6 +26,10 @@ Ticks nice_ticks(double low, double high, int at_most);
 // Returns the same for seconds: from ten seconds on, steps that divide minutes and hours.
 Ticks time_ticks(double low, double high, int at_most);
 
+// Returns the places of ticks on a logarithmic axis: 1, 2 and 5 of every decade, or only 1 if there
+// are many decades.
+std::vector<double> log_ticks(double low, double high);
+
 // Returns the number of digits after the point that tell multiples of `step` apart.
 int decimals_of(double step);
 
@@ -34,6 +39,10 @@ int common_exponent(double low, double high);
 
 // Returns "×10⁻⁶"; empty for 0.
 std::string exponent_text(int exponent);
+
+// Returns a label "E_c [J]" for numbers that are divided by a power of ten: "E_c [mJ]" where the
+// unit has a prefix for it, "E_c [J] ×10⁻⁹" otherwise.
+std::string scaled_label(const std::string& label, int exponent);
 
 // Writes a number with the typographic minus and never as minus zero.
 std::string fixed_text(double value, int decimals);

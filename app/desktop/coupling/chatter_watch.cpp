@@ -14,7 +14,8 @@
 namespace limpid {
 namespace {
 
-constexpr auto kStays = std::chrono::seconds(30);
+constexpr auto kStays = std::chrono::seconds(10);  // after the last stretch of chatter
+constexpr auto kJustSeen = std::chrono::seconds(1);
 constexpr auto kJustTouched = std::chrono::seconds(2);  // longer than chatter takes to be seen
 
 // Returns a value of two digits, which is enough for a slider.
@@ -106,10 +107,13 @@ std::string ChatterWatch::text() const {
                              ? " of the twin"
                              : fmt::format(" of the {} run", lane_ordinal(found_->lane));
   const auto& wall = found_->wall;
-  if (!wall) return fmt::format("The loop chatters: the {} law{} gives energy.", law.key, of);
-  return fmt::format(
-      "The loop chatters: {} ({:.4g} N/m) is stiffer than the {} law{} can hold at this place.",
-      wall->name, wall->stiffness, law.key, of);
+  const bool now = Clock::now() - seen_ < kJustSeen;
+  const char* const says = now ? "The loop chatters" : "The loop chattered";
+  if (!wall) {
+    return fmt::format("{}: the {} law{} {} energy.", says, law.key, of, now ? "gives" : "gave");
+  }
+  return fmt::format("{}: {} ({:.4g} N/m) is stiffer than the {} law{} can hold at this place.",
+                     says, wall->name, wall->stiffness, law.key, of);
 }
 
 void ChatterWatch::take_predictive() {

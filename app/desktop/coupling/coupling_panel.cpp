@@ -89,6 +89,12 @@ void eta_slider(Parameters& p, const Analysis& a) {
          least ? a.eta_min : std::numeric_limits<double>::quiet_NaN());
 }
 
+void muted(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
+
 void push_chosen(Rgb law) {
   ImGui::PushStyleColor(ImGuiCol_Button, colour_vector(law));
   ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(law));
@@ -202,11 +208,9 @@ void draw_link(Parameters& p) {
                                      : "Link###link";
   if (!section(set.c_str(), false)) return;
   if (!info(p.kind).knows_link()) {
-    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped("This law %s. It has no link.", info(p.kind).on_device
-                                                           ? "renders walls on the device itself"
-                                                           : "solves device and proxy together");
-    ImGui::PopStyleColor();
+    muted(fmt::format("This law {}. It has no link.", info(p.kind).on_device
+                                                          ? "renders walls on the device itself"
+                                                          : "solves device and proxy together"));
     return;
   }
   for (const std::string_view key : info(p.kind).sliders) {
@@ -297,42 +301,110 @@ void draw_passivity(const Parameters& p, const Analysis& a, bool real) {
                .c_str());
 }
 
-void share(const char* label, double part, const char* cut, const char* meaning) {
-  read_out(label, fmt::format("{:.0f} %", 100 * part), part < 0.995 ? cut : "", meaning);
-}
+// Part of its force or damping that a law renders, 0 to 1, and why it is less than the whole.
+struct Share {
+  const char* label;
+  double part;
+  const char* cut;
+  const char* meaning;
+};
 
-// Draws the shares that a law for comparison tells.
-void draw_shares(const CouplingReading& now, const LawInfo& law) {
-  if (law.torque_share == nullptr && law.damper_share == nullptr) return;
-  heading(law.label);
+std::vector<Share> shares_of(const CouplingReading& now, const LawInfo& law) {
+  if (law.promise == Promise::tanks) {
+    return {{"Proxy moves freely", now.contact_governor,
+             "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
+             "The proxy's own damping, divided by the sum of this damping and the damper that the "
+             "tank adds"},
+            {"Torque rendered", now.torque_governor,
+             "The device's tank is low. The law lets through only the torque that the tank can pay "
+             "for. Moving the device fills the tank.",
+             "100 % while the device's tank can pay for the next tick"}};
+  }
+  if (law.keeps_ledger()) {
+    return {{"Wall force rendered", now.contact_governor,
+             "The reserve is low. The energy account holds back a part of the wall's force, so "
+             "that the energy given stays bounded. Softer walls, a finer encoder or a known delay "
+             "(model.delay) keep the reserve up.",
+             "100 % unless the reserve is low. While the reserve is low the proxy separates from "
+             "the device."},
+            {"Damping removed", now.damping_governor,
+             "The reserve is low. The law cancels less of the device's damping.",
+             "Share of the damping cancellation that the energy account allows"},
+            {"Torque rendered", now.torque_governor,
+             "The hand was given nearly all the energy that the energy account allows. The account "
+             "holds back all torque until the hand has put energy in again. Arming the force "
+             "again, or starting the loop again, fills the account. A known delay (model.delay) or "
+             "a lower stiffness avoids the loss of torque.",
+             "100 % unless the hand was given nearly 5 mJ more than the hand put in"}};
+  }
+  std::vector<Share> all;
   if (law.torque_share != nullptr) {
-    share("Torque rendered", now.torque_governor,
-          "The law holds back a part of the walls' torque. The walls feel softer than set.",
-          law.torque_share);
+    all.push_back(
+        {"Torque rendered", now.torque_governor,
+         "The law holds back a part of the walls' torque. The walls feel softer than set.",
+         law.torque_share});
   }
   if (law.damper_share != nullptr) {
-    share("Damper not needed", now.damping_governor,
-          "A damper takes back energy that the walls gave.", law.damper_share);
+    all.push_back({"Damper not needed", now.damping_governor,
+                   "A damper takes back energy that the walls gave.", law.damper_share});
   }
+  return all;
 }
 
-void draw_tanks(const CouplingReading& now) {
-  heading("Energy tanks");
-  read_out("In both tanks", energy_text(now.reserve), {},
-           "Energy in the device's tank, in the proxy's tank and on the link between the tanks. "
-           "The law may still give this energy.");
-  share("Proxy moves freely", now.contact_governor,
-        "The proxy's tank is low: a damper keeps the proxy from spending more than there is.",
-        "The proxy's own damping, divided by the sum of this damping and the damper that the tank "
-        "adds");
-  share("Torque rendered", now.torque_governor,
-        "The device's tank is low. The law lets through only the torque that the tank can pay for. "
-        "Moving the device fills the tank.",
-        "100 % while the device's tank can pay for the next tick");
+bool whole(const Share& share) { return share.part >= 0.995; }
+
+void draw_share(const Share& share) {
+  read_out(share.label, fmt::format("{:.0f} %", 100 * share.part), whole(share) ? "" : share.cut,
+           share.meaning);
+}
+
+// Draws the energy that the law accounts for, and what it holds back.
+void draw_account(const CouplingReading& now, const LawInfo& law) {
+  const std::vector<Share> shares = shares_of(now, law);
+  if (law.promise == Promise::tanks) {
+    heading("Energy tanks");
+    read_out("In both tanks", energy_text(now.reserve), {},
+             "Energy in the device's tank, in the proxy's tank and on the link between the tanks. "
+             "The law may still give this energy.");
+  } else if (law.keeps_ledger()) {
+    heading("Energy account");
+    read_out("Reserve", energy_text(now.reserve), {},
+             "Energy that the law may still give the hand. Dissipated energy raises this reserve, "
+             "up to 20 mJ.");
+  } else if (!shares.empty()) {
+    heading(law.label);
+  }
+  for (const Share& share : shares) draw_share(share);
+}
+
+// Tells which settings were changed while recording. The re-run makes these changes as well, but
+// for settings that begin otherwise.
+void tell_changes(const Parameters& p, const Parameters& recorded,
+                  const std::vector<std::string>& on_the_way) {
+  std::string again, left_out;
+  for (const ParameterInfo& info : parameter_table()) {
+    if (std::ranges::find(on_the_way, info.key) == on_the_way.end()) continue;
+    std::string& into =
+        parameter_text(p, info) == parameter_text(recorded, info) ? again : left_out;
+    into += (into.empty() ? "" : ", ") + std::string(info.caption);
+  }
+  if (!again.empty()) {
+    muted(
+        fmt::format("The recording changes on the way: {}. The re-run makes the same changes. "
+                    "The settings below are those of the start.",
+                    again));
+  }
+  if (!left_out.empty()) {
+    muted(
+        fmt::format("The recording changes {} on the way. The re-run keeps its own value from "
+                    "the start to the end.",
+                    left_out));
+  }
 }
 
 // Draws what a re-run will change, and buttons that take all settings of the recording or the loop.
-void draw_differences(Parameters& p, const Parameters& recorded, const Parameters& live) {
+void draw_differences(Parameters& p, const RecordedCoupling& recording, const Parameters& live) {
+  const Parameters& recorded = recording.began;
   bool any = false;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string before = parameter_text(recorded, info), after = parameter_text(p, info);
@@ -346,11 +418,9 @@ void draw_differences(Parameters& p, const Parameters& recorded, const Parameter
     any = true;
   }
   if (!any) {
-    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(palette(current_theme()).muted));
-    ImGui::TextWrapped(
-        "All settings are as recorded. Change a setting, then press E to see the effect.");
-    ImGui::PopStyleColor();
+    muted("All settings are as recorded. Change a setting, then press E to see the effect.");
   }
+  tell_changes(p, recorded, recording.changed);
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   ImGui::BeginDisabled(!any);
   if (ImGui::Button("As recorded", {half, 0})) p = recorded;
@@ -362,29 +432,6 @@ void draw_differences(Parameters& p, const Parameters& recorded, const Parameter
   note_place("Take mine");
   tooltip("Takes all settings of the live loop for the re-run.");
   ImGui::Spacing();
-}
-
-// Draws the bounds on the human's energy, for a law that keeps account of it.
-void draw_ledger(const CouplingReading& now) {
-  heading("Energy account");
-  read_out("Reserve", energy_text(now.reserve), {},
-           "Energy that the law may still give the hand. Dissipated energy raises this reserve, up "
-           "to 20 mJ.");
-  share("Wall force rendered", now.contact_governor,
-        "The reserve is low. The energy account holds back a part of the wall's force, so that the "
-        "energy given stays bounded. Softer walls, a finer encoder or a known delay (model.delay) "
-        "keep the reserve up.",
-        "100 % unless the reserve is low. While the reserve is low the proxy separates from the "
-        "device.");
-  share("Damping removed", now.damping_governor,
-        "The reserve is low. The law cancels less of the device's damping.",
-        "Share of the damping cancellation that the energy account allows");
-  share("Torque rendered", now.torque_governor,
-        "The hand was given nearly all the energy that the energy account allows. The account "
-        "holds back all torque until the hand has put energy in again. Arming the force again, or "
-        "starting the loop again, fills the account. A known delay (model.delay) or a lower "
-        "stiffness avoids the loss of torque.",
-        "100 % unless the hand was given nearly 5 mJ more than the hand put in");
 }
 
 // Draws a count of ticks or points in which something was not right, if there were any.
@@ -460,14 +507,18 @@ void draw_givers(const CouplingReading& now, const Parameters& p, const Analysis
   apart("From switching", energy.by_changes(),
         "The part of E_c from changes of law and settings. A change while the coupling is "
         "stretched puts energy in, as bending a spring does. The coupling is not at fault.");
+  apart("From the spring at the start", energy.stored(),
+        "The part of E_c that the coupling's spring held when this run began. The spring gives "
+        "this energy back when the spring relaxes. The coupling is not at fault.");
   apart("Before the last change", energy.forgiven(),
         "The part of E_c that the coupling gave with earlier settings.");
-  apart("From compensation", now.compensation,
-        "The part of E_c that the motors gave for the device's weight, springs and friction.");
+  apart("From compensation, grip test", now.compensation,
+        "The part of E_c that the motors gave for the device's weight, springs and friction, and "
+        "for the test force that measures the grip.");
   if (at_fault) return;
-  apart("From motors at their limit", energy.by_limits(),
-        "The part of E_c from motors at their limit. Such a motor gives another torque than the "
-        "coupling asks for. The coupling is not at fault.");
+  apart("From motors at limit or off", energy.by_limits(),
+        "The part of E_c from motors at their limit and from motors without force. Such a motor "
+        "gives another torque than the coupling asks for. The coupling is not at fault.");
 }
 
 // Draws E_c as in the plots, and its sources.
@@ -549,8 +600,9 @@ void draw_apart(const CouplingReading& reading) {
            "Coordination error |x_E|: joint angles of the device minus joint angles of the proxy. "
            "The first plot shows |x_E|.");
   read_out("Contact force", fmt::format("{:.2f} N", reading.contact), {},
-           "Force of the scene on the proxy. An object on the magnet does not count here, but "
-           "counts in f2 of the plots.");
+           "Force of the scene on the proxy. The hand feels less while a motor is at its limit, "
+           "while force is off, or while the law holds torque back. An object on the magnet does "
+           "not count here, but counts in f2 of the plots.");
 }
 
 void draw_show(const char* label, const char* help, const Act& act) {
@@ -563,15 +615,10 @@ void draw_show(const char* label, const char* help, const Act& act) {
 
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis) {
   draw_apart(reading);
-  if (p.kind == CouplingKind::tank) {
-    draw_tanks(reading);
-  } else if (info(p.kind).keeps_ledger()) {
-    draw_ledger(reading);
-  } else {
-    draw_shares(reading, info(p.kind));
-  }
+  draw_account(reading, info(p.kind));
   draw_unsolved(reading);
   draw_energy(reading, p, analysis);
+  draw_passive(reading, p, analysis);
   draw_limited(reading);
 }
 
@@ -581,12 +628,16 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
   read_out("Energy given E_c", energy_text(reading.energy_total),
            own_energy(reading, p, now.analysis).broken,
            "Energy that the coupling gave since the start. E_c stays below zero while the coupling "
-           "is passive. The second plot shows E_c.");
+           "is passive and nothing else gives energy. Lines further down name other sources. The "
+           "second plot shows E_c.");
   draw_passive(reading, p, now.analysis);
 }
 
 void draw_simple_notes(const CouplingReading& reading, const Parameters& p,
                        const CouplingSituation& now) {
+  for (const Share& share : shares_of(reading, info(p.kind))) {
+    if (!whole(share)) draw_share(share);
+  }
   if (reading.energy_total > kGivenEnergy) draw_givers(reading, p, now.analysis);
   draw_unsolved(reading);
   draw_limited(reading);
@@ -612,9 +663,9 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
   draw_show("Show less", "What a first hour needs (F8).", act);
 }
 
-void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,
-                            const CouplingSituation& now) {
-  draw_differences(p, recorded, live);
+void draw_coupling_of_rerun(Parameters& p, const RecordedCoupling& recording,
+                            const Parameters& live, const CouplingSituation& now) {
+  draw_differences(p, recording, live);
   law_choice(p, now.everything);
   ImGui::Spacing();
   if (!now.everything) return draw_eta(p, now.analysis);

@@ -46,10 +46,14 @@ struct CouplingSituation {
 // Draws the running loop's coupling into the open ImGui window, as the two below do.
 void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingReading& reading,
                    const Act& act);
-// Draws the parameters for the next re-run of a recording that began with `recorded`; `live`: the
-// loop's own.
-void draw_coupling_of_rerun(Parameters& p, const Parameters& recorded, const Parameters& live,
-                            const CouplingSituation& now);
+// Settings at a recording's first row, and keys of those that were changed while recording.
+struct RecordedCoupling {
+  const Parameters& began;
+  std::vector<std::string> changed;
+};
+// Draws the parameters for the next re-run of a recording; `live`: the loop's own.
+void draw_coupling_of_rerun(Parameters& p, const RecordedCoupling& recording,
+                            const Parameters& live, const CouplingSituation& now);
 // Draws what a first hour needs of a row: how far device and proxy are apart, what is felt, and
 // whether that is safe.
 void draw_simple_reading(const CouplingReading& reading, const Parameters& p,

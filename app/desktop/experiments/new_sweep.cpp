@@ -87,6 +87,21 @@ std::string wrong_with(const std::string& text) {
   }
 }
 
+// Returns what is wrong with the plan, by the words of the dialog; empty if nothing is.
+std::string wrong_with(const SweepDraft& draft) {
+  constexpr std::string_view kAxis = "axis.";
+  const std::string wrong = wrong_with(plan_text(draft));
+  if (!wrong.starts_with(kAxis)) return wrong;
+  for (const DraftAxis& each : draft.axes) {
+    SweepDraft alone = draft;
+    alone.axes = {each};
+    const std::string here = wrong_with(plan_text(alone));
+    if (!here.starts_with(kAxis)) continue;
+    return fmt::format("{}, {}", axis_field(each.key)->caption, here.substr(kAxis.size()));
+  }
+  return wrong;
+}
+
 }  // namespace
 
 // Fills in what is likely: η from the slider's least to its most, by the hand that comes with the
@@ -261,7 +276,7 @@ SweepDraft NewSweepDialog::draft(const SweepBasis& basis) {
                                             "`limpid sweep` has no such limit.",
                                             points(), kMostRuns)
                  : points() == 0 ? "Choose at least one word of each list."
-                                 : wrong_with(text);
+                                 : wrong_with(draft);
   }
   return draft;
 }

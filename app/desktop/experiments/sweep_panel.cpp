@@ -49,7 +49,7 @@ Side side_of(std::pair<double, double> range, bool logarithmic, const std::strin
   side.unit = std::pow(10, exponent);
   side.axis.low /= side.unit;
   side.axis.high /= side.unit;
-  if (exponent != 0) side.label += " " + exponent_text(exponent);
+  side.label = scaled_label(label, exponent);
   return side;
 }
 
@@ -257,14 +257,14 @@ std::vector<ScaleMark> scale_marks(const SweepMap& map, int at_most, std::string
   std::vector<ScaleMark> marks;
   const auto [low, high] = map.value_range;
   if (map.log_values) {
-    for (double x = std::pow(10, std::ceil(std::log10(low))); x <= high; x *= 10) {
-      marks.push_back({static_cast<float>(part_of(map, x)), fmt::format("{:.0e}", x)});
+    for (const double x : log_ticks(low, high)) {
+      marks.push_back({static_cast<float>(part_of(map, x)), fmt::format("{:g}", x)});
     }
     return marks;
   }
   const int exponent = common_exponent(low, high);
   const double unit = std::pow(10, exponent);
-  if (exponent != 0) label += " " + exponent_text(exponent);
+  label = scaled_label(label, exponent);
   const Ticks ticks = nice_ticks(low / unit, high / unit, at_most);
   for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
     marks.push_back({static_cast<float>(part_of(map, ticks.at(i) * unit)),

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The story is nobody's recording: it is neither listed among them, nor what P plays.
+// The story is nobody's recording: it is neither listed among them, nor what P plays. Nor does P
+// play a sweep's point, which has facts of its own.
 fs::path story_file() { return user_data_dir() / "story/story.h5"; }
 
 }  // namespace
@@ -125,11 +126,12 @@ bool Playback::take_results() {
   if (auto loaded = loading_.take(); loaded && *loaded) {
     rerunning_.cancel();
     if (!(*loaded)->said.empty()) notices_.say((*loaded)->said, (*loaded)->bad);
+    const bool point = !(*loaded)->facts.empty();
     PlayedSession fresh(std::move(**loaded));
     shown_.emplace(std::move(fresh));
     told_of_build_ = false;
     recovered_.clear();
-    if (shown_->file() != story_file()) last_ = shown_->file();
+    if (shown_->file() != story_file() && !point) last_ = shown_->file();
     if (shown_->file() == std::exchange(left_, {})) shown_->player().seek(left_at_);
     shown_->player().play();
     opened = true;

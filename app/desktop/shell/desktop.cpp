@@ -130,6 +130,18 @@ std::optional<Banner> live_force(const LiveStage& live) {
   return banner;
 }
 
+// Says what passivity broken on purpose does: nothing until force is on and a hand holds the arm.
+Banner break_banner(bool force, bool hand) {
+  const char* const now = !force ? "Energy grows once the force is on."
+                          : hand ? "A stiff hand holds the arm, and energy grows."
+                                 : "Energy grows once a hand holds the arm: drag the tip.";
+  return {.id = "banner of the break",
+          .text = fmt::format(
+              "Passivity is broken on purpose. {} All settings come back at the end.", now),
+          .bad = true,
+          .buttons = {{"End it (C)", "coupling.end_break"}}};
+}
+
 Banner chatter_banner(const ChatterWatch& chatter) {
   Banner banner{.id = "banner of the chatter", .text = chatter.text(), .bad = true};
   const ChatterWatch::Found& found = *chatter.found();
@@ -312,9 +324,8 @@ void Desktop::follow_playback(double dt) {
   make_thumbnail(opened.file(), shown.stage(), rows, settings.theme);
   shown.camera.frame(shown.stage().picture.bounds());
   shown.leave_story();
-  if (playback.last() != sweep.last_point()) {
-    remember_recent(settings, playback.last().string());
-  } else if (dialog.name() == "sweep") {
+  if (opened.file() == playback.last()) remember_recent(settings, opened.file().string());
+  if (opened.file() == sweep.last_point() && dialog.name() == "sweep") {
     dialog.close();  // it would cover the point's session
   }
 }
@@ -431,11 +442,7 @@ std::vector<Banner> Desktop::banners() const {
     all.push_back(point_of_sweep(*playback.shown()));
   }
   if (passivity_broken(settings)) {
-    all.push_back({.id = "banner of the break",
-                   .text = "Passivity is broken on purpose: a stiff hand holds the arm, and energy "
-                           "grows. All settings come back at the end.",
-                   .bad = true,
-                   .buttons = {{"End it (C)", "coupling.end_break"}}});
+    all.push_back(break_banner(!force, live.controls().grab));
   }
   if (chatter.found() && !playback.on()) all.push_back(chatter_banner(chatter));
   if (!playback.recovered().empty()) {

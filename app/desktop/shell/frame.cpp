@@ -296,8 +296,12 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
     }
   }
   if (section("For the re-run (E)", true)) {
-    draw_coupling_of_rerun(desktop_.tuning.edited(), session.began_with(),
-                           desktop_.settings.parameters(), now);
+    RecordedCoupling recording{session.began_with(), {}};
+    for (const SettingChange& change : session.player().session().changes) {
+      recording.changed.emplace_back(change.key());
+    }
+    draw_coupling_of_rerun(desktop_.tuning.edited(), recording, desktop_.settings.parameters(),
+                           now);
   }
 }
 

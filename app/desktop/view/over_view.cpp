@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -141,10 +142,20 @@ void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend) {
   const bool beside = view.max.x - legend.max.x > 26 * em;
   const float left = beside ? legend.max.x + em : view.min.x + pad;
   const float right = view.max.x - pad;
+  const float wrap = std::max(right - left - 2 * pad, 4 * em);
+  const auto size_of = [&](const Notice& notice) {
+    return ImGui::CalcTextSize(notice.text.c_str(), nullptr, false, wrap);
+  };
   float y = (beside ? view.min.y : legend.max.y) + 0.7f * em;
+  // Below a dialog, as far as there is room, notices cover neither its title nor its buttons.
+  if (const ImGuiWindow* dialog = ImGui::GetTopMostPopupModal()) {
+    float height = 0;
+    for (const Notice& notice : notices.all()) height += size_of(notice).y + 3 * pad;
+    const float last = ImGui::GetMainViewport()->WorkPos.y + ImGui::GetMainViewport()->WorkSize.y;
+    y = std::min(dialog->Pos.y + dialog->Size.y + pad, last - height);
+  }
   for (const Notice& notice : notices.all()) {
-    const float wrap = std::max(right - left - 2 * pad, 4 * em);
-    const ImVec2 size = ImGui::CalcTextSize(notice.text.c_str(), nullptr, false, wrap);
+    const ImVec2 size = size_of(notice);
     const ImVec2 at(std::max(left + pad, (left + right - size.x) / 2), y + pad);
     const ImVec2 from(at.x - pad, at.y - pad), to(at.x + size.x + pad, at.y + size.y + pad);
     draw->AddRectFilled(from, to, colour(colours.raised, 0.95f), 4);

@@ -132,7 +132,9 @@ std::vector<std::string> hints(const std::string& task, const std::string& pad,
   // The hint of how to pull the arm comes first.
   if (!task.empty() && done(settings, FirstStep::pull)) lines.push_back(task);
   for (const auto& [step, line] : all) {
-    if (!done(settings, step)) lines.push_back(line);
+    // Whoever has reached something has no need to lead the tip nearer or farther.
+    const bool needless = step == FirstStep::push && done(settings, FirstStep::press);
+    if (!done(settings, step) && !needless) lines.push_back(line);
   }
   return lines;
 }

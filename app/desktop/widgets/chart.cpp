@@ -39,16 +39,7 @@ std::vector<Tick> ticks(const ChartAxis& axis, int at_most) {
     }
     return all;
   }
-  // Ticks are at 1, 2 and 5 of every decade, or only at 1 if there are many decades.
-  const bool few = axis.high / axis.low < 300;
-  for (double decade = std::pow(10, std::floor(std::log10(axis.low))); decade <= axis.high;
-       decade *= 10) {
-    for (const double part : {1.0, 2.0, 5.0}) {
-      const double value = part * decade;
-      if ((part > 1 && !few) || value < axis.low * 0.999 || value > axis.high * 1.001) continue;
-      all.push_back({value, in_short(value)});
-    }
-  }
+  for (const double value : log_ticks(axis.low, axis.high)) all.push_back({value, in_short(value)});
   return all;
 }
 

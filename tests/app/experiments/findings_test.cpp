@@ -108,5 +108,15 @@ TEST(IdentifyText, HasTheDigitsThatTheDeviationLeaves) {
   EXPECT_EQ(text_of({250, 30}, 1), "250 +- 30");
 }
 
+// A value has the digits that its deviation leaves, and no deviation is shown as zero.
+TEST(FoundText, ShowsNoDeviationSmallerThanItIs) {
+  EXPECT_EQ(text_of({0.01234, 0.0021}, 1), "0.0123 +- 0.0021");
+  EXPECT_EQ(text_of({0.01234, 0.0000031}, 1), "0.0123 +- 0.0001");
+  EXPECT_EQ(text_of({12.34, 0.0021}, 1), "12.34 +- 0.01");
+  EXPECT_EQ(text_of({1234.5, 87}, 1), "1235 +- 87");
+  EXPECT_EQ(text_of({0.001, 0.0002}, 1e-3), "1.00 +- 0.20");
+  EXPECT_EQ(text_of({-0.00001, 0.0002}, 1), "0.0000 +- 0.0002") << "no -0";
+}
+
 }  // namespace
 }  // namespace limpid

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <vector>
+
 namespace limpid {
 namespace {
 
@@ -36,9 +39,39 @@ TEST(EnergySharesOfARun, AddUpToItsEnergy) {
   expect(-2, 3, 1, 2);
   shares.take(0.6, 5, true);
   expect(-2, 3, 2, 2);
-  shares.forget();
+  shares.begin(0);
   shares.take(0.7, 0.25, false);
   expect(0.25, 0, 0, 0);
+}
+
+// A run that begins with a stretched spring may give back what the spring holds, and no more.
+TEST(EnergySharesOfARun, LetTheSpringGiveBackWhatItHeldAtTheStart) {
+  EnergyShares shares;
+  shares.begin(0.02);
+  shares.take(0, 0, false);
+  EXPECT_NEAR(shares.own(), -0.02, 1e-12);
+  shares.take(1, 0.02, false);
+  EXPECT_NEAR(shares.own(), 0, 1e-12);
+  shares.take(2, 0.03, false);
+  EXPECT_NEAR(shares.own(), 0.01, 1e-12);
+  EXPECT_NEAR(shares.without_limits(), 0.01, 1e-12);
+  EXPECT_EQ(shares.stored(), 0.02);
+}
+
+// The spring of both sides: k x_E pulls the device back, with the energy k x_E^2 / 2.
+TEST(EnergySharesOfARun, KnowWhatTheSpringHolds) {
+  const RowLayout layout(3);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+  constexpr double kSpring = 17;
+  const std::array<double, 3> x1{0.3, -0.2, 1.1}, x2{0.25, 0.1, 1.05};
+  double held = 0;
+  for (std::size_t j = 0; j < 3; ++j) {
+    layout.in(std::span(row), Column::device_position)[j] = x1[j];
+    layout.in(std::span(row), Column::proxy_position)[j] = x2[j];
+    layout.in(std::span(row), Column::commanded_torque)[j] = -kSpring * (x1[j] - x2[j]);
+    held += 0.5 * kSpring * (x1[j] - x2[j]) * (x1[j] - x2[j]);
+  }
+  EXPECT_NEAR(spring_energy(layout, row), held, 1e-15);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "devices/files/session/hdf5_reading.h"
@@ -146,6 +148,55 @@ TEST(RunWatch, SaysNothingOfTheShippedHandUnderAnyLaw) {
   for (std::size_t law = 0; law < kLaws; ++law) {
     plan.parameters.kind = static_cast<CouplingKind>(law);
     EXPECT_THAT(warnings_of_run(plan), IsEmpty()) << kLawKeys[law];
+  }
+}
+
+// A recording that begins while the hand presses has a stretched spring, whose energy comes back
+// when the hand lifts. The standard law is passive nevertheless.
+TEST(RunWatch, LetsARunThatBeginsWithAStretchedSpringGiveItBack) {
+  RunPlan plan = test::plan("table.toml", "touch.csv", 2);
+  plan.parameters.kind = CouplingKind::standard;
+  plan.hand = hand_through({0, 0.5, 1.5, 1.51, 2},
+                           {Vec3(0.19, 0, 0), Vec3(0.19, 0, -0.1), Vec3(0.19, 0, -0.1),
+                            Vec3(0.19, 0, 0.05), Vec3(0.19, 0, 0.05)},
+                           "lifted at once");
+  const RowLayout layout = plan.layout();
+  std::vector<std::vector<double>> rows;
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+    rows.emplace_back(row.begin(), row.end());
+    return true;
+  });
+  const auto held = [&](const std::vector<double>& row) { return spring_energy(layout, row); };
+  const auto stretched = std::ranges::max_element(rows, {}, held);
+  const auto energy = [&](const std::vector<double>& row) {
+    return layout.in(std::span(row), Column::energy_total)[0];
+  };
+  RunWatch watch(plan.arm, layout, plan.parameters);
+  double given = 0;  // since the spring was stretched [J]
+  for (auto row = stretched; row != rows.end(); ++row) {
+    watch.add(*row);
+    given = std::max(given, energy(*row) - energy(*stretched));
+  }
+  EXPECT_GT(given, 2 * kGivenEnergy) << "the spring gives too little to tell";
+  EXPECT_LT(given, held(*stretched) + kGivenEnergy);
+  EXPECT_THAT(watch.warnings(), IsEmpty());
+}
+
+// While force is off the motors give nothing for what the coupling does to the proxy. That is not
+// the coupling's fault.
+TEST(RunWatch, ExcusesMotorsThatGiveAnotherTorqueThanIsAskedFor) {
+  const RowLayout layout(3);
+  for (const double part : {1.0, 0.999, 0.0}) {
+    RunWatch watch(test::omni(), layout, {});
+    std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+    for (int i = 0; i < 500; ++i) {
+      layout.in(std::span(row), Column::time)[0] = 1e-3 * i;
+      layout.in(std::span(row), Column::energy_total)[0] = 1e-4 * i;
+      layout.in(std::span(row), Column::commanded_torque)[1] = 0.1;
+      layout.in(std::span(row), Column::motor_torque)[1] = part * 0.1;
+      watch.add(row);
+    }
+    EXPECT_EQ(watch.warnings().empty(), part < 1) << part;
   }
 }
 

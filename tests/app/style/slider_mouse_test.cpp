@@ -89,17 +89,22 @@ TEST_F(SliderMouse, ACommaThatIsTypedIsTheDecimalPoint) {
   EXPECT_EQ(parameters.eta, 0.25);
 }
 
-TEST_F(SliderMouse, WhatIsTypedBeyondTheLimitsIsTheLimit) {
+TEST_F(SliderMouse, WhatIsTypedBeyondTheLimitsIsNotTaken) {
   const ParameterInfo& eta = *find_parameter("coupling.eta");
   for (const bool other : {false, true}) {
     of_value = other;
-    type("1e9");
-    EXPECT_EQ(given, eta.maximum) << other;
-    type("-3");
-    EXPECT_EQ(given, eta.minimum) << other;
-    type("2");
-    EXPECT_EQ(given, 2) << other;
-    EXPECT_EQ(parameters.eta, 2) << other;
+    parameters.eta = given = 1;
+    changes = 0;
+    for (const char* wrong : {"1e9", "-3", "0", "nan", "banana"}) {
+      type(wrong);
+      EXPECT_EQ(given, 1) << other << " " << wrong;
+      EXPECT_EQ(parameters.eta, 1) << other << " " << wrong;
+    }
+    EXPECT_EQ(changes, 0) << other;
+    for (const double limit : {eta.maximum, eta.minimum}) {
+      type(std::to_string(limit).c_str());
+      EXPECT_EQ(parameters.eta, limit) << other;
+    }
   }
 }
 

@@ -1,9 +1,10 @@
 #include "app/style/ticks.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace limpid {
 namespace {
@@ -70,6 +71,14 @@ TEST(Ticks, SmallAndLargeAxesShareAPowerOfTen) {
   EXPECT_EQ(common_exponent(0, 25000), 3);
   EXPECT_EQ(exponent_text(-6), "×10⁻⁶");
   EXPECT_EQ(exponent_text(0), "");
+  EXPECT_EQ(scaled_label("E_c [J]", 0), "E_c [J]");
+  EXPECT_EQ(scaled_label("E_c [J]", -3), "E_c [mJ]");
+  EXPECT_EQ(scaled_label("stiffness [N/m]", 3), "stiffness [kN/m]");
+  EXPECT_EQ(scaled_label("time [s]", -6), "time [µs]");
+  EXPECT_EQ(scaled_label("mass [kg]", -3), "mass [kg] ×10⁻³") << "kg has a prefix already";
+  EXPECT_EQ(scaled_label("share [%]", 3), "share [%] ×10³");
+  EXPECT_EQ(scaled_label("ticks", 3), "ticks ×10³");
+  EXPECT_EQ(scaled_label("E_c [J]", -9), "E_c [J] ×10⁻⁹");
 }
 
 TEST(Ticks, TimesReadAsSecondsOrAsAClock) {
@@ -87,6 +96,13 @@ TEST(Ticks, ThreeDigitsArePlainWhereThatIsShort) {
   EXPECT_EQ(three_digits(300), "300");
   EXPECT_EQ(three_digits(0), "0");
   EXPECT_EQ(three_digits(1e-6), "1.00e-06");
+}
+
+TEST(LogTicks, AreBetweenPowersOfTenWhereThereAreFew) {
+  EXPECT_THAT(log_ticks(0.2, 10), testing::Pointwise(testing::DoubleNear(1e-12),
+                                                     std::vector{0.2, 0.5, 1.0, 2.0, 5.0, 10.0}));
+  EXPECT_THAT(log_ticks(0.3, 400),
+              testing::Pointwise(testing::DoubleNear(1e-9), std::vector{1.0, 10.0, 100.0}));
 }
 
 }  // namespace

@@ -319,10 +319,10 @@ TEST_F(CouplingWords, BreakAndRepairPassivityOfTheVirtualArm) {
 TEST_F(CouplingWords, SayWhoseEnergyItIs) {
   draw();
   EXPECT_EQ(value("Energy given E_c"), "?12.3 mJ");
-  EXPECT_FALSE(find("From compensation"));
+  EXPECT_FALSE(find("From compensation, grip test"));
   now_.compensation = 0.004;
   draw();
-  EXPECT_EQ(value("From compensation"), "4.00 mJ");
+  EXPECT_EQ(value("From compensation, grip test"), "4.00 mJ");
   EXPECT_FALSE(find("From switching"));
 }
 
@@ -353,11 +353,32 @@ TEST_F(CouplingWords, OfALinkSayHowLongItIs) {
   EXPECT_EQ(value("Through it"), info(p_.kind).through_link);
 }
 
+// A re-run makes the changes of the recording, but for settings that it begins otherwise.
+TEST_F(CouplingWords, OfARerunTellWhichRecordedChangesItMakes) {
+  p_.kind = CouplingKind::proposed;
+  const Parameters recorded = p_;
+  const auto draw_rerun = [&] {
+    show([&] {
+      draw_coupling_of_rerun(p_, {recorded, {"coupling.kind", "coupling.eta", "coupling.kind"}},
+                             recorded, {.analysis = a_, .arm = arm_});
+    });
+  };
+  draw_rerun();
+  const std::string law = find_parameter("coupling.kind")->caption;
+  const std::string eta = "Impedance scaling ?";
+  EXPECT_THAT(sentences(), HasSubstr("on the way: " + law + ", " + eta + ". The re-run makes the"));
+  EXPECT_THAT(sentences(), Not(HasSubstr("keeps its own value")));
+  p_.kind = CouplingKind::tank;
+  draw_rerun();
+  EXPECT_THAT(sentences(), HasSubstr("on the way: " + eta + "."));
+  EXPECT_THAT(sentences(), HasSubstr("changes " + law + " on the way. The re-run keeps its own"));
+}
+
 TEST_F(CouplingWords, OfARerunHaveNothingOfTheLoop) {
   const Parameters recorded = p_;
   Parameters live = p_;
   live.eta = 0.3;
-  show([&] { draw_coupling_of_rerun(p_, recorded, live, {.analysis = a_, .arm = arm_}); });
+  show([&] { draw_coupling_of_rerun(p_, {recorded, {}}, live, {.analysis = a_, .arm = arm_}); });
   EXPECT_THAT(sentences(), HasSubstr("Change a setting, then press E"));
   EXPECT_TRUE(find("Passivity"));
   EXPECT_FALSE(find("Break passivity"));

@@ -79,7 +79,7 @@ TEST_F(MapOfASweep, NamesMeasureAxesAndHowFarItIs) {
   const std::string shown = words();
   for (const char* text : {"Sweep: Grips", "hand torque, rms", "over", "and", "Coupling",
                            "standard", "Impedance scaling \xCE\xB7 [-] over Grip stiffness [N/m]",
-                           "18 of 18 points", "hand torque, rms [N m]"}) {
+                           "18 of 18 points", "hand torque, rms [mN m]"}) {
     EXPECT_THAT(shown, HasSubstr(text));
   }
   EXPECT_THAT(shown, HasSubstr(theory_label("pr")));
@@ -159,7 +159,7 @@ TEST_F(MapOfASweep, ShowsWhatIsChosen) {
                                    "N/m\nImpedance scaling \xCE\xB7\n1\n"));
   choose("hand torque, rms", "comes to rest");
   EXPECT_THAT(words(), HasSubstr("comes to rest: yes"));
-  EXPECT_THAT(words(), Not(HasSubstr("hand torque, rms [N m]"))) << "a yes or no has no scale";
+  EXPECT_THAT(words(), Not(HasSubstr("hand torque, rms [mN m]"))) << "a yes or no has no scale";
   choose("Grip stiffness", "Coupling");
   EXPECT_THAT(words(), HasSubstr("Coupling over Impedance scaling \xCE\xB7 [-]"));
   EXPECT_EQ(desktop->sweep.choice().y, 0u);
@@ -190,7 +190,7 @@ axis = [{ key = "coupling.eta", from = 0.4, to = 1, count = 3 }]
 )"));
   EXPECT_EQ(desktop->sweep.map()->kind, SweepMap::Kind::curve);
   EXPECT_THAT(words(), testing::ContainsRegex(
-                           "hand torque, rms .N m.[^\n]* over Impedance scaling .* .-.\n"));
+                           "hand torque, rms .mN m.[^\n]* over Impedance scaling .* .-.\n"));
   const ScreenRect map = desktop->sweep.on_screen->rect;
   point_at({map.max.x - 5, map.min.y + 5});
   EXPECT_EQ(pointed(), "point\n2\nImpedance scaling \xCE\xB7\n1\nhand torque, rms\n" +
