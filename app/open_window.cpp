@@ -158,18 +158,19 @@ WindowCommands declare_window(CLI::App& app, MakeVideo make_video) {
   command->footer(
       "A video is drawn picture by picture, without a display. It grows as OUT.part and gets its "
       "name\nat the end; Ctrl-C leaves nothing of it. --ui-scale is the size of its text.");
-  return {
-      [options, &app] {
-        for (const CLI::App* each : shown_commands(app))
-          options->commands.push_back(each->get_name());
-        return open_window(*options);
-      },
-      [options, played, make_video = std::move(make_video)] {
-        if (!options->files.empty()) {
-          throw UsageError(fmt::format("\"{}\": not expected before play", options->files.front()));
-        }
-        return play(both(*options, *played), make_video);
-      }};
+  return {[options, &app] {
+            for (const CLI::App* each : shown_commands(app))
+              options->commands.push_back(each->get_name());
+            return open_window(*options);
+          },
+          [options, played, make_video = std::move(make_video)] {
+            if (!options->files.empty()) {
+              throw UsageError(fmt::format(
+                  "\"{}\" stands before the command play; needed: play first, then files",
+                  options->files.front()));
+            }
+            return play(both(*options, *played), make_video);
+          }};
 }
 
 }  // namespace limpid

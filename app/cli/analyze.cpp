@@ -251,7 +251,8 @@ Command declare_analyze(CLI::App& app) {
   options->input.add_parameters(*command);
   auto* band = command
                    ->add_option("--band", options->band,
-                                "the human's bandwidth; eta_min is computed within this band")
+                                "up to this frequency a hand moves; eta_min is computed for "
+                                "motions up to this frequency")
                    ->type_name("HZ");
   auto* mass = command
                    ->add_option("--mass", options->mass,

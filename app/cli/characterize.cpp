@@ -155,7 +155,8 @@ KnownNumber damping_number(const Source& source, const InputOptions& input, cons
   if (!std::isnan(p.damping)) {
     number.assumed = true;
     number.from =
-        "the arm's file gives no damping; this value slows the arm as fast as the built-in arm";
+        "the arm's file gives no damping; with this value the arm comes to rest as quickly as the "
+        "built-in arm";
   }
   return number;
 }

@@ -140,7 +140,8 @@ Vec3 gravity_of(const std::string& text) {
 void ask() {
   if (isatty(STDIN_FILENO) == 0) {
     throw UsageError(
-        "no terminal to ask a person whether the device may move; needed: --yes, or a terminal");
+        "a person must allow the device to move, but there is no terminal to ask in; needed: "
+        "--yes, or a terminal");
   }
   const auto wait = [] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

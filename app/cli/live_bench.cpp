@@ -94,7 +94,8 @@ ArmDescription arm_of_device(const DeviceTraits& traits, const DeviceHub& hub,
 LiveBench::LiveBench(const LiveOptions& options, const InputOptions& input) : yes_(options.yes) {
   if (!yes_ && isatty(STDIN_FILENO) == 0) {
     throw UsageError(
-        "no terminal to ask a person whether the device may push; needed: --yes, or a terminal");
+        "a person must allow the device to push, but there is no terminal to ask in; needed: "
+        "--yes, or a terminal");
   }
   DeviceHub hub(device_store_file(), by_rtkit());
   std::unique_ptr<Device> device = open_device(*options.device, hub, "");

@@ -43,7 +43,7 @@ std::string file_of(const std::string& named, const char* key, const char* kind)
   if (const auto own = shipped_file(named, {kind})) return *own;
   const std::string hint = shipped_hint(named, {kind});
   throw UsageError(fmt::format(
-      "open: {}: \"{}\" is not there{} allowed: a path from / on, or one of {}", key,
+      "open: {}: there is no file \"{}\"{} allowed: a path that begins with /, or one of {}", key,
       named.substr(0, 100), hint.empty() ? ";" : hint, fmt::join(shipped_names(kind), ", ")));
 }
 
@@ -157,8 +157,8 @@ int serve(const ServeOptions& options) {
 }  // namespace
 
 Command declare_serve(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("serve", "the live loop without a window, led by programs on a socket");
+  auto* command = app.add_subcommand(
+      "serve", "the live loop without a window; other programs control it over a socket");
   auto options = std::make_shared<ServeOptions>();
   command
       ->add_option("NAME", options->name,

@@ -219,7 +219,7 @@ json Remote::set(const Keys& keys, Client client) {
   const bool of_twin = keys.flag_or("twin", false);
   const std::size_t lane = asked_lane(keys, of_twin ? kTwinLane : kMainLane);
   if (of_twin && lane != kTwinLane) {
-    throw keys.error("lane", "does not fit to \"twin\": true, which is lane 1");
+    throw keys.error("lane", "contradicts \"twin\": true; the twin is lane 1");
   }
   const bool reset = keys.flag_or("reset", false);
   if (lane >= host_.lanes()) {

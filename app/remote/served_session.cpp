@@ -189,7 +189,8 @@ Answer ServedSession::open(const Keys& keys) {
     }
     if (count_bodies(world.plan.document.scene) != loop().layout().bodies()) {
       throw RemoteError(
-          "open: scene: the number of objects that move must stay the same on a real device");
+          "open: scene: has another number of objects that move; needed: as many as now, because a "
+          "real device is in use");
     }
     loop().cut();
     session_.touch(world_.plan.arm, world.plan.document.scene);

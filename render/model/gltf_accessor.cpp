@@ -285,7 +285,7 @@ Triangles read_triangles(GltfAccessor& file, const tinygltf::Primitive& primitiv
     file.refuse("a mesh is drawn in the unknown mode " + std::to_string(primitive.mode));
   if (list && count % 3 != 0) file.refuse("indices do not make whole triangles");
   const std::size_t made = list ? count / 3 : count < 3 ? 0 : count - 2;
-  if (made > most) file.refuse("has more than 6 million triangles over all nodes");
+  if (made > most) file.refuse("has more than 6 million triangles, all nodes counted");
   Triangles out{{}, made};
   out.corners.reserve(3 * made);
   for (std::size_t i = 0; i < made; ++i) {

@@ -69,7 +69,7 @@ void decode_draco(const tinygltf::Primitive& primitive, GltfAccessor& file, std:
   if (!view.IsInt() || !attributes.IsObject()) file.refuse("has Draco data that is incomplete");
   const auto mesh = decode(file.view(view.GetNumberAsInt()));
   if (!mesh) file.refuse("has Draco data that cannot be decoded");
-  if (mesh->num_faces() > most) file.refuse("has more than 6 million triangles over all nodes");
+  if (mesh->num_faces() > most) file.refuse("has more than 6 million triangles, all nodes counted");
   for (const std::string& key : attributes.Keys()) {
     const auto at = primitive.attributes.find(key);
     const auto& id = attributes.Get(key);

@@ -93,7 +93,7 @@ class Live(unittest.TestCase):
         for words, said in (
                 (("--yes",), "no device is chosen"),
                 (("nothing", "--yes"), "nothing: is not connected"),
-                ((), "no terminal to ask"),
+                ((), "there is no terminal to ask"),
                 (("--yes", "--hand", "x.csv"), "--hand: not together with --live"),
                 (("--yes", "--twin"), "--twin: not together with --live")):
             with self.subTest(words=words):

@@ -112,8 +112,9 @@ std::string ChatterWatch::text() const {
   if (!wall) {
     return fmt::format("{}: the {} law{} {} energy.", says, law.key, of, now ? "gives" : "gave");
   }
-  return fmt::format("{}: {} ({:.4g} N/m) is stiffer than the {} law{} can hold at this place.",
-                     says, wall->name, wall->stiffness, law.key, of);
+  return fmt::format(
+      "{}: {} ({:.4g} N/m) is stiffer than the {} law{} can render there without chatter.", says,
+      wall->name, wall->stiffness, law.key, of);
 }
 
 void ChatterWatch::take_predictive() {

@@ -389,16 +389,17 @@ void tell_changes(const Parameters& p, const Parameters& recorded,
     into += (into.empty() ? "" : ", ") + std::string(info.caption);
   }
   if (!again.empty()) {
-    muted(
-        fmt::format("The recording changes on the way: {}. The re-run makes the same changes. "
-                    "The settings below are those of the start.",
-                    again));
+    muted(fmt::format(
+        "In the recording these settings change after the start: {}. The re-run makes the same "
+        "changes. "
+        "The settings below are those of the start.",
+        again));
   }
   if (!left_out.empty()) {
-    muted(
-        fmt::format("The recording changes {} on the way. The re-run keeps its own value from "
-                    "the start to the end.",
-                    left_out));
+    muted(fmt::format(
+        "In the recording, {} changes after the start. The re-run keeps its own value from "
+        "the start to the end.",
+        left_out));
   }
 }
 
@@ -452,12 +453,12 @@ void draw_unsolved(const CouplingReading& now) {
       "objects do not push and may sink into each other. Fewer objects that lie on each other "
       "avoid this error.");
   draw_count(
-      "Ticks in which objects stood still", now.stood_still,
+      "Ticks in which Limpid held objects still", now.stood_still,
       "In these ticks the solver found no forces for a mechanism. The mechanism's bodies stood "
       "still for each such tick, which only removes energy. Masses that are more alike, softer "
       "stops and a shorter tick avoid such ticks.");
   draw_count(
-      "Ticks in which objects turned less", now.turned_less,
+      "Ticks in which Limpid slowed objects", now.turned_less,
       "A mechanism moved so fast that one of its bodies would have turned by more than a radian "
       "in a tick. The body turned by a radian and lost the rest of its energy. Heavier bodies, "
       "softer springs and a shorter tick avoid these ticks.");
@@ -625,11 +626,12 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
 void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
                          const CouplingSituation& now) {
   draw_apart(reading);
-  read_out("Energy given E_c", energy_text(reading.energy_total),
-           own_energy(reading, p, now.analysis).broken,
-           "Energy that the coupling gave since the start. E_c stays below zero while the coupling "
-           "is passive and nothing else gives energy. Lines further down name other sources. The "
-           "second plot shows E_c.");
+  read_out(
+      "Energy given E_c", energy_text(reading.energy_total),
+      own_energy(reading, p, now.analysis).broken,
+      "Energy that the coupling gave since the start. E_c stays below zero while the coupling "
+      "is passive, unless a switch of laws or a motor without force adds energy. If E_c is above "
+      "zero, lines below the buttons name its sources. The second plot shows E_c.");
   draw_passive(reading, p, now.analysis);
 }
 

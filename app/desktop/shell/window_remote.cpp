@@ -24,7 +24,7 @@ fs::path file_of(const Keys& keys, const char* key, const char* kind) {
   fs::path file = shipped_file(named, {kind}).value_or(named);
   if (!file.is_absolute() || !fs::exists(file)) {
     const std::string hint = shipped_hint(named, {kind});
-    throw keys.error(key, fmt::format("{} is not there{} allowed: a whole path, beginning with /, "
+    throw keys.error(key, fmt::format("there is no file {}{} allowed: a path that begins with /, "
                                       "or a file that came with the program",
                                       shown(named), hint.empty() ? ";" : hint));
   }

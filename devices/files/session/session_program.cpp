@@ -41,7 +41,7 @@ void put_run(Writer& to, const Session& run) {
 
 void take_run(Reader& from, std::uint64_t rows, Session& run) {
   run.world = from.list<std::vector<double>>();
-  if (run.world.size() > kMostWorld) throw Broken("more body states than are possible");
+  if (run.world.size() > kMostWorld) throw Broken("more states of bodies than a scene can have");
   const std::size_t changes = from.taken(2 * sizeof(std::uint64_t));
   for (std::size_t i = 0; i < changes; ++i) {
     const auto row = from.number<std::uint64_t>();

@@ -188,7 +188,7 @@ void Builder::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& to_model) {
   if (!to_model.matrix().allFinite()) refuse("has a transform that is not finite");
   if (mesh.mNumFaces == 0 || !mesh.HasPositions()) return;
   if ((triangles_ += mesh.mNumFaces) > kMostTriangles)
-    refuse("has more than 6 million triangles over all nodes");
+    refuse("has more than 6 million triangles, all nodes counted");
   const bool normals = use_normals_ && mesh.HasNormals();
   std::vector<unsigned> place;
   const std::size_t count = weld(mesh, normals, place);

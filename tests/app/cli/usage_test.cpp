@@ -122,7 +122,8 @@ TEST_F(Usage, HasEveryOptionBehindItsCommand) {
   EXPECT_THAT(refused({"--ui-scale", "1", "run"}),
               HasSubstr("--ui-scale: is of the window, and limpid run opens none"));
   EXPECT_THAT(refused({"table.toml", "run"}), HasSubstr("not expected before run"));
-  EXPECT_THAT(refused({"table.toml", "play", "table.h5"}), HasSubstr("not expected before play"));
+  EXPECT_THAT(refused({"table.toml", "play", "table.h5"}),
+              HasSubstr("stands before the command play"));
 }
 
 TEST_F(Usage, RefusesValuesThatAreNone) {

@@ -250,8 +250,8 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
   }
   EXPECT_FALSE(find("Ticks without a solution"));
   EXPECT_FALSE(find("Contact points left out"));
-  EXPECT_FALSE(find("Ticks in which objects stood still"));
-  EXPECT_FALSE(find("Ticks in which objects turned less"));
+  EXPECT_FALSE(find("Ticks in which Limpid held objects still"));
+  EXPECT_FALSE(find("Ticks in which Limpid slowed objects"));
   now_.contact_governor = 0.994;
   now_.damping_governor = 0.5;
   now_.torque_governor = 0.25;
@@ -265,12 +265,12 @@ TEST_F(CouplingWords, OfALedgerSayWhatItHoldsBack) {
   EXPECT_EQ(value("Torque rendered"), "25 %");
   EXPECT_EQ(value("Ticks without a solution"), "3");
   EXPECT_EQ(value("Contact points left out"), "1");
-  EXPECT_EQ(value("Ticks in which objects stood still"), "2");
-  EXPECT_EQ(value("Ticks in which objects turned less"), "5");
+  EXPECT_EQ(value("Ticks in which Limpid held objects still"), "2");
+  EXPECT_EQ(value("Ticks in which Limpid slowed objects"), "5");
   for (const char* bad :
        {"Wall force rendered", "Damping removed", "Torque rendered", "Ticks without a solution",
-        "Contact points left out", "Ticks in which objects stood still",
-        "Ticks in which objects turned less"}) {
+        "Contact points left out", "Ticks in which Limpid held objects still",
+        "Ticks in which Limpid slowed objects"}) {
     EXPECT_TRUE(broken(bad)) << bad;
   }
   EXPECT_THAT(hint("Damping removed"), HasSubstr("cancels less of the device's damping"));
@@ -366,12 +366,14 @@ TEST_F(CouplingWords, OfARerunTellWhichRecordedChangesItMakes) {
   draw_rerun();
   const std::string law = find_parameter("coupling.kind")->caption;
   const std::string eta = "Impedance scaling ?";
-  EXPECT_THAT(sentences(), HasSubstr("on the way: " + law + ", " + eta + ". The re-run makes the"));
+  EXPECT_THAT(sentences(),
+              HasSubstr("after the start: " + law + ", " + eta + ". The re-run makes the"));
   EXPECT_THAT(sentences(), Not(HasSubstr("keeps its own value")));
   p_.kind = CouplingKind::tank;
   draw_rerun();
-  EXPECT_THAT(sentences(), HasSubstr("on the way: " + eta + "."));
-  EXPECT_THAT(sentences(), HasSubstr("changes " + law + " on the way. The re-run keeps its own"));
+  EXPECT_THAT(sentences(), HasSubstr("after the start: " + eta + "."));
+  EXPECT_THAT(sentences(), HasSubstr("In the recording, " + law +
+                                     " changes after the start. The re-run keeps its own"));
 }
 
 TEST_F(CouplingWords, OfARerunHaveNothingOfTheLoop) {

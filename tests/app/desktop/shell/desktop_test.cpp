@@ -1006,8 +1006,8 @@ TEST_F(ADesktop, SaysWhichWallChattersUnderWhichLawAndMendsIt) {
     const Banner& banner = banners.back();
     EXPECT_TRUE(banner.bad);
     EXPECT_EQ(banner.text,
-              "The loop chatters: table top (5000 N/m) is stiffer than the proposed law can hold "
-              "at this place.");
+              "The loop chatters: table top (5000 N/m) is stiffer than the proposed law can "
+              "render there without chatter.");
     ASSERT_EQ(banner.buttons.size(), 3u);
     EXPECT_EQ(banner.buttons[0].label, "Predictive");
     // The stiffness is that of `analyze` for the built-in arm, in two digits.

@@ -120,8 +120,8 @@ TEST_F(LedWindow, PlaysSessionsAndHands) {
 
 TEST_F(LedWindow, RefusesToOpenWhatIsNotThereOrNotAllowed) {
   EXPECT_THAT(refused({{"do", "open"}, {"scene", "nowhere.toml"}}),
-              HasSubstr("\"nowhere.toml\" is not there"));
-  EXPECT_THAT(refused({{"do", "open"}, {"scene", "/nowhere.toml"}}), HasSubstr("is not there"));
+              HasSubstr("there is no file \"nowhere.toml\""));
+  EXPECT_THAT(refused({{"do", "open"}, {"scene", "/nowhere.toml"}}), HasSubstr("there is no file"));
   EXPECT_THAT(refused({{"do", "open"}}), HasSubstr("one of scene, arm, session, hand"));
   EXPECT_THAT(refused({{"do", "open"}, {"scene", "spheres.toml"}, {"hand", "touch.csv"}}),
               HasSubstr("one of scene, arm, session, hand"));
