@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -236,6 +237,9 @@ bool Loop::diverged() const noexcept { return state_->rig->diverged(); }
 void Loop::record(const std::string& file, bool replace) {
   State& s = *state_;
   if (s.recorder) throw LoopError(file + ": " + s.recorder->out().string() + " is being recorded");
+  if (!replace && std::filesystem::exists(file)) {
+    throw LoopError(file + ": exists, and is not to be replaced");
+  }
   as_library([&] {
     RunPlan recorded = s.plan;
     recorded.parameters = s.taken();
@@ -298,7 +302,16 @@ std::string DeviceLoop::force_text() const {
     return fmt::format("force off: a reading has {} positions; needed: {}, one per joint",
                        state_->wrong_count - 1, joints());
   }
-  return limpid::force_text(state_->rig->force_state());
+  const std::string text = limpid::force_text(state_->rig->force_state());
+  if (!text.empty() || state_->ticks == 0) return text;
+  if (force_share() < 1) return "force fades in";
+  const auto part = [&](Column column) {
+    return state_->layout.in(std::span<const double>(state_->row), column)[0];
+  };
+  const double walls = std::min(part(Column::governor), part(Column::torque_governor));
+  constexpr double kWhole = 0.995;
+  if (walls >= kWhole) return {};
+  return fmt::format("walls held back to {:.0f} % by the law's energy account", 100 * walls);
 }
 
 SimulatedLoop::SimulatedLoop(const LoopOptions& options)
@@ -328,6 +341,11 @@ std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
 SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double duration,
                                          const TakeRow& take) const {
   return as_library([&]() -> RunEnd {
+    if (!take) throw LoopError("take: is empty; needed: a function that takes each row");
+    if (!(duration >= 0)) {
+      throw LoopError(
+          fmt::format("duration: {} is not allowed; allowed: seconds, from 0 on", duration));
+    }
     RunPlan plan = state_->plan;
     plan.hand = hand_of_rows(path);
     if (const std::string why = out_of_reach(plan); !why.empty()) throw LoopError(why);

@@ -108,7 +108,7 @@ void History::append(double time, std::span<const double> values) {
   if (!empty() && time + offset_ <= end_time()) {
     offset_ = end_time() + kResetGap - time;
     run_start_ = time + offset_;
-    mark(time, "start over", kResetMark);
+    mark(time, "t = 0", kResetMark);
   }
   times_[static_cast<std::size_t>(end() % times_.size())] = time + offset_;
   for (std::size_t i = 0; i < values.size(); ++i) {

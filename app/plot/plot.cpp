@@ -10,6 +10,7 @@
 #include "app/plot/axis.h"
 #include "app/plot/plot_frame.h"
 #include "app/style/ticks.h"
+#include "app/style/words.h"
 #include "core/coupling/laws.h"
 
 namespace limpid {
@@ -499,6 +500,13 @@ void Plot::handle_mouse(const PlotFrame& frame, const History& history, PlotGrou
                         PlotEvents& events) {
   const ImVec2 mouse = ImGui::GetMousePos();
   hovered_curve_ = hovered_ ? legend_.curve_at(mouse) : -1;
+  if (hovered_curve_ >= 0) {
+    const Curve& curve = spec_.curves[static_cast<std::size_t>(hovered_curve_)];
+    begin_tooltip(mouse, mouse);
+    ImGui::TextUnformatted(
+        fmt::format("{}: {}. A click hides or shows this curve.", curve.label, curve.help).c_str());
+    end_tooltip();
+  }
   if (hovered_ && hovered_curve_ >= 0 && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     Curve& curve = spec_.curves[static_cast<std::size_t>(hovered_curve_)];
     curve.visible = !curve.visible;
@@ -550,11 +558,11 @@ void Plot::handle_drag(const PlotFrame& frame, const History& history, PlotGroup
   if (ImGui::IsItemActivated()) {
     const bool selects = io.KeyShift && over_time() && frame.area.contains(io.MousePos);
     range_from_ = frame.x_at(io.MousePos.x);
-    drag_ = selects                            ? Drag::range
-            : near_playback                    ? Drag::playback
-            : io.MousePos.x < frame.area.min.x ? Drag::values
-            : hovered_curve_ < 0               ? Drag::pan
-                                               : Drag::none;
+    drag_ = selects                                                     ? Drag::range
+            : near_playback                                             ? Drag::playback
+            : io.MousePos.x < frame.area.min.x                          ? Drag::values
+            : hovered_curve_ < 0 && !menu_button_.contains(io.MousePos) ? Drag::pan
+                                                                        : Drag::none;
     if (drag_ == Drag::pan && over_time() && group.playback()) {
       events.playback = note_near(frame, history, io.MousePos);
       if (events.playback) drag_ = Drag::none;

@@ -477,7 +477,7 @@ std::string csv_text(const PlotTable& table) {
 
 std::string word_on_times(const PlotTable& table) {
   if (table.times.empty() || table.times.front() >= 0) return "";
-  return " (negative times: before the last start over)";
+  return " (negative times: before the last t = 0)";
 }
 
 std::string figure_svg(std::span<const FigurePart> parts, const History& history) {

@@ -31,6 +31,7 @@ struct Curve {
   int channel = 0;
   int across = -1;  // of kind cross: the channel along the horizontal axis
   std::string label = {};
+  std::string help = {};  // what it is, for people
   Ink ink = Ink::neutral;
   float shade = 0;  // see ink()
   bool visible = true;

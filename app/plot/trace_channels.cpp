@@ -61,13 +61,6 @@ std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
        "what the scene puts on the proxy", contact},
       {"device/limited", "Device", "a motor at its limit", "at limit", "-",
        "1 while a motor gives its largest torque", device},
-      {"device/withheld", "Device", "motors give another torque than asked", "withheld", "-",
-       "1 while the motors give another torque than the coupling asks for: at a limit, or while "
-       "force is off or fades",
-       device, 0.5f, true, true},
-      {"energy/spring", "Energy", "held by the coupling's spring", "spring", "J",
-       "energy that the coupling's spring holds, which the spring may give back", energy, 0.7f,
-       true, true},
   };
   for (int j = 0; j < dof; ++j) {
     const std::string joint = std::to_string(j + 1);
@@ -157,7 +150,7 @@ ChannelInfo column_channel(const ColumnInfo& column, int part, const std::string
 
 }  // namespace
 
-void EnergyAccount::follow(const History& history, SampleIndex end, LaneOfHistory of) {
+void EnergyAccount::follow(const History& history, SampleIndex end, const LaneOfHistory& of) {
   if (end < next_) start_over();
   next_ = std::max(next_, history.first());
   // A mark placed at the last sample, after that was looked at, counts too.
@@ -183,8 +176,23 @@ void EnergyAccount::follow(const History& history, SampleIndex end, LaneOfHistor
       begun_ = false;
       continue;
     }
-    if (!std::exchange(begun_, true)) shares_.begin(value(Channel::spring));
-    shares_.take(time, energy, value(Channel::limited) > 0.5f || value(Channel::withheld) > 0.5f);
+    const auto of_joint = [&](int place) {
+      return [&history, k = next_, first = of.first + place](int j) {
+        return static_cast<double>(history.value(first + j, k));
+      };
+    };
+    const auto commanded = of_joint(of.commanded_torque), own = of_joint(of.compensation_torque);
+    if (!std::exchange(begun_, true)) {
+      const auto x_E = of_joint(static_cast<int>(Channel::joints));
+      double twice = 0;
+      for (int j = 0; j < of.dof; ++j) twice -= commanded(j) * x_E(j);
+      shares_.begin(std::max(0.0, 0.5 * twice));
+      withheld_.begin();
+    }
+    const double withheld = withheld_.add(
+        of.dof, of_joint(of.motor_torque), [&](int j) { return commanded(j) + own(j); },
+        of_joint(of.device_position));
+    shares_.take(time, energy, withheld, value(Channel::limited) > 0.5f);
   }
 }
 
@@ -314,6 +322,20 @@ std::optional<int> TraceChannels::find(const std::string& key) const {
   return static_cast<int>(found - infos_.begin());
 }
 
+LaneOfHistory TraceChannels::lane(std::size_t lane) const {
+  const auto of = [this](Column column) {
+    const std::string path = kColumnInfo[static_cast<std::size_t>(column)].path + 1;
+    return *find(path + ".1");
+  };
+  return {static_cast<int>(lane) * count(),
+          lane,
+          layout_.dof(),
+          of(Column::motor_torque),
+          of(Column::commanded_torque),
+          of(Column::compensation_torque),
+          of(Column::device_position)};
+}
+
 bool TraceChannels::limited(std::span<const double> row, int joint) const {
   return at_limit(layout_, row, limits_, joint);
 }
@@ -342,8 +364,6 @@ void TraceChannels::values(std::span<const double> row, std::span<double> into) 
   put(Channel::human_estimate, torque(at(Column::hand_torque_estimate)));
   put(Channel::contact, torque(at(Column::contact_torque)));
   put(Channel::limited, any_at_limit(layout_, row, limits_) ? 1 : 0);
-  put(Channel::withheld, any_withheld(layout_, row) ? 1 : 0);
-  put(Channel::spring, spring_energy(layout_, row));
   const auto rest = joints.subspan(x1.size());
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     rest[i] = shown(columns_[i].scaled, row[columns_[i].at]);

@@ -31,8 +31,6 @@ enum class Channel : std::uint8_t {
   human_estimate,  // |f1_hat|
   contact,         // |f2|
   limited,         // 1 while a motor gives all it can, else 0
-  withheld,        // 1 while the motors give another torque than is asked for, else 0
-  spring,          // energy in the coupling's spring [J]
   joints,          // x_E of each joint [rad]; [m] of one that slides
 };
 
@@ -48,6 +46,15 @@ struct ChannelInfo {
   float shade = 0;
   bool zero = true;     // a plot keeps its zero in view
   bool seldom = false;  // hidden at first where two runs share a plot
+};
+
+// Place of a lane in a history: its first channel there, and after how many further ones the
+// channels of joint 1 come that tell what the motors were asked for, and gave.
+struct LaneOfHistory {
+  int first = 0;
+  std::size_t lane = kMainLane;
+  int dof = 0;
+  int motor_torque = 0, commanded_torque = 0, compensation_torque = 0, device_position = 0;
 };
 
 class TraceChannels {
@@ -79,6 +86,8 @@ class TraceChannels {
     append(history, LaneRows(&row, 1));
   }
   const RowLayout& layout() const { return layout_; }
+  // Returns the place of a lane in a history with these channels for each lane.
+  LaneOfHistory lane(std::size_t lane) const;
   // Returns the columns that are computed from rows, the tips among them; null without an arm.
   const DerivedColumns* tips() const { return tips_ ? &*tips_ : nullptr; }
 
@@ -102,11 +111,6 @@ class TraceChannels {
   std::optional<DerivedColumns> tips_;
 };
 
-// Place of a lane in a history: its first channel there.
-struct LaneOfHistory {
-  int first = 0;
-  std::size_t lane = kMainLane;
-};
 // Returns the beginning of the marks for settings of a further lane alone: "twin: ".
 std::string lane_mark(std::size_t lane);
 
@@ -114,8 +118,8 @@ std::string lane_mark(std::size_t lane);
 class EnergyAccount {
  public:
   // Accounts for the samples up to `end` that were not looked at yet; from the beginning if `end`
-  // lies before them. The history has the channels of TraceChannels.
-  void follow(const History& history, SampleIndex end, LaneOfHistory of = {});
+  // lies before them. The history has the channels of TraceChannels; `of`: from its lane().
+  void follow(const History& history, SampleIndex end, const LaneOfHistory& of);
 
   // Shares of E_c as EnergyShares has them [J].
   double total() const { return shares_.total(); }
@@ -133,6 +137,7 @@ class EnergyAccount {
   double looked_until_ = -1;  // time up to which marks were looked at [s]
   bool begun_ = false;        // the run has rows
   EnergyShares shares_;
+  WithheldEnergy withheld_;
 };
 
 }  // namespace limpid

@@ -111,8 +111,8 @@ fs::path control_path(const std::string& name) {
   const char* folder = std::getenv("XDG_RUNTIME_DIR");
   if (folder == nullptr || *folder != '/') {
     throw ListenError(
-        "XDG_RUNTIME_DIR is not set: there is no folder for a socket. It usually is "
-        "/run/user/UID");
+        "XDG_RUNTIME_DIR is not set: there is no folder for a socket. Set it to a folder that only "
+        "you can read, usually /run/user/UID");
   }
   return fs::path(folder) / "limpid" / (name + ".control");
 }

@@ -35,19 +35,6 @@ bool any_at_limit(const RowLayout& layout, std::span<const double> row,
   return false;
 }
 
-bool any_withheld(const RowLayout& layout, std::span<const double> row) {
-  constexpr double kRound = 1e-9;
-  for (int joint = 0; joint < layout.dof(); ++joint) {
-    const auto j = static_cast<std::size_t>(joint);
-    const double asked = layout.in(row, Column::commanded_torque)[j] +
-                         layout.in(row, Column::compensation_torque)[j];
-    if (std::abs(layout.in(row, Column::motor_torque)[j] - asked) > kRound * std::abs(asked)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 std::string warm_text(const ArmDescription& arm, const Parameters& p, const RowLayout& layout,
                       std::span<const double> row) {
   const std::vector<MotorLimit> limits = motor_limits(arm, p);

@@ -31,9 +31,6 @@ bool at_limit(const RowLayout& layout, std::span<const double> row,
 // Returns whether any motor gives all it can in this row.
 bool any_at_limit(const RowLayout& layout, std::span<const double> row,
                   std::span<const MotorLimit> limits);
-// Returns whether any motor gives another torque than the loop asks for in this row: at its limit,
-// at the tip's limit, while force is off or fades.
-bool any_withheld(const RowLayout& layout, std::span<const double> row);
 // Says which motor the warmth holds back most, and to which torque; empty if it holds none.
 std::string warm_text(const ArmDescription& arm, const Parameters& p, const RowLayout& layout,
                       std::span<const double> row);

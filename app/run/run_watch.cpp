@@ -69,8 +69,8 @@ void RunWatch::add(std::span<const double> row) {
     begun_at_ = energy;
     shares_.begin(spring_energy(layout_, row));
   }
-  shares_.take(time, energy - *begun_at_,
-               any_at_limit(layout_, row, limits_) || any_withheld(layout_, row));
+  shares_.take(time, energy - *begun_at_, withheld_.add(layout_, row),
+               any_at_limit(layout_, row, limits_));
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
   const auto tips = tips_.of(DerivedColumns::from(layout_, row));

@@ -56,6 +56,7 @@ class RunWatch {
   DerivedColumns tips_;
   DivergenceWatch diverged_;
   EnergyShares shares_;
+  WithheldEnergy withheld_;
   std::optional<double> begun_at_;  // E_c at the first row [J]
   std::deque<Change> changes_;
   std::uint64_t rows_ = 0;

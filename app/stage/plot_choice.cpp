@@ -228,7 +228,11 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
     if (!channel || (choice.kind == PlotKind::cross && !across)) continue;
     shown.push_back(at(*channel));
     const ChannelInfo& info = shown.back();
-    Curve curve{.channel = *channel, .label = info.label, .ink = info.ink, .shade = info.shade};
+    Curve curve{.channel = *channel,
+                .label = info.label,
+                .help = info.help,
+                .ink = info.ink,
+                .shade = info.shade};
     if (choice.kind == PlotKind::cross) curve.across = *across;
     tell_apart(curve, firsts);
     curve.visible = !names.beside || !info.seldom;

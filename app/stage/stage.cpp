@@ -82,9 +82,9 @@ void Stage::name_runs(const RunNames& names) {
 }
 
 void Stage::follow_energy(SampleIndex end) {
-  const int one = channels_.count();
-  for (std::size_t lane = 0; static_cast<int>(lane) * one < history.channels(); ++lane) {
-    energy[lane].follow(history, end, {static_cast<int>(lane) * one, lane});
+  for (std::size_t lane = 0; static_cast<int>(lane) * channels_.count() < history.channels();
+       ++lane) {
+    energy[lane].follow(history, end, channels_.lane(lane));
   }
 }
 

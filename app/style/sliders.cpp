@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/style/range_reminder.h"
 #include "app/style/theme.h"
 #include "app/style/ticks.h"
 #include "app/style/words.h"
@@ -68,25 +69,6 @@ void draw_caption(const ImRect& box, const FieldInfo& info, std::string text, Rg
   const float width = ImGui::CalcTextSize(text.c_str()).x;
   list.AddText({box.Max.x - width, box.Min.y}, colour(rgb), text.c_str());
 }
-
-// Says for a while which numbers are allowed, after something else was typed.
-class RangeReminder {
- public:
-  explicit RangeReminder(ImGuiID id) : memory_(*ImGui::GetStateStorage()), since_(id + 3) {}
-
-  void speak() { memory_.SetFloat(since_, static_cast<float>(ImGui::GetTime())); }
-  void fall_silent() { memory_.SetFloat(since_, kNever); }
-  bool speaks() const {
-    const float since = memory_.GetFloat(since_, kNever);
-    return since != kNever && static_cast<float>(ImGui::GetTime()) - since < kSpeaks;
-  }
-
- private:
-  static constexpr float kNever = -1, kSpeaks = 4;  // [s]
-
-  ImGuiStorage& memory_;
-  ImGuiID since_;
-};
 
 std::string range_text(const FieldInfo& info) {
   return three_digits(info.minimum) + " to " + with_unit(info, info.maximum);
@@ -180,7 +162,7 @@ void show_tooltip(const FieldInfo& info, double usual, const char* broken) {
     ImGui::PopStyleColor();
     ImGui::Spacing();
   }
-  ImGui::TextUnformatted(info.meaning);
+  ImGui::TextUnformatted(with_greek(info.meaning).c_str());
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   if (info.is_number()) {

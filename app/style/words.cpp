@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cfloat>
 #include <cmath>
 #include <string_view>
@@ -75,10 +76,24 @@ void end_tooltip() {
   ImGui::EndTooltip();
 }
 
+std::string with_greek(std::string text) {
+  const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  for (const auto& [word, letter] :
+       {std::pair<std::string_view, const char*>{"eta", "\xCE\xB7"}, {"alpha", "\xCE\xB1"}}) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+      const char before = at > 0 ? text[at - 1] : ' ';
+      const char after = at + word.size() < text.size() ? text[at + word.size()] : ' ';
+      if (in_word(before) || before == '.' || in_word(after) || after == '=') continue;
+      text.replace(at, word.size(), letter);
+    }
+  }
+  return text;
+}
+
 void tooltip(const char* text) {
   if (!ImGui::IsItemHovered()) return;
   begin_tooltip(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
-  ImGui::TextUnformatted(text);
+  ImGui::TextUnformatted(with_greek(text).c_str());
   end_tooltip();
 }
 

@@ -9,6 +9,10 @@
 
 namespace limpid {
 
+// Returns a text with Greek letters for the words eta and alpha, as the panel writes them. Keys
+// such as coupling.eta stay.
+std::string with_greek(std::string text);
+
 // Begins a tooltip of the item between two corners [ImGui's coordinates]: beside its panel, or
 // above or below the item if the panel reaches across the window. Pairs with end_tooltip().
 void begin_tooltip(ImVec2 from, ImVec2 to);

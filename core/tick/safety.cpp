@@ -43,7 +43,7 @@ const char* explain(ForceState state) {
     case ForceState::energy: return "the motors put out too much energy";
     case ForceState::diverged: return "the loop became unstable";
     case ForceState::unwatched: return "the window did not answer for 0.2 s";
-    case ForceState::stalled: return "the loop stood still for more than 5 ms";
+    case ForceState::stalled: return "the loop has just begun, or stood still for more than 5 ms";
     case ForceState::frozen:
       return "the readings do not change while the motors push: move the device";
     case ForceState::wrong: return "the device reported an impossible position";

@@ -14,7 +14,7 @@
 namespace limpid {
 namespace {
 
-constexpr auto kStays = std::chrono::seconds(10);  // after the last stretch of chatter
+constexpr auto kStays = std::chrono::seconds(20);  // after the last stretch of chatter
 constexpr auto kJustSeen = std::chrono::seconds(1);
 constexpr auto kJustTouched = std::chrono::seconds(2);  // longer than chatter takes to be seen
 

@@ -258,7 +258,7 @@ void draw_observer(const Parameters& p, const Analysis& a) {
   const auto [slow, fast] = std::minmax_element(a.w_f.begin(), a.w_f.end());
   read_out("Observer bandwidth \xCF\x89_f", fmt::format("{:.0f} to {:.0f} rad/s", *slow, *fast), {},
            "\xCE\xB1 / m, (18), for each mode of the inertia in the rest pose");
-  read_out("Least passive inertia \xCE\xB7_min",
+  read_out("Least passive \xCE\xB7, \xCE\xB7_min",
            fmt::format("{:.3f}  {}", a.eta_min, a.above_eta_min ? "ok" : "broken"),
            eta_broken(p, a), "\xCF\x89_f / (\xCF\x89_c + \xCF\x89_f) with b = b_d + b_v, (25)");
   const std::string unstable =
@@ -475,30 +475,22 @@ const char* way_out(const Parameters& p) {
              : "Remedy: a softer k_vc, more damping (condition (3)), or the predictive law.";
 }
 
-// Returns the part of E_c that is the coupling's own, and why it is a fault; empty if it is none.
-struct OwnEnergy {
-  double joules;
-  std::string broken;
-  bool at_fault;
-};
-OwnEnergy own_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
-  const bool at_fault = now.chatters || passivity(a, p).passive == false;
+// Returns why the coupling's own part of E_c is a fault; empty if it is none.
+std::string own_fault(const CouplingReading& now, const Parameters& p) {
+  const double own = now.energy.own();
   // A law with a ledger makes another promise, which the ledger shows.
-  const bool judged = now.chatters || !info(p.kind).keeps_ledger();
-  const double own = at_fault ? now.energy.without_limits() : now.energy.own();
-  if (!judged || own <= kGivenEnergy) return {own, "", at_fault};
-  return {own,
-          fmt::format("The coupling has given {} more energy than the coupling took. The coupling "
-                      "is not passive in this grip.\n{}",
-                      energy_text(own), way_out(p)),
-          at_fault};
+  if (info(p.kind).keeps_ledger() || own <= kGivenEnergy) return {};
+  return fmt::format(
+      "The coupling has given {} more energy than the coupling took. The coupling is not passive "
+      "in "
+      "this grip.\n{}",
+      energy_text(own), way_out(p));
 }
 
 // Draws the sources of E_c; only the coupling's own part is judged.
-void draw_givers(const CouplingReading& now, const Parameters& p, const Analysis& a) {
+void draw_givers(const CouplingReading& now, const Parameters& p) {
   const EnergyAccount& energy = now.energy;
-  const auto [own, broken, at_fault] = own_energy(now, p, a);
-  read_out("The coupling's own", energy_text(own), broken,
+  read_out("The coupling's own", energy_text(energy.own()), own_fault(now, p),
            "The part of E_c that the coupling itself gave. This part stays below zero while the "
            "coupling is passive. Energy from switching laws and from motors at their limit is "
            "counted separately.");
@@ -516,19 +508,18 @@ void draw_givers(const CouplingReading& now, const Parameters& p, const Analysis
   apart("From compensation, grip test", now.compensation,
         "The part of E_c that the motors gave for the device's weight, springs and friction, and "
         "for the test force that measures the grip.");
-  if (at_fault) return;
   apart("From motors at limit or off", energy.by_limits(),
         "The part of E_c from motors at their limit and from motors without force. Such a motor "
         "gives another torque than the coupling asks for. The coupling is not at fault.");
 }
 
 // Draws E_c as in the plots, and its sources.
-void draw_energy(const CouplingReading& now, const Parameters& p, const Analysis& a) {
-  read_out("Energy given E_c", energy_text(now.energy_total), {},
+void draw_energy(const CouplingReading& now, const Parameters& p) {
+  read_out("Controller energy E_c", energy_text(now.energy_total), {},
            "Energy that the coupling gave since the start, minus the energy that the device's own "
            "damping took. The plots show the same E_c. The lines below name the sources of this "
            "energy.");
-  draw_givers(now, p, a);
+  draw_givers(now, p);
 }
 
 void draw_limited(const CouplingReading& now) {
@@ -542,7 +533,7 @@ void draw_limited(const CouplingReading& now) {
   read_out("Motor at its limit", text, {},
            "The coupling asks for more torque than the motor can give (section 3.1 of the paper). "
            "Press less hard, or raise Device > Motors' largest torque.");
-  if (now.contact > 0) {
+  if (now.contact > 0 && !now.chatters) {
     constexpr double kApart = 1e-3;  // gap that is seen [m]
     ImGui::TextWrapped("%s", now.gap > kApart
                                  ? "The hand presses harder than the motors can push, so hand and "
@@ -561,7 +552,7 @@ void draw_break(bool broken, const Act& act) {
   }
   tooltip(broken ? "Puts all settings back as they were before. C, Ctrl+Z and a change of law, "
                    "scene, arm or recording do the same."
-                 : "Takes the proposed law, a stiff grip without damping, and so small an inertia "
+                 : "Takes the proposed law, a stiff grip without damping, and so small a scaling "
                    "\xCE\xB7 that the loop gives energy without end. A hand holds the arm: it "
                    "begins to tremble, and E_c climbs. Repair puts everything back.");
 }
@@ -577,11 +568,16 @@ void draw_eta(Parameters& p, const Analysis& a) {
 // theory says: it has no encoder steps.
 void draw_passive(const CouplingReading& now, const Parameters& p, const Analysis& a) {
   const Passivity found = passivity(a, p);
-  const OwnEnergy measured = own_energy(now, p, a);
-  if (!measured.broken.empty() && found.passive != false) {
-    const std::string theory =
-        found.passive ? fmt::format("\nTheory says yes: {}.", found.by) : std::string();
-    return read_out("Passive", "no, as measured", measured.broken + theory, "");
+  const std::string theory_too =
+      found.passive == true ? fmt::format("\nTheory says yes: {}.", found.by) : std::string();
+  if (now.chatters && found.passive != false) {
+    return read_out("Passive", "no, the loop chatters",
+                    fmt::format("The loop shakes and gains energy.\n{}", way_out(p)) + theory_too,
+                    "");
+  }
+  const std::string measured = own_fault(now, p);
+  if (!measured.empty() && found.passive != false) {
+    return read_out("Passive", "no, as measured", measured + theory_too, "");
   }
   if (!found.passive) return read_out("Passive", "not known", {}, found.by.c_str());
   const std::string broken =
@@ -618,7 +614,7 @@ void draw_reading(const CouplingReading& reading, const Parameters& p, const Ana
   draw_apart(reading);
   draw_account(reading, info(p.kind));
   draw_unsolved(reading);
-  draw_energy(reading, p, analysis);
+  draw_energy(reading, p);
   draw_passive(reading, p, analysis);
   draw_limited(reading);
 }
@@ -627,8 +623,7 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
                          const CouplingSituation& now) {
   draw_apart(reading);
   read_out(
-      "Energy given E_c", energy_text(reading.energy_total),
-      own_energy(reading, p, now.analysis).broken,
+      "Controller energy E_c", energy_text(reading.energy_total), own_fault(reading, p),
       "Energy that the coupling gave since the start. E_c stays below zero while the coupling "
       "is passive, unless a switch of laws or a motor without force adds energy. If E_c is above "
       "zero, lines below the buttons name its sources. The second plot shows E_c.");
@@ -640,7 +635,7 @@ void draw_simple_notes(const CouplingReading& reading, const Parameters& p,
   for (const Share& share : shares_of(reading, info(p.kind))) {
     if (!whole(share)) draw_share(share);
   }
-  if (reading.energy_total > kGivenEnergy) draw_givers(reading, p, now.analysis);
+  if (reading.energy_total > kGivenEnergy) draw_givers(reading, p);
   draw_unsolved(reading);
   draw_limited(reading);
 }

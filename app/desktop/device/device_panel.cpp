@@ -11,6 +11,7 @@
 #include "app/run/fitted_gains.h"
 #include "app/style/imgui_input.h"
 #include "app/style/palette.h"
+#include "app/style/range_reminder.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
 #include "core/dynamics/arm_description.h"
@@ -116,18 +117,17 @@ bool settled_slider(const Field<Owner>& field, Owner& owner, float letters) {
   const double least = own ? field.slider_minimum : field.minimum,
                most = own ? field.slider_maximum : field.maximum;
   auto value = static_cast<float>(shown * number_of(field, owner));
+  const auto low = static_cast<float>(shown * least), high = static_cast<float>(shown * most);
   ImGui::SetNextItemWidth(-letters * ImGui::GetFontSize());
-  if (ImGui::SliderFloat(
-          field.caption, &value, static_cast<float>(shown * least),
-          static_cast<float>(shown * most), format.c_str(),
-          (field.logarithmic ? ImGuiSliderFlags_Logarithmic : 0) | ImGuiSliderFlags_AlwaysClamp) &&
-      std::isfinite(value)) {  // "nan" can be typed
-    set_number(field, owner, static_cast<double>(value) / shown);
-  }
+  const bool changed = ImGui::SliderFloat(field.caption, &value, low, high, format.c_str(),
+                                          field.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   note_number_item();
   const bool settled = ImGui::IsItemDeactivatedAfterEdit();
   tooltip(field.meaning);
-  return settled;
+  const bool taken = counts(ImGui::GetID(field.caption), changed, value >= low && value <= high,
+                            fmt::format("{:g} to {:g}", low, high));
+  if (taken) set_number(field, owner, static_cast<double>(value) / shown);
+  return settled && (taken || !changed);
 }
 
 // Draws a joint of the arm, or an axis of a cap, which has no joint: angle, direction, travel and

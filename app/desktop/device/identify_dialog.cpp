@@ -10,6 +10,7 @@
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/imgui_input.h"
 #include "app/style/palette.h"
+#include "app/style/range_reminder.h"
 #include "app/style/theme.h"
 #include "app/style/words.h"
 
@@ -36,12 +37,14 @@ void muted(const std::string& text) {
 void part_slider(const char* label, double& part, float least, float most, const char* help) {
   auto per_cent = static_cast<float>(100 * part);
   ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
-  if (ImGui::SliderFloat(label, &per_cent, 100 * least, 100 * most, "%.0f %%",
-                         ImGuiSliderFlags_AlwaysClamp)) {
-    part = static_cast<double>(per_cent) / 100;
-  }
+  const bool changed = ImGui::SliderFloat(label, &per_cent, 100 * least, 100 * most, "%.0f %%");
   note_number_item();
   tooltip(help);
+  const bool inside = per_cent >= 100 * least && per_cent <= 100 * most;
+  if (counts(ImGui::GetID(label), changed, inside,
+             fmt::format("{:.0f} to {:.0f} %", 100 * least, 100 * most))) {
+    part = static_cast<double>(per_cent) / 100;
+  }
 }
 
 std::string going_on(const IdentifyProgress& progress, const ArmDescription& arm) {
@@ -173,10 +176,17 @@ void IdentifyDialog::draw_question(IdentifyController& controller, const ArmDesc
       "really give.");
   if (with_load_) {
     ImGui::SetNextItemWidth(-kLabels * ImGui::GetFontSize());
-    ImGui::SliderFloat(kLoad, &load_, static_cast<float>(1e3 * kLeastLoad), 300, "%.0f g",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    constexpr auto kLeast = static_cast<float>(1e3 * kLeastLoad);
+    constexpr float kMost = 300;  // [g]
+    float load = load_;
+    const bool changed =
+        ImGui::SliderFloat(kLoad, &load, kLeast, kMost, "%.0f g", ImGuiSliderFlags_Logarithmic);
     note_number_item();
     note_place(kLoad);
+    if (counts(ImGui::GetID(kLoad), changed, load >= kLeast && load <= kMost,
+               fmt::format("{:g} to {:g} g", kLeast, kMost))) {
+      load_ = load;
+    }
   }
   ImGui::Spacing();
   const std::string why_not = controller.why_not();

@@ -213,11 +213,11 @@ class MapPainter {
       }
       if (const double far = distance(spot, at); far < nearest) nearest = far, mouse.spot = &spot;
     }
-    if (mouse.spot != nullptr) mark(*mouse.spot, at);
+    if (mouse.spot != nullptr) mark(*mouse.spot);
     return mouse;
   }
 
-  void mark(const MapSpot& spot, ImVec2 at) const {
+  void mark(const MapSpot& spot) const {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const ImU32 text = colour(current_palette().text);
     if (map_.kind == SweepMap::Kind::cells) {
@@ -229,7 +229,8 @@ class MapPainter {
     } else {
       const float x = place(spot.x, spot.y).x;
       draw.AddLine({x, chart_.inside().min.y}, {x, chart_.inside().max.y}, text);
-      draw.AddCircleFilled({x, at.y}, 3 * current_scale(), text, 12);
+      if (std::isfinite(spot.y))
+        draw.AddCircleFilled(place(spot.x, spot.y), 3 * current_scale(), text, 12);
     }
   }
 

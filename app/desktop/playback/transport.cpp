@@ -181,8 +181,11 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
 void recording_controls(const LiveStage& live, double tick, const Act& act) {
   const LiveLoop& loop = live.loop();
   const bool recording = loop.recording();
-  if (button(recording ? "Stop" : "Record", "R starts and stops recording every tick.", recording,
-             true)) {
+  if (button(recording ? "Stop" : "Record",
+             "R starts and stops recording every tick. While an object is selected, R turns the "
+             "object, and "
+             "Ctrl+R records.",
+             recording, true)) {
     act("session.record");
   }
   if (recording) {

@@ -13,6 +13,7 @@
 #include "app/desktop/widgets/widgets.h"
 #include "app/style/imgui_input.h"
 #include "app/style/palette.h"
+#include "app/style/range_reminder.h"
 #include "app/style/sliders.h"
 #include "app/style/theme.h"
 #include "core/touch/triangle_mesh.h"
@@ -35,14 +36,18 @@ bool drag3(const char* label, Vec3& values, double speed, double least, double m
   tooltip(help);
   ImGui::SetNextItemWidth(-1);
   ImGui::PushID(label);
-  const bool changed =
-      ImGui::DragScalarN("##v", ImGuiDataType_Double, values.data(), 3, static_cast<float>(speed),
-                         &least, &most, format, ImGuiSliderFlags_AlwaysClamp);
+  Vec3 wanted = values;
+  const bool changed = ImGui::DragScalarN("##v", ImGuiDataType_Double, wanted.data(), 3,
+                                          static_cast<float>(speed), &least, &most, format);
   note_number_item();
   note_place(label);
-  ImGui::PopID();
   tooltip(help);
-  return changed;
+  const auto allowed = [&](double x) { return x >= least && x <= most; };
+  const bool taken = counts(ImGui::GetID("##v"), changed, std::ranges::all_of(wanted, allowed),
+                            fmt::format("{:g} to {:g}", least, most));
+  ImGui::PopID();
+  if (taken) values = wanted;
+  return taken;
 }
 
 namespace {
@@ -186,14 +191,17 @@ bool drag_number(const char* label, double& value, double speed, double least, d
                  const char* format, const char* help) {
   caption(label, help);
   ImGui::PushID(label);
-  const bool changed =
-      ImGui::DragScalar("##v", ImGuiDataType_Double, &value, static_cast<float>(speed), &least,
-                        &most, format, ImGuiSliderFlags_AlwaysClamp);
+  double wanted = value;
+  const bool changed = ImGui::DragScalar("##v", ImGuiDataType_Double, &wanted,
+                                         static_cast<float>(speed), &least, &most, format);
   note_number_item();
   note_place(label);
-  ImGui::PopID();
   tooltip(help);
-  return changed;
+  const bool taken = counts(ImGui::GetID("##v"), changed, wanted >= least && wanted <= most,
+                            fmt::format("{:g} to {:g}", least, most));
+  ImGui::PopID();
+  if (taken) value = wanted;
+  return taken;
 }
 
 void ObjectEditor::draw(Document& document, std::size_t place, const ArmDescription& arm) {

@@ -68,12 +68,14 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
                    stopped ? colours.broken : colours.muted, status.failure});
   const double missed = static_cast<double>(status.missed) /
                         static_cast<double>(std::max<std::int64_t>(status.ticks, 1));
-  parts.push_back({missed < 1e-3 ? "on time" : fmt::format("{:.1f} % of ticks late", 100 * missed),
-                   missed > 0.01 ? colours.broken : colours.muted,
-                   fmt::format("{} ticks began after the next tick was due.\n{} ticks began more "
-                               "than 0.2 ms late. {} ticks were skipped, {}.",
-                               status.missed, status.late, status.slipped,
-                               loop.device_in_place() ? "at once" : "after a stall")});
+  parts.push_back(
+      {missed < 1e-3 ? "on time" : fmt::format("{:.1f} % of ticks missed", 100 * missed),
+       missed > 0.01 ? colours.broken : colours.muted,
+       fmt::format(
+           "{} ticks were missed: they began after the next tick was due.\n{} ticks began more "
+           "than 0.2 ms late. {} ticks were skipped, {}.",
+           status.missed, status.late, status.slipped,
+           loop.device_in_place() ? "at once" : "after a stall")});
   std::string name = info(law.kind).label;
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
   if (info(law.kind).takes_eta) name += fmt::format(" \xCE\xB7 {:.2f}", law.eta);

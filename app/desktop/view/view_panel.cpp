@@ -151,6 +151,14 @@ std::optional<ScreenRect> seen_place(const Object& object, const Camera& camera,
   return ScreenRect{{at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}};
 }
 
+// Returns whether nothing moves, so that nothing slips, however near it is to slipping.
+bool at_rest(const RowLayout& layout, std::span<const double> row) {
+  constexpr double kRests = 5e-4;  // of the proxy's joints [rad/s]
+  const auto moves = [](double v) { return std::abs(v) > kRests; };
+  return std::ranges::none_of(layout.in(row, Column::proxy_velocity), moves) &&
+         (layout.bodies() == 0 || layout.in(row, Column::objects_awake)[0] == 0);
+}
+
 // Returns the view of a row, of either run.
 ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
                   const Settings& settings) {
@@ -158,6 +166,9 @@ ViewState view_of(Stage& stage, std::span<const double> row, ViewMemory& memory,
   ViewState view = stage.rows().view(layout, row);
   memory.update(view, stage.rows().contacts(layout, row), layout.in(row, Column::time)[0]);
   add_surfaces(stage.document().scene, view);
+  if (at_rest(layout, row)) {
+    for (ContactMark& contact : view.contacts) contact.slips = false;
+  }
   view.show_ghost = settings.show_ghost;
   view.show_trail = settings.show_trail;
   view.show_forces = settings.show_forces;

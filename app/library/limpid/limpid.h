@@ -189,10 +189,13 @@ struct LoopEnergy {
   double controller = 0;
   double commanded = 0;  // Part of E_c by motors and proxy.
   double port = 0;       // Given to the human by motors and own damping.
-  double reserve = 0;    // Left to give, by the law's account; 0 without an account.
+  // Left to give, by the law's account; 0 without an account. Below 0 there is a debt, and the law
+  // holds walls back until the device has given energy again.
+  double reserve = 0;
 };
 
-// Settings, rows, energies and recording of either kind of loop.
+// Settings, rows, energies and recording of either kind of loop. A loop that was moved from may
+// only be assigned to or destroyed.
 class LIMPID_API Loop {
  public:
   ~Loop();
@@ -259,7 +262,9 @@ class LIMPID_API DeviceLoop : public Loop {
   // Runs the tick and returns each joint's torque or force, to be held until the next one; valid
   // until then. With real motors force trips where a reading is not finite, far outside of the
   // range, of another number of joints, or further from the last one than 100 rad/s or 10 m/s make
-  // in the time between and 5 ms more (0.6 rad at 1 kHz); smaller jumps count as speed. If your
+  // in the time between and 5 ms more (0.6 rad at 1 kHz); smaller jumps count as speed. Force also
+  // fades where readings stay the same to the bit for 0.3 s while the motors push, and trips after
+  // 0.6 s. If your
   // loop hangs, the last torque stays: let the device's own watchdog end what is not renewed within
   // 5 to 20 ms.
   std::span<const double> tick(const Reading& reading) noexcept;
@@ -270,8 +275,9 @@ class LIMPID_API DeviceLoop : public Loop {
   void cut() noexcept;
   bool armed() const noexcept;          // asked for, and not cut since; also after a trip
   double force_share() const noexcept;  // part of the torque that leaves, 0 to 1
-  // Why there is no force, or less; empty while it is on. "held back" returns by itself, "off"
-  // after arm().
+  // Why there is no force, or less; empty while all of it is on. "held back" returns by itself, and
+  // so does "off" by an open hand switch; "off" by anything else returns after arm(). Of force that
+  // is on it also says that it fades in, and that the law's account holds walls back.
   std::string force_text() const;
 };
 

@@ -76,6 +76,9 @@ class Channels(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._places)
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__} of {len(self)} channels: {', '.join(list(self)[:4])}, ..."
+
 
 class Run(Channels):
     """The rows of a run, channel by channel: run["time"], run["device/position"]."""
@@ -86,6 +89,7 @@ class Run(Channels):
 
     @property
     def diverged(self) -> bool:
+        """Whether the run was unstable."""
         return bool(self.why)
 
     @property
@@ -208,6 +212,8 @@ class Loop(_AnyLoop):
         if is_path(hand):
             raise ArgumentError("hand: is a file; needed: rows of time [s], x, y, z [m] (limpid.run reads files)")
         seconds = 0.0 if duration is None else number("duration", duration)
+        if seconds < 0:
+            raise ArgumentError(f"duration: {seconds:g} is not allowed; allowed: seconds, from 0 on")
         places, kept = self._places, list(range(self._width))
         if channels is not None:
             places, kept = {}, []
@@ -250,7 +256,7 @@ class DeviceLoop(_AnyLoop):
                 raise ArgumentError(f"limits: {name} is none; there are joint_speed, tip_speed, tip_force, "
                                     "energy, range")  # fmt: skip
             setattr(allowed, name, number(f"limits: {name}", value))
-        self._loop = _module().DeviceLoop(options, position)
+        self._loop = _module().DeviceLoop(options, [number("position", each) for each in _listed("position", position)])
         self._learn()
 
     def tick(self, position: Sequence[float], fresh: bool = True, hand: bool = True,
@@ -258,10 +264,11 @@ class DeviceLoop(_AnyLoop):
         """Runs the tick on a reading of each joint; returns the torques to be held until the next
         one. `fresh`: not the same reading as at the last tick. `hand`: the dead-man switch is closed.
         `fault`: the device is not well. `elapsed`: time since the last tick [s]; 0: measured here."""
+        seconds = elapsed if type(elapsed) in (int, float) else number("elapsed", elapsed)
         try:
             count = len(position)
             if count == self.joints:
-                return self._loop.tick(position, fresh, hand, fault, elapsed)
+                return self._loop.tick(position, bool(fresh), bool(hand), bool(fault), seconds)
         except TypeError as error:
             raise ArgumentError(f"position: {position!s:.60} is not allowed; allowed: a number for each joint") from error
         raise ArgumentError(f"position: has {count} numbers; needed: {self.joints}, one a joint")
@@ -285,7 +292,8 @@ class DeviceLoop(_AnyLoop):
 
     @property
     def force_text(self) -> str:
-        """Why there is no force, or less; empty while it is on."""
+        """Why there is no force, or less of it, also while it fades in or the law's account holds walls
+        back; empty while all of it is on."""
         return str(self._loop.force_text)
 
 
@@ -305,10 +313,19 @@ def _options(arm: Union[None, PathLike, Arm], scene: Union[None, PathLike, Scene
     for name, file in (("arm", arm), ("scene", scene), ("config", config)):
         if file is not None:
             setattr(options, name, path_of(name, file))
-    options.arm_text, options.scene_text, options.tip = arm_text, scene_text, tip
+    for name, text in (("arm_text", arm_text), ("scene_text", scene_text), ("tip", tip)):
+        if not isinstance(text, str):
+            raise ArgumentError(f"{name}: {text!s:.40} is not allowed; allowed: a text")
+        setattr(options, name, text)
     options.period = number("period", period)
     options.settings = [f"{key}={text_of(value)}" for key, value in settings_of(given, more).items()]
     return options
+
+
+def _listed(name: str, given: Any) -> List[Any]:
+    if isinstance(given, (str, bytes, Mapping)) or not isinstance(given, Iterable):
+        raise ArgumentError(f"{name}: {given!s:.40} is not allowed; allowed: a number for each joint")
+    return list(given)
 
 
 def _point(name: str, given: Iterable[float]) -> Tuple[float, float, float]:

@@ -73,6 +73,12 @@ class Scene:
     def __len__(self) -> int:
         return len(self.objects)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and (self.values, self.objects) == (other.values, other.objects)
+
+    def __repr__(self) -> str:
+        return f"Scene of {', '.join(str(each.get('name', each['kind'])) for each in self.objects) or 'nothing'}"
+
     def text(self) -> str:
         """The scene as TOML."""
         out = "".join(f"{key} = {_toml(key, value)}\n" for key, value in self.values.items())
@@ -184,6 +190,12 @@ class Arm:
             tag = "dynamics" if key in ("damping", "friction") else "limit"
             of = joint.find(tag)
             (xml.SubElement(joint, tag) if of is None else of).set(key, _number(key, value))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Arm) and self.text() == other.text()
+
+    def __repr__(self) -> str:
+        return f"Arm {self._root.get('name')} of {len(self.joints)} joints"
 
     def text(self) -> str:
         """The arm as URDF."""

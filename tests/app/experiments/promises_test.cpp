@@ -35,7 +35,7 @@ void expect_promises(const std::string& name, const std::vector<Check>& checks) 
   ASSERT_EQ(checks.size(), promised.size());
   for (std::size_t i = 0; i < checks.size(); ++i) {
     const Check& check = checks[i];
-    EXPECT_EQ(check.what, promised[i][0]);
+    EXPECT_EQ(check.what, promised[i][0].get<std::string>());
     const double bound = promised[i][2].get<double>();
     EXPECT_NEAR(check.bound, bound, 1e-12) << check.what;
     const bool most = promised[i][1] == "at most";

@@ -23,7 +23,7 @@ struct Books {
       values[static_cast<std::size_t>(Channel::energy_total)] = from + (energy - from) * i / count;
       values[static_cast<std::size_t>(Channel::limited)] = limited ? 1 : 0;
       history.append(0.001 * ticks++, values);
-      account.follow(history, history.end());
+      account.follow(history, history.end(), channels.lane(kMainLane));
     }
   }
   void change(const char* key) { history.mark(0.001 * (ticks - 1), key, key); }
@@ -47,7 +47,7 @@ TEST(EnergyAccount, LeavesOutWhatWasForTheDevicesOwnForces) {
     values[static_cast<std::size_t>(Channel::energy_total)] = 1e-3 * i;
     values[static_cast<std::size_t>(Channel::energy_compensation)] = 1.1e-3 * i;
     books.history.append(0.001 * i, values);
-    books.account.follow(books.history, books.history.end());
+    books.account.follow(books.history, books.history.end(), books.channels.lane(kMainLane));
   }
   EXPECT_NEAR(books.account.own(), -0.05, kRound);
 }
@@ -131,9 +131,9 @@ TEST(EnergyAccount, OfAFurtherLaneIsItsOwn) {
       }
       history.append(1e-3 * k, values);
     }
-    first.follow(history, history.end());
-    second.follow(history, history.end(), {one, kTwinLane});
-    third.follow(history, history.end(), {2 * one, 2});
+    first.follow(history, history.end(), channels.lane(kMainLane));
+    second.follow(history, history.end(), channels.lane(kTwinLane));
+    third.follow(history, history.end(), channels.lane(2));
   };
   go_on(0, 100, std::nan(""));
   go_on(100, 200, 0);
@@ -174,7 +174,7 @@ TEST(EnergyAccount, StartsOverWithTheLoop) {
   books.ticks = 0;
   std::vector<double> at_rest(static_cast<std::size_t>(books.channels.count()), 0.0);
   books.history.append(0, at_rest);
-  books.account.follow(books.history, books.history.end());
+  books.account.follow(books.history, books.history.end(), books.channels.lane(kMainLane));
   EXPECT_EQ(books.account.total(), 0);
   EXPECT_EQ(books.account.by_changes(), 0);
 }
@@ -186,10 +186,10 @@ TEST(EnergyAccount, IsTheSameAtAMomentWhetherPlayedOrJumpedTo) {
   books.go_to(0.2, 100);
   books.go_to(0.1, 100);
   EnergyAccount there;
-  there.follow(books.history, 150);
+  there.follow(books.history, 150, books.channels.lane(kMainLane));
   EnergyAccount back;
-  back.follow(books.history, books.history.end());
-  back.follow(books.history, 150);
+  back.follow(books.history, books.history.end(), books.channels.lane(kMainLane));
+  back.follow(books.history, 150, books.channels.lane(kMainLane));
   EXPECT_EQ(back.own(), there.own());
   EXPECT_EQ(back.by_changes(), there.by_changes());
 }
@@ -228,7 +228,7 @@ TEST(EnergyAccount, FindsNoFaultInAnyLawThatIsSwitchedToWhilePressing) {
         const double time = channels.layout().in(row, Column::time)[0];
         if (changed[0] != nullptr) history.mark(time - plan.parameters.tick, "", "coupling.kind");
         channels.append(history, row);
-        account.follow(history, history.end());
+        account.follow(history, history.end(), channels.lane(kMainLane));
         // The predictive law's promise concerns its ledger, not E_c.
         const auto kind = static_cast<CouplingKind>(channels.layout().in(row, Column::kind)[0]);
         if (!info(kind).keeps_ledger()) worst = std::max(worst, account.own());

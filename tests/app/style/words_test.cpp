@@ -61,6 +61,14 @@ TEST(WordsOfSliders, MarkAChangeAsTheSliderReads) {
   EXPECT_THAT(mark_text(*find_parameter("observer.anti_windup"), p), HasSubstr("off"));
 }
 
+TEST(GreekWords, HaveLettersButNotInKeys) {
+  EXPECT_EQ(with_greek("eta scales it, alpha not"), "\xCE\xB7 scales it, \xCE\xB1 not");
+  EXPECT_EQ(with_greek("above eta_min, at eta."), "above \xCE\xB7_min, at \xCE\xB7.");
+  EXPECT_EQ(with_greek("coupling.eta, eta=0.5, beta, detail, theta"),
+            "coupling.eta, eta=0.5, beta, detail, theta");
+  EXPECT_EQ(with_greek(""), "");
+}
+
 TEST(WordsOfSliders, WriteLargeEnergiesInJoules) {
   EXPECT_EQ(energy_text(5.761), "5.76 J");
   EXPECT_EQ(energy_text(0.0642), "64.2 mJ");

@@ -30,7 +30,7 @@ double given_while_held(const Parameters& p) {
     return true;
   });
   EnergyAccount account;
-  account.follow(history, history.end());
+  account.follow(history, history.end(), channels.lane(kMainLane));
   return account.without_limits();
 }
 

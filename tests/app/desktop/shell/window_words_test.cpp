@@ -344,7 +344,7 @@ TEST_F(Words, OfTheStatusLineAreLawRateAndForce) {
   EXPECT_THAT(shown, HasSubstr("PROPOSED"));
   EXPECT_THAT(shown, HasSubstr("0.75"));
   EXPECT_THAT(shown, ContainsRegex("\n[0-9]+ Hz\n"));
-  EXPECT_THAT(shown, ContainsRegex("\n(on time|[0-9.]+ % of ticks late)\n"));
+  EXPECT_THAT(shown, ContainsRegex("\n(on time|[0-9.]+ % of ticks missed)\n"));
   EXPECT_TRUE(
       until([&] { return words("##MainMenuBar").find("force on [Esc]") != std::string::npos; }));
   desktop->cut_force();
