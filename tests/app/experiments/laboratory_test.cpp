@@ -35,7 +35,7 @@ class Laboratories : public testing::Test {
   static Trial trial(const std::string& name, double eta) {
     Parameters p;
     p.eta = eta;
-    Trial t{name, plan_of("table", "touch", p)};
+    Trial t{name, plan_of(built_in_arm().description, "table", "touch", p)};
     t.plan.rows = 300;
     return t;
   }
@@ -85,7 +85,7 @@ Trial runaway(const std::string& name) {
   p.hand_stiffness = 3000;
   p.hand_damping = 0;
   p.torque_limit = 1000;
-  return {name, plan_of("free", "free", p), false};
+  return {name, plan_of(built_in_arm().description, "free", "free", p), false};
 }
 
 TEST_F(Laboratories, CountWhatDivergedUnlessItMay) {
@@ -170,7 +170,7 @@ TEST_F(Laboratories, PassOnWhatWentWrong) {
   EXPECT_FALSE(fs::exists(file("c")));
 }
 
-HandPath circle() { return plan_of("table", "circle", {}).hand; }
+HandPath circle() { return plan_of(built_in_arm().description, "table", "circle", {}).hand; }
 
 TEST(HandVariation, IsTheSameForTheSameSeedsAndAnotherForOthers) {
   const HandPath path = circle(), one = varied(path, 3, 1);
