@@ -148,6 +148,7 @@ TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
                   "robust: takes no arm, as it has its own: an ideal arm and a Touch"),
         {{"zwidth", "--device", "touch.urdf", "--readings"}, "zwidth: takes no --readings"},
         {{"passivity", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
+        {{"all", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"coordination", "--device", "omega.urdf"}, "joints are named as the built-in arm's"},
         {{"inertia", "--readings"}, "--readings: the file of the arm omni has neither"},
         {{"inertia", "--device", "none.urdf"}, "none.urdf"},

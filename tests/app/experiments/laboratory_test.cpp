@@ -220,8 +220,8 @@ TEST(HandVariation, IsOnItsWayWhenThePathIs) {
 }
 
 TEST(PassivityTrials, FollowTheSameHandsWithEveryCoupling) {
-  const auto some = passivity_trials(passivity_cases()[0], 7);
-  const auto others = passivity_trials(passivity_cases()[4], 7);
+  const auto some = passivity_trials(built_in_arm(), passivity_cases()[0], 7);
+  const auto others = passivity_trials(built_in_arm(), passivity_cases()[4], 7);
   ASSERT_EQ(some.size(), kTrialsOfACase);
   for (std::size_t i = 0; i < some.size(); ++i) {
     EXPECT_EQ(some[i].plan.hand.position, others[i].plan.hand.position);
