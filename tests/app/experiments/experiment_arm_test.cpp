@@ -96,6 +96,26 @@ TEST(WhyNot, LeavesNoExperimentWithoutAWordOnItsOwnArms) {
   }
 }
 
+// Stopped at once, an experiment has said with what its first trials would be run.
+TEST(AnExperimentOnAnotherArm, RunsItsTrialsOnThatArmWithItsReadings) {
+  static const std::atomic<bool> kStopped{true};
+  const test::TempDir temp;
+  TrialRunner::Options options;
+  options.dir = temp / ".";
+  options.stop = &kStopped;
+  options.arm = built_in_arm();
+  options.arm->name = options.arm->description.name = "mine";
+  options.arm->settings.encoder_step = 1.5e-6;
+  for (const Experiment& e : experiments()) {
+    if (e.takes == Experiment::Takes::none) continue;
+    TrialRunner lab(e.name, options);
+    EXPECT_THROW(e.run(lab), Cancelled) << e.name;
+    EXPECT_THAT(lab.conditions().text(), HasSubstr("arm mine of 3 joints")) << e.name;
+    if (*e.own_readings != '\0') continue;
+    EXPECT_THAT(lab.conditions().text(), HasSubstr("1.5e-06 rad a step")) << e.name;
+  }
+}
+
 // By (1) the standard coupling's error is the contact's torque over k_vc.
 TEST(AnExperimentOnAnotherArm, MeasuresWithItsGainsAndSaysOnWhichArm) {
   const test::TempDir temp;
