@@ -200,10 +200,12 @@ std::string experiment_help() {
          "\nWrites DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\nthe "
          "trials. Called again with the same DIR, the command continues where it was "
          "stopped;\ntrials of another version of the program, or of other inputs, are run "
-         "again.\nWith --device an experiment runs on that arm, with gains that suit it "
-         "(--set changes them);\n--readings adds encoder steps and delay of the arm's file. Bounds "
-         "are promised for the built-in\narm alone: on another arm checks are measured. Each "
-         "experiment has its own scene and settings;\noptions for these need --live.\nExit status "
+         "again.\nWith --device an experiment runs on that arm, with gains that suit it; --set "
+         "changes coupling.k_vc,\ncoupling.b_vc and coupling.b_v. --readings adds encoder steps "
+         "and "
+         "delay of the arm's file. Bounds are\npromised for the built-in arm alone: on another arm "
+         "checks are measured. Each experiment has its own\nscene and settings; options for these "
+         "need --live.\nExit status "
          "1: a check failed, or the command was stopped.";
 }
 

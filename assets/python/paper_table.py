@@ -93,7 +93,8 @@ def main(limpid: str, out: Path) -> None:
     ideal, touch = (Arm(limpid, name, out) for name in ARMS)
     print("| | paper | ideal arm | Touch |\n| --- | --- | --- | --- |")
     for what, paper, found in ROWS:
-        print(f"| {what} | {paper} | {found(ideal)} | {found(touch)} |")
+        cells = (what, paper, found(ideal), found(touch))
+        print("|" + "".join(f" {cell} |" if cell else " |" for cell in cells))
 
 
 if __name__ == "__main__":

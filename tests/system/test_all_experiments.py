@@ -82,7 +82,7 @@ class ThePapersTable(SystemTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertGreater(len(done.stdout.splitlines()), 10)
         page = (ROOT / "app/experiments/README.md").read_text()
-        self.assertIn(done.stdout.replace(" |  | ", " | | "), page)
+        self.assertIn(done.stdout, page)
 
 
 class AFailingCheck(SystemTest):

@@ -96,6 +96,40 @@ TEST(WhyNot, LeavesNoExperimentWithoutAWordOnItsOwnArms) {
   }
 }
 
+TEST(AnExperimentOnAnotherArm, TapsWithItsGainsAndItsReadingsUnlessTheseAreVaried) {
+  const ExperimentArm touch = touch_with_readings();
+  const Parameters own = TapBench(touch, {}, 600, 300, 1).parameters();
+  EXPECT_EQ(own.k_vc, 4);
+  EXPECT_EQ(own.encoder_step, 4.19e-4);
+  EXPECT_EQ(own.device_delay, 1);
+  EXPECT_EQ(own.delay, 1);
+  const TapSetting varied{.encoder_step = 1e-4, .delay = 3, .knows_delay = false};
+  const Parameters chosen = TapBench(touch, varied, 600, 300, 1).parameters();
+  EXPECT_EQ(chosen.encoder_step, 1e-4);
+  EXPECT_EQ(chosen.device_delay, 3);
+  EXPECT_EQ(chosen.delay, 0);
+}
+
+// Where a tap on the built-in arm does not come to rest, one on an arm with more damping does.
+TEST(AnExperimentOnAnotherArm, ComesToRestThroughALinkAsItsDampingSays) {
+  constexpr int kDelay = 10;
+  constexpr double kGrip[] = {300};
+  const test::TempDir temp;
+  TrialRunner::Options options;
+  options.dir = temp / ".";
+  options.arm = built_in_arm();
+  for (Joint& joint : options.arm->description.joints) joint.damping = 0.15;
+  TrialRunner lab("walls", options);
+  const auto rests = [](const Touch& touch, bool) {
+    return touch.energy <= 5e-3 && touch.moving <= 5e-3;
+  };
+  const TapSetting late{.kind = CouplingKind::standard, .link = kDelay, .hold = 6};
+  const double found = stiffest_walls(lab, std::array{late}, {kGrip, rests}).front();
+  EXPECT_GT(found, kSoftest);
+  EXPECT_GT(LinkTheory(lab.arm(), kGrip[0]).standard(kDelay), kSoftest);
+  EXPECT_EQ(LinkTheory(built_in_arm(), kGrip[0]).standard(kDelay), kSoftest);
+}
+
 // Stopped at once, an experiment has said with what its first trials would be run.
 TEST(AnExperimentOnAnotherArm, RunsItsTrialsOnThatArmWithItsReadings) {
   static const std::atomic<bool> kStopped{true};
