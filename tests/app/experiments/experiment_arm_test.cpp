@@ -110,7 +110,7 @@ TEST(AnExperimentOnAnotherArm, TapsWithItsGainsAndItsReadingsUnlessTheseAreVarie
   EXPECT_EQ(chosen.delay, 0);
 }
 
-// Where a tap on the built-in arm does not come to rest, one on an arm with more damping does.
+// A tap comes to rest on an arm with more damping where it does not on the built-in arm.
 TEST(AnExperimentOnAnotherArm, ComesToRestThroughALinkAsItsDampingSays) {
   constexpr int kDelay = 10;
   constexpr double kGrip[] = {300};
