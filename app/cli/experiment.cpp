@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -49,8 +51,9 @@ std::vector<const E*> chosen(std::span<const E> known, const std::string& name,
                                meant ? fmt::format("did you mean {}? ", *meant) : "", names));
 }
 
-Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOptions& options,
-                                std::size_t index, std::size_t count) {
+Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentArm& on,
+                                const ExperimentOptions& options, std::size_t index,
+                                std::size_t count) {
   Progress progress({.title = fmt::format("{} ({} of {})", experiment.name, index + 1, count),
                      .whole = 100,
                      .unit = "",
@@ -58,38 +61,80 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentOp
   return carry_out(experiment, {.dir = options.out,
                                 .seed = options.seed,
                                 .threads = options.threads,
+                                .arm = on,
                                 .stop = &interrupted,
                                 .progress = [&](double part) { progress.at(100 * part); }});
 }
 
-// Refuses options of world and settings: an experiment has its own, for which its verdict holds.
+// Gains that no experiment varies.
+constexpr std::array kGains{"coupling.k_vc", "coupling.b_vc", "coupling.b_v"};
+
+bool sets_a_gain(const std::string& setting) {
+  return std::ranges::count(kGains, setting.substr(0, setting.find('='))) > 0;
+}
+
+// Refuses options of scene and settings: an experiment has its own.
 void refuse_what_has_no_effect(const InputOptions& input) {
-  for (const auto& [given, option] : {std::pair(!input.device.empty(), "--device"),
-                                      {!input.tip.empty(), "--tip"},
-                                      {!input.scene.empty(), "--scene"},
+  for (const auto& [given, option] : {std::pair(!input.scene.empty(), "--scene"),
                                       {!input.configs.empty(), "--config"},
-                                      {!input.settings.empty(), "--set"},
+                                      {!std::ranges::all_of(input.settings, sets_a_gain), "--set"},
                                       {input.coupling.has_value(), "--coupling"},
                                       {input.eta.has_value(), "--eta"},
                                       {input.alpha.has_value(), "--alpha"}}) {
     if (!given) continue;
     throw UsageError(
-        fmt::format("{}: only together with --live; this experiment has its own arm, scene and "
-                    "settings (`limpid run` and `limpid sweep` take yours)",
-                    option));
+        fmt::format("{}: only together with --live; this experiment has its own scene and "
+                    "settings (`limpid run` and `limpid sweep` take yours). --set may change {}",
+                    option, fmt::join(kGains, ", ")));
   }
+}
+
+// The arm of the options, with the settings that `limpid run` gives it.
+ExperimentArm arm_under(const InputOptions& input) {
+  ExperimentArm on = built_in_arm();
+  const std::string built_in = on.description.urdf;
+  if (!input.device.empty() || !input.tip.empty()) on.description = arm_of(input);
+  on.settings = make_parameters(input, on.description);
+  const ArmDescription& arm = on.description;
+  on.readings = input.readings;
+  if (on.readings && on.settings.encoder_step == 0 && on.settings.device_delay == 0) {
+    throw UsageError(fmt::format(
+        "--readings: the file of the arm {} has neither encoder steps nor a delay", arm.name));
+  }
+  std::vector<std::string> with = input.settings;
+  if (on.readings) with.insert(with.begin(), "its readings");
+  if (arm.urdf != built_in || !with.empty()) {
+    on.name =
+        fmt::format("{}{}{}", arm.name, with.empty() ? "" : " with ", fmt::join(with, " and "));
+  }
+  return on;
+}
+
+// Takes away experiments that do not run on the arm, and says why. Errors: UsageError if none is
+// left.
+void keep_those_for(const ExperimentArm& on, std::vector<const Experiment*>& wanted) {
+  std::vector<std::string> refused;
+  std::erase_if(wanted, [&](const Experiment* one) {
+    const std::string why = why_not(*one, on);
+    if (!why.empty()) refused.push_back(why);
+    return !why.empty();
+  });
+  if (wanted.empty()) throw UsageError(refused.front());
+  for (const std::string& why : refused) fmt::print(stderr, "limpid: left out: {}\n", why);
 }
 
 int run(const ExperimentOptions& options) {
   refuse_what_has_no_effect(options.input);
-  const auto wanted = chosen(experiments(), options.name, " is not an experiment");
+  auto wanted = chosen(experiments(), options.name, " is not an experiment");
+  const ExperimentArm on = arm_under(options.input);
+  keep_those_for(on, wanted);
   prepare_out(options.out);
   catch_interrupts();
   keep_what_is_freed();
   std::vector<std::string> failed;  // checks
   try {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      const Outcome outcome = carry_out_with_progress(*wanted[i], options, i, wanted.size());
+      const Outcome outcome = carry_out_with_progress(*wanted[i], on, options, i, wanted.size());
       print_outcome(wanted[i]->name, outcome);
       note_failures(wanted[i]->name, outcome, failed);
       write_report(options.out);
@@ -122,6 +167,9 @@ LiveLaboratory laboratory_of(LiveBench& bench, const fs::path& folder) {
 }
 
 int run_on_device(const ExperimentOptions& options) {
+  if (options.input.readings) {
+    throw UsageError("--readings: not together with --live: a device has its own");
+  }
   const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
   prepare_out(options.out);
   LiveBench bench(options.live, options.input);
@@ -152,8 +200,13 @@ std::string experiment_help() {
          "\nWrites DIR/NAME.csv, .png, .svg and .json, DIR/report.html and the sessions of\nthe "
          "trials. Called again with the same DIR, the command continues where it was "
          "stopped;\ntrials of another version of the program, or of other inputs, are run "
-         "again.\nEach experiment has its own arm, scene and settings; options for these need "
-         "--live.\nExit status 1: a check failed, or the command was stopped.";
+         "again.\nWith --device an experiment runs on that arm, with gains that suit it; --set "
+         "changes coupling.k_vc,\ncoupling.b_vc and coupling.b_v. --readings adds encoder steps "
+         "and "
+         "delay of the arm's file. Bounds are\npromised for the built-in arm alone: on another arm "
+         "checks are measured. Each experiment has its own\nscene and settings; options for these "
+         "need --live.\nExit status "
+         "1: a check failed, or the command was stopped.";
 }
 
 }  // namespace
@@ -174,6 +227,7 @@ Command declare_experiment(CLI::App& app) {
       ->check(CLI::Range(1u, kMostThreads));
   options->live.add(*command);
   options->input.add_world(*command);
+  options->input.add_readings(*command);
   options->input.add_parameters(*command);
   command->footer(experiment_help());
   return [options] { return options->live.device ? run_on_device(*options) : run(*options); };

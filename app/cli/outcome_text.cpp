@@ -2,16 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace limpid {
 
 void print_outcome(const std::string& name, const Outcome& outcome) {
-  fmt::print("{}: {}\n", name, outcome.passed() ? "passed" : "FAILED");
+  const bool elsewhere = !outcome.arm.empty();
+  fmt::print("{}{}{}: {}\n", name, elsewhere ? ", on " : "", outcome.arm,
+             !outcome.passed() ? "FAILED"
+             : elsewhere       ? "measured"
+                               : "passed");
   for (const Check& c : outcome.checks) {
     const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
     fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
     if (c.unjudged.empty()) fmt::print(", {} {:.4g}", relation(c), c.bound);
+    if (elsewhere && !c.unjudged.empty()) {
+      fmt::print(" ({}; promised for the built-in arm: {} {:.4g})",
+                 std::isnan(c.value) ? "not measurable"
+                 : c.passed          ? "kept"
+                                     : "missed",
+                 c.least ? "at least" : "at most", c.bound);
+    }
     if (c.against && c.against->expected) {
       fmt::print("; {:.6g} {} for {:.6g}", c.against->measured, c.against->unit,
                  *c.against->expected);

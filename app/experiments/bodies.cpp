@@ -60,7 +60,7 @@ std::vector<Check> same_as_in_the_loop(TrialRunner& lab) {
     p.tick = tick;
     const HandPath hand =
         hand_path("stays", tick, kSeconds, [](double) { return Vec3(0.18, 0, 0); });
-    RunPlan plan = plan_in("title = \"\"\nabout = \"\"\n", hand, p);
+    RunPlan plan = plan_in(lab.arm().description, "title = \"\"\nabout = \"\"\n", hand, p);
     plan.document = rolling_ball();
     plan.document.toml = scene_text(plan.document, plan.arm);
     trials.push_back({fmt::format("rolling-ball-{:.4g}-ms", 1e3 * tick), plan});

@@ -315,7 +315,7 @@ rest = 1.0
 // books; infinite numbers are passed over [J].
 double most_gained(const std::string& text, double tick, double seconds) {
   const HandPath nobody = hand_path("nobody", 1e-3, 0.01, [](double) { return Vec3(0.18, 0, 0); });
-  BodyBench bench(plan_in(text, nobody, {}).document.scene, tick);
+  BodyBench bench(plan_in(built_in_arm().description, text, nobody, {}).document.scene, tick);
   double most = 0;
   bench.run(seconds, [&] {
     const double gain = bench.world().gain();

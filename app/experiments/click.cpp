@@ -53,8 +53,8 @@ HandPath pressing() {
       });
 }
 
-Parameters in_a_stiff_hand(CouplingKind kind) {
-  Parameters p;
+Parameters in_a_stiff_hand(const ExperimentArm& on, CouplingKind kind) {
+  Parameters p = on.settings;
   p.kind = kind;
   p.hand_stiffness = kClickGrip;
   return p;
@@ -97,9 +97,9 @@ void add_ticks(Press& press, const TipRecord& record, const std::vector<double>&
   }
 }
 
-Trial button_pressed(CouplingKind kind, double stiffness) {
+Trial button_pressed(const ExperimentArm& on, CouplingKind kind, double stiffness) {
   Trial trial{fmt::format("{}-{}", name(kind), stiffness),
-              plan_in(button(stiffness), pressing(), in_a_stiff_hand(kind))};
+              plan_in(on.description, button(stiffness), pressing(), in_a_stiff_hand(on, kind))};
   trial.may_diverge = kind != CouplingKind::predictive;
   return trial;
 }
@@ -116,17 +116,17 @@ Press press_of(const Trial& trial, const TrialResult& result, std::string label,
   return press;
 }
 
-Press press_staggered(const ArmDescription& arm, double damping, double stiffness,
-                      const char* ink) {
+Press press_staggered(const ExperimentArm& on, double damping, double stiffness, const char* ink) {
   const auto own = [](double s) { return given_force(s); };
-  const StaggeredRun run = run_staggered(arm, in_a_stiff_hand(CouplingKind::predictive), pressing(),
-                                         {.mass = kClickMass,
-                                          .stiffness = stiffness,
-                                          .damping = damping,
-                                          .normal = Vec3(Vec3::UnitZ()),
-                                          .gap = kClickAbove - kClickTip - kClickTop,
-                                          .own = own,
-                                          .least_travel = 0});
+  const StaggeredRun run =
+      run_staggered(on.description, in_a_stiff_hand(on, CouplingKind::predictive), pressing(),
+                    {.mass = kClickMass,
+                     .stiffness = stiffness,
+                     .damping = damping,
+                     .normal = Vec3(Vec3::UnitZ()),
+                     .gap = kClickAbove - kClickTip - kClickTop,
+                     .own = own,
+                     .least_travel = 0});
   Press press{fmt::format("staggered, {} N s/m", damping), ink};
   press.beyond = run.most_beyond();
   if (!run.diverged) add_ticks(press, run.record, run.travel);
@@ -152,12 +152,12 @@ FigurePanel click_panel(const std::string& title, const std::vector<Press>& pres
 
 Outcome click(TrialRunner& lab) {
   using enum CouplingKind;
+  const ExperimentArm& on = lab.arm();
   std::vector<Trial> trials;
-  for (const double K : kClickHard) trials.push_back(button_pressed(predictive, K));
+  for (const double K : kClickHard) trials.push_back(button_pressed(on, predictive, K));
   for (const CouplingKind kind : {proposed, standard})
-    trials.push_back(button_pressed(kind, kClickUsual));
+    trials.push_back(button_pressed(on, kind, kClickUsual));
   const std::vector<TrialResult> results = lab.run(trials);
-  const ArmDescription& arm = trials.front().plan.arm;
   std::vector<Press> ours, laws, usual, hard;
   for (std::size_t i = 0; i < std::size(kClickHard); ++i) {
     ours.push_back(
@@ -165,9 +165,9 @@ Outcome click(TrialRunner& lab) {
   }
   laws = {press_of(trials[3], results[3], "proposed", kProposedInk),
           press_of(trials[4], results[4], "standard", kStandardInk)};
-  usual = {press_staggered(arm, 0, kClickUsual, kDeviceInk),
-           press_staggered(arm, kClickDamping, kClickUsual, kContactInk)};
-  hard = {press_staggered(arm, kClickDamping, kClickHard[2], kContactInk)};
+  usual = {press_staggered(on, 0, kClickUsual, kDeviceInk),
+           press_staggered(on, kClickDamping, kClickUsual, kContactInk)};
+  hard = {press_staggered(on, kClickDamping, kClickHard[2], kContactInk)};
 
   Outcome outcome;
   outcome.figure.title = "The click of a button: felt against given force";

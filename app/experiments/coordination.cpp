@@ -54,28 +54,29 @@ Series added_error(const Session& s, const Session& right, const std::string& la
   });
 }
 
-std::vector<Trial> all_trials(const Parameters& standard, const Parameters& proposed) {
-  std::vector<Trial> trials{{"standard", plan_of("proximal", "proximal", standard)},
-                            {"proposed", plan_of("proximal", "proximal", proposed)}};
+std::vector<Trial> all_trials(const ArmDescription& arm, const Parameters& standard,
+                              const Parameters& proposed) {
+  const auto plan = [&](const Parameters& p) { return plan_of(arm, "proximal", "proximal", p); };
+  std::vector<Trial> trials{{"standard", plan(standard)}, {"proposed", plan(proposed)}};
   for (const double error : kInertiaErrors) {
     Parameters wrong = proposed;
     wrong.inertia_error = error;
-    trials.push_back(
-        {fmt::format("inertia-error-{}", error), plan_of("proximal", "proximal", wrong)});
+    trials.push_back({fmt::format("inertia-error-{}", error), plan(wrong)});
   }
   return trials;
 }
 
 // `results` as all_trials() lists them.
-Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed) {
+Figure draw(const std::vector<TrialResult>& results, const Parameters& proposed,
+            const std::string& gains) {
   const Session& a = results[0].session;
   const Session& b = results[1].session;
   Figure figure;
   figure.title = "Coordination of device and proxy in contact";
   figure.caption = fmt::format(
       "Three contacts on the proximal link (20 N m/rad), then three at the tip (600 N/m), the same "
-      "hand in both couplings: grip {} N/m and {} N s/m, paper's gains, eta = {}.",
-      proposed.hand_stiffness, proposed.hand_damping, proposed.eta);
+      "hand in both couplings: grip {} N/m and {} N s/m, {}, eta = {}.",
+      proposed.hand_stiffness, proposed.hand_damping, gains, proposed.eta);
   figure.columns = 2;
   figure.panel_height = 300;
   for (std::size_t joint = 0; joint < 3; ++joint) {
@@ -181,11 +182,13 @@ void add_contact_scatter(FigurePanel& panel, const Session& s, const std::string
 }
 
 Outcome coordination(TrialRunner& lab) {
-  Parameters standard, proposed;
+  const Parameters& proposed = lab.arm().settings;
+  Parameters standard = proposed;
   standard.kind = CouplingKind::standard;
-  const std::vector<TrialResult> results = lab.run(all_trials(standard, proposed));
+  const std::vector<TrialResult> results =
+      lab.run(all_trials(lab.arm().description, standard, proposed));
   Outcome outcome;
-  outcome.figure = draw(results, proposed);
+  outcome.figure = draw(results, proposed, lab.arm().gains());
   outcome.checks = judge(results, 1 / standard.k_vc);
   return outcome;
 }

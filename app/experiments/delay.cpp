@@ -10,6 +10,7 @@
 #include "app/experiments/felt_impedance.h"
 #include "app/experiments/signals.h"
 #include "app/experiments/tap_bench.h"
+#include "app/run/analysis.h"
 #include "core/coupling/inertia_network.h"
 
 namespace limpid {
@@ -71,14 +72,16 @@ Multisine slow_shaking() {
   return signal;
 }
 
-Trial free_trial(const Late& late, double eta, double grip) {
-  Parameters p = TapBench(late_setting(late, eta), DelayPlan::kSoftestNamed, grip, 1).parameters();
+Trial free_trial(const ExperimentArm& on, const Late& late, double eta, double grip) {
+  Parameters p =
+      TapBench(on, late_setting(late, eta), DelayPlan::kSoftestNamed, grip, 1).parameters();
   const Vec3 along = Vec3(1, 0.8, 0.6).normalized();
   const auto at = [signal = slow_shaking(), along](double t) {
     return Vec3(kHome + minimum_jerk(t / 0.5) * signal.at(t) * along);
   };
   const double seconds = DelayPlan::kSettle + DelayPlan::kPeriod + p.tick;
-  Trial trial{"", plan_in(kFreeSpace, hand_path("shaking slowly", p.tick, seconds, at), p)};
+  Trial trial{
+      "", plan_in(on.description, kFreeSpace, hand_path("shaking slowly", p.tick, seconds, at), p)};
   trial.keep = false;
   return trial;
 }
@@ -99,7 +102,7 @@ struct LateFelt {
 
 using LateTable = std::vector<std::vector<LateFelt>>;  // of each delay and eta
 
-// Runs `trial_of(late, eta, grip)` for all of them, and passes each result to `take`.
+// Runs `trial_of(on, late, eta, grip)` for all of them, and passes each result to `take`.
 template <class TrialOf, class Take>
 void for_all(TrialRunner& lab, const TrialOf& trial_of, const Take& take) {
   struct Place {
@@ -113,7 +116,7 @@ void for_all(TrialRunner& lab, const TrialOf& trial_of, const Take& take) {
     for (std::size_t e = 0; e < std::size(DelayPlan::kEtas); ++e) {
       for (const double grip : DelayPlan::kGrips) {
         places.push_back({d, e, grip});
-        trials.push_back(trial_of(delays[d], DelayPlan::kEtas[e], grip));
+        trials.push_back(trial_of(lab.arm(), delays[d], DelayPlan::kEtas[e], grip));
       }
     }
   }
@@ -140,13 +143,13 @@ double wanted_inertia(const Late& late, const FeltMotion& felt, const RunPlan& p
       network_impedance(added, p.band, w) * std::polar(1.0, -w * t_d);
   // Damping that motors give besides the networks [N s/m].
   const double by_motors =
-      felt.damping - plan.arm.joints.front().damping - felt.mass * networks.real();
+      felt.damping - device_damping(plan.arm, p)[0] - felt.mass * networks.real();
   return 1 + networks.imag() / w - (late.known ? 0 : by_motors * t_d / felt.mass);
 }
 
 void free_motion(TrialRunner& lab, LateTable& table) {
   const std::vector<Late> delays = all_delays();
-  const Trial one = free_trial({0, true}, 1, DelayPlan::kGrips[0]);
+  const Trial one = free_trial(lab.arm(), {0, true}, 1, DelayPlan::kGrips[0]);
   const Eigen::MatrixXd M = (1 + one.plan.parameters.inertia_ratio) *
                             inertia_at(one.plan.arm, rest_at(one.plan.arm, kHome).x1);
   const auto settled =
@@ -171,19 +174,22 @@ void free_motion(TrialRunner& lab, LateTable& table) {
 }
 
 void at_walls(TrialRunner& lab, LateTable& table) {
-  const auto bench = [](const Late& late, double eta, double grip) {
+  const ExperimentArm& on = lab.arm();
+  const auto bench = [&on](const Late& late, double eta, double grip) {
     const TapSetting s = late_setting(late, eta);
-    return TapBench(s, named_wall(s), grip, 1);
+    return TapBench(on, s, named_wall(on, s), grip, 1);
   };
   const std::vector<Late> delays = all_delays();
   for_all(
       lab,
-      [&](const Late& late, double eta, double grip) { return bench(late, eta, grip).trial(); },
+      [&](const ExperimentArm&, const Late& late, double eta, double grip) {
+        return bench(late, eta, grip).trial();
+      },
       [&](std::size_t d, std::size_t e, double grip, const Trial&, const TrialResult& r) {
         const double eta = DelayPlan::kEtas[e];
         const Touch touch = bench(delays[d], eta, grip).touch(r);
         return [&table, d, e, touch, port = highest_port(r.session),
-                named = named_wall(late_setting(delays[d], eta))] {
+                named = named_wall(on, late_setting(delays[d], eta))] {
           LateFelt& found = table[d][e];
           found.wall = worse(found.wall, port);
           found.named = named;

@@ -30,17 +30,17 @@ HandPath holding() {
   return hand_path("holds the tip", kDropTick, kDropSeconds, [](double) { return kDropUnder; });
 }
 
-Trial dropped(CouplingKind kind, double stiffness) {
-  Parameters p;
+Trial dropped(const ExperimentArm& on, CouplingKind kind, double stiffness) {
+  Parameters p = on.settings;
   p.kind = kind;
   Trial trial{fmt::format("{}-{}", name(kind), stiffness),
-              plan_in(falling(stiffness), holding(), p)};
+              plan_in(on.description, falling(stiffness), holding(), p)};
   trial.may_diverge = kind != CouplingKind::predictive;
   return trial;
 }
 
-StaggeredRun drop_staggered(const ArmDescription& arm, double damping) {
-  return run_staggered(arm, Parameters{}, holding(),
+StaggeredRun drop_staggered(const ExperimentArm& on, double damping) {
+  return run_staggered(on.description, on.settings, holding(),
                        {.mass = kDropMass,
                         .stiffness = kDropUsual,
                         .damping = damping,
@@ -72,11 +72,12 @@ double force_on_tip(const Session& s, std::size_t k) {
 
 Outcome drop(TrialRunner& lab) {
   using enum CouplingKind;
+  const ExperimentArm& on = lab.arm();
   std::vector<Trial> trials;
-  for (const double K : kDropHard) trials.push_back(dropped(predictive, K));
-  for (const CouplingKind kind : {proposed, standard}) trials.push_back(dropped(kind, kDropUsual));
+  for (const double K : kDropHard) trials.push_back(dropped(on, predictive, K));
+  for (const CouplingKind kind : {proposed, standard})
+    trials.push_back(dropped(on, kind, kDropUsual));
   const std::vector<TrialResult> results = lab.run(trials);
-  const ArmDescription& arm = trials.front().plan.arm;
 
   FigurePanel height = drop_panel("The block's lower face above the tip's rest", "height [mm]");
   FigurePanel reserve = drop_panel("Reserve of the energy account, predictive", "reserve [mJ]");
@@ -108,7 +109,7 @@ Outcome drop(TrialRunner& lab) {
                                       [&](auto k) { return 1e3 * beyond_at(s, k); }));
   }
   for (const auto& [damping, ink] : {std::pair(0.0, kDeviceInk), {kDropDamping, kContactInk}}) {
-    const StaggeredRun run = drop_staggered(arm, damping);
+    const StaggeredRun run = drop_staggered(on, damping);
     const std::string label = fmt::format("staggered, {} N s/m", damping);
     force.series.push_back(of_run(run, label, ink, 1, run.contact));
     beyond.series.push_back(of_run(run, label, ink, 1e3, run.beyond));

@@ -33,27 +33,40 @@ double misplaced(const SweepPlan& plan, const SweepTable& table, Ticks ticks, do
   return compared > 0 ? worst : HUGE_VAL;
 }
 
-std::string caption(const SweepPlan& plan) {
+// Puts an arm with its gains and its damping into all runs of a plan.
+void put(const ExperimentArm& on, SweepPlan& plan) {
+  static_cast<SpringDamper&>(plan.parameters) = on.settings;
+  plan.parameters.alpha = on.settings.alpha;
+  plan.parameters.damping = on.settings.damping;
+  for (auto& [world, run] : plan.worlds) {
+    RunPlan changed = *run;
+    changed.arm = on.description;
+    run = std::make_shared<const RunPlan>(std::move(changed));
+  }
+}
+
+std::string caption(const ExperimentArm& on, const SweepPlan& plan) {
   RunPlan without_proxy = run_of(plan, 0);
   without_proxy.parameters.b_v = 0;
   return fmt::format(
-      "Built-in arm, full nonlinear loop at the paper's gains, tip {} m ahead; the hand jumps by "
+      "{}, full nonlinear loop at the {}, tip {} m ahead; the hand jumps by "
       "{:.0f} um along each axis and holds without damping. Stable means that the motion dies away "
       "within {} s. A stiff grip oscillates above k_vc / b_v = {:.0f} rad/s. There the coupling's "
       "spring hides the proxy's damper, and the limit rises from the value of (25) towards that of "
       "(25) with b_d alone, {:.2f}. In such grips ticks of 1 ms differ from the continuous theory.",
-      plan.jump->at.x(), 1e6 * plan.jump->by.x(), plan.seconds,
-      Parameters{}.k_vc / Parameters{}.b_v, eta_limit("pr", without_proxy));
+      on.heading(), on.gains(), plan.jump->at.x(), 1e6 * plan.jump->by.x(), plan.seconds,
+      on.settings.k_vc / on.settings.b_v, eta_limit("pr", without_proxy));
 }
 
 }  // namespace
 
 Outcome eta_min_map(TrialRunner& lab) {
-  const SweepPlan plan = read_sweep_plan(data_dir() / "assets/sweeps/eta_min.toml");
+  SweepPlan plan = read_sweep_plan(data_dir() / "assets/sweeps/eta_min.toml");
+  put(lab.arm(), plan);
   const SweepTable table = lab.sweep(plan);
   Outcome outcome;
   outcome.figure = sweep_figure(plan, table);
-  outcome.figure.caption = caption(plan);
+  outcome.figure.caption = caption(lab.arm(), plan);
   const std::string locked_text =
       fmt::format("Routh's limit of the locked system, grips to {} N/m, in eta", kUsualGrip);
   outcome.checks = {

@@ -17,6 +17,7 @@
 #include "app/experiments/live.h"
 #include "app/plot/figure.h"
 #include "app/run/provenance.h"
+#include "app/run/reach_check.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/run_key.h"
@@ -81,36 +82,49 @@ std::string stamp_text(std::uint64_t key, std::uint64_t bytes) {
   return fmt::format("trial {:016x}\nsession {:016x}\n", key, bytes);
 }
 
+using Takes = Experiment::Takes;
+constexpr const char *kJumpIsSmall = "the hand jumps by less than a step of the encoders",
+                     *kVariesReadings = "it varies encoder steps and delays itself",
+                     *kLinkTheory = "its theory has exact encoders and no delay of the device";
+
 constexpr std::array kExperiments{
     Experiment{"coordination", "coordination of device and proxy in contact (Figs. 3 and 4)",
-               coordination},
+               coordination, Takes::moving_as_built_in},
     Experiment{"inertia", "inertia felt in free motion at three eta: the hand's torque (Fig. 5)",
-               inertia},
+               inertia, Takes::moving_as_built_in},
     Experiment{"passivity", "passivity: energy of the controller over many trials (Fig. 6)",
                passivity},
     Experiment{"spectrum", "spectrum of the hand's motion (Fig. 7)", spectrum},
     Experiment{"saturation",
                "contact beyond the motors' torque limit, with and without anti-windup "
                "(section 3.1), and between walls",
-               saturation},
+               saturation, Takes::moving_as_built_in},
     Experiment{"observer", "bandwidth of the estimate of the hand's force (section 3.1)", observer},
-    Experiment{"transparency", "transparency: impedance felt at the handle", transparency},
-    Experiment{"eta_min", "stability over eta and grip, against theory (section 4.2)", eta_min_map},
+    Experiment{"transparency", "transparency: impedance felt at the handle", transparency,
+               Takes::moving_as_built_in},
+    Experiment{"eta_min", "stability over eta and grip, against theory (section 4.2)", eta_min_map,
+               Takes::any, "", kJumpIsSmall},
     Experiment{"lightness", "inertia and damping felt, and what a passive law pays for lightness",
                lightness},
-    Experiment{"zwidth", "Z-width: the stiffest wall that is rendered well", zwidth},
-    Experiment{"approaches", "the field's laws beside these: stiffness felt and energy given",
-               approaches},
+    Experiment{"zwidth", "Z-width: the stiffest wall that is rendered well", zwidth, Takes::any, "",
+               kVariesReadings},
+    Experiment{
+        "approaches", "the field's laws beside these: stiffness felt and energy given", approaches,
+        Takes::none,
+        "an ideal arm, a Touch, an omega and an Inverse3 (`limpid characterize` has its bench "
+        "for any arm)"},
     Experiment{"switching", "contacts made and broken, couplings switched while pressing",
-               switching},
+               switching, Takes::moving_as_built_in},
     Experiment{"friction", "friction: sticking, slipping, and the energy that friction takes",
                friction},
-    Experiment{"delay", "delay of the device's torque: energy given, inertia and walls felt",
-               delay},
-    Experiment{"link", "teleoperation: the stiffest wall through a delay, under each law", link},
-    Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls},
+    Experiment{"delay", "delay of the device's torque: energy given, inertia and walls felt", delay,
+               Takes::any, "", kVariesReadings},
+    Experiment{"link", "teleoperation: the stiffest wall through a delay, under each law", link,
+               Takes::any, "", kLinkTheory},
+    Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls,
+               Takes::none, "36 random arms"},
     Experiment{"robust", "promises on a device that is unlike its model: until where each holds",
-               robust},
+               robust, Takes::none, "an ideal arm and a Touch"},
     Experiment{"mass",
                "the mass felt of a body that is held, and the smallest mass that can be held",
                mass},
@@ -119,7 +133,8 @@ constexpr std::array kExperiments{
     Experiment{"stack",
                "stacks of bodies: how deep they sink into each other, sweeps of the solver, energy",
                stack},
-    Experiment{"bodies", "motion of bodies against closed forms, errors both ways", bodies},
+    Experiment{"bodies", "motion of bodies against closed forms, errors both ways", bodies,
+               Takes::none, "bodies without an arm"},
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,
@@ -150,6 +165,7 @@ void write_verdict(const std::string& name, const Outcome& outcome,
                                  {"caption", outcome.figure.caption},
                                  {"provenance", outcome.figure.made_by},
                                  {"checks", checks}};
+  if (!outcome.arm.empty()) verdict["arm"] = outcome.arm;
   if (!more.empty()) verdict.update(nlohmann::ordered_json::parse(more));
   std::ofstream out(file);
   out << verdict.dump(2) << '\n';
@@ -169,6 +185,15 @@ std::string verdict(bool passed) {
 std::string verdict(const json& check) {
   const json& passed = check.at("passed");
   return passed.is_null() ? R"(<span class="soft">measured</span>)" : verdict(passed.get<bool>());
+}
+
+bool good(const json& page) { return page.value("passed", false); }
+
+// On an arm for which nothing is promised there is nothing to pass.
+bool only_measured(const json& page) { return page.contains("arm") && good(page); }
+
+std::string whole_verdict(const json& page) {
+  return only_measured(page) ? R"(<span class="soft">measured</span>)" : verdict(good(page));
 }
 
 // Rows of checks that compare with theory say in a line of their own under what conditions.
@@ -244,9 +269,36 @@ std::string section(const Page& page) {
 {5}
 </section>
 )",
-      page.name, escaped(typeset(v.value("title", page.name))), verdict(v.value("passed", false)),
+      page.name, escaped(typeset(v.value("title", page.name))), whole_verdict(v),
       escaped(typeset(page.about)), escaped(typeset(v.value("caption", ""))), table(v.at("checks")),
       escaped(v.value("provenance", "")));
+}
+
+std::string report_summary(std::size_t passed, std::size_t measured, std::size_t all) {
+  std::vector<std::string> sentences;
+  if (measured < all || all == 0) {
+    sentences.push_back(fmt::format("{} of {} experiments passed.", passed, all - measured));
+  }
+  if (measured > 0) {
+    sentences.push_back(
+        fmt::format("{} measured on an arm for which no bound is promised.", measured));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+// Names the arm in an outcome. Bounds are promised for the built-in arm alone.
+void measured_on(const ExperimentArm& on, Outcome& outcome) {
+  if (on.built_in()) return;
+  outcome.arm = on.name;
+  outcome.figure.title += ", on " + on.name;
+  for (Check& c : outcome.checks) {
+    if (!c.unjudged.empty()) continue;
+    c.unjudged = fmt::format("Promised for the built-in arm alone: {} {:.4g}. {} {}.", relation(c),
+                             c.bound, on.heading(),
+                             std::isnan(c.value) ? "gives no value"
+                             : c.passed          ? "keeps this bound"
+                                                 : "misses this bound");
+  }
 }
 
 }  // namespace
@@ -327,6 +379,7 @@ TrialRunner::TrialRunner(std::string experiment, Options options)
     : experiment_(std::move(experiment)), options_(std::move(options)) {
   options_.threads = threads_for(options_.threads);
   if (options_.program == 0) options_.program = program_digest();
+  if (!options_.arm) options_.arm = built_in_arm();
 }
 
 TrialResult TrialRunner::run_one(const Trial& trial) const {
@@ -380,7 +433,11 @@ void TrialRunner::each(std::size_t count, const std::function<void(std::size_t)>
 
 void TrialRunner::run(const std::vector<Trial>& trials,
                       const std::function<void(std::size_t, const TrialResult&)>& take) {
-  for (const Trial& trial : trials) conditions_.add(trial.plan.arm, trial.plan.parameters);
+  for (const Trial& trial : trials) {
+    conditions_.add(trial.plan.arm, trial.plan.parameters);
+    const std::string far = arm().built_in() ? "" : out_of_reach(trial.plan);
+    if (!far.empty()) throw std::runtime_error(experiment_ + ": " + far);
+  }
   each(trials.size(), [&](std::size_t i) {
     const TrialResult result = run_one(trials[i]);
     if (result.end.diverged && !trials[i].may_diverge) ++diverged_;
@@ -412,6 +469,29 @@ std::vector<TrialResult> TrialRunner::run(const std::vector<Trial>& trials) {
 
 std::span<const Experiment> experiments() { return kExperiments; }
 
+std::string why_not(const Experiment& experiment, const ExperimentArm& on) {
+  constexpr int kJoints = 3;
+  if (on.built_in()) return {};
+  const std::string begin = std::string(experiment.name) + ": ";
+  if (experiment.takes == Takes::none) {
+    return begin + "takes no arm, as it has its own: " + experiment.own_arms;
+  }
+  if (on.description.dof() != kJoints) {
+    return begin + fmt::format("needs an arm of {} joints; {} has {}", kJoints, on.description.name,
+                               on.description.dof());
+  }
+  if (experiment.takes == Takes::moving_as_built_in && !moves_as_built_in(on.description)) {
+    return begin + fmt::format(
+                       "needs an arm whose joints are named as the built-in arm's and move "
+                       "the tip as these do; {} is another",
+                       on.description.name);
+  }
+  if (on.readings && *experiment.own_readings != '\0') {
+    return begin + "takes no --readings, because " + experiment.own_readings;
+  }
+  return {};
+}
+
 void write_outcome(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& dir, const std::string& more) {
   std::filesystem::create_directories(dir);
@@ -425,6 +505,7 @@ Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& opti
   std::filesystem::create_directories(options.dir);
   TrialRunner lab(experiment.name, options);
   Outcome outcome = experiment.run(lab);
+  measured_on(lab.arm(), outcome);
   const std::string conditions = lab.conditions().text();
   if (!conditions.empty()) {
     outcome.figure.caption += " " + conditions;
@@ -443,21 +524,21 @@ std::string report_section(const std::string& name, const std::string& about, co
 
 void write_report(const fs::path& dir) {
   const std::vector<Page> pages = pages_in(dir);
-  std::size_t passed = 0;
+  std::size_t passed = 0, measured = 0;
   std::string contents, sections;
   for (const Page& page : pages) {
-    const bool good = page.verdict.value("passed", false);
-    passed += good ? 1 : 0;
+    (only_measured(page.verdict) ? measured : passed) += good(page.verdict) ? 1 : 0;
     contents += fmt::format(
         "<tr><td><a href=\"#{0}\">{1}</a></td><td class=\"soft\">{2}</td>"
         "<td class=\"number\">{3} checks</td><td class=\"verdict\">{4}</td></tr>\n",
         page.name, escaped(typeset(page.verdict.value("title", page.name))),
-        escaped(typeset(page.about)), page.verdict.at("checks").size(), verdict(good));
+        escaped(typeset(page.about)), page.verdict.at("checks").size(),
+        whole_verdict(page.verdict));
     sections += section(page);
   }
   write_page(
       dir / "report.html", "Transparent virtual coupling: experiments",
-      fmt::format("{} of {} experiments passed.", passed, pages.size()),
+      report_summary(passed, measured, pages.size()),
       fmt::format("<section><table><tbody>\n{}</tbody></table></section>\n{}", contents, sections));
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "app/experiments/experiment_arm.h"
 #include "app/plot/figure.h"
 #include "app/run/simulate.h"
 #include "core/dynamics/arm_description.h"
@@ -103,6 +104,7 @@ inline double worse_low(double a, double b) { return -worse(-a, -b); }
 struct Outcome {
   Figure figure;
   std::vector<Check> checks;
+  std::string arm = {};  // that is not the one whose bounds are promised; empty: it is
   bool passed() const {
     for (const Check& c : checks) {
       if (c.failed()) return false;
@@ -138,6 +140,7 @@ class TrialRunner {
     std::uint64_t seed = 0;
     unsigned threads = 0;       // 0: one a core
     std::uint64_t program = 0;  // trials recorded by another program are run again; 0: this program
+    std::optional<ExperimentArm> arm = {};  // none: the built-in arm
     const std::atomic<bool>* stop = nullptr;
     // Receives the share of the experiment that is done, 0 to 1; called from any thread, one call
     // at a time.
@@ -146,10 +149,11 @@ class TrialRunner {
   TrialRunner(std::string experiment, Options options);
 
   std::uint64_t seed() const { return options_.seed; }
+  const ExperimentArm& arm() const { return *options_.arm; }
 
   // Runs all trials on all cores, in any order; results in the order given. A kept trial with a
   // complete recording from the same program and plan is read instead. Errors: Cancelled,
-  // FileError.
+  // FileError; std::runtime_error for a hand that the arm cannot follow.
   std::vector<TrialResult> run(const std::vector<Trial>& trials);
   // Runs trials too many to hold: `take` gets each result, from any thread, with its index.
   void run(const std::vector<Trial>& trials,
@@ -178,7 +182,14 @@ struct Experiment {
   const char* name;
   const char* about;  // one line
   Outcome (*run)(TrialRunner&);
+  enum class Takes : std::uint8_t { any, moving_as_built_in, none };
+  Takes takes = Takes::any;       // arms, of three joints
+  const char* own_arms = "";      // what it has instead, if it takes none
+  const char* own_readings = "";  // why the readings of an arm's file have no place; empty: they do
 };
+
+// Says why an experiment does not run on an arm; empty if it does.
+std::string why_not(const Experiment& experiment, const ExperimentArm& on);
 
 // The paper's experiments in its order, then those of the predictive coupling and of bodies that
 // move.
@@ -190,7 +201,8 @@ void write_outcome(const std::string& name, const Outcome& outcome,
                    const std::filesystem::path& dir, const std::string& more = {});
 
 // Runs `experiment`, then write_outcome(). Adds the conditions to the caption, and a check that no
-// trial diverged against expectation. Errors: FileError, Cancelled, std::runtime_error.
+// trial diverged against expectation. On an arm for which no bounds are promised all other checks
+// are measured and not judged. Errors: FileError, Cancelled, std::runtime_error.
 Outcome carry_out(const Experiment& experiment, const TrialRunner::Options& options);
 
 // Writes DIR/report.html with every verdict found in DIR.

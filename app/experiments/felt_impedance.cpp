@@ -53,8 +53,8 @@ struct Wobble {
   }
 };
 
-Trial roaming(const Wobble& wobble) {
-  Parameters p;
+Trial roaming(const ExperimentArm& on, const Wobble& wobble) {
+  Parameters p = on.settings;
   p.kind = wobble.kind;
   p.eta = wobble.eta(0);
   p.hand_stiffness = kRoamingGrip;
@@ -63,7 +63,8 @@ Trial roaming(const Wobble& wobble) {
   const auto at = [](double t) {
     return Vec3(kHome + 0.02 * Vec3(sine(9 * t), sine(7 * t), sine(8 * t)));
   };
-  Trial trial{"", plan_in(kFreeSpace, hand_path("roaming", kRoamingTick, kRoaming, at), p)};
+  Trial trial{
+      "", plan_in(on.description, kFreeSpace, hand_path("roaming", kRoamingTick, kRoaming, at), p)};
   trial.keep = false;
   trial.may_diverge = wobble.kind == CouplingKind::proposed;  // diverging is checked
   double before = p.eta;
@@ -135,7 +136,7 @@ void roam(TrialRunner& lab, Outcome& outcome) {
                                     {"20 Hz", 20},
                                     {"37 Hz", 37}};
   std::vector<Trial> trials;
-  for (const Wobble& w : wobbles) trials.push_back(roaming(w));
+  for (const Wobble& w : wobbles) trials.push_back(roaming(lab.arm(), w));
   const std::vector<TrialResult> results = lab.run(trials);
   FigurePanel panel{.title = "Energy while eta changes between 0.1 and 1",
                     .x_label = "time [s]",

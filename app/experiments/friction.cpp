@@ -76,21 +76,23 @@ double aside(double t) {
   return kDrag * (minimum_jerk((t - kDown) / half) - minimum_jerk((t - kDown - half) / half));
 }
 
-Trial drag(const RoughWalls& walls) {
-  Parameters p;
+Trial drag(const ExperimentArm& on, const RoughWalls& walls) {
+  Parameters p = on.settings;
   p.kind = CouplingKind::predictive;
   const double deep = kPress / p.hand_stiffness + kPress / kWall;
   const auto at = [deep](double t) {
     return Vec3(kMeet + Vec3(0, aside(t), 0.005 - (0.005 + deep) * minimum_jerk(t / kDown)));
   };
   const std::string source = fmt::format("pressing {} N, {} m aside and back", kPress, kDrag);
-  return rubbing(fmt::format("drag-{}-{}", walls.friction_static, walls.friction_kinetic), walls,
+  return rubbing(on.description,
+                 fmt::format("drag-{}-{}", walls.friction_static, walls.friction_kinetic), walls,
                  hand_path(source, p.tick, kEnd, at), p);
 }
 
 // Trial that presses into an edge or a corner and wanders about in it. `motors`: their limit [N m].
-Trial wander(const RoughWalls& walls, double eta, double grip, double motors) {
-  Parameters p;
+Trial wander(const ExperimentArm& on, const RoughWalls& walls, double eta, double grip,
+             double motors) {
+  Parameters p = on.settings;
   p.kind = CouplingKind::predictive;
   p.eta = eta;
   p.hand_stiffness = grip;
@@ -109,7 +111,7 @@ Trial wander(const RoughWalls& walls, double eta, double grip, double motors) {
   const std::string name =
       fmt::format("{}-{}-eta-{}-{}", walls.walls == 2 ? "edge" : "corner", walls.friction_static,
                   eta, std::isnan(motors) ? "own-motors" : "strong-motors");
-  return rubbing(name, walls, hand_path(source, p.tick, kEdgeEnd, at), p);
+  return rubbing(on.description, name, walls, hand_path(source, p.tick, kEdgeEnd, at), p);
 }
 
 double ratio(const Rub& rub) { return rub.normal > 0 ? rub.friction.norm() / rub.normal : 0; }
@@ -168,7 +170,7 @@ struct Dragged {
 std::vector<Dragged> drag_all(TrialRunner& lab) {
   const std::vector<Case> cases = drags();
   std::vector<Trial> trials;
-  for (const Case& c : cases) trials.push_back(drag(c.walls));
+  for (const Case& c : cases) trials.push_back(drag(lab.arm(), c.walls));
   std::vector<TrialResult> results = lab.run(trials);
   std::vector<Dragged> all;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -248,7 +250,7 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
     for (const double mu : {0.0, 0.5, 1.0}) {
       for (const auto& [eta, grip] : {std::pair(0.3, 300.0), {1.0, 3000.0}}) {
         walls.push_back({count, kEdgeWall, mu, mu});
-        trials.push_back(wander(walls.back(), eta, grip, motors));
+        trials.push_back(wander(lab.arm(), walls.back(), eta, grip, motors));
       }
     }
   }
@@ -286,8 +288,8 @@ FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& wh
 
 }  // namespace
 
-Trial rubbing(const std::string& name, const RoughWalls& walls, HandPath hand,
-              const Parameters& p) {
+Trial rubbing(const ArmDescription& arm, const std::string& name, const RoughWalls& walls,
+              HandPath hand, const Parameters& p) {
   std::string text = "title = \"Rough walls\"\nabout = \"Planes that rub.\"\n";
   for (int i = 0; i < walls.walls; ++i) {
     const Vec3& n = kOutward[i];
@@ -298,7 +300,7 @@ Trial rubbing(const std::string& name, const RoughWalls& walls, HandPath hand,
         i + 1, kMeet.x(), kMeet.y(), kMeet.z(), n.x(), n.y(), n.z(), walls.stiffness,
         walls.friction_static, walls.friction_kinetic);
   }
-  return {name, plan_in(text, std::move(hand), p)};
+  return {name, plan_in(arm, text, std::move(hand), p)};
 }
 
 std::vector<std::vector<Rub>> rubs_of(const Trial& trial, const RoughWalls& walls,
@@ -367,8 +369,8 @@ Outcome friction(TrialRunner& lab) {
               "tip slips",
               rough.off_kinetic, 0.01),
       at_most("plane: largest energy that friction gave in a tick [J]", given, 1e-7)};
-  outcome.figure.panels = {ratio_panel(all), stick_panel(drag(all[0].what.walls), all[0]),
-                           taken_panel(all)};
+  outcome.figure.panels = {
+      ratio_panel(all), stick_panel(drag(lab.arm(), all[0].what.walls), all[0]), taken_panel(all)};
   outcome.figure.panels.push_back(
       between_walls(lab, kStrong, fmt::format("motors of {} N m", kStrong), outcome.checks));
   outcome.figure.panels.push_back(

@@ -18,7 +18,8 @@ struct RoughWalls {
 inline const Vec3 kMeet(0.2, 0, -0.04);  // [m]
 inline const Vec3 kOutward[] = {Vec3::UnitZ(), -Vec3::UnitY(), -Vec3::UnitX()};
 
-Trial rubbing(const std::string& name, const RoughWalls& walls, HandPath hand, const Parameters& p);
+Trial rubbing(const ArmDescription& arm, const std::string& name, const RoughWalls& walls,
+              HandPath hand, const Parameters& p);
 
 // A contact over a tick.
 struct Rub {

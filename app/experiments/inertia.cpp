@@ -27,13 +27,14 @@ double largest_difference(const Session& a, const Session& b) {
 }  // namespace
 
 Outcome inertia(TrialRunner& lab) {
+  const ExperimentArm& on = lab.arm();
   std::vector<Trial> trials;
   for (const double eta : kInertiaEtas) {
-    Parameters p;
+    Parameters p = on.settings;
     p.eta = eta;
     p.hand_stiffness = kGripStiffness;
     p.hand_damping = kGripDamping;
-    trials.push_back({fmt::format("eta-{}", eta), plan_of("free", "free", p)});
+    trials.push_back({fmt::format("eta-{}", eta), plan_of(on.description, "free", "free", p)});
   }
   const std::vector<TrialResult> results = lab.run(trials);
   const Session& reference = results[1].session;  // eta = 1
@@ -42,10 +43,10 @@ Outcome inertia(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "The same free motion at three etas";
   outcome.figure.caption = fmt::format(
-      "Proposed coupling at the paper's gains, grip {} N/m and {} N s/m, no contact. In so slow a "
+      "Proposed coupling at the {}, grip {} N/m and {} N s/m, no contact. In so slow a "
       "motion damping is most of the force, and eta scales it. The experiment `lightness` measures "
       "the inertia felt in faster motions.",
-      kGripStiffness, kGripDamping);
+      on.gains(), kGripStiffness, kGripDamping);
   outcome.figure.columns = 2;
   FigurePanel torque{.title = "Human torque |f1| and its estimate",
                      .x_label = "time [s]",

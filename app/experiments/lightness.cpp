@@ -61,8 +61,8 @@ std::vector<LawAtEta> all_laws() {
   return laws;
 }
 
-Trial shaken(const LawAtEta& law) {
-  Parameters p;
+Trial shaken(const ExperimentArm& on, const LawAtEta& law) {
+  Parameters p = on.settings;
   p.kind = law.kind;
   p.eta = law.eta;
   p.hand_stiffness = kLightGrip;
@@ -73,7 +73,7 @@ Trial shaken(const LawAtEta& law) {
   };
   const std::string source = fmt::format("shaking at 7 frequencies, {} m at 1 Hz", kAmplitude);
   return {fmt::format("{}-eta-{}", name(p.kind), p.eta),
-          plan_in(kFreeSpace,
+          plan_in(on.description, kFreeSpace,
                   hand_path(source, kShakenTick, kSettle + kShakenPeriod + kShakenTick, at), p)};
 }
 
@@ -81,7 +81,7 @@ std::vector<LawAtEta> shake(TrialRunner& lab) {
   std::vector<LawAtEta> laws = all_laws();
   std::vector<Trial> trials;
   trials.reserve(laws.size());
-  for (const LawAtEta& law : laws) trials.push_back(shaken(law));
+  for (const LawAtEta& law : laws) trials.push_back(shaken(lab.arm(), law));
   const RunPlan& plan = trials.front().plan;
   const Eigen::MatrixXd M =
       (1 + plan.parameters.inertia_ratio) * inertia_at(plan.arm, rest_at(plan.arm, kHome).x1);
@@ -296,7 +296,7 @@ Outcome lightness(TrialRunner& lab) {
   outcome.figure.title = "How light the arm can be made";
   outcome.figure.caption = fmt::format(
       "Free motion, the tip shaken at seven frequencies together, {} mm at 1 Hz and less above, in "
-      "a grip of {} N/m and {} N s/m; exact encoders. Inertia and damping: the hand's torque "
+      "a grip of {} N/m and {} N s/m{}. Inertia and damping: the hand's torque "
       "against and along the motion of all joints. An inertia of eta up to {} Hz costs every "
       "passive law a damping of at least 1 - eta times the inertia times that frequency in rad/s. "
       "Under the proposed coupling eta scales the damping, and so the force felt in slow motion. "
@@ -304,7 +304,8 @@ Outcome lightness(TrialRunner& lab) {
       "eta = 1 the inertia "
       "felt is negative up to 5 Hz. Last panel: the arm roams in an undamped grip of 3000 N/m, "
       "with motors that have practically no limit.",
-      1e3 * kAmplitude, kLightGrip, kLightGripDamping, Parameters{}.band);
+      1e3 * kAmplitude, kLightGrip, kLightGripDamping, lab.arm().readings ? "" : "; exact encoders",
+      Parameters{}.band);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(laws);
   judge_predictive(of(laws, CouplingKind::predictive), outcome.checks);

@@ -94,7 +94,7 @@ void tap_each_law(TrialRunner& lab, std::vector<LinkCurve>& laws, const WallOf& 
   for (LinkCurve& law : laws) {
     const std::vector<int> delays = law.delays();
     for (std::size_t k = 0; k < delays.size(); ++k) {
-      benches.emplace_back(law.at(delays[k]), wall_of(law, k), LinkStudy::kGrip[0], 1);
+      benches.emplace_back(lab.arm(), law.at(delays[k]), wall_of(law, k), LinkStudy::kGrip[0], 1);
       places.emplace_back(&law, k);
       trials.push_back(benches.back().trial());
       trials.back().may_diverge = true;
@@ -132,8 +132,8 @@ double through_random_links(TrialRunner& lab) {
     TapSetting s{.kind = CouplingKind::tank};
     s.link = static_cast<int>(random.between(0, 100.9));
     s.hold = LinkStudy::kHold / 2;
-    benches.emplace_back(s, random.log_between(kSoftest, kStiffest), random.log_between(100, 3000),
-                         2);
+    benches.emplace_back(lab.arm(), s, random.log_between(kSoftest, kStiffest),
+                         random.log_between(100, 3000), 2);
     trials.push_back(benches.back().trial());
     Parameters& p = trials.back().plan.parameters;
     p.link_jitter = static_cast<int>(random.between(0, 50.9));
@@ -175,7 +175,8 @@ FigurePanel over_delays(const std::vector<LinkCurve>& laws, const std::string& t
   return panel;
 }
 
-std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheory& theory) {
+std::vector<FigurePanel> draw(const ExperimentArm& on, const std::vector<LinkCurve>& laws,
+                              const LinkTheory& theory) {
   FigurePanel walls = over_delays(laws, "The stiffest wall on which a tap comes to rest",
                                   "stiffness [N/m]", {kSoftest, kStiffest}, &LinkCurve::walls, 1);
   Series standard{"standard, theory", kStandardInk, Series::Style::dashed, {}};
@@ -188,7 +189,7 @@ std::vector<FigurePanel> draw(const std::vector<LinkCurve>& laws, const LinkTheo
   const LinkCurve& predictive = laws[kPredictive];
   for (const int delay : predictive.delays()) {
     named.points.push_back(
-        {on_axis(delay), std::clamp(named_wall(predictive.at(delay)), kSoftest, kStiffest)});
+        {on_axis(delay), std::clamp(named_wall(on, predictive.at(delay)), kSoftest, kStiffest)});
   }
   for (const Series& line : {standard, proposed, named}) walls.series.push_back(line);
   FigurePanel felt = over_delays(laws, "Stiffness felt at the device, at the stiffest wall",
@@ -267,7 +268,7 @@ Outcome link(TrialRunner& lab) {
   std::vector<LinkCurve> laws = linked_laws();
   find_walls(lab, laws);
   measure_laws(lab, laws);
-  const LinkTheory theory(LinkStudy::kGrip[0]);
+  const LinkTheory theory(lab.arm(), LinkStudy::kGrip[0]);
   Outcome outcome;
   outcome.figure.title = "Walls through a delay between device and proxy";
   outcome.figure.caption = fmt::format(
@@ -286,7 +287,7 @@ Outcome link(TrialRunner& lab) {
       1e3 * LinkStudy::kAtRest, kSoftest, kStiffest, LinkStudy::kDrawn.first,
       1e-3 * LinkStudy::kDrawn.second);
   outcome.figure.columns = 2;
-  outcome.figure.panels = draw(laws, theory);
+  outcome.figure.panels = draw(lab.arm(), laws, theory);
   outcome.checks = judge(lab, laws, theory);
   return outcome;
 }

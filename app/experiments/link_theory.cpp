@@ -6,17 +6,16 @@
 #include <complex>
 #include <numbers>
 
-#include "app/base/folders.h"
 #include "app/experiments/tap_bench.h"
-#include "devices/files/urdf_file.h"
 
 namespace limpid {
 
-LinkTheory::LinkTheory(double grip)
+LinkTheory::LinkTheory(const ExperimentArm& on, double grip)
     : grip_(grip),
-      arm_(read_urdf(default_device())),
-      at_(arm_at(arm_, rest_at(arm_, Vec3(0.2, 0, TapBench::kSurface)).x1)),
-      b_d_(device_damping(arm_, p_)) {}
+      p_(on.settings),
+      tip_(tip_at_table(on)),
+      at_(arm_at(on.description, rest_at(on.description, Vec3(0.2, 0, TapBench::kSurface)).x1)),
+      b_d_(device_damping(on.description, p_)) {}
 
 // Longer delays open windows of stability again, each a pose away from its end: they do not count.
 double LinkTheory::standard(int delay) const {
@@ -39,11 +38,11 @@ double LinkTheory::stiffest_up_to(double unstable, int delay) const {
 
 double LinkTheory::proposed(int delay) const {
   if (!stable(kSoftest, delay)) return kSoftest;
-  const double wall = proposed_wall(tip_at_table(), {.T = p_.tick,
-                                                     .k_vc = p_.k_vc,
-                                                     .b_v = p_.b_v,
-                                                     .hand_damping = TapBench::kGripDamping,
-                                                     .delay = 2 * delay * p_.tick});
+  const double wall = proposed_wall(tip_, {.T = p_.tick,
+                                           .k_vc = p_.k_vc,
+                                           .b_v = p_.b_v,
+                                           .hand_damping = TapBench::kGripDamping,
+                                           .delay = 2 * delay * p_.tick});
   return std::clamp(wall, kSoftest, kStiffest);
 }
 

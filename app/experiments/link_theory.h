@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 
+#include "app/experiments/experiment_arm.h"
 #include "app/run/analysis.h"
+#include "core/coupling/walls.h"
 #include "core/tick/parameters.h"
 
 namespace limpid {
@@ -11,7 +13,7 @@ namespace limpid {
 class LinkTheory {
  public:
   // `grip`: stiffness of the hand [N/m]; its damping is that of the taps.
-  explicit LinkTheory(double grip);
+  LinkTheory(const ExperimentArm& on, double grip);
 
   // Return the stiffest wall on which a tap comes to rest at this delay and at every shorter one,
   // from kSoftest to kStiffest [N/m]. `delay`: each way [ticks].
@@ -24,8 +26,8 @@ class LinkTheory {
   double stiffest_up_to(double unstable, int delay) const;  // [N/m]
 
   double grip_;
-  Parameters p_{};
-  ArmDescription arm_;
+  Parameters p_;
+  TipAlong tip_;
   ArmAt at_;
   Eigen::Vector3d b_d_;
 };

@@ -48,8 +48,8 @@ struct HeldWay {
   // the magnet holds something, so it needs a speck; under the other laws so light a body would not
   // stay.
   double instead() const { return law == CouplingKind::predictive ? kSpeck : 0; }
-  Parameters parameters() const {
-    Parameters p;
+  Parameters parameters(const ExperimentArm& on) const {
+    Parameters p = on.settings;
     if (law) p.kind = *law;
     p.eta = eta;
     p.hand_stiffness = kHeldGrip;
@@ -115,19 +115,19 @@ std::vector<double> masses_of(const TipRecord& record) {
   return felt;
 }
 
-Trial held_and_shaken(const HeldWay& way, double mass) {
-  const Parameters p = way.parameters();
+Trial held_and_shaken(const ExperimentArm& on, const HeldWay& way, double mass) {
+  const Parameters p = way.parameters(on);
   const std::string scene = mass > 0 ? held_cube(mass, way.stiffness) : kFreeSpace;
   Trial trial{fmt::format("{}-eta-{}-{}-g-{}", name(p.kind), p.eta, 1e3 * mass, way.stiffness),
-              plan_in(scene, shaking_hand(), p)};
+              plan_in(on.description, scene, shaking_hand(), p)};
   trial.may_diverge = p.kind != CouplingKind::predictive;
   return trial;
 }
 
-std::vector<double> felt_staggered(const ArmDescription& arm, const HeldWay& way, double mass) {
+std::vector<double> felt_staggered(const ExperimentArm& on, const HeldWay& way, double mass) {
   StaggeredBody body{.mass = mass, .stiffness = way.stiffness, .damping = kHeldDamping};
   if (mass == 0) body = {.mass = 1, .stiffness = 0};
-  const StaggeredRun run = run_staggered(arm, way.parameters(), shaking_hand(), body);
+  const StaggeredRun run = run_staggered(on.description, way.parameters(on), shaking_hand(), body);
   return run.diverged ? std::vector<double>{} : masses_of(run.record);
 }
 
@@ -148,18 +148,18 @@ std::vector<FeltBody> feel_bodies(TrialRunner& lab) {
       // 500 g held so softly would swing at 5.5 Hz.
       if (way.stiffness == kHeldSoftly && mass == kHeldMasses[2]) continue;
       all.push_back({way, mass});
-      if (way.law) trials.push_back(held_and_shaken(way, mass));
+      if (way.law) trials.push_back(held_and_shaken(lab.arm(), way, mass));
     }
   }
-  const ArmDescription& arm = trials.front().plan.arm;
+  const ExperimentArm& on = lab.arm();
   const std::vector<TrialResult> results = lab.run(trials);
   auto result = results.begin();
   std::vector<double> alone;
   for (FeltBody& one : all) {
     if (!one.way.law) {
-      one.felt = felt_staggered(arm, one.way, one.mass);
+      one.felt = felt_staggered(on, one.way, one.mass);
     } else if (const TrialResult& r = *result++; held_to_the_end(r)) {
-      one.felt = masses_of(tip_record(arm, r.session));
+      one.felt = masses_of(tip_record(on.description, r.session));
     }
     const bool instead = one.mass == one.way.instead();
     if (instead) alone = one.felt;
@@ -219,8 +219,8 @@ HandPath nudging_hand() {
   return path;
 }
 
-Parameters in_a_still_hand() {
-  Parameters p;
+Parameters in_a_still_hand(const ExperimentArm& on) {
+  Parameters p = on.settings;
   p.kind = CouplingKind::predictive;
   p.hand_stiffness = kHeldGrip;
   p.torque_limit = kStrongMotors;
@@ -255,7 +255,8 @@ std::vector<std::optional<double>> least_masses(const StableMasses& stable) {
 std::vector<char> stable_with_the_lightest(TrialRunner& lab) {
   std::vector<Trial> trials;
   for (const double K : kStiffnesses) {
-    trials.push_back({"", plan_in(held_cube(kLightest, K), nudging_hand(), in_a_still_hand())});
+    trials.push_back({"", plan_in(lab.arm().description, held_cube(kLightest, K), nudging_hand(),
+                                  in_a_still_hand(lab.arm()))});
     trials.back().keep = false;
   }
   std::vector<char> good(trials.size());
@@ -269,12 +270,12 @@ std::vector<char> stable_with_the_lightest(TrialRunner& lab) {
   return good;
 }
 
-StableMasses when_staggered(const ArmDescription& arm, double damping) {
-  return [&arm, damping](const std::vector<double>& masses) {
+StableMasses when_staggered(const ExperimentArm& on, double damping) {
+  return [&on, damping](const std::vector<double>& masses) {
     std::vector<char> good(masses.size());
     for (std::size_t k = 0; k < masses.size(); ++k) {
       const StaggeredRun run =
-          run_staggered(arm, in_a_still_hand(), nudging_hand(),
+          run_staggered(on.description, in_a_still_hand(on), nudging_hand(),
                         {.mass = masses[k], .stiffness = kStiffnesses[k], .damping = damping});
       good[k] = !run.diverged && dies_away(run.speed) ? 1 : 0;
     }
@@ -283,14 +284,14 @@ StableMasses when_staggered(const ArmDescription& arm, double damping) {
 }
 
 // Curve of the staggered coupling, with the line of theory.
-void add_staggered(const ArmDescription& arm, double damping, const char* ink, FigurePanel& panel,
+void add_staggered(const ExperimentArm& on, double damping, const char* ink, FigurePanel& panel,
                    std::vector<Check>& checks) {
   const std::string law = damping > 0 ? "K T^2/4 + B T/2" : "K T^2/4";
   Series line{law, ink, Series::Style::dashed, {}};
   for (double K = 100; K < 20001; K *= 1.1) {
     line.points.push_back({K, 1e3 * least_staggered_mass(K, damping, kHeldTick)});
   }
-  const auto least = least_masses(when_staggered(arm, damping));
+  const auto least = least_masses(when_staggered(on, damping));
   Series curve{fmt::format("staggered, {} N s/m", damping), ink, Series::Style::line, {}};
   double off = 0;
   for (std::size_t k = 0; k < least.size(); ++k) {
@@ -316,9 +317,8 @@ FigurePanel least_panel(TrialRunner& lab, std::vector<Check>& checks) {
                     .log_y = true,
                     .x_range = std::pair(80.0, 25000.0),
                     .y_range = std::pair(0.05, 1000.0)};
-  const ArmDescription arm = plan_in(kFreeSpace, nudging_hand(), {}).arm;
-  add_staggered(arm, kHeldDamping, kContactInk, panel, checks);
-  add_staggered(arm, 0, kDeviceInk, panel, checks);
+  add_staggered(lab.arm(), kHeldDamping, kContactInk, panel, checks);
+  add_staggered(lab.arm(), 0, kDeviceInk, panel, checks);
   Series ours{fmt::format("predictive: stable with {} g, the lightest tried", 1e3 * kLightest),
               kPredictiveInk,
               Series::Style::line,

@@ -51,14 +51,14 @@ about = "Nothing to touch."
 
 Vec3 start() { return {0.19, 0, 0}; }
 
-// Built-in arm at the paper's gains with eta = 1. The grip has no damper, which would answer to the
+// An arm at its gains with eta = 1. The grip has no damper, which would answer to the
 // steps in the target's rate from tick to tick.
-RunPlan free_plan(double alpha, HandPath hand) {
-  Parameters p;
+RunPlan free_plan(const ExperimentArm& on, double alpha, HandPath hand) {
+  Parameters p = on.settings;
   p.alpha = alpha;
   p.tick = kTick;
   p.hand_damping = 0;
-  return plan_in(kFree, std::move(hand), p);
+  return plan_in(on.description, kFree, std::move(hand), p);
 }
 
 // Modes of the arm where the hand starts; each is an observer of its own.
@@ -93,8 +93,8 @@ class Shaking {
     lines_ = axes.front();
   }
   const Multisine& lines() const { return lines_; }
-  Trial trial(double alpha, double seconds, bool keep) const {
-    Trial trial{fmt::format("alpha-{:.3g}", alpha), free_plan(alpha, path_), keep};
+  Trial trial(const ExperimentArm& on, double alpha, double seconds, bool keep) const {
+    Trial trial{fmt::format("alpha-{:.3g}", alpha), free_plan(on, alpha, path_), keep};
     trial.plan.rows = std::min<std::uint64_t>(trial.plan.rows, ticks(seconds));
     return trial;
   }
@@ -111,7 +111,8 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<double> gains;
   for (int i = 0; i <= 18; ++i) gains.push_back(0.002 * std::pow(500, i / 18.0));
   std::vector<Trial> trials;
-  for (const double alpha : gains) trials.push_back(shaking.trial(alpha, 2 * kPeriod, false));
+  for (const double alpha : gains)
+    trials.push_back(shaking.trial(lab.arm(), alpha, 2 * kPeriod, false));
   const Modes modes = modes_of(trials.front().plan.arm);
 
   Series by_gain{"gain -3 dB", kProxyInk, Series::Style::points, {}};
@@ -171,7 +172,8 @@ void bandwidth(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
 // Draws f1_hat over f1 along the heaviest mode for three gains.
 void response(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<Trial> trials;
-  for (const double alpha : kShown) trials.push_back(shaking.trial(alpha, 2 * kPeriod, true));
+  for (const double alpha : kShown)
+    trials.push_back(shaking.trial(lab.arm(), alpha, 2 * kPeriod, true));
   const Modes modes = modes_of(trials.front().plan.arm);
   const std::vector<TrialResult> results = lab.run(trials);
   FigurePanel panel;
@@ -202,7 +204,7 @@ void error_decay(TrialRunner& lab, Outcome& outcome) {
   std::vector<Trial> trials;
   for (const double alpha : kShown) {
     const auto still = [](double) { return start(); };
-    RunPlan plan = free_plan(alpha, hand_path("at rest", kTick, 0.2, still));
+    RunPlan plan = free_plan(lab.arm(), alpha, hand_path("at rest", kTick, 0.2, still));
     plan.start = rest_at(plan.arm, start());
     plan.start->f1_hat = kWrong * modes_of(plan.arm).u.rowwise().sum();
     trials.push_back({fmt::format("wrong-{:.3g}", alpha), std::move(plan), false});
@@ -249,7 +251,7 @@ void every_gain(TrialRunner& lab, const Shaking& shaking, Outcome& outcome) {
   std::vector<double> gains;
   for (int decade = -5; decade <= 3; ++decade) gains.push_back(std::pow(10.0, decade));
   std::vector<Trial> trials;
-  for (const double alpha : gains) trials.push_back(shaking.trial(alpha, 1, false));
+  for (const double alpha : gains) trials.push_back(shaking.trial(lab.arm(), alpha, 1, false));
   std::vector<double> ratio(trials.size());
   lab.run(trials, [&](std::size_t i, const TrialResult& result) {
     double estimate = 0, human = 0;
@@ -320,10 +322,10 @@ Outcome observer(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "The human force observer: bandwidth, error and stability over its gain";
   outcome.figure.caption = fmt::format(
-      "Built-in arm with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of "
+      "{} with its tip held {} m ahead in an undamped grip of 300 N/m, eta = 1, ticks of "
       "{} ms. The hand shakes with all frequencies from {} to {} Hz together; modes of M at that "
       "pose.",
-      start().x(), 1e3 * kTick, kLowest, kHighest);
+      lab.arm().heading(), start().x(), 1e3 * kTick, kLowest, kHighest);
   outcome.figure.columns = 2;
   bandwidth(lab, shaking, outcome);
   response(lab, shaking, outcome);

@@ -89,12 +89,12 @@ double highest(std::span<const Books> trials, double Books::*energy) {
 
 // A hand in a stiff grip that holds still after a nudge of a tenth of a millimetre: the loop calms
 // down on one side of Routh's limit and swings on the other.
-Trial held_still(double eta, const std::string& name) {
-  Parameters p;
+Trial held_still(const ExperimentArm& on, double eta, const std::string& name) {
+  Parameters p = on.settings;
   p.eta = eta;
   p.hand_stiffness = kStiffGrip;
   p.hand_damping = 0;
-  Trial trial{name, plan_of("free", "free", p)};
+  Trial trial{name, plan_of(on.description, "free", "free", p)};
   const Vec3 start = trial.plan.hand.position.front();
   trial.plan.hand = parse_hand_csv(
       fmt::format("time_s,x_m,y_m,z_m\n0,{0},{1},{2}\n0.1,{0},{1},{2}\n0.12,{3},{4},{5}\n"
@@ -106,8 +106,8 @@ Trial held_still(double eta, const std::string& name) {
   return trial;
 }
 
-double grip_limit() {
-  const Trial trial = held_still(1, "");
+double grip_limit(const ExperimentArm& on) {
+  const Trial trial = held_still(on, 1, "");
   return analyze(trial.plan.arm, rest_pose(trial.plan.arm), trial.plan.parameters, std::nullopt)
       .eta_min_grip;
 }
@@ -147,17 +147,17 @@ struct Runs {
   }
 };
 
-std::vector<Trial> all_trials(const Runs& runs, std::uint64_t seed) {
+std::vector<Trial> all_trials(const ExperimentArm& on, const Runs& runs, std::uint64_t seed) {
   std::vector<Trial> trials;
   for (const PassivityCase& one : runs.cases) {
-    for (Trial& trial : passivity_trials(one, seed)) trials.push_back(std::move(trial));
+    for (Trial& trial : passivity_trials(on, one, seed)) trials.push_back(std::move(trial));
   }
   // The last case is this experiment's own; the others' sessions also serve the spectrum.
   for (std::size_t i = runs.compared() * kTrialsOfACase; i < trials.size(); ++i) {
     trials[i].keep = false;
   }
-  trials.push_back(held_still(runs.limit * (1 + kOffLimit), "grip-above"));
-  trials.push_back(held_still(runs.limit * (1 - kOffLimit), "grip-below"));
+  trials.push_back(held_still(on, runs.limit * (1 + kOffLimit), "grip-above"));
+  trials.push_back(held_still(on, runs.limit * (1 - kOffLimit), "grip-below"));
   trials.back().may_diverge = true;  // growth is checked
   return trials;
 }
@@ -167,11 +167,11 @@ Runs run_all(TrialRunner& lab) {
   runs.cases.assign(passivity_cases().begin(), passivity_cases().end());
   runs.cases.push_back({"predictive, eta = 0.6", "predictive-0.6", CouplingKind::predictive, 0.6});
   runs.cases.push_back({"eta = 0.4", "eta-0.4", CouplingKind::proposed, 0.4});
-  runs.limit = grip_limit();
+  runs.limit = grip_limit(lab.arm());
   const std::size_t many = runs.cases.size() * kTrialsOfACase;
   runs.books.resize(many);
   runs.held.resize(2);
-  lab.run(all_trials(runs, lab.seed()), [&](std::size_t i, const TrialResult& result) {
+  lab.run(all_trials(lab.arm(), runs, lab.seed()), [&](std::size_t i, const TrialResult& result) {
     if (i < many) {
       runs.books[i] = books_of(result.session);
     } else {
@@ -196,15 +196,15 @@ FigurePanel grip_panel(const std::vector<TrialResult>& held) {
   return grip;
 }
 
-Figure draw(const Runs& runs) {
+Figure draw(const Runs& runs, const std::string& gains) {
   Figure figure;
   figure.title = "Energy that the coupling adds, over time";
   figure.caption = fmt::format(
       "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials "
-      "with their lowest and highest, paper's gains. The curve \"total\" includes the device's own "
+      "with their lowest and highest, {}. The curve \"total\" includes the device's own "
       "damping, the curve \"commanded\" only motors and proxy. Last panel: an undamped grip of {} "
       "N/m holds the device still. Its smallest stable eta is {:.3f} by Routh and Hurwitz.",
-      kTrialsOfACase, kStiffGrip, runs.limit);
+      kTrialsOfACase, gains, kStiffGrip, runs.limit);
   figure.columns = 2;
   const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};
   FigurePanel total = axes, commanded = axes, zero = axes;
@@ -267,13 +267,15 @@ std::vector<Check> judge(const Runs& runs) {
 
 std::span<const PassivityCase> passivity_cases() { return kCases; }
 
-std::vector<Trial> passivity_trials(const PassivityCase& one, std::uint64_t seed) {
-  Parameters p;
+std::vector<Trial> passivity_trials(const ExperimentArm& on, const PassivityCase& one,
+                                    std::uint64_t seed) {
+  Parameters p = on.settings;
   p.kind = one.kind;
   p.eta = one.eta;
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < kTrialsOfACase; ++i) {
-    Trial trial{fmt::format("{}-{}", one.file_name, i), plan_of("table", "circle", p)};
+    Trial trial{fmt::format("{}-{}", one.file_name, i),
+                plan_of(on.description, "table", "circle", p)};
     trial.folder = "passivity";
     trial.plan.seed = seed;
     if (i > 0) {
@@ -288,7 +290,7 @@ std::vector<Trial> passivity_trials(const PassivityCase& one, std::uint64_t seed
 Outcome passivity(TrialRunner& lab) {
   const Runs runs = run_all(lab);
   Outcome outcome;
-  outcome.figure = draw(runs);
+  outcome.figure = draw(runs, lab.arm().gains());
   outcome.checks = judge(runs);
   return outcome;
 }

@@ -20,6 +20,7 @@ inline constexpr std::size_t kTrialsOfACase = 10;
 // eta = 0.6, 1, 3, 5 and standard, in this order.
 std::span<const PassivityCase> passivity_cases();
 // kTrialsOfACase trials with the same hand paths for every case. The first path is an asset.
-std::vector<Trial> passivity_trials(const PassivityCase& one, std::uint64_t seed);
+std::vector<Trial> passivity_trials(const ExperimentArm& on, const PassivityCase& one,
+                                    std::uint64_t seed);
 
 }  // namespace limpid

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/base/folders.h"
 #include "app/experiments/experiment.h"
 #include "app/experiments/signals.h"
 #include "app/experiments/tap_bench.h"
-#include "devices/files/urdf_file.h"
 #include "devices/simulated/random_corner.h"
 
 namespace limpid {
@@ -19,18 +17,18 @@ namespace {
 // Distribution of random corners, and their bounds. Tests of the rig run some hundreds of each;
 // these are the first.
 struct CornerSet {
-  const char* label;
+  const char* label;  // empty: the arm's name
   const char* ink;
   CornerWidth width;
   unsigned first, count;  // seeds
   double most_torque;     // of the contacts, over the motors' limit [-]
 };
 constexpr CornerSet kCornerSets[] = {
-    {"built-in arm", kPredictiveInk, {}, 0, 120, 1.3},
+    {"", kPredictiveInk, {}, 0, 120, 1.3},
     {"other arms, more walls, any eta", kDeviceInk, kWideCorners, 1000, 48, 1.6}};
 constexpr double kMostEnergy = 5e-5, kMostJump = 0.01;  // [J], [rad]
 
-Trial corner_trial(const LimitedCorner& corner, unsigned seed) {
+Trial corner_trial(const ExperimentArm& on, const LimitedCorner& corner, unsigned seed) {
   Trial trial{"", {}};
   trial.keep = false;
   RunPlan& plan = trial.plan;
@@ -39,6 +37,11 @@ Trial corner_trial(const LimitedCorner& corner, unsigned seed) {
   plan.hand = hand_path(fmt::format("into the corner {}", seed), corner.p.tick,
                         LimitedCorner::kLasts, [&](double t) { return corner.hand(t); });
   plan.parameters = corner.p;
+  if (corner.arm.dof() == on.description.dof()) {  // then it is this arm
+    plan.parameters.encoder_step = on.settings.encoder_step;
+    plan.parameters.device_delay = on.settings.device_delay;
+    plan.parameters.delay = on.settings.delay;
+  }
   plan.start = corner.start;
   plan.rows = plan.hand.time.size();
   return trial;
@@ -79,8 +82,9 @@ Cornered cornered(const Session& s, double limit) {
   return c;
 }
 
-void judge(const CornerSet& set, const Cornered& worst, int at_limit, std::vector<Check>& checks) {
-  const std::string where = fmt::format("{} corners, {}: ", set.count, set.label);
+void judge(const CornerSet& set, const std::string& label, const Cornered& worst, int at_limit,
+           std::vector<Check>& checks) {
+  const std::string where = fmt::format("{} corners, {}: ", set.count, label);
   checks.push_back(
       at_least(where + "runs in which a motor met its limit", at_limit, set.count / 3));
   checks.push_back(at_most(where + "highest E_c [J]", worst.energy, kMostEnergy));
@@ -101,8 +105,8 @@ constexpr double kReached = 0.5, kPullOut = 1.2, kOut = 1.35, kOver = 1.7;  // [
 constexpr double kHeldFrom = 0.8;  // everything at rest [s]
 constexpr int kShoulder = 1;       // the joint that bears most of the press
 
-Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
-  Parameters p;
+Trial press(const ExperimentArm& on, const std::string& name, CouplingKind kind, bool anti_windup) {
+  Parameters p = on.settings;
   p.kind = kind;
   p.eta = kEta;
   p.anti_windup = anti_windup;
@@ -114,7 +118,7 @@ Trial press(const std::string& name, CouplingKind kind, bool anti_windup) {
   };
   const std::string source = fmt::format("down to {} m in {} s, from {} s back within {} s",
                                          kDeepest, kReached, kPullOut, kOut - kPullOut);
-  return {name, plan_in(kTableScene, hand_path(source, p.tick, kOver, at), p)};
+  return {name, plan_in(on.description, kTableScene, hand_path(source, p.tick, kOver, at), p)};
 }
 
 // A run, and the quantities judged.
@@ -174,7 +178,7 @@ Touch worst_push(TrialRunner& lab) {
   for (const double wall : {600.0, 5000.0}) {
     for (const double eta : {1.0, 0.6, 0.3}) {
       const TapSetting s{.eta = eta, .press = 8, .torque_limit = kPushLimit};
-      benches.emplace_back(s, wall, 300, 1);
+      benches.emplace_back(lab.arm(), s, wall, 300, 1);
       trials.push_back(benches.back().trial());
     }
   }
@@ -239,7 +243,7 @@ std::vector<FigurePanel> panels(const Run& with, const Run& without, const Run& 
 }  // namespace
 
 void press_into_corners(TrialRunner& lab, Outcome& outcome) {
-  const ArmDescription desktop = read_urdf(default_device());
+  const ExperimentArm& on = lab.arm();
   FigurePanel torque{.title = "Pressed into random corners of walls: contact torque",
                      .x_label = "limit of every motor [N m]",
                      .y_label = "largest contact torque / limit [-]"};
@@ -250,17 +254,20 @@ void press_into_corners(TrialRunner& lab, Outcome& outcome) {
   torque.y_range = {0, 2};
   jump.y_range = {0, 14};
   for (const CornerSet& set : kCornerSets) {
+    const std::string label = *set.label != '\0' ? set.label
+                              : on.built_in()    ? "built-in arm"
+                                                 : on.name;
     std::vector<LimitedCorner> corners;
     std::vector<Trial> trials;
     for (unsigned i = 0; i < set.count; ++i) {
-      corners.push_back(limited_corner(set.first + i, set.width, desktop));
-      trials.push_back(corner_trial(corners.back(), set.first + i));
+      corners.push_back(limited_corner(set.first + i, set.width, on.description));
+      trials.push_back(corner_trial(on, corners.back(), set.first + i));
     }
     std::vector<Cornered> found(trials.size());
     lab.run(trials, [&](std::size_t i, const TrialResult& r) {
       found[i] = cornered(r.session, corners[i].limit);
     });
-    Series torques{set.label, set.ink, Series::Style::points, {}}, jumps = torques;
+    Series torques{label, set.ink, Series::Style::points, {}}, jumps = torques;
     Cornered worst;
     int at_limit = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -270,12 +277,12 @@ void press_into_corners(TrialRunner& lab, Outcome& outcome) {
       jumps.points.push_back({corners[i].limit, 1e3 * found[i].jump});
     }
     torque.series.push_back(torques);
-    torque.series.push_back({fmt::format("bound, {}", set.label),
+    torque.series.push_back({fmt::format("bound, {}", label),
                              set.ink,
                              Series::Style::dashed,
                              {{0.08, set.most_torque}, {0.62, set.most_torque}}});
     jump.series.push_back(jumps);
-    judge(set, worst, at_limit, outcome.checks);
+    judge(set, label, worst, at_limit, outcome.checks);
   }
   jump.series.push_back({"bound",
                          kNeutralInk,
@@ -287,9 +294,10 @@ void press_into_corners(TrialRunner& lab, Outcome& outcome) {
 
 Outcome saturation(TrialRunner& lab) {
   using enum CouplingKind;
+  const ExperimentArm& on = lab.arm();
   const std::vector<Trial> trials{
-      press("anti-windup", proposed, true), press("wound-up", proposed, false),
-      press("standard", standard, true), press("predictive", predictive, true)};
+      press(on, "anti-windup", proposed, true), press(on, "wound-up", proposed, false),
+      press(on, "standard", standard, true), press(on, "predictive", predictive, true)};
   const std::vector<TrialResult> results = lab.run(trials);
   const Run with(trials[0], results[0]), without(trials[1], results[1]),
       spring(trials[2], results[2]), predicted(trials[3], results[3]);
@@ -297,14 +305,14 @@ Outcome saturation(TrialRunner& lab) {
   Outcome outcome;
   outcome.figure.title = "A contact pressed beyond the torque limit, held and pulled out of";
   outcome.figure.caption = fmt::format(
-      "Proposed and predictive coupling at the paper's gains, eta = {}, motors limited to {} N m, "
+      "Proposed and predictive coupling at the {}, eta = {}, motors limited to {} N m, "
       "table 600 N/m. "
       "With anti-windup the observer is told the torque that the motors gave. Without anti-windup "
       "(wound up) the observer is told the torque that was asked. Last two panels: the predictive "
       "coupling's tip pressed into a corner of one to six "
       "planes of 100 to 10,000 N/m, rough or smooth, and rubbed along it, with motors of 0.1 to "
       "0.6 N m; each point is one corner, drawn at random, as are arm, grip and eta.",
-      kEta, kLimit);
+      on.gains(), kEta, kLimit);
   outcome.figure.columns = 2;
   outcome.figure.panels = panels(with, without, spring, predicted);
 

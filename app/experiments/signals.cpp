@@ -9,7 +9,6 @@
 #include "core/dynamics/arm.h"
 #include "core/math/elementary.h"
 #include "devices/files/scene/scene_file.h"
-#include "devices/files/urdf_file.h"
 
 namespace limpid {
 
@@ -57,9 +56,10 @@ HandPath hand_path(const std::string& source, double tick, double seconds,
   return path;
 }
 
-RunPlan plan_in(const std::string& scene_toml, HandPath hand, const Parameters& parameters) {
+RunPlan plan_in(const ArmDescription& arm, const std::string& scene_toml, HandPath hand,
+                const Parameters& parameters) {
   RunPlan plan;
-  plan.arm = read_urdf(default_device());
+  plan.arm = arm;
   plan.document = parse_scene(scene_toml, "scene", {}, plan.arm);
   plan.hand = std::move(hand);
   plan.parameters = parameters;
@@ -115,9 +115,10 @@ double growth_rate(const std::vector<double>& samples, double T) {
   return ty / tt;
 }
 
-RunPlan plan_of(const std::string& scene, const std::string& hand, const Parameters& parameters) {
+RunPlan plan_of(const ArmDescription& arm, const std::string& scene, const std::string& hand,
+                const Parameters& parameters) {
   RunPlan plan;
-  plan.arm = read_urdf(default_device());
+  plan.arm = arm;
   plan.document = read_scene(data_dir() / "assets/scenes" / (scene + ".toml"), plan.arm);
   plan.hand = read_hand(data_dir() / "assets/hands" / (hand + ".csv"));
   plan.hand.source = "assets/hands/" + hand + ".csv";

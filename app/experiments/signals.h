@@ -50,8 +50,9 @@ normal = [0.0, 0.0, 1.0]
 stiffness = 600.0
 )";
 
-// The built-in arm in a world given as scene text, for the length of the hand's path.
-RunPlan plan_in(const std::string& scene_toml, HandPath hand, const Parameters& parameters);
+// An arm in a world given as scene text, for the length of the hand's path.
+RunPlan plan_in(const ArmDescription& arm, const std::string& scene_toml, HandPath hand,
+                const Parameters& parameters);
 
 // The inertia matrix [kg m^2] and the tip [m] at configuration x.
 Eigen::MatrixXd inertia_at(const ArmDescription& arm, const Eigen::VectorXd& x);
@@ -69,8 +70,9 @@ double falls_through(const std::vector<double>& f, const std::vector<double>& va
 // decay.
 double growth_rate(const std::vector<double>& samples, double T);
 
-// A trial in the built-in arm's world: `scene` and `hand` name files of assets/ without folder.
-RunPlan plan_of(const std::string& scene, const std::string& hand, const Parameters& parameters);
+// A trial of an arm: `scene` and `hand` name files of assets/ without folder.
+RunPlan plan_of(const ArmDescription& arm, const std::string& scene, const std::string& hand,
+                const Parameters& parameters);
 
 // Number of ticks of the plan's hand.
 std::uint64_t rows_of(const RunPlan& plan);

@@ -71,7 +71,8 @@ void add_spread(FigurePanel& panel, const std::vector<FigurePoint>& points, cons
 Outcome spectrum(TrialRunner& lab) {
   std::vector<Trial> trials;
   for (const PassivityCase& one : passivity_cases()) {
-    for (Trial& trial : passivity_trials(one, lab.seed())) trials.push_back(std::move(trial));
+    for (Trial& trial : passivity_trials(lab.arm(), one, lab.seed()))
+      trials.push_back(std::move(trial));
   }
   std::vector<std::vector<std::vector<double>>> signals(trials.size());
   lab.run(trials, [&](std::size_t i, const TrialResult& result) {

@@ -55,7 +55,7 @@ std::vector<Stack> stacks() {
 // Height of the floor that brings the top of the stack within reach [m].
 double floor_of(const Stack& stack) { return -0.02 - stack.top(); }
 
-Trial stack_pressed(const Stack& stack) {
+Trial stack_pressed(const ExperimentArm& on, const Stack& stack) {
   std::vector<BoxText> boxes;
   for (std::size_t i = 0; i < stack.masses.size(); ++i) {
     boxes.push_back(
@@ -70,7 +70,7 @@ Trial stack_pressed(const Stack& stack) {
       "gravity = [0, 0, {}]\ntip_radius = {}\n\n[[plane]]\nname = \"floor\"\npoint = [0.2, 0, "
       "{:.9g}]\nnormal = [0, 0, 1]\nstiffness = {}\n",
       -kStackGravity, kStackTip, floor_of(stack), kStackWall);
-  Parameters p;
+  Parameters p = on.settings;
   p.kind = CouplingKind::predictive;
   p.hand_stiffness = kStackGrip;
   const double above = floor_of(stack) + stack.top() + kStackTip + kStackAbove;
@@ -80,8 +80,8 @@ Trial stack_pressed(const Stack& stack) {
   };
   const std::string source = fmt::format("presses with {} N on a stack that ends at {:.6g} m",
                                          kStackPress, floor_of(stack) + stack.top());
-  return {stack.name,
-          plan_in(scene_of(boxes, before), hand_path(source, kStackTick, kStackSeconds, at), p)};
+  return {stack.name, plan_in(on.description, scene_of(boxes, before),
+                              hand_path(source, kStackTick, kStackSeconds, at), p)};
 }
 
 // Depth of each contact before the tip arrives, from the floor up [m].
@@ -104,7 +104,7 @@ Outcome stack(TrialRunner& lab) {
   const std::vector<Stack> all = stacks();
   std::vector<Trial> trials;
   trials.reserve(all.size());
-  for (const Stack& one : all) trials.push_back(stack_pressed(one));
+  for (const Stack& one : all) trials.push_back(stack_pressed(lab.arm(), one));
   const std::vector<TrialResult> results = lab.run(trials);
 
   FigurePanel sinks{.title = "Depth of contacts under the weight above",

@@ -44,29 +44,30 @@ stiffness = {:.1f}
 }
 
 // Trial that swings sideways into the stop and out of it, with ticks at ever other depths.
-Trial swinging(CouplingKind kind, double stop) {
-  Parameters p;
+Trial swinging(const ExperimentArm& on, CouplingKind kind, double stop) {
+  Parameters p = on.settings;
   p.kind = kind;
   const auto at = [](double t) {
     return Vec3(kSwitchingAhead, -kSwing * cosine(2 * std::numbers::pi * kSwinging * t), 0);
   };
   const std::string source = fmt::format("swinging {} m at {} Hz", kSwing, kSwinging);
-  return {fmt::format("stop-{}-{}", stop, name(kind)),
-          plan_in(stop_scene(stop), hand_path(source, kSwitchingTick, kLasts, at), p)};
+  return {
+      fmt::format("stop-{}-{}", stop, name(kind)),
+      plan_in(on.description, stop_scene(stop), hand_path(source, kSwitchingTick, kLasts, at), p)};
 }
 
 // Trial that presses the table while couplings take turns: each follows each other once.
-Trial pressing() {
-  Parameters p;
+Trial pressing(const ExperimentArm& on) {
+  Parameters p = on.settings;
   p.kind = CouplingKind::predictive;
   const double deep = kSwitchingPress / p.hand_stiffness + kSwitchingPress / 600;
   const auto at = [deep](double t) {
     return Vec3(0.2, 0, kSwitchingSurface + 0.01 - (0.01 + deep) * minimum_jerk(t / 0.5));
   };
   const double seconds = kFirst + kEvery * static_cast<double>(kOrder.size());
-  Trial trial{
-      "switching",
-      plan_in(kTableScene, hand_path("pressing the table", kSwitchingTick, seconds, at), p)};
+  Trial trial{"switching",
+              plan_in(on.description, kTableScene,
+                      hand_path("pressing the table", kSwitchingTick, seconds, at), p)};
   for (std::size_t i = 0; i < kOrder.size(); ++i) {
     const double t = kFirst + kEvery * static_cast<double>(i);
     trial.plan.changes.push_back({static_cast<std::uint64_t>(std::llround(t / kSwitchingTick)),
@@ -232,9 +233,10 @@ FigurePanel apart_panel(const Session& s) {
 }  // namespace
 
 Outcome switching(TrialRunner& lab) {
-  const std::vector<Trial> trials{swinging(CouplingKind::proposed, kStop),
-                                  swinging(CouplingKind::predictive, kStop), pressing(),
-                                  swinging(CouplingKind::predictive, kStiffStop)};
+  const ExperimentArm& on = lab.arm();
+  const std::vector<Trial> trials{swinging(on, CouplingKind::proposed, kStop),
+                                  swinging(on, CouplingKind::predictive, kStop), pressing(on),
+                                  swinging(on, CouplingKind::predictive, kStiffStop)};
   const std::vector<TrialResult> results = lab.run(trials);
   const Session &paper = results[0].session, &ours = results[1].session,
                 &turns = results[2].session;

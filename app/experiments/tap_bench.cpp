@@ -6,14 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "app/base/folders.h"
 #include "app/experiments/signals.h"
 #include "app/run/analysis.h"
 #include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
 #include "core/dynamics/arm.h"
 #include "core/math/high_pass.h"
-#include "devices/files/urdf_file.h"
 
 namespace limpid {
 
@@ -53,12 +51,12 @@ std::vector<char> try_walls(TrialRunner& lab, std::span<const TapSetting> settin
     for (std::size_t i = 0; i < settings.size(); ++i) {
       if (std::isnan(walls[i]) || good[i] == 0) continue;
       of.push_back(i);
-      benches.emplace_back(settings[i], walls[i], grip, 1);
+      benches.emplace_back(lab.arm(), settings[i], walls[i], grip, 1);
       trials.push_back(benches.back().trial());
       trials.back().may_diverge = true;  // the search looks for the onset of divergence
     }
     lab.run(trials, [&](std::size_t t, const TrialResult& result) {
-      const bool exact = settings[of[t]].encoder_step == 0;
+      const bool exact = benches[t].parameters().encoder_step == 0;
       good[of[t]] = test.good(benches[t].touch(result), exact) ? 1 : 0;
     });
   }
@@ -67,8 +65,10 @@ std::vector<char> try_walls(TrialRunner& lab, std::span<const TapSetting> settin
 
 }  // namespace
 
-TapBench::TapBench(const TapSetting& setting, double wall, double grip, int taps)
-    : setting_(setting),
+TapBench::TapBench(const ExperimentArm& on, const TapSetting& setting, double wall, double grip,
+                   int taps)
+    : on_(&on),
+      setting_(setting),
       wall_(wall),
       grip_(grip),
       down_(kAbove + setting.press / grip + setting.press / wall),
@@ -80,23 +80,23 @@ double TapBench::height(double t) const {
 }
 
 Parameters TapBench::parameters() const {
-  Parameters p;
+  Parameters p = on_->settings;
   p.kind = setting_.kind;
   p.eta = setting_.eta;
   p.tick = setting_.tick;
   // The device's step stays the same for any tick.
   p.substeps = std::max(1, static_cast<int>(std::lround(p.substeps * p.tick / 0.001)));
-  p.encoder_step = setting_.encoder_step;
+  if (setting_.encoder_step > 0) p.encoder_step = setting_.encoder_step;
   p.hand_mass_at_tip = setting_.hand_mass;
   if (!setting_.expects_a_mass) p.hand_mass = 0;
   p.hand_stiffness = grip_;
   p.hand_damping = kGripDamping;
   p.torque_limit = setting_.own_motors ? kFromArm : setting_.torque_limit;
-  p.device_delay = static_cast<int>(std::lround(setting_.delay));
-  if (setting_.knows_delay) p.delay = p.device_delay;
+  if (setting_.delay > 0) p.device_delay = static_cast<int>(std::lround(setting_.delay));
+  p.delay = setting_.knows_delay ? p.device_delay : 0;
   p.link_delay = setting_.link;
   if (setting_.fits_link) {
-    const Parameters fit = fitted(read_urdf(default_device()), p, 0, p);
+    const Parameters fit = fitted(on_->description, p, 0, p);
     static_cast<SpringDamper&>(p) = fit;
     p.alpha = fit.alpha;
   }
@@ -107,7 +107,8 @@ Trial TapBench::trial() const {
   const Parameters p = parameters();
   const auto at = [&](double t) { return Vec3(kTapAhead, 0, kSurface + kAbove - height(t)); };
   const std::string source = fmt::format("{} taps at {} m/s, {:.6g} m down", taps_, kSpeed, down_);
-  Trial trial{"", plan_in(table(wall_), hand_path(source, p.tick, taps_ * period(), at), p)};
+  Trial trial{"", plan_in(on_->description, table(wall_),
+                          hand_path(source, p.tick, taps_ * period(), at), p)};
   trial.keep = false;
   return trial;
 }
@@ -117,7 +118,7 @@ Touch TapBench::touch(const TrialResult& result) const {
   if (result.end.diverged) return {kLost, kLost, kLost, 0, kLost, kLost};
   const Session& s = result.session;
   const double T = s.info.tick;
-  static const Arm<kAnyDof> arm(read_urdf(default_device()));
+  const Arm<kAnyDof> arm(on_->description);
   HighPass fast[] = {{kFast, 1 / T}, {kFast, 1 / T}, {kFast, 1 / T}};
   Touch touch;
   double fast2 = 0, moving2 = 0, force = 0, depth = 0;
@@ -149,16 +150,16 @@ Touch TapBench::touch(const TrialResult& result) const {
   return touch;
 }
 
-TipAlong tip_at_table() {
-  const ArmDescription arm = read_urdf(default_device());
+TipAlong tip_at_table(const ExperimentArm& on) {
+  const ArmDescription& arm = on.description;
   const ArmAt at = arm_at(arm, rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1);
-  return tip_along(at.J, at.M, device_damping(arm, {}), Vec3::UnitZ());
+  return tip_along(at.J, at.M, device_damping(arm, on.settings), Vec3::UnitZ());
 }
 
-double named_wall(const TapSetting& setting) {
-  static const ArmDescription arm = read_urdf(default_device());
-  static const Eigen::VectorXd x = rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1;
-  const Parameters p = TapBench(setting, kTapWall, kTapGrip, 1).parameters();
+double named_wall(const ExperimentArm& on, const TapSetting& setting) {
+  const ArmDescription& arm = on.description;
+  const Eigen::VectorXd x = rest_at(arm, Vec3(kTapAhead, 0, TapBench::kSurface)).x1;
+  const Parameters p = TapBench(on, setting, kTapWall, kTapGrip, 1).parameters();
   const TipLimits limits = tip_limits(arm, x, p, {});
   return limits.wall(p.kind).stiffness;
 }

@@ -15,13 +15,13 @@ struct TapSetting {
   CouplingKind kind = CouplingKind::predictive;
   double eta = 1;
   double tick = 0.001;         // [s]
-  double encoder_step = 0;     // [rad]
+  double encoder_step = 0;     // [rad]; 0: the arm's
   double hand_mass = 0;        // at the tip [kg]
   bool expects_a_mass = true;  // whether the law has a second predictor, for a hand with mass
   double press = 4;            // force of the hand while it holds, if the wall bears it [N]
   double torque_limit = 100;   // of every motor, out of reach [N m]
   bool own_motors = false;     // the arm's own limits instead
-  double delay = 0;            // of the device [ticks]
+  double delay = 0;            // of the device [ticks]; 0: the arm's
   bool knows_delay = true;     // whether the law knows the delay
   int link = 0;                // delay between device and proxy, each way [ticks]
   bool fits_link = false;      // gains by condition (3) for the link, else the paper's
@@ -47,8 +47,8 @@ class TapBench {
   static constexpr double kSurface = -0.04, kAbove = 0.02;  // the table; the hand's start above [m]
   static constexpr double kFast = 20;  // lowest frequency that counts as chatter [Hz]
 
-  // A wall of stiffness `wall` in a hand of stiffness `grip` [N/m].
-  TapBench(const TapSetting& setting, double wall, double grip, int taps);
+  // A wall of stiffness `wall` in a hand of stiffness `grip` [N/m]. Keeps a reference to the arm.
+  TapBench(const ExperimentArm& on, const TapSetting& setting, double wall, double grip, int taps);
 
   Parameters parameters() const;
   Trial trial() const;
@@ -62,15 +62,16 @@ class TapBench {
   static constexpr double kRest = 0.1;    // [s]
   static constexpr double kJudged = 0.2;  // duration of the judged end of the hold [s]
 
+  const ExperimentArm* on_;
   TapSetting setting_;
   double wall_, grip_, down_;
   int taps_;
 };
 
 // Kinematics of the tip where it meets the table, along the table's normal.
-TipAlong tip_at_table();
+TipAlong tip_at_table(const ExperimentArm& on);
 // The stiffest wall at the table that the setting's law renders well by `limpid analyze` [N/m].
-double named_wall(const TapSetting& setting);
+double named_wall(const ExperimentArm& on, const TapSetting& setting);
 
 // Bounds for a well rendered wall.
 struct WellRendered {

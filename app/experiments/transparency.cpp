@@ -10,6 +10,7 @@
 #include "app/experiments/experiment.h"
 #include "app/experiments/felt_impedance.h"
 #include "app/experiments/signals.h"
+#include "app/run/analysis.h"
 #include "core/coupling/felt.h"
 
 namespace limpid {
@@ -36,9 +37,12 @@ class SidewaysBench {
   static constexpr double kGripDamping = 2;  // [N s/m]
   static constexpr double kPress = 1;        // mean force at a wall [N]
 
-  explicit SidewaysBench(std::uint64_t seed)
-      : seed_(seed), shaking_(multisine(1 / kPeriod, kLowest, kHighest, 40, kSpeed, seed)) {}
+  SidewaysBench(const ExperimentArm& on, std::uint64_t seed)
+      : on_(on),
+        seed_(seed),
+        shaking_(multisine(1 / kPeriod, kLowest, kHighest, 40, kSpeed, seed)) {}
 
+  const ExperimentArm& on() const { return on_; }
   const Multisine& shaking() const { return shaking_; }
   // Trial of shaking; rows from settled() on last one period of it, and one row more.
   Trial shaken(const FeltSetting& setting) const;
@@ -47,6 +51,7 @@ class SidewaysBench {
   Trial pressed(const FeltSetting& setting) const;
 
  private:
+  const ExperimentArm& on_;
   std::uint64_t seed_;
   Multisine shaking_;
 };
@@ -72,16 +77,17 @@ double aim(double wall) {
   return wall > 0 ? SidewaysBench::kPress * (1 / SidewaysBench::kGrip + 1 / wall) : 0;
 }
 
-Trial trial(const FeltSetting& setting, const std::string& source, double seconds,
-            const std::function<Vec3(double)>& at) {
-  Parameters p;
+Trial trial(const ExperimentArm& on, const FeltSetting& setting, const std::string& source,
+            double seconds, const std::function<Vec3(double)>& at) {
+  Parameters p = on.settings;
   p.kind = setting.kind;
   p.eta = setting.eta;
   p.tick = SidewaysBench::kTick;
   p.hand_stiffness = SidewaysBench::kGrip;
   p.hand_damping = setting.wall > 0 ? SidewaysBench::kGripDamping : 0;
   return {fmt::format("{}-eta-{}-wall-{}", name(p.kind), p.eta, setting.wall),
-          plan_in(world(setting.wall), hand_path(source, SidewaysBench::kTick, seconds, at), p)};
+          plan_in(on.description, world(setting.wall),
+                  hand_path(source, SidewaysBench::kTick, seconds, at), p)};
 }
 
 using Bench = SidewaysBench;
@@ -102,7 +108,7 @@ FeltJoint free_joint(const RunPlan& plan) {
   const double m = inertia_at(plan.arm, x)(Bench::kJoint, Bench::kJoint);
   const Parameters& p = plan.parameters;
   return {(1 + p.inertia_ratio) * m,
-          plan.arm.joints[Bench::kJoint].damping,
+          device_damping(plan.arm, p)[Bench::kJoint],
           p.b_v,
           p.k_vc,
           p.b_vc,
@@ -115,9 +121,10 @@ FeltJoint touching(FeltJoint joint, double wall) {
   return joint;
 }
 
-std::complex<double> theory(const FeltJoint& joint, const Setting& s, double f) {
+// `alpha`: gain of the observer [N m s/rad].
+std::complex<double> theory(const FeltJoint& joint, const Setting& s, double alpha, double f) {
   return s.kind == CouplingKind::standard ? joint.standard(f)
-                                          : joint.proposed(f, s.eta, Parameters{}.alpha / joint.m);
+                                          : joint.proposed(f, s.eta, alpha / joint.m);
 }
 
 double off(std::complex<double> value, std::complex<double> wanted) {
@@ -139,6 +146,7 @@ double furthest(const Impedance& felt, double from, double to, const Wanted& wan
 }
 
 struct Felt {
+  double alpha;  // gain of the observer [N m s/rad]
   std::vector<Setting> settings;
   std::vector<FeltJoint> joints;
   std::vector<Impedance> seen;
@@ -148,7 +156,7 @@ Felt shake(TrialRunner& lab, const Bench& bench, const std::vector<Setting>& set
   std::vector<Trial> trials;
   for (const Setting& s : settings) trials.push_back(bench.shaken(s));
   const std::vector<TrialResult> results = lab.run(trials);
-  Felt felt{settings, {}, {}};
+  Felt felt{bench.on().settings.alpha, settings, {}, {}};
   for (std::size_t i = 0; i < trials.size(); ++i) {
     felt.joints.push_back(touching(free_joint(trials[i].plan), settings[i].wall));
     felt.seen.push_back(
@@ -171,7 +179,7 @@ FigurePanel impedance_panel(const Felt& felt, const std::string& title) {
     for (std::size_t k = 0; k < felt.seen[i].f.size(); ++k) {
       const double f = felt.seen[i].f[k];
       points.points.push_back({f, std::abs(felt.seen[i].Z[k])});
-      line.points.push_back({f, std::abs(theory(felt.joints[i], s, f))});
+      line.points.push_back({f, std::abs(theory(felt.joints[i], s, felt.alpha, f))});
     }
     panel.series.push_back(line);
     panel.series.push_back(points);
@@ -183,7 +191,7 @@ double worst_off_theory(const Felt& felt, double to) {
   double worst = 0;
   for (std::size_t i = 0; i < felt.seen.size(); ++i) {
     worst = worse(worst, furthest(felt.seen[i], Bench::kLowest, to, [&](double f, auto Z) {
-                    return off(Z, theory(felt.joints[i], felt.settings[i], f));
+                    return off(Z, theory(felt.joints[i], felt.settings[i], felt.alpha, f));
                   }));
   }
   return worst;
@@ -227,7 +235,7 @@ void free_motion(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
   for (const double eta : kEtas) settings.push_back({CouplingKind::proposed, eta, 0});
   const Felt felt = shake(lab, bench, settings);
   const FeltJoint& joint = felt.joints.front();
-  const double w_f = Parameters{}.alpha / joint.m;
+  const double w_f = felt.alpha / joint.m;
   outcome.figure.panels.push_back(
       impedance_panel(felt, "Impedance felt in free motion (lines: theory)"));
   outcome.figure.panels.push_back(scaling_panel(felt, 3, w_f));
@@ -293,7 +301,7 @@ void stiffness(TrialRunner& lab, const Bench& bench, Outcome& outcome) {
                           s.at(0, Column::device_position)[Bench::kJoint];
     felt[i] = s.at(last, Column::hand_torque)[Bench::kJoint] / turned / (Bench::kArm * Bench::kArm);
   });
-  const double in_series = Parameters{}.k_vc / (Bench::kArm * Bench::kArm);  // [N/m]
+  const double in_series = bench.on().settings.k_vc / (Bench::kArm * Bench::kArm);  // [N/m]
 
   FigurePanel panel;
   panel.title = "Stiffness felt when pressing a wall";
@@ -340,30 +348,30 @@ Trial SidewaysBench::shaken(const FeltSetting& setting) const {
   const std::string source =
       fmt::format("shaking from {} to {} Hz at {} m/s, pressing {:.4g} m, seed {}", kLowest,
                   kHighest, kSpeed, press, seed_);
-  return trial(setting, source, kSettle + kPeriod + kTick, at);
+  return trial(on_, setting, source, kSettle + kPeriod + kTick, at);
 }
 
 Trial SidewaysBench::pressed(const FeltSetting& setting) const {
   const double press = aim(setting.wall);
   const auto at = [&](double t) { return Vec3(kArm, -press * minimum_jerk(t / 0.5), 0); };
-  Trial press_only = trial(setting, fmt::format("pressing {:.4g} m", press), 1.5, at);
+  Trial press_only = trial(on_, setting, fmt::format("pressing {:.4g} m", press), 1.5, at);
   press_only.keep = false;
   return press_only;
 }
 
 Outcome transparency(TrialRunner& lab) {
-  const Bench bench(lab.seed());
+  const Bench bench(lab.arm(), lab.seed());
   Outcome outcome;
   outcome.figure.title = "Transparency: what the hand feels";
   outcome.figure.caption = fmt::format(
-      "Built-in arm at the paper's gains, tip {} m ahead, moved sideways so that only the first "
+      "{} at the {}, tip {} m ahead, moved sideways so that only the first "
       "joint turns. Human torque over velocity of that joint, the hand shaking with all "
       "frequencies from {} to {} Hz together in an undamped grip of {} N/m; in contact it presses "
       "with {} N and damps with {} N s/m. Without that damper the proposed coupling is unstable at "
       "this wall: its contact torque trails by b_v/k_vc + T/2, which takes more damping than there "
       "is.",
-      Bench::kArm, Bench::kLowest, Bench::kHighest, Bench::kGrip, Bench::kPress,
-      Bench::kGripDamping);
+      lab.arm().heading(), lab.arm().gains(), Bench::kArm, Bench::kLowest, Bench::kHighest,
+      Bench::kGrip, Bench::kPress, Bench::kGripDamping);
   outcome.figure.columns = 2;
   free_motion(lab, bench, outcome);
   in_contact(lab, bench, outcome);

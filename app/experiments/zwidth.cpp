@@ -69,10 +69,11 @@ std::vector<WallCurve> all_curves() {
 
 // Stiffest walls by theory, in the grip of the benches.
 struct Theory {
-  TipAlong tip = tip_at_table();
+  const ExperimentArm& on;
+  TipAlong tip = tip_at_table(on);
 
-  static WallSetting setting(double T) {
-    const Parameters p;
+  WallSetting setting(double T) const {
+    const Parameters& p = on.settings;
     return {.T = T, .k_vc = p.k_vc, .b_v = p.b_v, .hand_damping = TapBench::kGripDamping};
   }
   double proposed(double eta, double T, double delay = 0) const {
@@ -102,8 +103,8 @@ Series theory(const std::string& label, const char* ink, double from, double to,
   return line;
 }
 
-std::vector<FigurePanel> empty_panels() {
-  const Theory law;
+std::vector<FigurePanel> empty_panels(const ExperimentArm& on) {
+  const Theory law{on};
   const double T = TapSetting{}.tick;
   const auto panel = [](const std::string& title, const std::string& x, double from, double to) {
     return FigurePanel{.title = title,
@@ -143,6 +144,7 @@ std::vector<FigurePanel> empty_panels() {
 }
 
 struct Found {
+  const ExperimentArm& on;
   std::vector<WallCurve> curves;
   std::vector<std::vector<double>> walls;  // of each curve's points [N/m]
 
@@ -161,7 +163,7 @@ struct Found {
     double least = HUGE_VAL;
     for (std::size_t i = 0; i < walls[curve].size(); ++i) {
       const double named =
-          std::clamp(named_wall(curves[curve].points[i].second), kSoftest, kStiffest);
+          std::clamp(named_wall(on, curves[curve].points[i].second), kSoftest, kStiffest);
       least = worse_low(least, walls[curve][i] / named);
     }
     return least;
@@ -170,7 +172,7 @@ struct Found {
 
 // Finds all walls; equal settings of different curves are searched once.
 Found find_all(TrialRunner& lab) {
-  Found found{all_curves(), {}};
+  Found found{lab.arm(), all_curves(), {}};
   std::vector<TapSetting> settings;
   for (const WallCurve& c : found.curves) {
     for (const auto& [x, s] : c.points) {
@@ -190,7 +192,7 @@ Found find_all(TrialRunner& lab) {
 
 std::vector<FigurePanel> draw(const Found& found) {
   constexpr double kScale[] = {1, 1e3, 1e3, 1, 1, 1};  // of each panel's axis
-  std::vector<FigurePanel> panels = empty_panels();
+  std::vector<FigurePanel> panels = empty_panels(found.on);
   for (std::size_t i = 0; i < found.curves.size(); ++i) {
     const WallCurve& c = found.curves[i];
     Series line{c.label, c.ink, Series::Style::line, {}};
@@ -211,7 +213,7 @@ Touch worst_tap(TrialRunner& lab, TapSetting s) {
   for (const double grip : kGrips) {
     for (const double eta : {1.0, 0.6, 0.3}) {
       s.eta = eta;
-      benches.emplace_back(s, 5000, grip, 3);
+      benches.emplace_back(lab.arm(), s, 5000, grip, 3);
       trials.push_back(benches.back().trial());
     }
   }

@@ -200,6 +200,15 @@ std::optional<std::pair<double, double>> y_range(const FigurePanel& panel) {
   return std::pair(low >= 0 && low < room ? 0 : low - room, high + room);
 }
 
+// Range of an axis for which a panel has nothing to choose one by; gnuplot draws no panel without.
+std::optional<std::pair<double, double>> or_any(
+    const FigurePanel& panel, const std::optional<std::pair<double, double>>& range) {
+  const bool cells =
+      std::ranges::any_of(panel.series, [](const Series& s) { return !s.cells.empty(); });
+  if (range || cells || y_range(panel)) return range;
+  return std::pair(1.0, 10.0);
+}
+
 std::string plot_words(const Series& series, const std::string& data) {
   const std::string end = fmt::format("lc rgb '{}' notitle", series.color);
   switch (series.style) {
@@ -347,8 +356,9 @@ std::string panel_commands(const FigurePanel& panel, const Screen& screen, doubl
                       : "unset logscale x\nset format x '%g'\n";
   text += panel.log_y ? "set logscale y\nset format y '10^{%L}'\n"
                       : "unset logscale y\nset format y '%g'\n";
-  return text + fmt::format("set xrange {}\nset yrange {}\n", range_text(panel.x_range),
-                            range_text(y_range(panel)));
+  return text + fmt::format("set xrange {}\nset yrange {}\n",
+                            range_text(or_any(panel, panel.x_range)),
+                            range_text(or_any(panel, y_range(panel))));
 }
 
 std::string into(const FigureFile& file, const Screen& screen) {

@@ -40,6 +40,9 @@ constexpr MeasureInfo kTable[] = {
     {"energy_commanded", "energy given, without the device damping", "J",
      "E_c at the end without the device's own damping",
      [](const RunMeter& m) { return of(m).energy_commanded; }},
+    {"commanded_highest", "energy given, without the device damping, highest", "J",
+     "highest E_c without the device's own damping, as in the paper's Fig. 6",
+     [](const RunMeter& m) { return m.highest_commanded(); }},
     {"energy_port", "energy to the hand, highest", "J", "most that the human was given",
      [](const RunMeter& m) { return m.highest_port(); }},
     {"energy_beyond", "energy to the hand beyond the bodies', highest", "J",
@@ -142,6 +145,7 @@ void RunMeter::add(std::span<const double> row) {
     error_contact_ += error * contact;
     contact2_ += contact * contact;
     highest_port_ = std::max(highest_port_, at(Column::energy_port)[0]);
+    highest_commanded_ = std::max(highest_commanded_, at(Column::energy_commanded)[0]);
     if (layout_.bodies() > 0) {
       add_bodies(row);
     } else {

@@ -49,7 +49,8 @@ class RunMeter {
 
   double seconds() const { return static_cast<double>(row_) * T_; }
   double error_slope() const;  // |x_E| over |f2|, least squares through the origin [rad/(N m)]
-  double highest_port() const { return highest_port_; }  // [J]
+  double highest_port() const { return highest_port_; }            // [J]
+  double highest_commanded() const { return highest_commanded_; }  // [J]
   // Most energy that the human was given beyond what bodies gave [J]; most that bodies had beyond
   // their initial energy and what they were given [J]; furthest that a body moved from its start
   // [m]. Without bodies the last two are NaN.
@@ -100,7 +101,8 @@ class RunMeter {
   Summary summary_;
   double T_;
   std::uint64_t rows_, row_ = 0;
-  double highest_port_ = 0, highest_beyond_ = 0, bodies_gain_, bodies_moved_;
+  double highest_port_ = 0, highest_commanded_ = 0, highest_beyond_ = 0, bodies_gain_,
+         bodies_moved_;
   std::vector<double> first_pose_;  // of all bodies
   double error_contact_ = 0, contact2_ = 0;
   static constexpr std::size_t kSpans = 20;

@@ -8,6 +8,7 @@ import math
 import operator
 import shutil
 import subprocess
+import sys
 import unittest
 from pathlib import Path
 
@@ -72,6 +73,16 @@ class AllExperiments(SystemTest):
                 self.assertGreater((self.out / f"{name}.{end}").stat().st_size, 0)
         self.assertIn(f"{len(PROMISES)} of {len(PROMISES)} experiments passed", (self.out / "report.html").read_text())
         self.assertEqual([*self.out.rglob("*.part"), *self.out.rglob("*.gnuplot")], [])
+
+
+class ThePapersTable(SystemTest):
+    def test_of_an_ideal_arm_and_a_touch_is_the_one_that_is_printed(self) -> None:
+        script = ROOT / "assets/python/paper_table.py"
+        done = subprocess.run([sys.executable, script, LIMPID, self.directory], capture_output=True, text=True, timeout=900)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(len(done.stdout.splitlines()), 10)
+        page = (ROOT / "app/experiments/README.md").read_text()
+        self.assertIn(done.stdout, page)
 
 
 class AFailingCheck(SystemTest):

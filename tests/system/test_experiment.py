@@ -100,6 +100,37 @@ class Inertia(SystemTest):
             self.assertEqual((other / name).read_bytes(), (self.out_dir / name).read_bytes(), name)
 
 
+class OnAnotherArm(SystemTest):
+    def test_numbers_are_that_arms_and_every_page_names_it(self) -> None:
+        out = self.directory / "touch"
+        result = limpid("experiment", "inertia", "--device", "touch.urdf", "--readings",
+                        "--out", out, timeout=300)  # fmt: skip
+        self.assertEqual((result.status, result.err), (0, ""), result.out)
+        self.assertIn("inertia, on touch with its readings: measured\n", result.out)
+        verdict = json.loads((out / "inertia.json").read_text())
+        self.assertEqual(verdict["arm"], "touch with its readings")
+        for words in ("arm touch of 3 joints", "0.000419 rad a step of the encoders", "1 ms of delay"):
+            self.assertIn(words, verdict["caption"])
+        for check in verdict["checks"][:-1]:
+            self.assertEqual((check["relation"], check["passed"]), ("measured", None))
+            self.assertIn("Promised for the built-in arm alone", check["unjudged"])
+        self.assertGreater(verdict["checks"][0]["value"], 0.2, "friction does not scale with eta")
+        page = (out / "report.html").read_text()
+        self.assertIn("1 measured on an arm for which no bound is promised.", page)
+        for text in (page, (out / "inertia.svg").read_text()):
+            self.assertIn("on touch with its readings", text)
+        session = read_session(out / "inertia/eta-1.h5")
+        self.assert_verified(session)
+
+    def test_the_built_in_arm_by_its_file_gives_the_same_files(self) -> None:
+        for name, words in (("default", ()), ("named", ("--device", "omni.urdf"))):
+            result = limpid("experiment", "inertia", *words, "--out", self.directory / name, timeout=300)
+            self.assertEqual(result.status, 0, result.err)
+        for end in ("csv", "json", "svg"):
+            one, other = ((self.directory / name / f"inertia.{end}").read_bytes() for name in ("default", "named"))
+            self.assertEqual(one, other, end)
+
+
 class Stopping(SystemTest):
     def stopped(self, out: Path, how: signal.Signals) -> dict[Path, int]:
         """Recordings that an experiment leaves when stopped, with their times."""

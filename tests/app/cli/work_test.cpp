@@ -114,8 +114,7 @@ TEST_F(Work, OfAnExperimentLeavesAReport) {
 
 TEST_F(Work, OfAnExperimentHasItsOwnWorld) {
   for (const auto& [option, value] :
-       {std::pair("--device", "omni.urdf"), std::pair("--tip", "x"),
-        std::pair("--scene", "table.toml"), std::pair("--config", "x"),
+       {std::pair("--scene", "table.toml"), std::pair("--config", "x"),
         std::pair("--set", "coupling.eta=1"), std::pair("--coupling", "tank"),
         std::pair("--eta", "1"), std::pair("--alpha", "1")}) {
     EXPECT_THAT(refused({"experiment", "inertia", "--out", "o", option, value}),
@@ -130,6 +129,37 @@ TEST_F(Work, OfAnExperimentHasItsOwnWorld) {
   EXPECT_FALSE(fs::exists("o"));
   EXPECT_THAT(refused({"experiment", "banana", "--out", "o", "--live", "--yes"}),
               HasSubstr("\"banana\": not together with --live"));
+}
+
+TEST_F(Work, OfAnExperimentTakesAnArm) {
+  const std::string said = done({"experiment", "inertia", "--device", "touch.urdf", "--readings",
+                                 "--set", "coupling.k_vc=10", "--out", "found"});
+  EXPECT_THAT(said, StartsWith("inertia, on touch with its readings and coupling.k_vc=10: measured"
+                               "\n  ----  rms human torque at eta = 0.6 divided by"));
+  EXPECT_THAT(said, HasSubstr(" (missed; promised for the built-in arm: at most 0.1)\n"));
+  EXPECT_THAT(done({"experiment", "inertia", "--device", "omni.urdf", "--out", "same"}),
+              StartsWith("inertia: passed\n"))
+      << "the built-in arm by its file";
+}
+
+TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
+  for (const auto& [words, why] :
+       {std::pair(std::vector<std::string>{"robust", "--device", "touch.urdf"},
+                  "robust: takes no arm, as it has its own: an ideal arm and a Touch"),
+        {{"zwidth", "--device", "touch.urdf", "--readings"}, "zwidth: takes no --readings"},
+        {{"passivity", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
+        {{"all", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
+        {{"coordination", "--device", "omega.urdf"}, "joints are named as the built-in arm's"},
+        {{"inertia", "--readings"}, "--readings: the file of the arm omni has neither"},
+        {{"inertia", "--device", "none.urdf"}, "none.urdf"},
+        {{"inertia", "--device", "touch.urdf", "--set", "coupling.eta=2"}, "--set: only together"},
+        {{"inertia", "--live", "--yes", "--readings"}, "--readings: not together with --live"}}) {
+    std::vector<std::string> all{"experiment"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"--out", "o"});
+    EXPECT_THAT(refused(all), HasSubstr(why));
+  }
+  EXPECT_FALSE(fs::exists("o"));
 }
 
 constexpr const char* kStory = R"(title = "Short"

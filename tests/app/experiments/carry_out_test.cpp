@@ -125,7 +125,7 @@ Outcome runs_away(TrialRunner& lab) {
   p.hand_stiffness = 3000;
   p.hand_damping = 0;
   p.torque_limit = 1000;
-  lab.run({Trial{"away", plan_of("free", "free", p), false}});
+  lab.run({Trial{"away", plan_of(built_in_arm().description, "free", "free", p), false}});
   return sound(lab);
 }
 

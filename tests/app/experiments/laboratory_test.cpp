@@ -35,7 +35,7 @@ class Laboratories : public testing::Test {
   static Trial trial(const std::string& name, double eta) {
     Parameters p;
     p.eta = eta;
-    Trial t{name, plan_of("table", "touch", p)};
+    Trial t{name, plan_of(built_in_arm().description, "table", "touch", p)};
     t.plan.rows = 300;
     return t;
   }
@@ -85,7 +85,7 @@ Trial runaway(const std::string& name) {
   p.hand_stiffness = 3000;
   p.hand_damping = 0;
   p.torque_limit = 1000;
-  return {name, plan_of("free", "free", p), false};
+  return {name, plan_of(built_in_arm().description, "free", "free", p), false};
 }
 
 TEST_F(Laboratories, CountWhatDivergedUnlessItMay) {
@@ -170,7 +170,7 @@ TEST_F(Laboratories, PassOnWhatWentWrong) {
   EXPECT_FALSE(fs::exists(file("c")));
 }
 
-HandPath circle() { return plan_of("table", "circle", {}).hand; }
+HandPath circle() { return plan_of(built_in_arm().description, "table", "circle", {}).hand; }
 
 TEST(HandVariation, IsTheSameForTheSameSeedsAndAnotherForOthers) {
   const HandPath path = circle(), one = varied(path, 3, 1);
@@ -220,8 +220,8 @@ TEST(HandVariation, IsOnItsWayWhenThePathIs) {
 }
 
 TEST(PassivityTrials, FollowTheSameHandsWithEveryCoupling) {
-  const auto some = passivity_trials(passivity_cases()[0], 7);
-  const auto others = passivity_trials(passivity_cases()[4], 7);
+  const auto some = passivity_trials(built_in_arm(), passivity_cases()[0], 7);
+  const auto others = passivity_trials(built_in_arm(), passivity_cases()[4], 7);
   ASSERT_EQ(some.size(), kTrialsOfACase);
   for (std::size_t i = 0; i < some.size(); ++i) {
     EXPECT_EQ(some[i].plan.hand.position, others[i].plan.hand.position);

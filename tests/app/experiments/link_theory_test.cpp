@@ -14,9 +14,9 @@ constexpr double kGrip[] = {300};  // [N/m]
 
 // (b_d + b_v + k_vc T/2 + b_h r^2) over (T/2 + b_v/k_vc + the trip), r the lever of the tip.
 TEST(LinkTheory, OfThePapersLawIsItsDampingAgainstTheWholeTrip) {
-  const TipAlong tip = tip_at_table();
+  const TipAlong tip = tip_at_table(built_in_arm());
   const double b = (0.012 + 0.012 + 10 * 0.001 / 2) / tip.lever2 + TapBench::kGripDamping;
-  const LinkTheory theory(kGrip[0]);
+  const LinkTheory theory(built_in_arm(), kGrip[0]);
   for (const int delay : {0, 1, 2}) {
     const double wall = b / (0.001 / 2 + 0.012 / 10 + 2 * delay * 0.001);
     ASSERT_GT(wall, kSoftest);
@@ -31,7 +31,7 @@ TEST(LinkTheory, OfTheStandardLawSaysWhereTapsComeToRest) {
   TrialRunner::Options options;
   options.dir = temp / ".";
   TrialRunner lab("walls", options);
-  const LinkTheory theory(kGrip[0]);
+  const LinkTheory theory(built_in_arm(), kGrip[0]);
   EXPECT_EQ(theory.standard(0), kStiffest);
   EXPECT_EQ(theory.standard(100), kSoftest);
   const auto rests = [](const Touch& touch, bool) {

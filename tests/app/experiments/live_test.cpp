@@ -27,7 +27,8 @@ class LiveExperiments : public testing::Test {
  protected:
   LiveLaboratory lab(const HandOf& hand) {
     LiveLaboratory lab;
-    const RunPlan like = plan_in(kTableScene, hand_path("still", 1e-3, 0.1, hand.at), {});
+    const RunPlan like = plan_in(built_in_arm().description, kTableScene,
+                                 hand_path("still", 1e-3, 0.1, hand.at), {});
     lab.arm = like.arm;
     lab.document = like.document;
     lab.run = [this, hand](const LiveTrial& trial) { return run(hand, trial); };
@@ -44,7 +45,8 @@ class LiveExperiments : public testing::Test {
     Parameters p = trial.parameters;
     p.hand_stiffness = hand.stiffness;
     p.encoder_step = encoder_step_;
-    RunPlan plan = plan_in(kTableScene, hand_path(trial.name, p.tick, trial.seconds, hand.at), p);
+    RunPlan plan = plan_in(built_in_arm().description, kTableScene,
+                           hand_path(trial.name, p.tick, trial.seconds, hand.at), p);
     set_surface_stiffness(plan.document.scene, stiffness_);
     Session s;
     s.info.tick = p.tick;

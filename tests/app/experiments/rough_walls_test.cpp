@@ -57,7 +57,8 @@ TEST(RoughWalls, AreToldApartByTheirForces) {
   const auto at = [&](double t) {
     return Vec3(kMeet + (0.015 * minimum_jerk(t / 0.2) - 0.002) * in);
   };
-  const Trial trial = rubbing("corner", corner, hand_path("into the corner", p.tick, 0.5, at), p);
+  const Trial trial = rubbing(built_in_arm().description, "corner", corner,
+                              hand_path("into the corner", p.tick, 0.5, at), p);
   const TrialResult result = run(trial);
   const std::vector<Rub> rubs = rubs_of(trial, corner, result.session).back();
   ASSERT_EQ(rubs.size(), 3u);
@@ -82,7 +83,8 @@ TEST(RoughWalls, AreRubbedByWhatTheTipMovesAlongThem) {
     return Vec3(kMeet + Vec3(0, 0.02 * minimum_jerk((t - 0.2) / 0.3),
                              0.005 - 0.015 * minimum_jerk(t / 0.2)));
   };
-  const Trial trial = rubbing("flat", flat, hand_path("over the floor", p.tick, 0.6, at), p);
+  const Trial trial = rubbing(built_in_arm().description, "flat", flat,
+                              hand_path("over the floor", p.tick, 0.6, at), p);
   const TrialResult result = run(trial);
   const auto tip = [&](std::size_t k) {
     const auto x = result.session.at(k, Column::proxy_position);
@@ -149,7 +151,8 @@ TEST(RoughWalls, ThatAreNotTouchedDoNotPush) {
   const auto at = [](double t) {
     return Vec3(kMeet + Vec3(0, 0.02 * minimum_jerk(t / 0.2) - 0.008, 0.004));
   };
-  const Trial trial = rubbing("edge", edge, hand_path("beside the edge", p.tick, 0.5, at), p);
+  const Trial trial = rubbing(built_in_arm().description, "edge", edge,
+                              hand_path("beside the edge", p.tick, 0.5, at), p);
   int touched = 0;
   const TrialResult result = run(trial);
   for (const std::vector<Rub>& rubs : rubs_of(trial, edge, result.session)) {

@@ -21,7 +21,7 @@ using Change = std::function<void(RunPlan&)>;
 
 // A plan with every possible content.
 RunPlan rich_plan() {
-  RunPlan plan = plan_of("table", "touch", {});
+  RunPlan plan = plan_of(built_in_arm().description, "table", "touch", {});
   plan.rows = 40;
   plan.seed = 5;
   plan.changes = {{10, "coupling.eta = 2.0"}};
@@ -115,7 +115,8 @@ class StoredTrial : public testing::Test {
   void SetUp() override { options_.dir = temp_ / "."; }
 
   Trial trial() const {
-    Trial t{"a-0.6", plan_of("table", "touch", {})};  // a name with a dot in it
+    Trial t{"a-0.6",
+            plan_of(built_in_arm().description, "table", "touch", {})};  // a name with a dot in it
     t.plan.rows = 60;
     t.plan.changes = {{30, "coupling.eta = 2.0"}};
     return t;

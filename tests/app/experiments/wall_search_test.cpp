@@ -41,7 +41,7 @@ class Walls : public testing::Test {
  protected:
   bool renders(const TapSetting& setting, double wall) {
     for (const double grip : kGrips) {
-      const TapBench bench(setting, wall, grip, 1);
+      const TapBench bench(lab_.arm(), setting, wall, grip, 1);
       const TrialResult result = lab_.run({bench.trial()}).front();
       if (!well_rendered(bench.touch(result), setting.encoder_step == 0)) return false;
     }
@@ -54,7 +54,7 @@ class Walls : public testing::Test {
 
 TEST_F(Walls, OfThePapersLawEndWhereTheLagTakesMoreThanAllDampingGives) {
   // (b_d + b_v + k_vc T/2 + b_h r^2) over (T/2 + b_v/k_vc), r the lever of the tip.
-  const TipAlong tip = tip_at_table();
+  const TipAlong tip = tip_at_table(lab_.arm());
   const double b = (0.012 + 0.012 + 10 * 0.001 / 2) / tip.lever2 + TapBench::kGripDamping;
   const double theory = b / (0.001 / 2 + 0.012 / 10);
   const TapSetting paper{.kind = CouplingKind::proposed};
@@ -70,16 +70,17 @@ TEST_F(Walls, OfThePredictiveLawHaveNoEndHere) {
 }
 
 TEST_F(Walls, ThatAreSoftFeelSoft) {
-  const TapBench bench({}, 600, 300, 1);
+  const TapBench bench(lab_.arm(), {}, 600, 300, 1);
   const Touch touch = bench.touch(lab_.run({bench.trial()}).front());
   EXPECT_NEAR(touch.felt, 1, 0.01);
   EXPECT_LT(touch.chatter, 1e-3);
 }
 
 TEST(TapBench, FindsATrialThatDivergedToBeAsBadAsCanBe) {
+  const ExperimentArm built_in = built_in_arm();
   TrialResult result;
   result.end.diverged = true;
-  const Touch touch = TapBench({}, 600, 300, 1).touch(result);
+  const Touch touch = TapBench(built_in, {}, 600, 300, 1).touch(result);
   EXPECT_FALSE(well_rendered(touch, false));
   EXPECT_TRUE(std::isinf(touch.energy));
 }

@@ -110,6 +110,18 @@ TEST_F(Figures, AreDrawnWithoutAnyPoint) {
   EXPECT_NO_THROW(draw_figure(figure, dir_, "f"));
 }
 
+TEST_F(Figures, AreDrawnWithAPanelInWhichNothingIsMeasured) {
+  Figure figure = small();
+  FigurePanel still{.title = "Still", .x_label = "time [s]", .y_label = "speed [m/s]"};
+  still.series = {{"none", kHandInk, Series::Style::line, {}},
+                  {"not finite", kHandInk, Series::Style::line, {{1, std::nan("")}}}};
+  figure.panels.push_back(still);
+  still.log_y = true;
+  figure.panels.push_back(still);
+  draw_figure(figure, dir_, "f");
+  EXPECT_TRUE(fs::exists(dir_ / "f.png"));
+}
+
 TEST_F(Figures, HoldValuesThatAreNotFinite) {
   Figure figure = small();
   figure.panels[0].series[0].points = {{0, 1}, {1, std::nan("")}, {2, HUGE_VAL}, {3, 4}};

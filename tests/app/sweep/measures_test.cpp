@@ -261,6 +261,21 @@ axis = [{ key = "coupling.eta", values = [0.1, 1] }]
   EXPECT_EQ(measured(1, "stable"), 1);
 }
 
+// The paper's E_c counts no damping of the device; by (25) it stays below zero from eta_min on.
+TEST_F(Measures, OfThePapersEnergyHaveItsHighestValue) {
+  read(R"(hand = "circle.csv"
+set = ["coupling.kind = \"proposed\""]
+measure = ["commanded_highest", "energy_commanded", "energy_highest"]
+axis = [{ key = "coupling.eta", values = [0.4, 1] }]
+)");
+  EXPECT_GT(measured(0, "commanded_highest"), 1e-4);
+  EXPECT_LT(measured(1, "commanded_highest"), 1e-6);
+  for (const std::uint64_t i : {0, 1}) {
+    EXPECT_GE(measured(i, "commanded_highest"), measured(i, "energy_commanded"));
+    EXPECT_GE(measured(i, "commanded_highest"), measured(i, "energy_highest"));
+  }
+}
+
 TEST_F(Measures, StopRulesEndARunEarly) {
   read(R"(hand = "touch.csv"
 seconds = 4
