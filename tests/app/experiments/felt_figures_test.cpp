@@ -1,5 +1,5 @@
-// Figures of what is felt and of bodies that move, against recordings, theory, and what captions and
-// README say of hand and scene.
+// Figures of what is felt and of bodies that move, against recordings, theory, and what captions
+// and README say of hand and scene.
 #include <complex>
 #include <numbers>
 
@@ -34,13 +34,11 @@ double shaken_by(const Kept& kept, double f, const Vec3& along, double period) {
 TEST(FiguresOf, LightnessShakeTheTipAtSevenFrequencies) {
   const Made made("lightness");
   const Vec3 along = Vec3(1, 0.8, 0.6).normalized();
-  EXPECT_THAT(made.trials(),
-              IsSupersetOf({"standard-eta-1", "proposed-eta-0.2", "proposed-eta-5",
-                            "predictive-eta-0.3", "predictive-eta-2"}));
-  for (const auto& [name, kind, eta] :
-       {std::tuple("standard-eta-1", CouplingKind::standard, 1.0),
-        {"proposed-eta-0.2", CouplingKind::proposed, 0.2},
-        {"predictive-eta-5", CouplingKind::predictive, 5.0}}) {
+  EXPECT_THAT(made.trials(), IsSupersetOf({"standard-eta-1", "proposed-eta-0.2", "proposed-eta-5",
+                                           "predictive-eta-0.3", "predictive-eta-2"}));
+  for (const auto& [name, kind, eta] : {std::tuple("standard-eta-1", CouplingKind::standard, 1.0),
+                                        {"proposed-eta-0.2", CouplingKind::proposed, 0.2},
+                                        {"predictive-eta-5", CouplingKind::predictive, 5.0}}) {
     const Kept kept = made.kept(name);
     EXPECT_EQ(kept.p.kind, kind);
     EXPECT_EQ(kept.p.eta, eta);
@@ -67,15 +65,18 @@ TEST(FiguresOf, LightnessShowEtaBesideWhatIsFelt) {
     expect_from_to(curve, 0.5, 10, 1e-9);
     ASSERT_EQ(curve.points.size(), 7u);
     for (const FigurePoint& p : curve.points) {
-      if (p.x <= 5) EXPECT_NEAR(p.y, etas[i], 0.1 * etas[i]) << p.x;
+      if (p.x <= 5) {
+        EXPECT_NEAR(p.y, etas[i], 0.1 * etas[i]) << p.x;
+      }
     }
     // The dashed line of eta and the points have no label of their own.
     expect_on(made.unnamed(felt, 2 * i), [&](double) { return etas[i]; });
     expect_from_to(made.unnamed(felt, 2 * i), 0.45, Parameters{}.band, 1e-9);
     EXPECT_EQ(made.unnamed(felt, 2 * i + 1).points.size(), 7u);
-    EXPECT_NEAR(made.curve("Damping felt at 0.5 Hz", "predictive").points[i].y,
-                made.curve("Predictive: damping felt", fmt::format("eta = {}", etas[i])).points[0].y,
-                1e-12);
+    EXPECT_NEAR(
+        made.curve("Damping felt at 0.5 Hz", "predictive").points[i].y,
+        made.curve("Predictive: damping felt", fmt::format("eta = {}", etas[i])).points[0].y,
+        1e-12);
     EXPECT_NEAR(made.curve("Inertia felt at 2 Hz", "predictive").points[i].y, curve.points[2].y,
                 1e-12);
     EXPECT_EQ(made.curve("Inertia felt at 2 Hz", "predictive").points[i].x, etas[i]);
@@ -88,9 +89,10 @@ TEST(FiguresOf, LightnessShowEtaBesideWhatIsFelt) {
     EXPECT_EQ(curve.points[3].x, 1);
     EXPECT_NEAR(curve.points[3].y, 1, 1e-12);
   }
-  expect_on(made.curve(slow, "proposed"), [](double eta) { return eta; }, 0.05);
-  for (const char* title : {"Inertia felt at 2 Hz",
-                            "Torque divided by speed at 0.5 Hz, relative to eta = 1"}) {
+  expect_on(
+      made.curve(slow, "proposed"), [](double eta) { return eta; }, 0.05);
+  for (const char* title :
+       {"Inertia felt at 2 Hz", "Torque divided by speed at 0.5 Hz, relative to eta = 1"}) {
     expect_on(made.curve(title, "eta"), [](double eta) { return eta; });
     const Series& standard = made.curve(title, "standard");
     EXPECT_EQ(standard.style, Series::Style::dashed) << "it takes no eta";
@@ -98,14 +100,13 @@ TEST(FiguresOf, LightnessShowEtaBesideWhatIsFelt) {
     EXPECT_EQ(standard.points[0].y, standard.points[1].y);
   }
   // 1 - eta times the inertia times the band in rad/s.
-  const Series& least = made.curve("Damping felt at 0.5 Hz",
-                                   "least damping of any passive law with this inertia");
+  const Series& least =
+      made.curve("Damping felt at 0.5 Hz", "least damping of any passive law with this inertia");
   const double at_none = least.points.front().y / (1 - least.points.front().x);
   expect_on(least, [&](double eta) { return at_none * (1 - eta); });
   EXPECT_NEAR(at_none / (kTwoPi * Parameters{}.band), 3.1e-4, 2e-4) << "kg m^2 of the arm";
-  const Series& bound =
-      made.curve("Cost of lightness: damping at 0.5 Hz over inertia at 2 Hz",
-                 "least damping of any passive law, inertia kept up to 5.3 Hz");
+  const Series& bound = made.curve("Cost of lightness: damping at 0.5 Hz over inertia at 2 Hz",
+                                   "least damping of any passive law, inertia kept up to 5.3 Hz");
   EXPECT_EQ(bound.points.front().x, 0);
   EXPECT_NEAR(bound.points.front().y, at_none, 1e-12);
   EXPECT_EQ(bound.points.back().x, 1);
@@ -179,9 +180,11 @@ TEST(FiguresOf, ObserverShowItsResponseAtThreeGains) {
     EXPECT_EQ(seen.points[0].x, 0);
     EXPECT_NEAR(ideal.points[0].y, 1, 1e-12);
     const double rate = -std::log(ideal.points[1].y) / ideal.points[1].x;
-    expect_on(ideal, [&](double t) { return std::exp(-rate * t); }, 1e-6);
+    expect_on(
+        ideal, [&](double t) { return std::exp(-rate * t); }, 1e-6);
     if (alpha == 0.0035) {
-      expect_on(seen, [&](double t) { return std::exp(-rate * t); }, 0.05);
+      expect_on(
+          seen, [&](double t) { return std::exp(-rate * t); }, 0.05);
     }
   }
   const std::string band = "Bandwidth of the estimate, all modes, alpha 0.002 to 1";
@@ -189,7 +192,9 @@ TEST(FiguresOf, ObserverShowItsResponseAtThreeGains) {
   expect_from_to(made.curve(band, "alpha / m"), 3, 2e4, 2e3);
   EXPECT_EQ(made.curve(band, "phase -45 deg").points.size(), 19u * 3) << "gains, modes";
   for (const FigurePoint& p : made.curve(band, "gain -3 dB").points) {
-    if (p.x < 50) EXPECT_NEAR(p.y, p.x, 0.02 * p.x) << "slow observers are not sampled visibly";
+    if (p.x < 50) {
+      EXPECT_NEAR(p.y, p.x, 0.02 * p.x) << "slow observers are not sampled visibly";
+    }
   }
   const Series& bounded =
       made.panel("Largest estimated torque, divided by the largest true torque").series.at(0);
@@ -198,7 +203,9 @@ TEST(FiguresOf, ObserverShowItsResponseAtThreeGains) {
     EXPECT_NEAR(bounded.points[i].x, std::pow(10.0, static_cast<double>(i) - 5),
                 1e-9 * bounded.points[i].x);
     EXPECT_LE(bounded.points[i].y, 1.1);
-    if (i > 0) EXPECT_GE(bounded.points[i].y, 0.9 * bounded.points[i - 1].y);
+    if (i > 0) {
+      EXPECT_GE(bounded.points[i].y, 0.9 * bounded.points[i - 1].y);
+    }
   }
   EXPECT_LT(bounded.points[0].y, 0.1) << "a slow estimate hardly follows";
 }
@@ -258,14 +265,16 @@ TEST(FiguresOf, TransparencyShowMeasurementOnTheory) {
     EXPECT_NEAR(s.points[2].y, 1, 1e-12);
   }
   EXPECT_EQ(made.curve(scaling, "0.5 Hz").points.size(), 5u);
-  expect_on(made.curve(scaling, "0.5 Hz"), [](double eta) { return eta; }, 0.1);
+  expect_on(
+      made.curve(scaling, "0.5 Hz"), [](double eta) { return eta; }, 0.1);
   const std::string pressing = "Stiffness felt when pressing a wall";
   const double series = Parameters{}.k_vc / (0.19 * 0.19);
   const auto in_series = [&](double K) { return 1 / (1 / K + 1 / series); };
   expect_on(made.curve(pressing, "as set"), [](double K) { return K; });
   expect_on(made.curve(pressing, "in series with k_vc"), in_series);
   expect_on(made.curve(pressing, "standard"), in_series, 0.02);
-  expect_on(made.curve(pressing, "proposed"), [](double K) { return K; }, 0.03);
+  expect_on(
+      made.curve(pressing, "proposed"), [](double K) { return K; }, 0.03);
   expect_from_to(made.curve(pressing, "proposed"), 50, 1000, 0);
 }
 
@@ -402,7 +411,9 @@ TEST(FiguresOf, DropFallFreelyUntilTheTip) {
     const Series& fall = made.curve(height, label);
     EXPECT_NEAR(fall.points.front().y, 100, 1e-6);
     for (const FigurePoint& p : fall.points) {
-      if (p.x < 0.14) EXPECT_NEAR(p.y, 100 - 1e3 * 9.81 / 2 * p.x * p.x, 0.8) << p.x;
+      if (p.x < 0.14) {
+        EXPECT_NEAR(p.y, 100 - 1e3 * 9.81 / 2 * p.x * p.x, 0.8) << p.x;
+      }
     }
     expect_over_time(made.curve(reserve, label), kept,
                      [&](auto k) { return 1e3 * kept.one(k, Column::energy_ledger); });
@@ -410,8 +421,8 @@ TEST(FiguresOf, DropFallFreelyUntilTheTip) {
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const auto f = kept.session.at(k, Column::contact_force);
       hardest = std::max(hardest, Vec3(f[0], f[1], f[2]).norm());
-      least = std::min(least, kept.one(k, Column::energy_ledger) -
-                                  kept.one(0, Column::energy_ledger));
+      least =
+          std::min(least, kept.one(k, Column::energy_ledger) - kept.one(0, Column::energy_ledger));
     }
     const std::string which = fmt::format("predictive, {} N/m: ", stiffness);
     EXPECT_EQ(made.check(which + "hardest force on the tip [N]").value, hardest);
@@ -470,7 +481,8 @@ TEST(FiguresOf, StackSinkUnderTheWeightAbove) {
       EXPECT_NEAR(block.body->mass, masses[i], 1e-9);
       EXPECT_EQ(block.material.stiffness, 2000);
       EXPECT_EQ(block.material.friction_static, 0.5);
-      EXPECT_NEAR(block.pose.translation().z(), floor + 0.03 * (static_cast<double>(i) + 0.5), 1e-9);
+      EXPECT_NEAR(block.pose.translation().z(), floor + 0.03 * (static_cast<double>(i) + 0.5),
+                  1e-9);
       weight += 9.81 * masses[i];
       sunk += weight / 80000;
       EXPECT_NEAR(dots.points[i].x, weight, 1e-9);
@@ -483,8 +495,7 @@ TEST(FiguresOf, StackSinkUnderTheWeightAbove) {
     EXPECT_NEAR(kept.hand(1.25).z(), top + 0.004 + 0.005 - (0.005 + give) / 2, 1e-5);
     EXPECT_NEAR(kept.hand(2).z(), top + 0.004 - give, 1e-9);
     EXPECT_NEAR(kept.time(kept.size()), 3, 2e-3);
-    const double wanted =
-        (give - sunk) / (give + static_cast<double>(masses.size()) / 80000);
+    const double wanted = (give - sunk) / (give + static_cast<double>(masses.size()) / 80000);
     const double last = kept.one(kept.size() - 1, Column::contact_force, 2);
     EXPECT_NEAR(last, wanted, 0.02 * wanted) << label;
     EXPECT_NEAR(made.check(std::string(label) + ": relative deviation of the final force from that "

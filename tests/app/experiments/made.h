@@ -1,5 +1,5 @@
-// An experiment as it was carried out, with the recordings that it kept: its figure is compared with
-// what these hold.
+// An experiment as it was carried out, with the recordings that it kept: its figure is compared
+// with what these hold.
 #pragma once
 
 #include <gmock/gmock.h>

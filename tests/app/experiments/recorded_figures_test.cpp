@@ -1,12 +1,11 @@
 // Figures of experiments against the recordings that they were drawn from, and the recordings
 // against what captions and README say of hand, scene and settings.
-#include "tests/app/experiments/made.h"
-
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "app/experiments/passivity.h"
+#include "tests/app/experiments/made.h"
 
 namespace limpid {
 namespace {
@@ -55,8 +54,8 @@ double largest_error(const Kept& kept) {
 
 TEST(FiguresOf, CoordinationShowItsFourRuns) {
   const Made made("coordination");
-  EXPECT_THAT(made.trials(), UnorderedElementsAre("standard", "proposed", "inertia-error-0.5",
-                                                  "inertia-error-2"));
+  EXPECT_THAT(made.trials(),
+              UnorderedElementsAre("standard", "proposed", "inertia-error-0.5", "inertia-error-2"));
   const Kept standard = made.kept("standard"), proposed = made.kept("proposed"),
              half = made.kept("inertia-error-0.5"), twice = made.kept("inertia-error-2");
   EXPECT_EQ(standard.p.kind, CouplingKind::standard);
@@ -82,8 +81,8 @@ TEST(FiguresOf, CoordinationShowItsFourRuns) {
     expect_over_time(made.curve("Coordination error |x1 - x2|", law), *kept,
                      [&](auto k) { return 1e3 * kept->error(k); });
   }
-  for (const auto& [kept, label] : {std::pair(&half, "half the inertia"),
-                                    {&twice, "twice the inertia"}}) {
+  for (const auto& [kept, label] :
+       {std::pair(&half, "half the inertia"), {&twice, "twice the inertia"}}) {
     expect_over_time(
         made.curve("Proposed: what a wrong inertia in the model adds to the error", label), *kept,
         [&](auto k) { return 1e6 * (kept->error(k) - proposed.error(k)); });
@@ -144,12 +143,12 @@ TEST(FiguresOf, InertiaShowThreeEtasInOneHand) {
     const Kept kept = made.kept(fmt::format("eta-{}", eta));
     EXPECT_EQ(kept.p.eta, eta);
     EXPECT_EQ(kept.p.kind, CouplingKind::proposed);
-    EXPECT_THAT(made.figure().caption, HasSubstr(fmt::format("grip {} N/m and {} N s/m",
-                                                             kept.p.hand_stiffness,
-                                                             kept.p.hand_damping)));
+    EXPECT_THAT(made.figure().caption,
+                HasSubstr(fmt::format("grip {} N/m and {} N s/m", kept.p.hand_stiffness,
+                                      kept.p.hand_damping)));
     EXPECT_TRUE(kept.plan.document.scene.objects.empty()) << "no contact";
-    const std::string label = fmt::format("eta = {}", eta), title =
-                                                                "Human torque |f1| and its estimate";
+    const std::string label = fmt::format("eta = {}", eta),
+                      title = "Human torque |f1| and its estimate";
     expect_over_time(made.curve(title, label), kept,
                      [&](auto k) { return kept.norm(k, Column::hand_torque); });
     const Series& estimate =
@@ -224,14 +223,13 @@ TEST(FiguresOf, SaturationShowFourPresses) {
   shoulder(motors, "given, wound up", without, Column::motor_torque);
   shoulder(motors, "given, anti-windup", with, Column::motor_torque);
   shoulder(motors, "given, predictive", predicted, Column::motor_torque);
-  for (const auto& [kept, law] : {std::pair(&with, "proposed"), {&predicted, "predictive"},
-                                  {&standard, "standard"}}) {
+  for (const auto& [kept, law] :
+       {std::pair(&with, "proposed"), {&predicted, "predictive"}, {&standard, "standard"}}) {
     for (const auto& [what, c] :
          {std::pair("device", Column::device_position), {"proxy", Column::proxy_position}}) {
-      expect_over_time(
-          made.curve("Depth of device and proxy in the table, under each coupling",
-                     fmt::format("{}, {}", what, law)),
-          *kept, [&, c = c](auto k) { return 1e3 * (-0.04 - kept->tip(k, c).z()); });
+      expect_over_time(made.curve("Depth of device and proxy in the table, under each coupling",
+                                  fmt::format("{}, {}", what, law)),
+                       *kept, [&, c = c](auto k) { return 1e3 * (-0.04 - kept->tip(k, c).z()); });
     }
   }
   const auto& out = made.panel("Human torque at the shoulder while pulling out");
@@ -277,7 +275,8 @@ TEST(FiguresOf, SaturationJudgeWhatWasRecorded) {
   EXPECT_NEAR(made.checks()[5].value, pull(with) / pull(predicted), 1e-9);
 }
 
-// 120 corners and 48 more, each a point at its motors' limit, which is drawn between 0.1 and 0.6 N m.
+// 120 corners and 48 more, each a point at its motors' limit, which is drawn between 0.1 and 0.6 N
+// m.
 TEST(FiguresOf, SaturationHaveAPointForEachCorner) {
   const Made made("saturation");
   const std::string torque = "Pressed into random corners of walls: contact torque";
@@ -363,7 +362,8 @@ TEST(FiguresOf, FrictionShowItsDrags) {
                    [&](auto k) { return 1e3 * rough.tip(k, Column::proxy_position).y(); });
   const std::string taken = "Energy that friction gave: work and energy in the friction's spring";
   const auto& smooth = made.curve(taken, "smooth");
-  expect_on(smooth, [](double) { return 0.0; }, 1e-6);
+  expect_on(
+      smooth, [](double) { return 0.0; }, 1e-6);
   for (const char* label : {"0.5 sticking, 0.3 slipping", "0.2 for both"}) {
     const Series& curve = made.curve(taken, label);
     for (std::size_t i = 1; i < curve.points.size(); ++i) {
@@ -385,8 +385,8 @@ TEST(FiguresOf, FrictionShowEdgesAndCorners) {
       for (const double mu : {0.0, 0.5, 1.0}) {
         for (const auto& [eta, grip] : {std::pair(0.3, 300.0), {1.0, 3000.0}}) {
           const std::string place = walls == 2 ? "edge" : "corner";
-          const Kept kept = made.kept(fmt::format("{}-{}-eta-{}-{}-motors", place, mu, eta,
-                                                  strong ? "strong" : "own"));
+          const Kept kept = made.kept(
+              fmt::format("{}-{}-eta-{}-{}-motors", place, mu, eta, strong ? "strong" : "own"));
           EXPECT_EQ(kept.p.eta, eta);
           EXPECT_EQ(kept.p.hand_stiffness, grip);
           EXPECT_EQ(kept.p.kind, CouplingKind::predictive);
@@ -432,9 +432,10 @@ TEST(FiguresOf, FrictionShowEdgesAndCorners) {
 // A hand swings by 6 mm at 3.3 Hz about the middle, across the stop at the joint's zero.
 TEST(FiguresOf, SwitchingShowStopsAndTurns) {
   const Made made("switching");
-  for (const auto& [name, law, stop] : {std::tuple("stop-20-proposed", CouplingKind::proposed, 20.0),
-                                        {"stop-20-predictive", CouplingKind::predictive, 20.0},
-                                        {"stop-500-predictive", CouplingKind::predictive, 500.0}}) {
+  for (const auto& [name, law, stop] :
+       {std::tuple("stop-20-proposed", CouplingKind::proposed, 20.0),
+        {"stop-20-predictive", CouplingKind::predictive, 20.0},
+        {"stop-500-predictive", CouplingKind::predictive, 500.0}}) {
     const Kept kept = made.kept(name);
     EXPECT_EQ(kept.p.kind, law);
     EXPECT_EQ(kept.p.hand_stiffness, 300);
@@ -460,7 +461,8 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
   expect_over_time(made.curve(gave, "proposed, 20 N m/rad"), paper,
                    [&](auto k) { return 1e6 * paper.one(k, Column::contact_gain); });
   for (const char* label : {"predictive, 20 N m/rad", "predictive, 500 N m/rad"}) {
-    expect_on(made.curve(gave, label), [](double) { return 0.0; }, 1e-3);
+    expect_on(
+        made.curve(gave, label), [](double) { return 0.0; }, 1e-3);
   }
 }
 
@@ -483,7 +485,8 @@ TEST(FiguresOf, SwitchingFollowEachLawByEachOther) {
   }
   EXPECT_EQ(followed.size(), 6u) << "three laws, each after each other one";
   ASSERT_EQ(when.size(), 6u);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(when[i], 0.8 + 0.3 * static_cast<double>(i), 2e-3);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_NEAR(when[i], 0.8 + 0.3 * static_cast<double>(i), 2e-3);
   const std::string torque =
       "Motor torque while the couplings change and the hand presses the table";
   constexpr const char* kJoints[] = {"turret", "shoulder", "elbow"};
@@ -516,7 +519,8 @@ TEST(FiguresOf, SwitchingFollowEachLawByEachOther) {
     since = turns.one(k, Column::kind) != turns.one(k - 1, Column::kind) ? 0 : since + 1;
     (since < 300 ? most : last) = std::max(most, change.cwiseAbs().maxCoeff());
   }
-  EXPECT_NEAR(std::max(made.checks()[4].value, made.checks()[5].value), std::max(most, last), 1e-12);
+  EXPECT_NEAR(std::max(made.checks()[4].value, made.checks()[5].value), std::max(most, last),
+              1e-12);
 }
 
 // Each curve is the mean of ten trials, in their band, over the time of each.
@@ -541,8 +545,7 @@ TEST(FiguresOf, PassivityShowMeansAndBandsOfTenTrials) {
       const Series& band = *(&curve - 1);
       ASSERT_GT(&curve, panel.series.data());
       EXPECT_EQ(band.style, Series::Style::band);
-      EXPECT_EQ(curve.style,
-                label == "standard" ? Series::Style::dashed : Series::Style::line);
+      EXPECT_EQ(curve.style, label == "standard" ? Series::Style::dashed : Series::Style::line);
       ASSERT_EQ(curve.points.size(), 201u);
       double highest = 0;
       for (std::size_t i = 0; i <= 200; i += 8) {
@@ -591,8 +594,8 @@ TEST(FiguresOf, PassivityHoldTheDeviceInAStiffGrip) {
     for (const double t : {0.13, 1.5}) {
       EXPECT_NEAR((kept->hand(t) - kept->hand(0) - Vec3::Constant(1e-4)).norm(), 0, 1e-9);
     }
-    const Series& curve =
-        made.curve("Held in a stiff grip", fmt::format("eta {:.3f}, {} the limit", kept->p.eta, which));
+    const Series& curve = made.curve("Held in a stiff grip",
+                                     fmt::format("eta {:.3f}, {} the limit", kept->p.eta, which));
     EXPECT_GT(curve.points.size(), 60u);
     for (const FigurePoint& p : curve.points) {
       double most = 0;
@@ -608,7 +611,8 @@ TEST(FiguresOf, PassivityHoldTheDeviceInAStiffGrip) {
 // Welch's densities add up to the mean square of the velocity.
 TEST(FiguresOf, SpectrumShareOutThePowerOfTheVelocity) {
   const Made made("spectrum");
-  const std::string density = "Power density of the velocity", part = "Share of the power up to a frequency";
+  const std::string density = "Power density of the velocity",
+                    part = "Share of the power up to a frequency";
   const Series& mean = made.curve(density, "mean of all trials");
   const double step = mean.points[1].x - mean.points[0].x;
   EXPECT_NEAR(step, 1000.0 / 2048, 1e-12);
@@ -644,7 +648,9 @@ TEST(FiguresOf, SpectrumShareOutThePowerOfTheVelocity) {
     ASSERT_TRUE(range);
     EXPECT_EQ(line.points.front().y, range->first);
     EXPECT_EQ(line.points.back().y, range->second);
-    if (high > 0) EXPECT_EQ(range->second, high);
+    if (high > 0) {
+      EXPECT_EQ(range->second, high);
+    }
   }
   EXPECT_GE(made.checks()[0].value, made.checks()[1].value)
       << "the liveliest trial has the least below 5 Hz";

@@ -44,7 +44,9 @@ class Notes : public PlotCanvas {
     Rgb rgb;
   };
 
-  void rect(const Box& box, Rgb fill, double alpha) override { filled.push_back({box, fill, alpha}); }
+  void rect(const Box& box, Rgb fill, double alpha) override {
+    filled.push_back({box, fill, alpha});
+  }
   void outline(const Box& box, Rgb rgb) override { outlined.push_back({box, rgb, 1}); }
   void stripes(const Box& box, Rgb rgb) override { striped.push_back({box, rgb, 1}); }
   void line(Point from, Point to, Rgb rgb, double width, double dash, double gap) override {
@@ -134,7 +136,9 @@ TEST_F(ADrawing, HasItsFrameTitleAndUnit) {
   EXPECT_EQ(title.at.x, 56);
   EXPECT_EQ(title.anchor, PlotCanvas::Anchor::start);
   for (const auto& each : notes.texts) {
-    if (each.what != title.what) EXPECT_FALSE(each.bold) << each.what;
+    if (each.what != title.what) {
+      EXPECT_FALSE(each.bold) << each.what;
+    }
   }
 }
 
@@ -178,9 +182,8 @@ TEST_F(ADrawing, WritesMinutesWhereThereAreSome) {
   for (int k = 10001; k <= 61000; ++k) history_.append(1e-3 * k, std::array{0.0, 0.0, 0.0});
   picture_.start = 20;
   picture_.stop = 59.9;
-  EXPECT_FALSE(std::ranges::any_of(draw().texts, [](const auto& each) {
-    return each.what.find(':') != std::string::npos;
-  }));
+  EXPECT_FALSE(std::ranges::any_of(
+      draw().texts, [](const auto& each) { return each.what.find(':') != std::string::npos; }));
   picture_.stop = 60;
   const Notes notes = draw();
   EXPECT_TRUE(notes.says("0:30") || notes.says("0:40")) << notes.texts[1].what;
@@ -200,9 +203,8 @@ TEST_F(ADrawing, EmphasizesZeroUnlessItIsALogarithm) {
   spec_.y.zero_line = true;
   picture_.y.log = true;
   picture_.y.limits = {-1, 1};
-  EXPECT_TRUE(std::ranges::none_of(draw().lines, [&](const Notes::Lined& line) {
-    return same(line.rgb, palette_.axis);
-  }));
+  EXPECT_TRUE(std::ranges::none_of(
+      draw().lines, [&](const Notes::Lined& line) { return same(line.rgb, palette_.axis); }));
 }
 
 TEST_F(ADrawing, HasTheCurveAtItsValues) {

@@ -256,9 +256,9 @@ TEST_F(AMouse, PointsAtTheTimeBelowIt) {
     ASSERT_TRUE(group_.hovered()) << part;
     EXPECT_NEAR(*group_.hovered(), 10 + 10 * part, 0.03);
   }
-  for (const ImVec2 outside : {ImVec2{area().min.x - 5, at(0, 0.5f).y},
-                               ImVec2{at(0.5f, 0).x, area().max.y + 5},
-                               ImVec2{at(0.5f, 0).x, area().min.y - 5}}) {
+  for (const ImVec2 outside :
+       {ImVec2{area().min.x - 5, at(0, 0.5f).y}, ImVec2{at(0.5f, 0).x, area().max.y + 5},
+        ImVec2{at(0.5f, 0).x, area().min.y - 5}}) {
     point(outside);
     EXPECT_FALSE(group_.hovered());
   }
@@ -290,8 +290,8 @@ TEST_F(AMouse, JumpsToANote) {
   playback_ = 16;
   history_.mark(13, "here", kNoteMark);
   start();
-  const float x = area().min.x +
-                  static_cast<float>((13 - group_.start()) / group_.length()) * area().width();
+  const float x =
+      area().min.x + static_cast<float>((13 - group_.start()) / group_.length()) * area().width();
   click({x + 3, at(0, 0.5f).y});
   ASSERT_TRUE(events_.playback);
   EXPECT_NEAR(*events_.playback, 13, 1e-9) << "exactly there";
@@ -338,8 +338,8 @@ TEST_F(AMouse, HasEachWishOfTheMenu) {
   EXPECT_TRUE(group_.following());
   EXPECT_NEAR(group_.length(), 10, 1e-9);
   EXPECT_EQ(events_.wish, PlotWish::none) << "that is done here";
-  for (const auto& [wish, file] : {std::pair(PlotWish::save_csv, "force-001.csv"),
-                                   {PlotWish::save_svg, "force-001.svg"}}) {
+  for (const auto& [wish, file] :
+       {std::pair(PlotWish::save_csv, "force-001.csv"), {PlotWish::save_svg, "force-001.svg"}}) {
     plot_->ask(wish);
     frames(1);
     ASSERT_TRUE(events_.notice) << file;
