@@ -21,7 +21,6 @@ class AMouse : public ImGuiFrames {
     spec_.file_name = "force";
     spec_.y = {.unit = "N", .zero_line = false};
     spec_.curves = {{.label = "first"}, {.channel = 1, .label = "second"}};
-    ImGui::GetIO().MouseDoubleClickTime = 0.3f;
     for (int k = 0; k <= 20000; ++k) {
       const double t = 1e-3 * k;
       history_.append(t, std::array{3 + std::sin(t), 1 + 0.1 * t});
@@ -50,11 +49,11 @@ class AMouse : public ImGuiFrames {
     }
   }
   void point(ImVec2 at) {
-    ImGui::GetIO().AddMousePosEvent(at.x, at.y);
+    show_mouse(at);
     frames(2);
   }
   void button(bool down, int which = ImGuiMouseButton_Left) {
-    ImGui::GetIO().AddMouseButtonEvent(which, down);
+    show_mouse_button(which, down);
     frames(2);
   }
   void click(ImVec2 at, int which = ImGuiMouseButton_Left) {
@@ -68,17 +67,17 @@ class AMouse : public ImGuiFrames {
     point(to);
     button(false);
   }
-  void wheel(ImVec2 at, float turns, ImGuiKey held = ImGuiKey_None) {
+  void wheel(ImVec2 at, float turns, bool with_control = false) {
     point(at);
-    if (held != ImGuiKey_None) ImGui::GetIO().AddKeyEvent(held, true);
+    show_modifiers(with_control, false, false);
+    ImGui::GetIO().MouseWheel = turns;
     frames(1);
-    ImGui::GetIO().AddMouseWheelEvent(0, turns);
-    frames(1);
-    if (held != ImGuiKey_None) ImGui::GetIO().AddKeyEvent(held, false);
+    show_modifiers(false, false, false);
+    ImGui::GetIO().MouseWheel = 0;
     frames(1);
   }
-  void hold(ImGuiKey key, bool down) {
-    ImGui::GetIO().AddKeyEvent(key, down);
+  void hold_shift(bool down) {
+    show_modifiers(false, down, false);
     frames(1);
   }
 
@@ -158,7 +157,7 @@ TEST_F(AMouse, ScalesValuesByTheWheelOverTheirAxisOrWithCtrl) {
     const ImVec2 inside = at(0.5f, 0.25f);
     const ImVec2 place = over_axis ? ImVec2{area().min.x - 10, inside.y} : inside;
     const double there = value_at(place);
-    wheel(place, 1, over_axis ? ImGuiKey_None : ImGuiKey_ModCtrl);
+    wheel(place, 1, !over_axis);
     EXPECT_NEAR(y().span(), before.span() / kStep, 1e-6);
     EXPECT_NEAR(value_at(place), there, 1e-3) << "the value under the mouse stays";
     EXPECT_NEAR(group_.length(), 10, 1e-9) << "time stays";
@@ -167,7 +166,7 @@ TEST_F(AMouse, ScalesValuesByTheWheelOverTheirAxisOrWithCtrl) {
 
 TEST_F(AMouse, DragsValuesAlongOnceTheyDoNotFollow) {
   start();
-  wheel(at(0.5f, 0.5f), 1, ImGuiKey_ModCtrl);
+  wheel(at(0.5f, 0.5f), 1, true);
   const Limits before = y();
   const ImVec2 from = at(0.5f, 0.5f);
   drag(from, {from.x, from.y + 50});
@@ -190,7 +189,7 @@ TEST_F(AMouse, DragsTheValueAxisItself) {
 
 TEST_F(AMouse, SelectsAStretchWithShift) {
   start();
-  hold(ImGuiKey_ModShift, true);
+  hold_shift(true);
   drag(at(0.2f, 0.5f), at(0.6f, 0.4f));
   ASSERT_TRUE(events_.range);
   EXPECT_NEAR(events_.range->start, 12, 0.05);
@@ -210,7 +209,7 @@ TEST_F(AMouse, SelectsAStretchWithShift) {
   click(at(0.4f, 0.5f));
   EXPECT_TRUE(events_.unselect);
   EXPECT_FALSE(events_.range);
-  hold(ImGuiKey_ModShift, false);
+  hold_shift(false);
 }
 
 TEST_F(AMouse, FitsByADoubleClick) {
@@ -218,13 +217,13 @@ TEST_F(AMouse, FitsByADoubleClick) {
   group_.pan(-5);
   group_.zoom(0.5, 12);
   frames(1);
-  wheel(at(0.5f, 0.5f), 3, ImGuiKey_ModCtrl);
+  wheel(at(0.5f, 0.5f), 3, true);
   const Limits close = y();
   point(at(0.5f, 0.5f));
   for (int i = 0; i < 2; ++i) {
-    ImGui::GetIO().AddMouseButtonEvent(ImGuiMouseButton_Left, true);
+    show_mouse_button(0, true);
     frames(1);
-    ImGui::GetIO().AddMouseButtonEvent(ImGuiMouseButton_Left, false);
+    show_mouse_button(0, false);
     frames(1);
   }
   frames(2);
@@ -322,7 +321,8 @@ TEST_F(AMouse, OpensAMenuByItsRightButton) {
 
 TEST_F(AMouse, HasEachWishOfTheMenu) {
   const test::TempDir dir;
-  saving_ = {.folder = dir / "out", .arranged = true};
+  saving_.folder = dir / "out";
+  saving_.arranged = true;
   start();
   for (const PlotWish wish :
        {PlotWish::choose, PlotWish::add, PlotWish::remove, PlotWish::export_as}) {
@@ -348,6 +348,16 @@ TEST_F(AMouse, HasEachWishOfTheMenu) {
     EXPECT_TRUE(std::filesystem::exists(dir / "out" / file));
     events_ = {};
   }
+  // The table has the stretch that is shown.
+  std::ifstream in(dir / "out" / "force-001.csv");
+  std::string line;
+  std::getline(in, line);
+  EXPECT_EQ(line, "time [s],first [N],second [N]");
+  std::vector<double> times;
+  while (std::getline(in, line)) times.push_back(std::stod(line));
+  ASSERT_GT(times.size(), 9000u);
+  EXPECT_NEAR(times.front(), group_.start(), 0.02);
+  EXPECT_NEAR(times.back(), group_.stop(), 0.02);
   const auto texts = test::drawn_texts();
   EXPECT_TRUE(std::ranges::any_of(texts, [](const test::DrawnText& each) {
     return each.text.starts_with("Saved force-001.svg");
@@ -365,12 +375,12 @@ TEST_F(AMouse, SavesItsPlaceAsAPng) {
   int saved = 0, waited = 0;
   ScreenRect box{};
   std::filesystem::path file;
-  saving_ = {.folder = dir / "out",
-             .save_png = [&](const ScreenRect& where, const std::filesystem::path& into) {
-               ++saved;
-               box = where;
-               file = into;
-             }};
+  saving_.folder = dir / "out";
+  saving_.save_png = [&](const ScreenRect& where, const std::filesystem::path& into) {
+    ++saved;
+    box = where;
+    file = into;
+  };
   start();
   plot_->ask(PlotWish::save_png);
   for (; saved == 0 && waited < 10; ++waited) frames(1);
@@ -458,11 +468,11 @@ TEST_F(AMouse, PointsAtAFrequencyOfASpectrum) {
 // A click needs no more than a frame; values that are too fine for single precision are no limits.
 TEST_F(AMouse, ScalesNoFartherThanNumbersGo) {
   start();
-  for (int i = 0; i < 120; ++i) wheel(at(0.5f, 0.5f), 1, ImGuiKey_ModCtrl);
+  for (int i = 0; i < 120; ++i) wheel(at(0.5f, 0.5f), 1, true);
   const double largest = std::max(std::abs(y().low), std::abs(y().high));
   EXPECT_GE(y().span(), 0.99e-6 * largest);
   EXPECT_LT(y().span(), 1e-4 * largest);
-  for (int i = 0; i < 320; ++i) wheel(at(0.5f, 0.5f), -1, ImGuiKey_ModCtrl);
+  for (int i = 0; i < 320; ++i) wheel(at(0.5f, 0.5f), -1, true);
   EXPECT_LE(y().span(), 1e12);
   EXPECT_GT(y().span(), 1e11);
   for (int i = 0; i < 120; ++i) group_.zoom(1 / kStep, 19);
@@ -473,7 +483,7 @@ TEST_F(AMouse, ScalesNoFartherThanNumbersGo) {
 
 TEST_F(AMouse, KeepsLimitsOfOneKindOnly) {
   start();
-  wheel(at(0.5f, 0.5f), 4, ImGuiKey_ModCtrl);
+  wheel(at(0.5f, 0.5f), 4, true);
   const Limits close = y();
   PlotSpec other = spec_;
   other.curves.pop_back();
