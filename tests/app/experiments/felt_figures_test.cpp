@@ -340,8 +340,8 @@ TEST(FiguresOf, ClickFollowTheButtonsOwnForce) {
     EXPECT_EQ(kept.object(0).material.stiffness, stiffness);
     EXPECT_NEAR(kept.object(0).body->mass, 0.002, 1e-12);
     ASSERT_TRUE(kept.object(0).body->joint);
-    EXPECT_NEAR(kept.object(0).body->joint->detent_force, 0.4, 1e-12);
-    EXPECT_NEAR(kept.object(0).body->joint->detent_period, 0.008, 1e-12);
+    EXPECT_NEAR(kept.object(0).body->joint->force.detent_force, 0.4, 1e-12);
+    EXPECT_NEAR(kept.object(0).body->joint->force.detent_period, 0.008, 1e-12);
     EXPECT_EQ(kept.p.hand_stiffness, 3000);
     EXPECT_NEAR(kept.hand(0.1).z(), 0.002, 1e-9);
     double deepest = 0, fastest = 0;
