@@ -566,12 +566,10 @@ TEST(FiguresOf, PassivityShowMeansAndBandsOfTenTrials) {
           highest = std::max(highest, one.one(k, column));
         }
       }
-      EXPECT_EQ(made.check(fmt::format(column == Column::energy_total
-                                           ? "highest total E_c of all trials, {} [J]"
-                                           : "highest E_c, commanded, of all trials, {} [J]",
-                                       label))
-                    .value,
-                highest);
+      const std::string what = column == Column::energy_total
+                                   ? "highest total E_c of all trials, "
+                                   : "highest E_c, commanded, of all trials, ";
+      EXPECT_EQ(made.check(what + label + " [J]").value, highest);
     }
   }
   EXPECT_NEAR(made.check("mean final E_c, total, standard less eta = 0.6 [J]").value,
