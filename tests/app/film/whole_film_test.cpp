@@ -177,7 +177,7 @@ TEST_F(WholeFilms, SayMoreWhereThereIsMore) {
   const auto stride = static_cast<std::size_t>(off.layout.stride());
   for (std::size_t k = 150; k < off.size(); ++k) {
     off.layout.in(std::span(off.rows).subspan(k * stride, stride), Column::force_state)[0] =
-        static_cast<double>(ForceState::not_armed);
+        static_cast<double>(ForceState::off);
   }
   make(off, "off");
   EXPECT_TRUE(same("plain", "off", 2));
