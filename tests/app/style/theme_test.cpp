@@ -161,8 +161,9 @@ TEST_F(ALook, HasThreeFacesWhoseDigitsAreEquallyWide) {
     }
     EXPECT_LT(f->FindGlyph('i')->AdvanceX, f->FindGlyph('m')->AdvanceX) << "letters are not";
     // Greek, a dash, a raised and a lowered digit, a sign, a shape.
-    for (const ImWchar letter : {0x3b7, 0x2212, 0x2013, 0x2079, 0x2081, 0x2264, 0x25cf, 0xb2}) {
-      EXPECT_NE(f->FindGlyphNoFallback(letter), nullptr) << std::hex << letter;
+    for (const int letter : {0x3b7, 0x2212, 0x2013, 0x2079, 0x2081, 0x2264, 0x25cf, 0xb2}) {
+      EXPECT_NE(f->FindGlyphNoFallback(static_cast<ImWchar>(letter)), nullptr)
+          << std::hex << letter;
     }
   }
   const float large = font(Face::regular)->FontSize;

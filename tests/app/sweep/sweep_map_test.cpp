@@ -19,7 +19,8 @@ class HandMadeMaps : public testing::Test {
   SweepPlan plan(const std::string& more) {
     return test::sweep_plan(dir_,
                             "scene = \"free.toml\"\n"
-                            "hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }\n" +
+                            "hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }\n"
+                            "seconds = 0.02\n" +
                                 more);
   }
   static OpenedSweep sweep(const SweepPlan& plan, std::vector<std::pair<double, double>> ranges) {
