@@ -92,6 +92,8 @@ TEST_F(ALook, ShowsWhatIsPointedAtAndHeld) {
         {ImGuiCol_ScrollbarGrab, ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive},
         {ImGuiCol_Separator, ImGuiCol_SeparatorHovered, ImGuiCol_SeparatorActive}};
     for (const auto& [rest, pointed, held] : kTriples) {
+      // Lines are all alike in high contrast.
+      if (theme == Theme::contrast && rest == ImGuiCol_Separator) continue;
       EXPECT_NE(rgb_of(rest), rgb_of(pointed)) << ImGui::GetStyleColorName(rest);
       EXPECT_NE(rgb_of(pointed), rgb_of(held)) << ImGui::GetStyleColorName(rest);
       EXPECT_NE(rgb_of(rest), rgb_of(held)) << ImGui::GetStyleColorName(rest);

@@ -1,10 +1,12 @@
 // Maps of tables that were filled by hand: places, means, ranges and lines.
 #include "app/sweep/sweep_map.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "app/sweep/sweep_table.h"
 #include "tests/app/sweep/plans.h"
@@ -16,12 +18,10 @@ using testing::ElementsAre;
 
 class HandMadeMaps : public testing::Test {
  protected:
-  SweepPlan plan(const std::string& more) {
-    return test::sweep_plan(dir_,
-                            "scene = \"free.toml\"\n"
-                            "hand = { at = [0.19, 0, 0], jump = [1e-4, 0, 0] }\n"
-                            "seconds = 0.02\n" +
-                                more);
+  SweepPlan plan(const std::string& more,
+                 const std::string& hand = "{ at = [0.19, 0, 0], jump = [1e-4, 0, 0] }") {
+    return test::sweep_plan(
+        dir_, fmt::format("scene = \"free.toml\"\nhand = {}\nseconds = 0.02\n{}", hand, more));
   }
   static OpenedSweep sweep(const SweepPlan& plan, std::vector<std::pair<double, double>> ranges) {
     return {"", std::make_shared<SweepPlan>(plan), SweepTable(plan), "", "", std::move(ranges)};
@@ -185,11 +185,13 @@ axis = [ { key = "coupling.eta", values = [0.2, 0.4, 0.8] } ]
 }
 
 TEST_F(HandMadeMaps, HaveTheMeanOfRepeats) {
+  std::ofstream(dir_ / "hand.csv") << "time_s,x_m,y_m,z_m\n0,0.19,0,0\n1,0.201,0,0\n";
   const SweepPlan twice = plan(R"(measure = ["human_rms"]
 repeats = 2
 axis = [ { key = "coupling.eta", values = [0.2, 0.4] },
          { key = "hand.stiffness", values = [100, 200] } ]
-)");
+)",
+                               "\"hand.csv\"");
   OpenedSweep filled = sweep(twice, {});
   const std::size_t columns = filled.table.columns.size();
   filled.ranges.assign(columns, {0, 8});

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 class RoomForWords : public WholeWindow {
  protected:
   // The plots' own marks and names move with their curves.
-  static bool of_plots(const test::DrawnText& each) { return each.window == "plots"; }
+  static bool of_plots(const test::DrawnText& each) { return each.window.starts_with("plots"); }
 
   void expect_whole(const std::string& state) const {
     for (const test::DrawnText& each : test::drawn_texts()) {
