@@ -20,7 +20,7 @@
 
 namespace limpid::test {
 
-// What is recorded as a trial: its rows, its settings, and the plan that led to it.
+// Recording of a trial: its rows, its settings, and the plan that led to it.
 struct Kept {
   Session session;
   Parameters p;

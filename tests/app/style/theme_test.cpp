@@ -82,7 +82,7 @@ TEST_F(ALook, CanBeReadOnEveryGround) {
   }
 }
 
-// What is pointed at differs from what is not, and what is held from both.
+// A thing that is pointed at looks otherwise than at rest, and one that is held than both.
 TEST_F(ALook, ShowsWhatIsPointedAtAndHeld) {
   for (const Theme theme : kThemesOfAll) {
     apply_theme(theme, 1);

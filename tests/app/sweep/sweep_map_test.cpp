@@ -99,7 +99,7 @@ y = "kind"
   EXPECT_EQ(choice.x, 1u);
   EXPECT_EQ(choice.y, 2u);
   EXPECT_THAT(choice.place, ElementsAre(0u, 0u, 0u));
-  // What the plan lacks is replaced.
+  // Whatever the plan lacks is replaced.
   MapChoice wrong = over(7, 7, 1);
   wrong.place = {9, 9};
   const MapChoice right = mended(asked, wrong);
