@@ -140,13 +140,20 @@ TEST_F(ColoursOfASweep, HaveTheLineOfTheoryOverThem) {
                   rect().max.y - static_cast<float>(up) * rect().height()};
   };
   const std::vector<FigurePoint>& points = map().lines[0].points;
-  ASSERT_GT(points.size(), 20u);
+  ASSERT_EQ(points.size(), 81u);
+  int gaps = 0;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     ASSERT_TRUE(std::isfinite(points[i].y) && points[i].y > low && points[i].y < high);
     const ImVec2 from = place(points[i]), to = place(points[i + 1]);
     const ImVec2 middle{(from.x + to.x) / 2, (from.y + to.y) / 2};
-    EXPECT_EQ(inked(middle, colour(current_palette().text)), i % 2 == 0) << i;
+    const bool drawn = inked(middle, colour(current_palette().text));
+    if (i % 2 == 0) {
+      EXPECT_TRUE(drawn) << i;
+    } else {
+      gaps += !drawn;
+    }
   }
+  EXPECT_GT(gaps, 35) << "of 40; words may lie over some";
 }
 
 TEST_F(ColoursOfASweep, SayHowManyDiverged) {
