@@ -64,7 +64,7 @@ TEST_F(Characterizing, OfAFileTakesItsReadingsAndSaysWhatIsAssumed) {
     std::smatch row;
     const std::regex wanted(
         "\n" + name +
-        " +(below 50|[0-9]+|[0-9]+ or more) +([0-9]+) +(none|[0-9]+ to [0-9]+) +"
+        " +(below 50|[0-9]+|[0-9]+ or more) +([0-9]+) +(none|-?[0-9]+ to [0-9]+) +"
         "(unstable|[0-9.]+) +(unstable|-?[0-9.]+ g, -?[0-9.]+ N s/m)\n");
     ASSERT_TRUE(std::regex_search(said.out, row, wanted)) << name << said.out;
     const double wall = law["stiffest_n_per_m"];
