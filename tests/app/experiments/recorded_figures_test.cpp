@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "app/experiments/coordination.h"
 #include "app/experiments/passivity.h"
 #include "tests/app/experiments/made.h"
 
@@ -51,6 +52,32 @@ double largest_error(const Kept& kept) {
   double most = 0;
   for (std::size_t k = 0; k < kept.size(); ++k) most = std::max(most, kept.error(k));
   return most;
+}
+
+// A contact lasts a tenth of a second, and comes that long after the one before.
+TEST(LastingContacts, AreLongAndApart) {
+  Session s;
+  const auto stride = static_cast<std::size_t>(s.layout.stride());
+  const auto add = [&](std::size_t rows, double torque) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      s.rows.resize(s.rows.size() + stride, 0.0);
+      s.layout.in(std::span(s.rows).last(stride), Column::contact_torque)[1] = torque;
+    }
+  };
+  EXPECT_EQ(lasting_contacts(s), 0);
+  add(150, 0);
+  EXPECT_EQ(lasting_contacts(s), 0) << "nothing is touched";
+  add(99, 0.1);
+  EXPECT_EQ(lasting_contacts(s), 0) << "too short";
+  add(150, 0);
+  add(150, -0.1);
+  EXPECT_EQ(lasting_contacts(s), 1);
+  add(50, 0);
+  add(150, 0.1);
+  EXPECT_EQ(lasting_contacts(s), 1) << "the same one, lifted for a moment";
+  add(120, 0);
+  add(100, 0.1);
+  EXPECT_EQ(lasting_contacts(s), 2);
 }
 
 TEST(FiguresOf, CoordinationShowItsFourRuns) {
@@ -347,6 +374,9 @@ TEST(FiguresOf, FrictionShowItsDrags) {
       most = std::max(most, std::abs(p.y));
     }
     EXPECT_GE(most, 0.99 * sticking) << "it breaks away at the cone";
+    EXPECT_NEAR(std::ranges::max(curve.points, {}, &FigurePoint::x).x, 30, 0.01);
+    EXPECT_NEAR(curve.points.front().x, 0, 0.01) << "from where it pressed";
+    EXPECT_NEAR(curve.points.back().x, 0, 0.01) << "and back";
     if (sticking == 0) continue;
     // On the way there the plane drags the tip back, on the way back it drags it forth.
     const std::size_t half = curve.points.size() / 2;
