@@ -6,8 +6,8 @@
 
 namespace limpid::test {
 
-FaultlessContext::~FaultlessContext() {
-  EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}) << "of OpenGL";
-}
+void expect_no_gl_error() { EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}) << "of OpenGL"; }
+
+FaultlessContext::~FaultlessContext() { expect_no_gl_error(); }
 
 }  // namespace limpid::test

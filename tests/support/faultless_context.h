@@ -5,6 +5,9 @@
 
 namespace limpid::test {
 
+// Fails the test that runs where OpenGL has reported an error in the present context.
+void expect_no_gl_error();
+
 // Fails its test where OpenGL has reported an error by the end of the context's life.
 class FaultlessContext : public OffscreenContext {
  public:

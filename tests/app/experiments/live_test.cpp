@@ -1,6 +1,7 @@
 // The live experiments, with a simulated device behind encoders and a hand that nobody measures.
 #include "app/experiments/live.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,11 +33,16 @@ class LiveExperiments : public testing::Test {
     lab.arm = like.arm;
     lab.document = like.document;
     lab.run = [this, hand](const LiveTrial& trial) { return run(hand, trial); };
-    lab.stiffen = [this](double stiffness) { stiffness_ = stiffness; };
+    lab.stiffen = [this](double stiffness) {
+      stiffness_ = stiffness;
+      stiffnesses_.push_back(stiffness);
+    };
     return lab;
   }
 
   std::vector<LiveTrial> asked_;
+  std::vector<Session> made_;          // of each trial
+  std::vector<double> stiffnesses_{};  // that the wall was given
   double encoder_step_ = 1e-5;
 
  private:
@@ -59,6 +65,7 @@ class LiveExperiments : public testing::Test {
       }
       return true;
     });
+    made_.push_back(s);
     return s;
   }
 
@@ -128,6 +135,151 @@ TEST_F(LiveExperiments, ZwidthStiffensTheWallUntilItBuzzes) {
 TEST_F(LiveExperiments, ZwidthSaysThatTheWallWasNotTouched) {
   LiveLaboratory bench = lab({swinging});
   EXPECT_THROW(run_the("zwidth", bench), std::runtime_error);
+}
+
+// The curve of a panel, by its title and its label.
+const Series& curve_of(const Outcome& outcome, const std::string& title, const std::string& label) {
+  static const Series kNone;
+  for (const FigurePanel& panel : outcome.figure.panels) {
+    if (panel.title != title) continue;
+    for (const Series& series : panel.series) {
+      if (series.label == label) return series;
+    }
+  }
+  ADD_FAILURE() << title << ": no curve " << label;
+  return kNone;
+}
+
+// A curve over time has a row's value at each of its points.
+template <class Value>
+void expect_rows(const Series& curve, const Session& s, const Value& value) {
+  EXPECT_GT(curve.points.size(), 1000u) << curve.label;
+  for (const FigurePoint& p : curve.points) {
+    const auto k = static_cast<std::size_t>(std::llround(p.x / s.info.tick));
+    ASSERT_LT(k, s.size());
+    EXPECT_NEAR(p.y, value(k), 1e-9 * std::max(1.0, std::abs(p.y))) << curve.label << " at " << p.x;
+  }
+}
+
+TEST_F(LiveExperiments, CoordinationAsksForTwoLawsAndShowsThem) {
+  LiveLaboratory bench = lab({pressing});
+  const Outcome outcome = run_the("coordination", bench);
+  ASSERT_EQ(asked_.size(), 2u);
+  const std::pair<const char*, CouplingKind> laws[] = {{"standard", CouplingKind::standard},
+                                                       {"proposed", CouplingKind::proposed}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [law, kind] = laws[i];
+    EXPECT_EQ(asked_[i].name, law);
+    EXPECT_EQ(asked_[i].parameters.kind, kind);
+    EXPECT_EQ(asked_[i].seconds, 20);
+    EXPECT_NE(asked_[i].instruction.find("three times within 20 s"), std::string::npos);
+    const Session& s = made_[i];
+    expect_rows(curve_of(outcome, "Contact torque |f2|", law), s,
+                [&](auto k) { return vector_at(s, k, Column::contact_torque).norm(); });
+    expect_rows(curve_of(outcome, "Coordination error |x1 - x2|", law), s,
+                [&](auto k) { return 1e3 * coordination_error(s, k).norm(); });
+    EXPECT_EQ(outcome.checks[i].value, lasting_contacts(s));
+    EXPECT_EQ(outcome.checks[i].bound, 3);
+  }
+  EXPECT_NEAR(outcome.checks[2].value,
+              std::abs(contact_slope(made_[0]) * bench.parameters.k_vc - 1), 1e-9);
+  EXPECT_NEAR(outcome.checks[3].value, contact_slope(made_[1]) / contact_slope(made_[0]), 1e-9);
+}
+
+TEST_F(LiveExperiments, InertiaAsksForThreeEtasAndDividesByTheFirst) {
+  LiveLaboratory bench = lab({swinging, 3000});
+  const Outcome outcome = run_the("inertia", bench);
+  ASSERT_EQ(asked_.size(), 3u);
+  const double least =
+      analyze(bench.arm, rest_pose(bench.arm), bench.parameters, std::nullopt).eta_min;
+  const double etas[] = {1, std::max(0.6, 1.1 * least), 1.75};
+  const Felt one = felt_of(made_[0], bench.arm);
+  const std::string shares = "Inertia and damping felt, divided by those at eta = 1";
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(asked_[i].parameters.kind, CouplingKind::proposed);
+    EXPECT_NEAR(asked_[i].parameters.eta, etas[i], 1e-12);
+    EXPECT_EQ(asked_[i].seconds, 15);
+    const Session& s = made_[i];
+    expect_rows(curve_of(outcome, "Estimate of the human torque |f1|",
+                         fmt::format("eta = {:.2f}", etas[i])),
+                s, [&](auto k) { return vector_at(s, k, Column::hand_torque_estimate).norm(); });
+    const Felt felt = felt_of(s, bench.arm);
+    const FigurePoint& inertia = curve_of(outcome, shares, "inertia").points.at(i);
+    const FigurePoint& damping = curve_of(outcome, shares, "damping").points.at(i);
+    EXPECT_NEAR(inertia.x, etas[i], 1e-12);
+    EXPECT_NEAR(inertia.y, felt.inertia / one.inertia, 1e-9);
+    EXPECT_NEAR(damping.y, felt.damping.mean() / one.damping.mean(), 1e-9);
+  }
+  // Lines: eta of the damping; (24) of the inertia, where the estimate lags by m / alpha.
+  const Parameters& p = bench.parameters;
+  const double b = device_damping(bench.arm, p).mean() + p.b_v + p.k_vc * p.tick / 2;
+  std::size_t lines = 0;
+  for (const Series& line : outcome.figure.panels.at(1).series) {
+    if (line.style != Series::Style::dashed) continue;
+    ++lines;
+    EXPECT_NEAR(line.points.front().x, 0.4, 1e-9);
+    EXPECT_NEAR(line.points.back().x, 2, 0.051);
+    for (const FigurePoint& at : line.points) {
+      const double by_24 = at.x * (1 + (1 - at.x) * b / p.alpha);
+      EXPECT_TRUE(std::abs(at.y - at.x) < 1e-9 || std::abs(at.y - by_24) < 1e-9) << at.x;
+    }
+  }
+  EXPECT_EQ(lines, 2u);
+}
+
+TEST_F(LiveExperiments, PassivityShowsTheEnergyOfThreeLaws) {
+  LiveLaboratory bench = lab({pressing});
+  const Outcome outcome = run_the("passivity", bench);
+  ASSERT_EQ(asked_.size(), 3u);
+  const char* laws[] = {"standard", "proposed", "predictive"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(asked_[i].name, laws[i]);
+    EXPECT_STREQ(name(asked_[i].parameters.kind), laws[i]);
+    EXPECT_EQ(asked_[i].seconds, 20);
+    const Session& s = made_[i];
+    expect_rows(curve_of(outcome, "Total", laws[i]), s,
+                [&](auto k) { return 1e3 * s.at(k, Column::energy_total)[0]; });
+    double highest = 0;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      highest = std::max(highest, s.at(k, Column::energy_total)[0]);
+    }
+    EXPECT_EQ(outcome.checks.at(2 * i).value, lasting_contacts(s));
+    EXPECT_EQ(outcome.checks.at(2 * i + 1).value, highest);
+  }
+}
+
+// Each wall is twice as stiff as the one before, until one buzzes above 20 mm/s.
+TEST_F(LiveExperiments, ZwidthDoublesTheWallUntilItBuzzes) {
+  encoder_step_ = 1e-4;
+  LiveLaboratory bench = lab({pressing});
+  const Outcome outcome = run_the("zwidth", bench);
+  std::size_t at = 0;
+  double stiffest[2] = {};
+  const char* laws[] = {"proposed", "predictive"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Series& line = curve_of(outcome, "Chatter in contact", laws[i]);
+    double wall = 250;
+    for (const FigurePoint& p : line.points) {
+      ASSERT_LT(at, asked_.size());
+      EXPECT_EQ(p.x, wall);
+      EXPECT_EQ(stiffnesses_[at], wall);
+      EXPECT_EQ(asked_[at].name, fmt::format("{}-{:.0f}", laws[i], wall));
+      EXPECT_EQ(asked_[at].seconds, 6);
+      EXPECT_NEAR(p.y, 1e3 * chatter_in_contact(made_[at], bench.arm), 1e-9);
+      const bool last = &p == &line.points.back();
+      if (!last) {
+        EXPECT_LE(p.y, 20) << wall;
+      } else if (wall < 16000) {
+        EXPECT_GT(p.y, 20) << wall;
+      }
+      if (p.y <= 20) stiffest[i] = wall;
+      wall *= 2;
+      ++at;
+    }
+  }
+  EXPECT_EQ(at, asked_.size());
+  EXPECT_EQ(outcome.checks[0].value, stiffest[0]);
+  EXPECT_NEAR(outcome.checks[1].value, stiffest[1] / stiffest[0], 1e-12);
 }
 
 // Compared with rows made by hand: a torque of 0.7 M a, and one joint with a damper.

@@ -7,6 +7,7 @@
 #include "app/film/session_film.h"
 #include "devices/files/urdf_file.h"
 #include "tests/support/computer.h"
+#include "tests/support/faultless_context.h"
 
 namespace limpid {
 namespace {
@@ -47,6 +48,9 @@ class FilmFrames : public testing::Test {
                                      std::move(history), kShown);
     camera_.reset(stage_->picture.bounds());
     camera_.finish();
+  }
+  void TearDown() override {
+    if (frame_) test::expect_no_gl_error();
   }
   Picture draw_at(double time) {
     for (; next_ * kTick <= time; ++next_) stage_->append(row_at(layout_, next_ * kTick));

@@ -1,8 +1,11 @@
 #include "app/plot/figure.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -158,6 +161,153 @@ TEST(GnuplotScript, NamesOnlySeriesWithALabel) {
   const std::string script = script_of(figure);
   EXPECT_THAT(script, Not(HasSubstr("label ''")));
   EXPECT_THAT(script, HasSubstr("'band'"));
+}
+
+// Two panels of 640 px beside each other under a title of 52 px, each with its margins.
+TEST(GnuplotScript, PutsPanelsBesideAndBelowEachOther) {
+  Figure figure = small();
+  figure.columns = 2;
+  figure.panel_height = 400;
+  figure.panels = {figure.panels[0], figure.panels[0], figure.panels[0]};
+  const std::string script = script_of(figure);
+  EXPECT_THAT(script, HasSubstr("size 1280,852 "));
+  std::vector<double> left, right, bottom, top;
+  for (const auto& [margin, into] : {std::pair("lmargin", &left),
+                                     {"rmargin", &right},
+                                     {"bmargin", &bottom},
+                                     {"tmargin", &top}}) {
+    const std::string key = std::string("set ") + margin + " at screen ";
+    for (std::size_t at = 0; (at = script.find(key, at)) != std::string::npos; at += key.size()) {
+      into->push_back(std::stod(script.substr(at + key.size())));
+    }
+    ASSERT_EQ(into->size(), 3u) << margin;
+  }
+  EXPECT_NEAR(left[0] * 1280, 92, 0.01);
+  EXPECT_NEAR(right[0] * 1280, 640 - 26, 0.01);
+  EXPECT_NEAR(left[1] * 1280, 640 + 92, 0.01);
+  EXPECT_NEAR(right[1] * 1280, 1280 - 26, 0.01);
+  EXPECT_NEAR(left[2], left[0], 1e-9) << "the third one is below the first one";
+  // Under the figure's title: the panel's title, one line of its legend, the axes, their labels.
+  EXPECT_NEAR(top[0] * 852, 852 - 52 - 38 - 20, 0.01);
+  EXPECT_NEAR(bottom[0] * 852, 852 - 52 - 400 + 58, 0.01);
+  EXPECT_NEAR(top[1], top[0], 1e-9);
+  EXPECT_NEAR(top[2] * 852, 852 - 52 - 400 - 38 - 20, 0.01);
+  EXPECT_NEAR(bottom[2] * 852, 58, 0.01);
+}
+
+// Entries flow in lines of the axes' width; gnuplot's letters are 6.8 px wide.
+TEST(GnuplotScript, BreaksALongLegendIntoLines) {
+  Figure figure = small();
+  figure.panels[0].series.clear();
+  for (int i = 0; i < 5; ++i) {
+    figure.panels[0].series.push_back({fmt::format("{:-<20}{}", "curve", i),
+                                       kDeviceInk,
+                                       Series::Style::line,
+                                       {{0, 1.0}, {1, 2.0 + i}}});
+  }
+  const std::string script = script_of(figure);
+  std::vector<std::pair<double, double>> places;
+  for (int i = 0; i < 5; ++i) {
+    const std::string label = typeset(fmt::format("{:-<20}{}", "curve", i));
+    const std::size_t at = script.find("set label '" + label + "' at screen ");
+    ASSERT_NE(at, std::string::npos) << label;
+    double x = 0, y = 0;
+    ASSERT_EQ(std::sscanf(script.c_str() + script.find("screen ", at), "screen %lf,%lf", &x, &y),
+              2);
+    places.emplace_back(x * 640, y * (420 + 52));
+  }
+  // 26 px of sample, 6 beside it, 21 letters, 20 to the next: two fit into 522 px.
+  const double wide = 26 + 6 + 21 * 6.8 + 20;
+  EXPECT_NEAR(places[0].first, 92 + 26 + 6, 0.01);
+  EXPECT_NEAR(places[1].first - places[0].first, wide, 0.01);
+  EXPECT_NEAR(places[1].second, places[0].second, 0.01);
+  const std::size_t in_line = places[2].second < places[0].second - 1 ? 2 : 3;
+  EXPECT_NEAR(places[in_line].first, places[0].first, 0.01) << "the next line begins at the left";
+  EXPECT_NEAR(places[0].second - places[in_line].second, 20, 0.01) << "and lies below";
+}
+
+TEST(GnuplotScript, DrawsEachStyleAsItIsNamed) {
+  Figure figure = small();
+  Series points{"dots", kHandInk, Series::Style::points, {{0, 1}}};
+  points.mark = 5;
+  Series cells{"", "", Series::Style::cells, {}, {{0, 1, 2, 4, 0.5}}};
+  cells.label = "share [-]";
+  figure.panels[0].series = {{"line", kDeviceInk, Series::Style::line, {{0, 1}, {1, 2}}},
+                             {"dashed", kProxyInk, Series::Style::dashed, {{0, 1}, {1, 2}}},
+                             points,
+                             {"band", kContactInk, Series::Style::band, {{0, 1, 0.5, 1.5}}},
+                             cells};
+  figure.panels[0].value_range = {{0, 2}};
+  const std::string script = script_of(figure);
+  const std::string plot = script.substr(script.find("\nplot "));
+  for (const std::string& words :
+       {fmt::format("$d0 using 1:2 with lines lw 1.8 dt 1 lc rgb '{}' notitle", kDeviceInk),
+        fmt::format("$d1 using 1:2 with lines lw 1.8 dt (7,4) lc rgb '{}' notitle", kProxyInk),
+        fmt::format("$d2 using 1:2 with points pt 5 ps 0.6 lc rgb '{}' notitle", kHandInk),
+        std::string("$d3 using 1:3:4 with filledcurves"),
+        std::string("$d4 using 1:2:3:4:5:6:7 with boxxyerror")}) {
+    EXPECT_THAT(plot, HasSubstr(words));
+  }
+  // x y, then x_low x_high y_low y_high value.
+  EXPECT_THAT(script, HasSubstr("$d4 << EOD\n0 2 0 1 2 4 0.5\nEOD"));
+  EXPECT_THAT(script, HasSubstr("$d3 << EOD\n0 1 0.5 1.5\nEOD"));
+  EXPECT_THAT(script, HasSubstr("set cbrange [0:2]"));
+  EXPECT_THAT(script, HasSubstr("'share [−]'"));
+  double right = 0;
+  ASSERT_EQ(
+      std::sscanf(script.c_str() + script.find("set rmargin"), "set rmargin at screen %lf", &right),
+      1);
+  EXPECT_NEAR(right * 640, 640 - 104, 0.01) << "room for the bar of colours";
+}
+
+TEST(GnuplotScript, ChoosesRangesWithRoomAroundTheValues) {
+  const auto range = [](std::vector<FigurePoint> points, bool log = false) {
+    Figure figure = small();
+    figure.panels[0].log_y = log;
+    figure.panels[0].series = {{"line", kDeviceInk, Series::Style::line, std::move(points)}};
+    const std::string script = script_of(figure);
+    const std::size_t at = script.find("set yrange ") + 11;
+    return script.substr(at, script.find('\n', at) - at);
+  };
+  EXPECT_EQ(range({{0, 100}, {1, 200}}), "[95:205]") << "a twentieth on both sides";
+  EXPECT_EQ(range({{0, 1}, {1, 101}}), "[0:106]") << "zero is near";
+  EXPECT_EQ(range({{0, -20}, {1, 80}}), "[-25:85]");
+  EXPECT_EQ(range({{0, 4}, {1, 4}}), "[3.8:4.2]") << "a level line";
+  EXPECT_EQ(range({{0, 3}, {1, 12}}, true), "[2:18]");
+  EXPECT_EQ(range({{0, -3}, {1, 3}, {2, 12}}, true), "[2:18]") << "positive values alone";
+  EXPECT_EQ(range({{0, std::nan("")}}), "[*:*]");
+  Figure figure = small();
+  figure.panels[0].x_range = {{-1, 4}};
+  figure.panels[0].log_x = true;
+  figure.panels[0].x_ticks = {{0.5, "none"}, {2, "two"}};
+  const std::string script = script_of(figure);
+  EXPECT_THAT(script, HasSubstr("set xrange [-1:4]"));
+  EXPECT_THAT(script, HasSubstr("set logscale x\n"));
+  EXPECT_THAT(script, HasSubstr("unset logscale y\n"));
+  EXPECT_THAT(script, HasSubstr("set xtics noenhanced ('none' 0.5, 'two' 2)"));
+  EXPECT_THAT(script_of(small()), HasSubstr("set xtics enhanced autofreq"));
+}
+
+TEST(GnuplotScript, DrawsIntoEachFileInItsSize) {
+  Figure figure = small();
+  const std::array files{FigureFile{"pngcairo", 2, "/a.png"}, FigureFile{"svg", 1, "/it's.svg"}};
+  const std::string script = gnuplot_script(figure, files);
+  EXPECT_THAT(script, HasSubstr("set terminal pngcairo size 1280,944 "));
+  EXPECT_THAT(script, HasSubstr("fontscale 2 linewidth 2 pointscale 2"));
+  EXPECT_THAT(script, HasSubstr("set output '/a.png'"));
+  EXPECT_THAT(script, HasSubstr("set terminal svg size 640,472 "));
+  EXPECT_THAT(script, HasSubstr("set output '/it''s.svg'"));
+  EXPECT_THAT(script, testing::EndsWith("unset multiplot\nset output\n"));
+  figure.panels[0].series.clear();
+  EXPECT_THAT(script_of(figure), HasSubstr("plot NaN notitle"));
+}
+
+TEST_F(Figures, WriteTheMiddleOfCells) {
+  Figure figure = small();
+  figure.panels[0].log_x = true;
+  figure.panels[0].series = {{"map", "", Series::Style::cells, {}, {{1, 100, 2, 4, 0.5}}}};
+  write_figure_data(figure, dir_ / "f.csv");
+  EXPECT_EQ(read(dir_ / "f.csv"), "panel,series,x,y,low,high\n\"Panel\",\"map\",10,3,0.5,0.5\n");
 }
 
 }  // namespace
