@@ -89,7 +89,7 @@ void add_pendulum(double tick, BodyJoint::Kind kind, double amplitude, BodyFindi
        .limit = kGained,
        .relative = false,
        .conditions =
-           fmt::format("Change of the pendulum's energy. {}, which swings with {:.3g} mJ.", of,
+           fmt::format("Change of the pendulum's energy. {}; energy of the swing {:.3g} mJ.", of,
                        1e3 * kRodMass * kStandardGravity * to_center * (1 - std::cos(amplitude)))});
   found.curves.push_back(curve);
 }

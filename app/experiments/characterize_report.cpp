@@ -54,12 +54,16 @@ std::string walls_section(const Characterization& found) {
   }
   return table_of(
       "Walls",
-      fmt::format("The stiffest that is felt as set and quiet, beside the one that limpid analyze "
-                  "names. Then a wall of {} N/m in four hands: the stiffness felt, and the most "
-                  "energy that a hand was given.",
-                  kCommonWall),
-      "<th>Law</th><th class=\"number\">Stiffest [N/m]</th><th class=\"number\">Analyze [N/m]</th>"
-      "<th>bounded by</th><th class=\"number\">Felt [N/m]</th><th class=\"number\">Given [mJ]</th>",
+      fmt::format(
+          "First: the stiffest wall that is felt as stiff as set, and that stays quiet; beside "
+          "it the stiffest wall that limpid analyze names. Then a wall of {} N/m, touched by "
+          "four hands of different grip: the stiffness that a hand feels, and the largest "
+          "energy that a hand is given.",
+          kCommonWall),
+      "<th>Law</th><th class=\"number\">Stiffest wall [N/m]</th><th class=\"number\">Named by "
+      "analyze [N/m]</th>"
+      "<th>bounded by</th><th class=\"number\">Felt [N/m]</th><th class=\"number\">Given to a hand "
+      "[mJ]</th>",
       rows);
 }
 

@@ -133,8 +133,9 @@ constexpr std::array kExperiments{
     Experiment{"stack",
                "stacks of bodies: how deep they sink into each other, sweeps of the solver, energy",
                stack},
-    Experiment{"bodies", "motion of bodies against closed forms, errors both ways", bodies,
-               Takes::none, "bodies without an arm"},
+    Experiment{"bodies",
+               "motion of bodies beside closed forms: too much and too little both count as errors",
+               bodies, Takes::none, "bodies without an arm"},
 };
 
 void write_verdict(const std::string& name, const Outcome& outcome,

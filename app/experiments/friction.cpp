@@ -356,7 +356,7 @@ Outcome friction(TrialRunner& lab) {
   for (const Dragged& d : all) given = worse(given, d.verdict.given);
   outcome.checks = {
       at_least("plane: ticks in which the tip surely stuck", rough.stuck, 100),
-      at_least("plane: ticks in which the tip surely slipped", rough.slid, 100),
+      at_least("plane: ticks in which the tip clearly slipped", rough.slid, 100),
       at_most("plane: largest motion of the stuck tip in a tick, beyond that of the friction's "
               "spring [m]",
               rough.crept, 1e-9),

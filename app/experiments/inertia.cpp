@@ -70,11 +70,10 @@ Outcome inertia(TrialRunner& lab) {
                                       [&](auto k) { return s.at(k, Column::device_position)[1]; }));
     if (eta == 1) continue;
     const double rms = rms_norm(s, Column::hand_torque, 0, s.size());
-    outcome.checks.push_back(at_most(
-        fmt::format(
-            "rms human torque at eta = {} divided by eta times that at eta = 1: deviation from 1",
-            eta),
-        std::abs(rms / (eta * rms_at_one) - 1), 0.10));
+    outcome.checks.push_back(at_most(fmt::format("rms human torque at eta = {}: relative deviation "
+                                                 "from eta times the rms torque at eta = 1",
+                                                 eta),
+                                     std::abs(rms / (eta * rms_at_one) - 1), 0.10));
     outcome.checks.push_back(at_most(
         fmt::format(
             "difference of the motion at eta = {} from that at eta = 1, divided by the range", eta),

@@ -155,7 +155,7 @@ Outcome stack(TrialRunner& lab) {
     outcome.checks.push_back(at_most(which + "energy gained by the blocks [J]", v.gain, 1e-6));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-5));
     outcome.checks.push_back(
-        at_most(which + "largest energy given to the human beyond what the blocks gave [J]",
+        at_most(which + "largest energy given to the human, less the energy of the blocks [J]",
                 v.beyond, 5e-5));
     outcome.checks.push_back(
         at_most(which + "ticks for which the proxy stood still", v.unsolved, 0));

@@ -173,9 +173,10 @@ FigurePanel stop_panel(const Session& s) {
 
 FigurePanel gain_panel(const Session& paper, const Balance& papers, const Session& ours,
                        const Balance& own, const Balance& stiff) {
-  FigurePanel panel{.title = "Energy that the stop gave beyond the energy stored in the stop",
-                    .x_label = "time [s]",
-                    .y_label = "energy [μJ]"};
+  FigurePanel panel{
+      .title = "Energy that the joint's stop gave, less the energy that was stored in the stop",
+      .x_label = "time [s]",
+      .y_label = "energy [μJ]"};
   const auto label = [](const char* law, double stop) {
     return fmt::format("{}, {} N m/rad", law, stop);
   };

@@ -433,7 +433,7 @@ TEST(FiguresOf, DropFallFreelyUntilTheTip) {
     EXPECT_GT(hardest, 9.81 * 0.05) << "harder than the block's weight";
   }
   const std::string force = "Force on the tip, 2000 N/m",
-                    beyond = "Energy to the human beyond what the block gave, 2000 N/m";
+                    beyond = "Energy to the human, less the energy of the block; block of 2000 N/m";
   for (const char* law : {"predictive", "proposed", "standard"}) {
     const Kept kept = made.kept(fmt::format("{}-2000", law));
     EXPECT_STREQ(name(kept.p.kind), law);

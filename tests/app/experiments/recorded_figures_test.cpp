@@ -187,8 +187,8 @@ TEST(FiguresOf, InertiaShowThreeEtasInOneHand) {
     expect_over_time(made.curve("Shoulder angle: the motion is the same", label), kept,
                      [&](auto k) { return kept.one(k, Column::device_position, 1); });
     if (eta == 1) continue;
-    EXPECT_NEAR(made.check(fmt::format("rms human torque at eta = {} divided by eta times that at "
-                                       "eta = 1: deviation from 1",
+    EXPECT_NEAR(made.check(fmt::format("rms human torque at eta = {}: relative deviation from eta "
+                                       "times the rms torque at eta = 1",
                                        eta))
                     .value,
                 std::abs(rms(kept) / (eta * rms(one)) - 1), 1e-9);
@@ -487,7 +487,8 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
                    [&](auto k) { return 1e3 * ours.one(k, Column::device_position, 0); });
   expect_over_time(made.curve(stop, "proxy x2"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::proxy_position, 0); });
-  const std::string gave = "Energy that the stop gave beyond the energy stored in the stop";
+  const std::string gave =
+      "Energy that the joint's stop gave, less the energy that was stored in the stop";
   const Kept paper = made.kept("stop-20-proposed");
   expect_over_time(made.curve(gave, "proposed, 20 N m/rad"), paper,
                    [&](auto k) { return 1e6 * paper.one(k, Column::contact_gain); });
