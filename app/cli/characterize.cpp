@@ -135,7 +135,8 @@ KnownNumber delay_number(const Source& source, const InputOptions& input, Parame
   } else if (source.encoder_step) {
     p.device_delay = kUsualDelay;
     number.assumed = true;
-    number.from = "one tick: the delay was never measured; limpid identify measures it";
+    number.from =
+        "one tick is assumed, as the delay was never measured; limpid identify measures it";
   } else {
     number.assumed = true;
     number.from = "no delay; --set device.delay=TICKS sets a delay";

@@ -48,8 +48,9 @@ void print(const Identification& identification) {
   const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {
     fmt::print(
-        "readings       {:.0f} a second; between two: {:.2f} ms in the middle, {:.2f} ms at "
-        "99 %, {:.2f} ms at most\n",
+        "readings       {:.0f} a second; time between two: median {:.2f} ms, 99th percentile "
+        "{:.2f} ms, "
+        "most {:.2f} ms\n",
         timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
   }
   if (identification.torque_scale) {

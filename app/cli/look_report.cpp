@@ -156,7 +156,7 @@ std::string look_text(const LookedDevice& device, const DeviceSeen& seen) {
                                        : "as the device reports them; not checked yet") +
       look_line("joints", std::to_string(traits.dof)) +
       look_line("readings",
-                fmt::format("{}, {:.0f} a second{}; between two {:.2f} ms in the middle, {:.1f} ms "
+                fmt::format("{}, {:.0f} a second{}; time between two: median {:.2f} ms, {:.1f} ms "
                             "at most",
                             seen.readings(), seen.rate(),
                             traits.rate > 0 ? fmt::format(" ({:.0f} declared)", traits.rate) : "",

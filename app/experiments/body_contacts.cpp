@@ -343,7 +343,7 @@ BodyFindings grain_rests(double tick) {
   double most = 0;
   bench.run(1, [&] { most = worse(most, bench.world().spin(0).norm()); });
   return {{{.group = "rest",
-            .what = "spin of a grain of 10 mg at rest, " + tick_text(tick),
+            .what = "spin that a resting cube of 10 mg should not have, " + tick_text(tick),
             .unit = "rad/s",
             .expected = 0,
             .measured = most,

@@ -116,8 +116,9 @@ Trial press(const ExperimentArm& on, const std::string& name, CouplingKind kind,
         minimum_jerk(t / kReached) - minimum_jerk((t - kPullOut) / (kOut - kPullOut));
     return Vec3(kAhead, 0, kDeepest * part);
   };
-  const std::string source = fmt::format("down to {} m in {} s, from {} s back within {} s",
-                                         kDeepest, kReached, kPullOut, kOut - kPullOut);
+  const std::string source =
+      fmt::format("the hand goes down to {} m in {} s, and goes back from {} s on, in {} s",
+                  kDeepest, kReached, kPullOut, kOut - kPullOut);
   return {name, plan_in(on.description, kTableScene, hand_path(source, p.tick, kOver, at), p)};
 }
 

@@ -167,10 +167,10 @@ void show_tooltip(const FieldInfo& info, double usual, const char* broken) {
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   if (info.is_number()) {
     ImGui::Text("%s, %s", info.key, range_text(info).c_str());
-    ImGui::Text("%s: %s (right click). Double click to type.", of_paper(info) ? "Paper" : "Usual",
-                with_unit(info, usual).c_str());
+    ImGui::Text("%s: %s (right click sets it). Double click to type.",
+                of_paper(info) ? "Paper" : "Usual", with_unit(info, usual).c_str());
   } else {
-    ImGui::Text("%s. Right click: the usual choice.", info.key);
+    ImGui::Text("%s. Right click sets the usual choice.", info.key);
   }
   if (!info.live) ImGui::TextUnformatted("Takes effect when the loop starts again.");
   ImGui::PopStyleColor();

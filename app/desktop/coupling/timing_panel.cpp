@@ -143,7 +143,7 @@ void DeviceTiming::draw(const DevicePace& pace, const ArmDescription& arm, const
     read_out("jitter",
              fmt::format("{}, 99 % within {}", milliseconds(f.jitter),
                          milliseconds(pace.intervals().quantile(0.99))),
-             {}, "Deviation of the time between two readings, as they arrive here");
+             {}, "Standard deviation of the time between two readings, when Limpid gets them");
     draw_time_histogram(pace.intervals(), SafetyLimits::kStaleReading,
                         "Time between two readings, 1 us to 100 ms, both axes logarithmic; red: "
                         "over 5 ms, when force is cut.");

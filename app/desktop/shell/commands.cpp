@@ -214,7 +214,7 @@ std::string in_playback(const Desktop& d) {
 }
 
 std::string no_question(const Desktop& d) {
-  return d.document.asking() ? "" : "There is no question about unsaved changes.";
+  return d.document.asking() ? "" : "No dialog about unsaved changes is open.";
 }
 
 std::string nothing_kept(const Desktop& d) {

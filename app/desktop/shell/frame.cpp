@@ -347,15 +347,16 @@ void Frame::draw_fold_tabs(const Layout& at) {
   const float grip = 3 * current_scale();
   fold_tab("left tab", {{left + grip, y}, {left + grip + wide, y + high}},
            at.show_left ? ImGuiDir_Left : ImGuiDir_Right,
-           at.show_left ? "Folds the coupling panel (F2)" : "The coupling panel (F2)", s.show_left);
+           at.show_left ? "Hides the coupling panel (F2)" : "Shows the coupling panel (F2)",
+           s.show_left);
   fold_tab("right tab", {{right - grip - wide, y}, {right - grip, y + high}},
            at.show_right ? ImGuiDir_Right : ImGuiDir_Left,
-           at.show_right ? "Folds the scene and device panel (F3)"
-                         : "Scene, hand, device and timing (F3)",
+           at.show_right ? "Hides the panel of scene and device (F3)"
+                         : "Shows the panel of scene and device (F3)",
            s.show_right);
   fold_tab("plots tab", {{x, bottom - grip - wide}, {x + high, bottom - grip}},
            at.show_plots ? ImGuiDir_Down : ImGuiDir_Up,
-           at.show_plots ? "Folds the plots (F4)" : "The plots (F4)", s.show_plots);
+           at.show_plots ? "Hides the plots (F4)" : "Shows the plots (F4)", s.show_plots);
 }
 
 void Frame::draw_splitters(const Layout& at) {

@@ -23,7 +23,8 @@ namespace {
 void say_for_rerun(const Desktop& d) {
   if (!d.playback.on()) return;
   ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(current_palette().muted));
-  ImGui::TextWrapped("For the re-run; what was recorded is on the left.");
+  ImGui::TextWrapped(
+      "These settings are for the re-run. The panel on the left shows the recorded ones.");
   ImGui::PopStyleColor();
 }
 

@@ -285,7 +285,7 @@ bool World::virtual_arm_again() {
   try {
     arms.push_back(read_urdf(device_file_, device_tip_, consent(device_file_)));
   } catch (const std::exception& e) {
-    d_.notices.say(fmt::format("{} The arm is as it was before.", e.what()), true);
+    d_.notices.say(fmt::format("{} The arm before is still in use.", e.what()), true);
   }
   if (virtual_arm_) arms.push_back(*virtual_arm_);
   if (const SetAside* waiting = d_.document.waiting()) arms.push_back(waiting->arm);

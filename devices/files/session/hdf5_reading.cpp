@@ -190,7 +190,8 @@ void check_filters(hid_t creation, const std::string& path, const fs::path& file
     if (id >= 0 && id <= kLastOwnFilter) continue;
     name.back() = '\0';
     refuse(file, path,
-           fmt::format("is packed by filter {} (\"{}\"); allowed: those of HDF5 itself, as gzip",
+           fmt::format("is compressed by filter {} (\"{}\"); allowed: the filters that come with "
+                       "HDF5, for example gzip",
                        id, name.data()));
   }
 }

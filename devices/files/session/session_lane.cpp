@@ -317,8 +317,8 @@ void SessionLane::create_world(hid_t group) {
   hdf5::make_scale(world_, "state", path_);
   hdf5::write_text(world_.get(), "unit", "-", path_);
   hdf5::write_text(world_.get(), "what",
-                   "what the loop keeps of objects that move, at the first row: for the program, "
-                   "which begins there again",
+                   "state of the objects that move, at the first row: a re-run begins with this "
+                   "state",
                    path_);
 }
 

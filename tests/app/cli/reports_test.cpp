@@ -72,7 +72,7 @@ TEST(LookReport, SaysInLinesWhatWasSeen) {
        {"device +Stick, a test, stick:1\n", "arm +nobody knows another\n",
         "driven by +limpid-vendor\n", "motors +the device has motors, and got no force\n",
         "axes +as the device reports them; not checked yet\n", "joints +2\n",
-        "readings +1001, 1000 a second .1000 declared.; between two 1.0[0-9] ms in the middle",
+        "readings +1001, 1000 a second .1000 declared.; time between two: median 1.0[0-9] ms",
         "turns .rad. +0 to 0.4 +-0.5 to 0.25 +0.1 +0.001 ",
         "range +turns went beyond the range that it declares\n", "buttons +pressed: 1, 3\n",
         "hand +no hand on the switch for 0.25 s\n", "calibration +not calibrated for 0.25 s\n",

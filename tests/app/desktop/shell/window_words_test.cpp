@@ -292,8 +292,10 @@ TEST_F(Words, OfPlaybackLeadThroughTheRecording) {
   }
   EXPECT_THAT(sentences(kSidePanel),
               HasSubstr("The scene of the recording. This scene cannot be changed."));
-  EXPECT_THAT(sentences(kSidePanel),
-              HasSubstr("For the re-run; what was recorded is on the left."));
+  EXPECT_THAT(
+      sentences(kSidePanel),
+      HasSubstr(
+          "These settings are for the re-run. The panel on the left shows the recorded ones."));
   EXPECT_THAT(words("##MainMenuBar"), HasSubstr("playing table.h5"));
   click("Back to live", "transport");
   EXPECT_FALSE(desktop->playback.on());
@@ -445,7 +447,7 @@ TEST_F(Words, OfFoldedPanelsComeBackByTheirTabs) {
               desktop->settings.show_plots);
   EXPECT_NE(words("coupling"), "");
   point_at(tab("right tab"));
-  EXPECT_THAT(words("##Tooltip"), HasSubstr("Folds the scene and device panel (F3)"));
+  EXPECT_THAT(words("##Tooltip"), HasSubstr("Hides the panel of scene and device (F3)"));
 }
 
 TEST_F(Words, OfABlindWindowTellNoLaw) {
