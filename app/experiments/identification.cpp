@@ -48,8 +48,8 @@ std::string device_text(const Identification& identification) {
   const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {
     text += fmt::format(
-        " {:.0f} readings a second, {:.2f} ms apart in the middle, {:.2f} ms at 99 %, {:.2f} ms at "
-        "most.",
+        " {:.0f} readings a second; time between two: median {:.2f} ms, 99th percentile {:.2f} ms, "
+        "most {:.2f} ms.",
         timing.rate, 1e3 * timing.p50, 1e3 * timing.p99, 1e3 * timing.most);
   }
   if (identification.torque_scale) {

@@ -441,7 +441,7 @@ TEST_F(Words, OfFoldedPanelsComeBackByTheirTabs) {
     return window->Rect().GetCenter();
   };
   point_at(tab("left tab"));
-  EXPECT_THAT(words("##Tooltip"), HasSubstr("The coupling panel (F2)"));
+  EXPECT_THAT(words("##Tooltip"), HasSubstr("Shows the coupling panel (F2)"));
   for (const char* name : {"left tab", "right tab", "plots tab"}) click(tab(name));
   EXPECT_TRUE(desktop->settings.show_left && desktop->settings.show_right &&
               desktop->settings.show_plots);
