@@ -75,4 +75,13 @@ Chatter::Stretch Chatter::measure(const History& history, SampleIndex from, Samp
   return stretch;
 }
 
+bool PlayedChatter::there(const History& history, SampleIndex at, int first, int dof, double k_vc) {
+  const auto enough = static_cast<SampleIndex>(std::lround(2 / history.tick()));
+  const SampleIndex end = at + 1;
+  if (end < seen_ || end > seen_ + enough) chatter_.start_over(end - std::min(end, enough));
+  seen_ = end;
+  chatter_.follow(history, end, first, dof, k_vc);
+  return chatter_.there();
+}
+
 }  // namespace limpid

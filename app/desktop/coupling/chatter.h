@@ -53,4 +53,16 @@ class Chatter {
   double power_ = 0, frequency_ = 0;
 };
 
+// Detector of chatter at the place where a recording is played, with jumps to and fro.
+class PlayedChatter {
+ public:
+  // Returns whether a lane chatters at the sample `at`; as Chatter::follow(). A jump counts from
+  // two seconds before its end.
+  bool there(const History& history, SampleIndex at, int first, int dof, double k_vc);
+
+ private:
+  Chatter chatter_;
+  SampleIndex seen_ = 0;  // samples looked at
+};
+
 }  // namespace limpid

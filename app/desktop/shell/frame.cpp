@@ -224,6 +224,22 @@ bool Frame::differs() {
   return different;
 }
 
+// Returns whether a lane chatters now, live or where the recording is played.
+bool Frame::chatters(std::size_t lane) {
+  PlayedSession* const played = desktop_.playback.shown();
+  if (played == nullptr) {
+    const auto& found = desktop_.chatter.found();
+    return found && found->lane == lane;
+  }
+  const Stage& stage = played->stage();
+  if (std::exchange(chatter_of_, &stage) != &stage) played_chatter_ = {};
+  const std::vector<Parameters> settings = played->lane_settings();
+  if (lane >= settings.size()) return false;
+  return played_chatter_[lane].there(stage.history, played->player().index(),
+                                     stage.channels().lane(lane).first, stage.arm().dof(),
+                                     settings[lane].k_vc);
+}
+
 void Frame::draw_coupling(ScreenRect rect) {
   const Stage& shown = desktop_.shown.stage();
   const TraceChannels& channels = shown.channels();
@@ -232,11 +248,10 @@ void Frame::draw_coupling(ScreenRect rect) {
   const std::size_t lane = desktop_.tuning.edited_lane();
   const std::span<const double> row = lane < rows.size() ? rows[lane] : desktop_.shown.row();
   const auto at = [&](Column c) { return layout.in(row, c)[0]; };
-  const auto& chatter = desktop_.chatter.found();
   CouplingReading reading{at(Column::energy_total),
                           at(Column::energy_compensation),
                           shown.energy[lane],
-                          chatter && chatter->lane == lane && !desktop_.playback.on(),
+                          chatters(lane),
                           {},
                           at(Column::energy_ledger),
                           at(Column::governor),

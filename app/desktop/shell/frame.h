@@ -1,9 +1,11 @@
 // Frame of the window: all of its parts, each in its place.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <utility>
 
+#include "app/desktop/coupling/chatter.h"
 #include "app/desktop/coupling/coupling_panel.h"
 #include "app/desktop/plots/range_panel.h"
 #include "app/desktop/shell/desktop.h"
@@ -52,6 +54,7 @@ class Frame {
   bool draw_handles(const ViewScene& scene, ScreenRect rect);
   void select_under(const Ray& ray, const ViewScene& scene);
   void draw_coupling(ScreenRect rect);
+  bool chatters(std::size_t lane);
   void draw_played(PlayedSession& session, const CouplingReading& reading,
                    const CouplingSituation& now);
   void draw_plot_row(ScreenRect rect, ScreenRect view);
@@ -66,6 +69,8 @@ class Frame {
   FileMenus files_;
   ViewPanel view_;
   YourTurn your_turn_;
+  std::array<PlayedChatter, kMostLanes> played_chatter_;
+  const Stage* chatter_of_ = nullptr;
   RangePanel figures_;
   Sections sections_;
   Dialogs dialogs_;

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "app/plot/trace_channels.h"
 #include "app/run/scene_meshes.h"
@@ -123,6 +125,31 @@ TEST(Chatter, IsNotSeenWhereHandsAreCalm) {
       EXPECT_EQ(look_at(plan).first, -1) << scene << " " << info(kind).key;
     }
   }
+}
+
+// A recording is played from anywhere: chatter is there where it was, and not before it began.
+TEST(PlayedChatter, IsThereAfterAJumpToAnyPlace) {
+  const RunPlan plan = pressing_a_table(5000, CouplingKind::proposed);
+  TraceChannels channels(plan.arm, plan.layout(), {});
+  History history({.channels = channels.count(), .seconds = 60, .tick = plan.parameters.tick});
+  Chatter live;
+  std::vector<bool> wanted;
+  simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+    channels.append(history, row);
+    live.follow(history, history.end(), 0, plan.arm.dof(), plan.parameters.k_vc);
+    wanted.push_back(live.there());
+    return true;
+  });
+  const auto began = static_cast<SampleIndex>(std::ranges::find(wanted, true) - wanted.begin());
+  ASSERT_LT(began + 1000, wanted.size());
+  PlayedChatter played;
+  const auto there = [&](SampleIndex at) {
+    return played.there(history, at, 0, plan.arm.dof(), plan.parameters.k_vc);
+  };
+  for (SampleIndex at = 0; at + 16 < began; at += 16) EXPECT_FALSE(there(at)) << at;
+  EXPECT_TRUE(there(began + 500));
+  EXPECT_FALSE(there(began / 2)) << "a jump back";
+  EXPECT_TRUE(there(began + 1000)) << "a jump there";
 }
 
 }  // namespace
