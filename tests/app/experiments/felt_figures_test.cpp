@@ -544,7 +544,7 @@ TEST(FiguresOf, LinkShowWallsOverTheDelay) {
                &proposed = made.curve(walls, "proposed"),
                &fitted = made.curve(walls, "standard, gains by (3)"),
                &lag = made.curve(walls, "proposed, theory");
-  // As long as its poles say, within a quarter; lines under others are broad.
+  // The standard law ends where its poles say, within a quarter. Lines under others are broad.
   const double foretold = longest_delay(made.curve(walls, "standard, theory"));
   EXPECT_GT(foretold, 0);
   EXPECT_NEAR(
