@@ -512,5 +512,78 @@ TEST(FiguresOf, StackSinkUnderTheWeightAbove) {
   }
 }
 
+// The longest delay at which a curve of walls is above the softest one, 100 N/m [ms].
+double longest_delay(const Series& walls) {
+  double longest = 0;
+  for (const FigurePoint& p : walls.points) {
+    if (p.y > 100 && p.x >= 1) longest = std::max(longest, p.x);
+  }
+  return longest;
+}
+
+// Delays of 0 to 100 ms each way; no delay stands at 0.5 on the logarithmic axis.
+TEST(FiguresOf, LinkShowWallsOverTheDelay) {
+  const Made made("link");
+  const std::string walls = "The stiffest wall on which a tap comes to rest";
+  const std::vector<double> delays{0.5, 1, 2, 3, 4, 5, 7, 10, 20, 50, 100};
+  const auto expect_delays = [&](const Series& curve, std::size_t count) {
+    ASSERT_EQ(curve.points.size(), count) << curve.label;
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(curve.points[i].x, delays[i]) << curve.label;
+      EXPECT_GE(curve.points[i].y, 100 - 1e-9) << curve.label;
+      EXPECT_LE(curve.points[i].y, 20000 + 1e-9) << curve.label;
+    }
+  };
+  for (const char* law : {"standard, gains by (3)", "standard", "proposed", "tank"}) {
+    expect_delays(made.curve(walls, law), 11);
+  }
+  // A law without a link has both ways in its motors, which it knows up to 20 ms.
+  expect_delays(made.curve(walls, "predictive, late motors instead"), 8);
+  expect_delays(made.curve(walls, "predictive, wall that analyze names"), 8);
+  const Series &standard = made.curve(walls, "standard"), &tank = made.curve(walls, "tank"),
+               &proposed = made.curve(walls, "proposed"),
+               &fitted = made.curve(walls, "standard, gains by (3)"),
+               &lag = made.curve(walls, "proposed, theory");
+  // The standard law ends where its poles say, within a quarter. Lines under others are broad.
+  const double foretold = longest_delay(made.curve(walls, "standard, theory"));
+  EXPECT_GT(foretold, 0);
+  EXPECT_NEAR(
+      made.check("standard: longest delay at which a tap comes to rest, divided by that of theory")
+          .value,
+      longest_delay(standard) / foretold, 1e-12);
+  EXPECT_NEAR(longest_delay(standard) / foretold, 1, 0.25);
+  EXPECT_GT(fitted.width, standard.width);
+  EXPECT_GT(standard.width, tank.width);
+  const auto softest = [](const Series& curve, double to) {
+    double least = HUGE_VAL;
+    for (const FigurePoint& p : curve.points) {
+      if (p.x <= to) least = std::min(least, p.y);
+    }
+    return least;
+  };
+  EXPECT_NEAR(made.check("tank, delays up to 50 ms: stiffest wall [N/m]").value, softest(tank, 50),
+              1e-6);
+  EXPECT_NEAR(made.check("standard, gains by condition (3): stiffest wall [N/m]").value,
+              softest(fitted, 100), 1e-6);
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < 3; ++i) {
+    least = std::min(least, proposed.points[i].y / lag.points[i].y);
+  }
+  EXPECT_NEAR(
+      made.check("proposed, delays up to 2 ms: stiffest wall, divided by that of theory").value,
+      least, 1e-9);
+  const std::string energy = "Highest E_c on walls of 600 and 5000 N/m";
+  double most = 0;
+  for (const FigurePoint& p : made.curve(energy, "tank").points) most = std::max(most, p.y);
+  EXPECT_NEAR(std::max(1e-3, 1e3 * made.check("tank, delays up to 100 ms: highest E_c [J]").value),
+              most, 1e-9);
+  expect_on(made.curve(energy, "what the tanks hold at the start"), [](double) { return 5.0; });
+  expect_from_to(made.curve(energy, "what the tanks hold at the start"), 0.45, 112, 1e-9);
+  // A wall that holds a tap is felt at most as stiff as it is.
+  const std::string felt = "Stiffness felt at the device, at the stiffest wall";
+  for (const FigurePoint& p : made.curve(felt, "standard").points) EXPECT_LE(p.y, 20000 * 1.25);
+  EXPECT_EQ(made.curve(felt, "tank").points.size(), 11u);
+}
+
 }  // namespace
 }  // namespace limpid

@@ -126,12 +126,13 @@ TEST_P(Promises, AreKeptAndShownInAFigure) {
   EXPECT_FALSE(lab.conditions().text().empty());
 }
 
-// `link` and the taps of `zwidth` take too long here; the system tests run all of them.
+// `robust` takes too long here; the system tests run all of them.
 INSTANTIATE_TEST_SUITE_P(Of, Promises,
                          testing::Values("coordination", "inertia", "passivity", "spectrum",
                                          "saturation", "observer", "transparency", "eta_min",
                                          "lightness", "approaches", "switching", "friction",
-                                         "delay", "walls", "mass", "click", "drop", "stack"),
+                                         "delay", "walls", "mass", "click", "drop", "stack", "link",
+                                         "zwidth"),
                          [](const auto& one) { return std::string(one.param); });
 
 // Recordings below a folder, and when each was written.

@@ -82,5 +82,17 @@ TEST_F(RunAgain, ThatWasCancelledHasNoRows) {
   EXPECT_EQ(again.history.channels(), TraceChannels(session_.layout).count());
 }
 
+// The plots have the channels of each of its runs once, and a row for each of its ticks.
+TEST_F(RunAgain, HasAHistoryOfTheRunsThatWereRecorded) {
+  const LoadedSession one = load_session(file_);
+  const TraceChannels channels(one.arm, one.session->layout, one.session->info.bodies);
+  EXPECT_EQ(one.history.channels(), channels.count());
+  EXPECT_EQ(one.history.end() - one.history.lower_bound(-1), 400);
+  const LoadedSession table = load_session(test::assets_dir() / "sessions/table.h5");
+  EXPECT_EQ(table.history.channels() % static_cast<int>(table.session->lanes()), 0);
+  EXPECT_NEAR(table.history.end_time(),
+              static_cast<double>(table.session->size() - 1) * table.session->info.tick, 1e-6);
+}
+
 }  // namespace
 }  // namespace limpid

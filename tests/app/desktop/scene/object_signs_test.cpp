@@ -8,6 +8,7 @@
 #include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "tests/app/plot/imgui_frames.h"
+#include "tests/support/drawn_ink.h"
 
 namespace limpid {
 namespace {
@@ -99,6 +100,24 @@ TEST_F(SignsOfObjects, OutlineEachShapeWhereItIs) {
   for (const Shape& shape : {Shape{Mesh{}}, Shape{JointStop{}}}) {
     EXPECT_TRUE(outline({.pose = place, .shape = shape}).empty()) << shape_name(shape);
   }
+}
+
+TEST_F(SignsOfObjects, OutlineABallByARingThatIsEmpty) {
+  outline({.shape = Sphere{0.03}});
+  const ImU32 ink = colour(current_palette().accent);
+  const auto inked = [&](double part, double angle) {
+    const Vec3 at = 0.03 * part * Vec3(std::cos(angle), 0, std::sin(angle));
+    const ImVec2 place = seen(at);  // ImGui's lines go through the middle of pixels
+    return test::inked({place.x + 0.5f, place.y + 0.5f}, [=](ImU32 rgba) { return rgba == ink; });
+  };
+  int rim = 0;
+  for (double angle = 0; angle < 6.2; angle += 0.05) {
+    rim += inked(1, angle);
+    for (const double part : {0.4, 0.55, 0.7, 0.85}) {
+      EXPECT_FALSE(inked(part, angle)) << part << " " << angle;
+    }
+  }
+  EXPECT_GT(rim, 115) << "of 125 places on it";
 }
 
 TEST_F(SignsOfObjects, OutlineAPlaneByARingAndItsNormal) {
