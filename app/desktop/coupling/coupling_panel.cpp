@@ -630,8 +630,7 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
   draw_passive(reading, p, now.analysis);
 }
 
-void draw_simple_notes(const CouplingReading& reading, const Parameters& p,
-                       const CouplingSituation& now) {
+void draw_simple_notes(const CouplingReading& reading, const Parameters& p) {
   for (const Share& share : shares_of(reading, info(p.kind))) {
     if (!whole(share)) draw_share(share);
   }
@@ -650,7 +649,7 @@ void draw_coupling(Parameters& p, const CouplingSituation& now, const CouplingRe
     if (!now.real) draw_break(now.broken, act);
     draw_show("Show all", "All settings and figures: gains, passivity, energy, analysis (F8).",
               act);
-    draw_simple_notes(reading, p, now);
+    draw_simple_notes(reading, p);
     return;
   }
   draw_sliders(p, now.analysis, now.arm);

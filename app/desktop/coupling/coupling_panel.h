@@ -60,8 +60,7 @@ void draw_simple_reading(const CouplingReading& reading, const Parameters& p,
                          const CouplingSituation& now);
 // Draws the rest of it, line by line as there is reason to: who gave energy, and limits of motors
 // and solver.
-void draw_simple_notes(const CouplingReading& reading, const Parameters& p,
-                       const CouplingSituation& now);
+void draw_simple_notes(const CouplingReading& reading, const Parameters& p);
 // Draws energy and motors at a recording's row.
 void draw_reading(const CouplingReading& reading, const Parameters& p, const Analysis& analysis);
 

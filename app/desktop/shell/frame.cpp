@@ -307,7 +307,7 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
     } else {
       const CouplingSituation then{.analysis = analysis, .arm = now.arm, .everything = false};
       draw_simple_reading(reading, session.settings(), then);
-      draw_simple_notes(reading, session.settings(), then);
+      draw_simple_notes(reading, session.settings());
     }
   }
   if (section("For the re-run (E)", true)) {

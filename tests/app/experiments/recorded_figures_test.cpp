@@ -656,7 +656,7 @@ TEST(FiguresOf, SpectrumShareOutThePowerOfTheVelocity) {
   }
   double square = 0;
   for (const PassivityCase& one : passivity_cases()) {
-    for (const Trial& trial : passivity_trials(one, 0)) {
+    for (const Trial& trial : passivity_trials(built_in_arm(), one, 0)) {
       const Kept kept = made.kept(trial.name, "passivity");
       double sum = 0;
       for (std::size_t k = 0; k < kept.size(); ++k) {
