@@ -72,7 +72,7 @@ class TestServe(RemoteTest):
             ('{"do": "follow", "channels": ["no"]}', 'channels: "no" is no channel'),
             ('{"do": "follow", "channels": ["coupling/eta"], "rate": 1e9}', "rate: 1000000000.0"),
             ('{"do": "open"}', "nothing to open; allowed: scene, arm, session, hand"),
-            ('{"do": "open", "scene": "nowhere.toml"}', "allowed: a path from / on, or one of"),
+            ('{"do": "open", "scene": "nowhere.toml"}', "allowed: a path that begins with /, or one of"),
             ('{"do": "record", "file": "here.h5"}', "allowed: a path from / on, ending in .h5"),
             ('{"do": "stop"}', "nothing is being recorded"),
             ('{"do": "ask", "text": "?"}', "needs a window"),

@@ -22,9 +22,12 @@ float button_width(const char* label) {
   return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
 }
 
-// Draws a button, unless there is no room for it; a key does the same.
-bool button(const char* label, const char* help, bool on = false, bool bad = false) {
-  if (button_width(label) > ImGui::GetContentRegionAvail().x) return false;
+// Draws a button, unless there is no room for it; a key does the same. The button is as wide as the
+// label `widest` needs: a button whose label changes moves nothing beside it.
+bool button(const char* label, const char* help, bool on = false, bool bad = false,
+            const char* widest = nullptr) {
+  if (widest == nullptr) widest = label;
+  if (button_width(widest) > ImGui::GetContentRegionAvail().x) return false;
   const Palette& colours = palette(current_theme());
   if (on) {
     const Rgb back = bad ? colours.broken : colours.accent;
@@ -32,7 +35,7 @@ bool button(const char* label, const char* help, bool on = false, bool bad = fal
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colour_vector(back));
     ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(bad ? Rgb{255, 255, 255} : colours.panel));
   }
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = ImGui::Button(label, {button_width(widest), 0});
   if (on) ImGui::PopStyleColor(3);
   tooltip(help);
   ImGui::SameLine();
@@ -149,7 +152,8 @@ std::optional<std::size_t> playback_controls(Playback& playback, const Act& act)
   const bool with_steps = fits(button_width("|<") + 2 * button_width("<") + 2 * gap);
   const bool with_loop = fits(button_width("Loop"));
 
-  if (button(player.playing() ? "Pause" : "Play", "P plays and pauses.")) act("session.play");
+  const char* const play = player.playing() ? "Pause" : "Play";
+  if (button(play, "P plays and pauses.", false, false, "Pause")) act("session.play");
   if (with_steps) {
     if (button("|<", "To the beginning (Home)")) player.seek(0);
     if (button("<", "One tick back (left arrow)")) player.step(-1);
@@ -183,9 +187,8 @@ void recording_controls(const LiveStage& live, double tick, const Act& act) {
   const bool recording = loop.recording();
   if (button(recording ? "Stop" : "Record",
              "R starts and stops recording every tick. While an object is selected, R turns the "
-             "object, and "
-             "Ctrl+R records.",
-             recording, true)) {
+             "object, and Ctrl+R records.",
+             recording, true, "Record")) {
     act("session.record");
   }
   if (recording) {
