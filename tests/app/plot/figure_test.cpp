@@ -275,7 +275,7 @@ TEST(GnuplotScript, ChoosesRangesWithRoomAroundTheValues) {
   EXPECT_EQ(range({{0, 4}, {1, 4}}), "[3.8:4.2]") << "a level line";
   EXPECT_EQ(range({{0, 3}, {1, 12}}, true), "[2:18]");
   EXPECT_EQ(range({{0, -3}, {1, 3}, {2, 12}}, true), "[2:18]") << "positive values alone";
-  EXPECT_EQ(range({{0, std::nan("")}}), "[*:*]");
+  EXPECT_EQ(range({{0, std::nan("")}}), "[1:10]") << "gnuplot takes no empty range";
   Figure figure = small();
   figure.panels[0].x_range = {{-1, 4}};
   figure.panels[0].log_x = true;

@@ -430,7 +430,7 @@ TEST(WordOnTimes, SaysWhatNegativeOnesAre) {
   table.times = {0, 1};
   EXPECT_EQ(word_on_times(table), "");
   table.times = {-0.5, 1};
-  EXPECT_EQ(word_on_times(table), " (negative times: before the last start over)");
+  EXPECT_EQ(word_on_times(table), " (negative times: before the last t = 0)");
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST_F(ColoursOfASweep, AreExplainedByTheScale) {
   EXPECT_GE(numbers, 2);
   bool named = false;
   for (const test::DrawnText& each : test::drawn_texts()) {
-    named = named || (each.text.starts_with("hand torque, rms [N m]") &&
+    named = named || (each.text.starts_with("hand torque, rms [mN m]") &&
                       each.max.y < rect().min.y && each.max.x > rect().max.x);
   }
   EXPECT_TRUE(named) << "above the scale";
