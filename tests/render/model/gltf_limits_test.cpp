@@ -133,7 +133,7 @@ TEST(GltfLimits, CountsTrianglesOverAllNodes) {
     file.nodes += std::string(i > 0 ? "," : "") + R"({"mesh":0})";
     if (i > 0) file.roots += "," + std::to_string(i);
   }
-  expect_refusal(file.binary(), "more than 6 million triangles all nodes counted");
+  expect_refusal(file.binary(), "more than 6 million triangles, all nodes counted");
 }
 
 // An accessor without a view is zeros, which take memory that the file does not have.

@@ -189,7 +189,7 @@ TEST_F(SceneFields, TakeNothingBeyondWhatAFileMayHold) {
     double limit;
   };
   const std::vector<Tried> all{
-      {"Mass", "100", "1e9", "0", [&] { return object().body->mass; }, 100},
+      {"Mass", "100000", "1e9", "0", [&] { return object().body->mass; }, 100},
       {"Contact stiffness", "1000000", "1e9", "0", [&] { return object().body->contact_stiffness; },
        1e6},
       {"Position x, y, z [mm]", "10000", "1e9", "-1e9",
