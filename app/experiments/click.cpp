@@ -176,8 +176,10 @@ Outcome click(TrialRunner& lab) {
   outcome.figure.panels = {
       click_panel("Predictive, contacts of three stiffnesses", ours, line),
       click_panel(fmt::format("Other laws, contacts of {} N/m", kClickUsual), laws, points),
-      click_panel(fmt::format("Staggered, contacts of {} N/m", kClickUsual), usual, points),
-      click_panel(fmt::format("Staggered, contacts of {} N/m", kClickHard[2]), hard, points)};
+      click_panel(fmt::format("Staggered solution, contacts of {} N/m", kClickUsual), usual,
+                  points),
+      click_panel(fmt::format("Staggered solution, contacts of {} N/m", kClickHard[2]), hard,
+                  points)};
   outcome.figure.caption = fmt::format(
       "A hand presses and releases a button of {} g without weight. The button has a force of {} + "
       "{} sin(2 pi s / {} mm) N over its travel s. The highest speed is {} mm/s. The force felt is "

@@ -134,7 +134,7 @@ Outcome drop(TrialRunner& lab) {
     for (std::size_t k = 0; k < results[i].session.size(); ++k) {
       hardest = worse(hardest, force_on_tip(results[i].session, k));
     }
-    outcome.checks.push_back(at_least(which + "hardest force on the tip [N]", hardest, 1));
+    outcome.checks.push_back(at_least(which + "largest force on the tip [N]", hardest, 1));
     outcome.checks.push_back(
         at_least(which + "lowest reserve of the energy account, minus the reserve at the start [J]",
                  v.reserve, -1e-4));

@@ -123,7 +123,7 @@ constexpr std::array kExperiments{
                Takes::any, "", kLinkTheory},
     Experiment{"walls", "walls of any arm, as stiff as limpid analyze names them", walls,
                Takes::none, "36 random arms"},
-    Experiment{"robust", "promises on a device that is unlike its model: until where each holds",
+    Experiment{"robust", "a device that is unlike its model: how far each promise still holds",
                robust, Takes::none, "an ideal arm and a Touch"},
     Experiment{"mass",
                "the mass felt of a body that is held, and the smallest mass that can be held",

@@ -64,7 +64,7 @@ std::vector<HeldWay> held_ways() {
           {"proposed", kProposedInk, proposed},
           {"standard", kStandardInk, standard},
           {fmt::format("staggered, {} N s/m", kHeldDamping), kContactInk, {}},
-          {fmt::format("predictive, held by {} N/m", kHeldSoftly), kEnergyInk, predictive, 1,
+          {fmt::format("predictive, in a grip of {} N/m", kHeldSoftly), kEnergyInk, predictive, 1,
            kHeldSoftly}};
 }
 

@@ -93,7 +93,7 @@ Outcome spectrum(TrialRunner& lab) {
   figure.title = "Frequency content of the hand's motion";
   figure.caption = fmt::format(
       "Device velocity, all joints together, in the {} trials of the passivity experiment. Welch's "
-      "method: half-overlapping Hann windows of {:.3f} s, {:.2f} Hz apart.",
+      "method: half-overlapping Hann windows of {:.3f} s; frequencies {:.2f} Hz apart.",
       trials.size(), kSegment / rate, rate / kSegment);
   figure.columns = 2;
   FigurePanel density{.title = "Power density of the velocity",

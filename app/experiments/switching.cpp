@@ -159,9 +159,10 @@ double books_off(const Session& s) {
 }
 
 FigurePanel stop_panel(const Session& s) {
-  FigurePanel panel{.title = fmt::format("Into a stop of {} N m/rad and out of it", kStop),
-                    .x_label = "time [s]",
-                    .y_label = "angle beyond the stop [mrad]"};
+  FigurePanel panel{
+      .title = fmt::format("A joint goes into its stop of {} N m/rad, and out again", kStop),
+      .x_label = "time [s]",
+      .y_label = "angle beyond the stop [mrad]"};
   panel.series = {
       over_time(s, "device x1", kDeviceInk, Series::Style::line,
                 [&](auto k) { return 1e3 * s.at(k, Column::device_position)[kTurret]; }),

@@ -126,19 +126,19 @@ std::vector<FigurePanel> empty_panels(const ExperimentArm& on) {
   panels[4].log_x = false;
   panels[0].series = {theory("proposed: damping over lag", kProposedInk, 0.2, 4,
                              [&](double eta) { return law.proposed(eta, T); }),
-                      theory("passive in every hand, a plain spring", kNeutralInk, 0.2, 4,
-                             [&](double) { return law.any_linear(T); })};
+                      theory("stiffest plain spring that is passive in every hand", kNeutralInk,
+                             0.2, 4, [&](double) { return law.any_linear(T); })};
   panels[1].series = {theory("proposed: damping over lag", kProposedInk, 0.25, 2,
                              [&](double ms) { return law.proposed(1, 1e-3 * ms); }),
-                      theory("passive in every hand, a plain spring", kNeutralInk, 0.25, 2,
-                             [&](double ms) { return law.any_linear(1e-3 * ms); })};
+                      theory("stiffest plain spring that is passive in every hand", kNeutralInk,
+                             0.25, 2, [&](double ms) { return law.any_linear(1e-3 * ms); })};
   panels[3].series = {theory("one predictor: what its error gives away", kEnergyInk, 0.02, 1,
                              [&](double m) { return law.mistaken(m, T); })};
   panels[4].series = {theory(
                           "proposed: damping over lag", kProposedInk, 0, 6,
                           [&](double ms) { return law.proposed(1, T, 1e-3 * ms); }, true),
                       theory(
-                          "passive in every hand, a plain spring", kNeutralInk, 0, 6,
+                          "stiffest plain spring that is passive in every hand", kNeutralInk, 0, 6,
                           [&](double ms) { return law.any_linear(T, 1e-3 * ms); }, true)};
   return panels;
 }

@@ -205,8 +205,9 @@ std::string Summary::text() const {
       "objects that moved       {:.0f} of {} at once\n",
       1e3 * t.to_objects, 1e3 * t.objects_gain, t.most_awake, layout_.bodies());
   if (t.left_out > 0) {
-    text += fmt::format("contact points left out  {:.0f} in one tick: they give no force\n",
-                        t.left_out);
+    text +=
+        fmt::format("contact points left out  up to {:.0f} in a tick; these points give no force\n",
+                    t.left_out);
   }
   if (t.stood_still > 0) {
     text +=

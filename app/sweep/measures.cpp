@@ -52,7 +52,8 @@ constexpr MeasureInfo kTable[] = {
      "the human is never given more than a microjoule above the energy that bodies gave",
      [](const RunMeter& m) { return yes(!lost(m) && m.highest_beyond() <= kNoEnergy); }},
     {"bodies_gain", "energy that bodies gain", "J",
-     "most energy of bodies beyond what they had at first and were given",
+     "largest energy of the bodies, less the energy at the start and the energy given to the "
+     "bodies",
      [](const RunMeter& m) { return m.bodies_gain(); }},
     {"bodies_moved", "way that a body moves, longest", "m",
      "largest distance of a body's centre of mass from its start",

@@ -297,7 +297,8 @@ SweepLimit read_limit(const TomlTable& table) {
                    table.number("below", kAnything)};
   if (limit.measure == nullptr) table.refuse("measure", "a measure of limpid sweep --help");
   if (!limit.measure->yes_no() && !limit.above && !limit.below) {
-    table.refuse("measure", "a yes/no measure, or any with above or below");
+    table.refuse("measure",
+                 "a measure that is yes or no; or another measure, with a key above or below");
   }
   return limit;
 }

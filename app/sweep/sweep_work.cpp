@@ -32,7 +32,7 @@ void check_same(const Belongs& found, const Belongs& own, const fs::path& file) 
         "{}: made from another {} ({}); needed: {}. Take another --out, or remove that folder",
         file.string(), what, hex(theirs), hex(mine)));
   };
-  if (found.plan != own.plan) refuse("plan, or other files that it names", found.plan, own.plan);
+  if (found.plan != own.plan) refuse("plan, or a file that the plan names", found.plan, own.plan);
   if (found.build != own.build) {
     refuse("build of limpid, or on another kind of processor", found.build, own.build);
   }

@@ -315,10 +315,11 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
     if (!(most > 0 && std::isfinite(most))) {
       places.refuse_link(
           link.name,
-          fmt::format("inertia {:.3g} kg m^2 about joint '{}', and nothing beyond it; needed: more "
-                      "than 0 (its <inertial> or that of links fixed to it), or a tip before it "
-                      "(--tip LINK)",
-                      resistance(joint, link), joint.name));
+          fmt::format(
+              "inertia {:.3g} kg m^2 about joint '{}', and no link behind it has any; needed: more "
+              "than 0 (its <inertial> or that of links fixed to it), or a tip before it "
+              "(--tip LINK)",
+              resistance(joint, link), joint.name));
     }
     const double least = kGuess * most;
     if (slides(joint)) {

@@ -14,7 +14,7 @@ from support import ASSETS, limpid
 from window import WindowTest
 
 PADDLE = Path(__file__).with_name("simulated_paddle.py")
-WITH_LOAD, LOAD = "a second time with a load at the tip", "load"
+WITH_LOAD, LOAD = "identify again with a load at the tip", "load"
 GO_ON, AGAIN = "Go on (Enter)", "Again"
 
 

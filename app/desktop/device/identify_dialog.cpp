@@ -20,7 +20,7 @@ namespace {
 using Phase = IdentifyController::Phase;
 
 constexpr const char* kTitle = "Identify the device";
-constexpr const char* kWithLoad = "a second time with a load at the tip";
+constexpr const char* kWithLoad = "identify again with a load at the tip";
 constexpr const char* kLoad = "load";
 constexpr const char* kGoOn = "Go on (Enter)";
 constexpr const char* kAgain = "Again";

@@ -294,7 +294,7 @@ TEST(FiguresOf, MassShowTheSpringsTheory) {
     expect_on(ours, theory(5000), 0.02);
     expect_on(made.curve(title, "predictive, eta = 0.3"), theory(5000), 0.04);
     if (mass < 0.5) {
-      expect_on(made.curve(title, "predictive, held by 600 N/m"), theory(600), 0.02);
+      expect_on(made.curve(title, "predictive, in a grip of 600 N/m"), theory(600), 0.02);
     }
     const Kept kept = made.kept(fmt::format("predictive-eta-1-{}-g-5000", 1e3 * mass));
     EXPECT_EQ(kept.p.hand_stiffness, 3000);
@@ -388,7 +388,7 @@ TEST(FiguresOf, ClickFollowTheButtonsOwnForce) {
     for (const FigurePoint& p : curve.points) sum += std::pow(p.y - given(p.x), 2);
     return std::sqrt(sum / static_cast<double>(curve.points.size()));
   };
-  const std::string soft = "Staggered, contacts of 2000 N/m";
+  const std::string soft = "Staggered solution, contacts of 2000 N/m";
   EXPECT_LT(off_of(made.curve(soft, "staggered, 2 N s/m")),
             off_of(made.curve(soft, "staggered, 0 N s/m")));
 }
@@ -425,7 +425,7 @@ TEST(FiguresOf, DropFallFreelyUntilTheTip) {
           std::min(least, kept.one(k, Column::energy_ledger) - kept.one(0, Column::energy_ledger));
     }
     const std::string which = fmt::format("predictive, {} N/m: ", stiffness);
-    EXPECT_EQ(made.check(which + "hardest force on the tip [N]").value, hardest);
+    EXPECT_EQ(made.check(which + "largest force on the tip [N]").value, hardest);
     EXPECT_EQ(made.check(which +
                          "lowest reserve of the energy account, minus the reserve at the start [J]")
                   .value,

@@ -482,7 +482,7 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
     EXPECT_NEAR(kept.time(kept.size()), 2.5, 2e-3);
   }
   const Kept ours = made.kept("stop-20-predictive");
-  const std::string stop = "Into a stop of 20 N m/rad and out of it";
+  const std::string stop = "A joint goes into its stop of 20 N m/rad, and out again";
   expect_over_time(made.curve(stop, "device x1"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::device_position, 0); });
   expect_over_time(made.curve(stop, "proxy x2"), ours,

@@ -406,12 +406,12 @@ TEST_F(Dialog, OfIdentifyingTriesASimulatedDevice) {
   const std::string shown = words("Identify the device");
   for (const char* label :
        {"of each joint's range", "of the motors' limits", "down, seen from the base",
-        "a second time with a load at the tip", "Begin (Enter)", "Close (Esc)"}) {
+        "identify again with a load at the tip", "Begin (Enter)", "Close (Esc)"}) {
     EXPECT_THAT(shown, HasSubstr(label));
   }
   EXPECT_THAT(shown, HasSubstr("Limpid moves a simulated device"));
   EXPECT_FALSE(find("load", "Identify the device"));
-  click("a second time with a load at the tip", "Identify the device");
+  click("identify again with a load at the tip", "Identify the device");
   EXPECT_TRUE(find("load", "Identify the device"));
   EXPECT_NE(hint("of the motors' limits", "Identify the device"), "");
   click("Begin (Enter)", "Identify the device");
