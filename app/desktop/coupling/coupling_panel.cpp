@@ -391,8 +391,7 @@ void tell_changes(const Parameters& p, const Parameters& recorded,
   if (!again.empty()) {
     muted(fmt::format(
         "In the recording these settings change after the start: {}. The re-run makes the same "
-        "changes. "
-        "The settings below are those of the start.",
+        "changes. The settings below are those of the start.",
         again));
   }
   if (!left_out.empty()) {
@@ -482,8 +481,7 @@ std::string own_fault(const CouplingReading& now, const Parameters& p) {
   if (info(p.kind).keeps_ledger() || own <= kGivenEnergy) return {};
   return fmt::format(
       "The coupling has given {} more energy than the coupling took. The coupling is not passive "
-      "in "
-      "this grip.\n{}",
+      "in this grip.\n{}",
       energy_text(own), way_out(p));
 }
 
