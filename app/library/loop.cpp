@@ -302,7 +302,7 @@ std::string DeviceLoop::force_text() const {
     return fmt::format("force off: a reading has {} positions; needed: {}, one per joint",
                        state_->wrong_count - 1, joints());
   }
-  const std::string text = limpid::force_text(state_->rig->force_state());
+  std::string text = limpid::force_text(state_->rig->force_state());
   if (!text.empty() || state_->ticks == 0) return text;
   if (force_share() < 1) return "force fades in";
   const auto part = [&](Column column) {

@@ -90,7 +90,7 @@ std::string wrong_with(const std::string& text) {
 // Returns what is wrong with the plan, by the words of the dialog; empty if nothing is.
 std::string wrong_with(const SweepDraft& draft) {
   constexpr std::string_view kAxis = "axis.";
-  const std::string wrong = wrong_with(plan_text(draft));
+  std::string wrong = wrong_with(plan_text(draft));
   if (!wrong.starts_with(kAxis)) return wrong;
   for (const DraftAxis& each : draft.axes) {
     SweepDraft alone = draft;
