@@ -233,6 +233,7 @@ PdfCanvas::PdfCanvas(double width, double height, double scale, Rgb paper,
     : CairoCanvas(std::make_unique<Impl>()) {
   cairo_surface_t* surface =
       cairo_pdf_surface_create_for_stream(append, &impl_->document, width * scale, height * scale);
+  cairo_pdf_surface_restrict_to_version(surface, CAIRO_PDF_VERSION_1_4);  // for every reader
   cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, made_by.c_str());
   impl_->begin(surface, scale, paper);
 }

@@ -156,7 +156,10 @@ void Document::remove_selected() {
   if (!editor_.selected() || !may_edit()) return;
   const std::string name = editor_.selected_object()->name;
   const std::string also = editor_.remove(*editor_.selected());
-  notices_.say(fmt::format("Removed {}. {}Ctrl+Z brings the object back.", name, also));
+  const bool moving = std::ranges::any_of(
+      scene().objects, [](const Object& object) { return object.body.has_value(); });
+  notices_.say(fmt::format("Removed {}. {}Ctrl+Z brings the object back.{}", name, also,
+                           moving ? " Objects that move begin again where they start." : ""));
 }
 
 void Document::duplicate_selected() {

@@ -56,8 +56,10 @@ using namespace scene_limits;
 
 constexpr const char* kPositionLabel = "Position x, y, z [mm]";
 
-bool position(Pose& pose, const char* label,
-              const char* help = "Forward, left and up from the arm's base.") {
+bool position(
+    Pose& pose, const char* label,
+    const char* help =
+        "Forward, left and up from the arm's base. Of an object that moves: where it starts.") {
   Vec3 millimetres = 1e3 * pose.translation();
   if (!drag3(label, millimetres, kMillimetreSpeed, 1e3 * kPosition.minimum, 1e3 * kPosition.maximum,
              "%.1f", help)) {

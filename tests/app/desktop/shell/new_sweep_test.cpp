@@ -179,7 +179,10 @@ TEST_F(ANewSweep, IsStartedAndShown) {
     return desktop->sweep.sweep() != nullptr && desktop->sweep.sweep()->table.complete();
   };
   for (int i = 0; i < 4 && !complete(); ++i) until(complete);  // a busy computer takes its time
-  ASSERT_TRUE(complete()) << desktop->sweep.why_not_started();
+  std::string said;
+  for (const Notice& each : desktop->notices.all()) said += each.text + "\n";
+  ASSERT_TRUE(complete()) << desktop->sweep.why_not_started() << said
+                          << desktop->sweep.runner().under_way();
   EXPECT_EQ(desktop->dialog.name(), "sweep");
   const OpenedSweep& sweep = *desktop->sweep.sweep();
   EXPECT_EQ(sweep.table.points(), 2u);
