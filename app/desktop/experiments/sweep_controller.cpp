@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kBetweenLooks{500};
+constexpr int kTries = 20;
 
 // Returns the point's place on each axis.
 std::vector<Fact> axes_of(const SweepPlan& plan, std::uint64_t number) {
@@ -199,8 +200,15 @@ void SweepController::work(const fs::path& folder) {
 void SweepController::follow_runner() {
   try {
     if (const auto table = runner_.take_table()) {
-      std::error_code none;
-      if (!sweep_ || !fs::equivalent(sweep_->file, *table, none)) open(*table);
+      started_ = *table;
+      tries_ = kTries;
+    }
+    // A busy computer may fail to read a table that is being written: it is tried again.
+    std::error_code none;
+    if (sweep_ && fs::equivalent(sweep_->file, started_, none)) tries_ = 0;
+    if (tries_ > 0 && !looking_.busy() && std::chrono::steady_clock::now() >= next_look_) {
+      --tries_;
+      open(started_);
     }
     if (const auto said = runner_.take()) notices_.say(*said);
   } catch (const std::exception& e) {
@@ -221,7 +229,7 @@ bool SweepController::update() {
     follow_map();
   } catch (const std::exception& e) {
     asked_.clear();
-    notices_.say_once(e.what(), true);
+    if (tries_ == 0) notices_.say_once(e.what(), true);
   }
   return fresh;
 }

@@ -73,7 +73,9 @@ class SweepController {
   void work(const std::filesystem::path& folder);
 
   Notices& notices_;
-  std::filesystem::path asked_;  // file of the table that is being loaded
+  std::filesystem::path asked_;    // file of the table that is being loaded
+  std::filesystem::path started_;  // table of the sweep that was started here
+  int tries_ = 0;                  // left to open that table; 0: it is open
   std::shared_ptr<const OpenedSweep> sweep_;
   std::optional<SweepMap> map_;
   MapChoice choice_;

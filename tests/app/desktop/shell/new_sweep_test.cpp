@@ -179,10 +179,17 @@ TEST_F(ANewSweep, IsStartedAndShown) {
     return desktop->sweep.sweep() != nullptr && desktop->sweep.sweep()->table.complete();
   };
   for (int i = 0; i < 4 && !complete(); ++i) until(complete);  // a busy computer takes its time
-  std::string said;
-  for (const Notice& each : desktop->notices.all()) said += each.text + "\n";
-  ASSERT_TRUE(complete()) << desktop->sweep.why_not_started() << said
-                          << desktop->sweep.runner().under_way();
+  const auto state = [&] {
+    std::string text = fmt::format("dialog '{}', {}{}, {}", desktop->dialog.name(),
+                                   desktop->sweep.why_not_started(),
+                                   desktop->sweep.runner().under_way(),
+                                   desktop->sweep.sweep() == nullptr ? "no table" : "a table");
+    for (const auto& each : fs::recursive_directory_iterator(sweeps_dir())) {
+      text += "\n" + each.path().string();
+    }
+    return text;
+  };
+  ASSERT_TRUE(complete()) << state();
   EXPECT_EQ(desktop->dialog.name(), "sweep");
   const OpenedSweep& sweep = *desktop->sweep.sweep();
   EXPECT_EQ(sweep.table.points(), 2u);
