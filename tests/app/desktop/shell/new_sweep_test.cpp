@@ -180,10 +180,10 @@ TEST_F(ANewSweep, IsStartedAndShown) {
   };
   for (int i = 0; i < 4 && !complete(); ++i) until(complete);  // a busy computer takes its time
   const auto state = [&] {
-    std::string text = fmt::format("dialog '{}', {}{}, {}", desktop->dialog.name(),
-                                   desktop->sweep.why_not_started(),
-                                   desktop->sweep.runner().under_way(),
-                                   desktop->sweep.sweep() == nullptr ? "no table" : "a table");
+    std::string text =
+        fmt::format("dialog '{}', {}{}, {}", desktop->dialog.name(),
+                    desktop->sweep.why_not_started(), desktop->sweep.runner().under_way(),
+                    desktop->sweep.sweep() == nullptr ? "no table" : "a table");
     for (const auto& each : fs::recursive_directory_iterator(sweeps_dir())) {
       text += "\n" + each.path().string();
     }
