@@ -126,13 +126,13 @@ class Marks(Recorded):
         self.key("x")  # the plots stand still
         left, top, right, bottom = self.state()["plots"][0]["area"]
         for beside in (1, 0):  # the frame that takes the key may take the first move, too
-            self.move(left + 0.5 * (right - left) + beside, 0.5 * (top + bottom))
+            self.move(left + 0.25 * (right - left) + beside, 0.5 * (top + bottom))
             self.settled()
         start, stop = self.state()["shown"]
-        self.mark("in the middle")
+        self.mark("in a quarter")
         notes = self.wait("a note", lambda s: s["notes"])["notes"]
-        self.assertEqual(notes[0][1], "in the middle")
-        self.assertAlmostEqual(notes[0][0], 0.5 * (start + stop), delta=0.02 * (stop - start))
+        self.assertEqual(notes[0][1], "in a quarter")
+        self.assertAlmostEqual(notes[0][0], start + 0.25 * (stop - start), delta=0.02 * (stop - start))
 
 
 class Ranges(Recorded):
