@@ -244,6 +244,21 @@ TEST_F(ModelFolder, CanBeCarriedAway) {
     EXPECT_EQ(there.vertices[i].position, here.vertices[i].position);
 }
 
+// An OBJ does not say which side is seen; a density that nobody could see is not meant.
+TEST_F(ModelFolder, IsSeenFromBothSidesAndAsDenseAsItsMaterialSays) {
+  for (const auto& [dense, opacity] :
+       std::map<std::string, float>{{"1", 1.0f}, {"0.5", 0.5f}, {"0.01", 1.0f}}) {
+    write("a.mtl", "newmtl red\nKd 1 0 0\nd " + dense + "\n");
+    const Model model = parse_model(bytes_of(obj("mtllib a.mtl\nusemtl red\n")), "a.obj", folder_);
+    ASSERT_EQ(model.parts.size(), 1u);
+    EXPECT_TRUE(model.parts[0].material.two_sided) << dense;
+    EXPECT_EQ(model.parts[0].material.alpha,
+              opacity < 1 ? Finish::Alpha::blend : Finish::Alpha::opaque)
+        << dense;
+    EXPECT_FLOAT_EQ(model.vertices[model.indices[0]].opacity, opacity) << dense;
+  }
+}
+
 // Programs with physically based materials write an anisotropy of highlights.
 TEST_F(ModelFolder, MayHaveMaterialsWithAnisotropy) {
   write("a.mtl",
