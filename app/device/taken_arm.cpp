@@ -115,9 +115,8 @@ TakenArm taken_arm(const DeviceNotes& notes, const DeviceKind* kind, const Devic
                        " `limpid identify --forget` removes the identified arm.");
     } else if (has_own(kind) && !same_joints(arm, shipped(kind->arm))) {
       add(besides,
-          fmt::format(
-              "The arm {}, as which {} was identified, has other joints than the device's own arm.",
-              arm.name, traits.name));
+          fmt::format("The identified arm {} of {} has other joints than the device's own arm.",
+                      arm.name, traits.name));
     } else {
       return taken(std::move(arm), traits, "the device was identified as this arm", besides);
     }

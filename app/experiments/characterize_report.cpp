@@ -37,7 +37,7 @@ std::string numbers_section(const Characterized& subject) {
             "</tr>\n";
   }
   return table_of(
-      "What it stands on",
+      "Numbers behind this report",
       "Nothing here was measured by pushing: all runs are on the virtual arm with these "
       "numbers. What is assumed may be wrong, and the figures with it.",
       "<th>Number</th><th class=\"number\">Value</th><th>From</th>", rows);

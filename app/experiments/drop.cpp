@@ -79,7 +79,8 @@ Outcome drop(TrialRunner& lab) {
     trials.push_back(dropped(on, kind, kDropUsual));
   const std::vector<TrialResult> results = lab.run(trials);
 
-  FigurePanel height = drop_panel("The block's lower face above the tip's rest", "height [mm]");
+  FigurePanel height =
+      drop_panel("Height of the block's lower face above the resting tip", "height [mm]");
   FigurePanel reserve = drop_panel("Reserve of the energy account, predictive", "reserve [mJ]");
   FigurePanel force = drop_panel(fmt::format("Force on the tip, {} N/m", kDropUsual), "force [N]");
   FigurePanel beyond = drop_panel(

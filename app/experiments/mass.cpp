@@ -176,8 +176,9 @@ std::string not_held(const std::vector<FeltBody>& all) {
     if (one.felt.empty()) words.push_back(fmt::format("{} ({} g)", one.way.label, 1e3 * one.mass));
   }
   if (words.empty()) return "";
-  return fmt::format("The magnet lost these cubes, so their curves are missing: {}. ",
-                     fmt::join(words, ", "));
+  return fmt::format(
+      "These cubes fell off the magnet that lifts them, so their curves are missing: {}. ",
+      fmt::join(words, ", "));
 }
 
 FigurePanel felt_panel(const std::vector<FeltBody>& all, double mass) {

@@ -112,7 +112,7 @@ Outcome stack(TrialRunner& lab) {
                     .y_label = "depth [mm]",
                     .log_x = true,
                     .log_y = true};
-  FigurePanel sweeps{.title = "Sweeps over contacts until a tick's forces were found",
+  FigurePanel sweeps{.title = "Solver iterations until a tick's contact forces were found",
                      .x_label = "time [s]",
                      .y_label = "sweeps [-]",
                      .x_range = std::pair(0.0, kStackSeconds)};

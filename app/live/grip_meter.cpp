@@ -11,7 +11,7 @@ std::string GripMeter::why_not() const {
   const LiveLoop& loop = session_.loop();
   if (busy()) return "The grip is being measured now.";
   if (!loop.device_in_place() && session_.controls().paused) return "Time is paused.";
-  if (loop.snapshot().arming != Arming::on) return "Force is off: arm it first.";
+  if (loop.snapshot().arming != Arming::on) return "The force is off. Arm the force first.";
   return {};
 }
 

@@ -23,16 +23,16 @@ ALLOWED_MISSES = len(AIMS) // 14
 class Onto(WindowTest):
     LAW = "predictive"
 
-    def open(self, scene: str) -> None:
+    def open(self, scene: str, name: str) -> None:
         self.app.terminate()
         self.app.wait(20)
         self.words = [str(ROOT / "assets/scenes" / f"{scene}.toml")]
         self.start()
+        # A scene that is still being opened would wait for the end of the recording.
+        self.wait(f"{name} in the picture", lambda s: name in s["places"]["objects"] and not s["loading"], 120)
 
     def drag(self, name: str) -> None:
         """Drags the tip onto a thing, in a straight line in the picture, and holds it there."""
-        # A scene of many parts loads slowly on a busy computer.
-        self.wait(f"{name} in the picture", lambda s: name in s["places"]["objects"], 120)
         x, y = self.hold_tip()
         for step in range(1, 41):
             to = self.state()["places"]["objects"][name]
@@ -66,7 +66,7 @@ class Onto(WindowTest):
     def test_the_hand_goes_as_deep_as_what_it_is_dragged_onto(self) -> None:
         missed = []
         for scene, name, within in AIMS:
-            self.open(scene)
+            self.open(scene, name)
             self.key("r")
             self.wait("the recording", lambda s: s["recording"])
             self.drag(name)

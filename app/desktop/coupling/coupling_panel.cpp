@@ -506,7 +506,7 @@ void draw_givers(const CouplingReading& now, const Parameters& p) {
   apart("From compensation, grip test", now.compensation,
         "The part of E_c that the motors gave for the device's weight, springs and friction, and "
         "for the test force that measures the grip.");
-  apart("From motors at limit or off", energy.by_limits(),
+  apart("Given by motors at limit or off", energy.by_limits(),
         "The part of E_c from motors at their limit and from motors without force. Such a motor "
         "gives another torque than the coupling asks for. The coupling is not at fault.");
 }

@@ -143,7 +143,7 @@ bool Playback::take_results() {
     shown_->show(std::move(*again));
     if (end.diverged) {
       notices_.say(
-          fmt::format("The re-run is unstable since {:.3f} s: {}. It is shown up to its end.",
+          fmt::format("The re-run is unstable from t = {:.3f} s on: {}. All of it is shown.",
                       end.diverged_at, end.why),
           true);
     }

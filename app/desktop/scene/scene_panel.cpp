@@ -240,7 +240,8 @@ void ObjectEditor::draw_name(Document& document, std::size_t place) {
 
 std::string_view ObjectEditor::edit(Object& object, Plane& plane) {
   std::string_view what = edit_material(object.material);
-  if (position(object.pose, "Point on it x, y, z [mm]", "The plane goes through this point.")) {
+  if (position(object.pose, "Point on the plane x, y, z [mm]",
+               "The plane goes through this point.")) {
     what = "place";
   }
   if (drag3("Normal x, y, z", plane.normal, 0.01, -1, 1, "%.3f",

@@ -515,10 +515,10 @@ constexpr std::array kCommands{
         "set a mark under the mouse in a plot, or at the present time; in playback: go to the mark "
         "before or after",
         [](Desktop& d) { d.marking.begin(); }),
-    row("session.mark_before", "To the mark before", nullptr, "Ctrl+Left", "",
+    row("session.mark_before", "Go to the previous mark", nullptr, "Ctrl+Left", "",
         [](Desktop& d) { d.marking.go(-1); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
-    row("session.mark_after", "To the mark after", nullptr, "Ctrl+Right", "",
+    row("session.mark_after", "Go to the next mark", nullptr, "Ctrl+Right", "",
         [](Desktop& d) { d.marking.go(1); },
         {.reach = Reach::playback, .repeats = true, .why_not = no_recording}),
     row("session.twin", "Twin: two couplings on one hand", "Session", "B",

@@ -55,7 +55,7 @@ void Frame::draw() {
   draw_splitters(at);
   draw_fold_tabs(at);
   dialogs_.draw(false, at.view);
-  part([&] { draw_loading(desktop_.document.loader(), at.view); });
+  part([&] { draw_loading(desktop_.document.loader(), desktop_.live.recording(), at.view); });
   part([&] { draw_video_bar(desktop_.playback, at.view); });
   part([&] {
     below_banners_ = draw_banners(desktop_.banners(), at.view, signs_box(at.view), act_);
@@ -310,7 +310,7 @@ void Frame::draw_played(PlayedSession& session, const CouplingReading& reading,
       draw_simple_notes(reading, session.settings());
     }
   }
-  if (section("For the re-run (E)", true)) {
+  if (section("Settings of the re-run (E)", true)) {
     RecordedCoupling recording{session.began_with(), {}};
     for (const SettingChange& change : session.player().session().changes) {
       recording.changed.emplace_back(change.key());

@@ -57,9 +57,10 @@ std::vector<StatusPart> status_parts(const LiveLoop& loop, const StatusLaw& law,
         {"recording [R]", colours.broken, "The loop is recorded meanwhile. R ends the recording."});
   }
   if (led) {
-    parts.push_back({"led by a program", colours.accent,
-                     "A program has set law, settings or scene. Your settings come back when the "
-                     "program ends."});
+    parts.push_back(
+        {"led by a program", colours.accent,
+         "A script or another program has set law, settings or scene. Your own settings "
+         "come back when that program ends."});
   }
   if (!pace.empty()) {
     parts.push_back({pace, colours.accent, "Only the simulation; the control loop keeps running."});

@@ -166,7 +166,7 @@ void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend) {
   }
 }
 
-void draw_loading(SceneLoader& loader, ScreenRect view) {
+void draw_loading(SceneLoader& loader, bool recording, ScreenRect view) {
   if (!loader.busy()) return;
   const float em = ImGui::GetFontSize();
   ImGui::SetNextWindowPos({(view.min.x + view.max.x) / 2, view.max.y - em}, ImGuiCond_Always,
@@ -178,7 +178,7 @@ void draw_loading(SceneLoader& loader, ScreenRect view) {
   std::string text = loader.what();
   const double left = loader.seconds_left();
   if (loader.part() >= 1) {
-    text += ", making it touchable";
+    text += recording ? ": loaded, and shown when the recording ends (R)" : ", making it touchable";
   } else if (left >= 1) {
     text += fmt::format(", {:.0f} s left", left);
   }

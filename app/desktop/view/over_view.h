@@ -34,8 +34,9 @@ ScreenRect draw_banners(std::span<const Banner> banners, ScreenRect view, Screen
 // Draws notices below banners and legend.
 void draw_notices(const Notices& notices, ScreenRect view, ScreenRect legend);
 
-// Draws the progress of loading at the foot of the view.
-void draw_loading(SceneLoader& loader, ScreenRect view);
+// Draws the progress of loading at the foot of the view. `recording`: what is loaded waits for the
+// recording's end.
+void draw_loading(SceneLoader& loader, bool recording, ScreenRect view);
 
 // Draws the progress of a video at the top right of the view.
 void draw_video_bar(Playback& playback, ScreenRect view);

@@ -555,7 +555,7 @@ void ViewPanel::name_what_is_there(const ViewScene& scene, const Camera& camera,
   std::string text = object.name;
   const std::string mass = object.body ? fmt::format("{:.3g} g", 1e3 * object.body->mass) : "";
   if (!mass.empty() && mass != object.name) text += ", " + mass;
-  if (object.body && object.body->magnet) text += "\nH picks it up at the tip";
+  if (object.body && object.body->magnet) text += "\nPress H to pick it up with the tip";
   ImGui::SetTooltip("%s", text.c_str());
 }
 

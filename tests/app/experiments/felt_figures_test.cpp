@@ -397,7 +397,7 @@ TEST(FiguresOf, ClickFollowTheButtonsOwnForce) {
 TEST(FiguresOf, DropFallFreelyUntilTheTip) {
   const Made made("drop");
   EXPECT_THAT(made.figure().caption, HasSubstr("The block brings 49 mJ"));
-  const std::string height = "The block's lower face above the tip's rest",
+  const std::string height = "Height of the block's lower face above the resting tip",
                     reserve = "Reserve of the energy account, predictive";
   for (const double stiffness : {600.0, 2000.0, 5000.0}) {
     const Kept kept = made.kept(fmt::format("predictive-{}", stiffness));
@@ -502,8 +502,9 @@ TEST(FiguresOf, StackSinkUnderTheWeightAbove) {
                                                 "of all springs in series")
                     .value,
                 std::abs(last / wanted - 1), 1e-9);
-    expect_over_time(made.curve("Sweeps over contacts until a tick's forces were found", label),
-                     kept, [&](auto k) { return kept.one(k, Column::objects_sweeps); });
+    expect_over_time(
+        made.curve("Solver iterations until a tick's contact forces were found", label), kept,
+        [&](auto k) { return kept.one(k, Column::objects_sweeps); });
     expect_over_time(
         made.curve("Energy gained by the stack, minus energy given to the stack", label), kept,
         [&](auto k) { return 1e3 * kept.one(k, Column::objects_gain); });

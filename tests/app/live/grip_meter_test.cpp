@@ -83,7 +83,7 @@ TEST_F(AGripMeter, EndsAtOnceWithTheForceAndDoesNotBeginAgain) {
   ASSERT_TRUE(pass(0, [&] { return !meter_.busy(); }));
   ASSERT_NE(meter_.found(), nullptr);
   EXPECT_THAT(meter_.found()->grip.unknown, testing::HasSubstr("force went off: not armed"));
-  EXPECT_EQ(meter_.why_not(), "Force is off: arm it first.");
+  EXPECT_EQ(meter_.why_not(), "The force is off. Arm the force first.");
   session_.loop().arm();
   ASSERT_TRUE(pass(0, [&] { return session_.loop().snapshot().arming == Arming::on; }));
   EXPECT_FALSE(pushed_since());

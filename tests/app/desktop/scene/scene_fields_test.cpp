@@ -470,7 +470,7 @@ TEST_F(SceneFields, OfAPlaneMoveAPointOfIt) {
   plane.shape = Plane{};
   plane.name = "it";
   open({plane});
-  type_into("Point on it x, y, z [mm]", "12");
+  type_into("Point on the plane x, y, z [mm]", "12");
   EXPECT_EQ(object().pose.translation(), Vec3(0, 0.012, 0));
 }
 

@@ -42,6 +42,21 @@ class Words : public WholeWindow {
   }
 };
 
+TEST_F(Words, SayThatASceneWhichIsLoadedWaitsForTheEndOfARecording) {
+  desktop->world.open_scene(fs::path(LIMPID_ASSETS_DIR) / "scenes/spheres.toml");
+  desktop->world.toggle_recording();
+  const auto says = [](const char* what) {
+    return words("loading").find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(until([&] { return says("loaded, and shown when the recording ends (R)"); }));
+  EXPECT_FALSE(says("making it touchable"));
+  desktop->world.toggle_recording();
+  EXPECT_TRUE(until([&] { return !desktop->document.loader().busy(); }));
+  frames(3);
+  EXPECT_EQ(words("loading"), "");
+  EXPECT_EQ(fs::path(desktop->document.file()).filename(), "spheres.toml");
+}
+
 TEST_F(Words, OfMenusAreThoseOfTheirCommands) {
   for (const char* menu : {"File", "Edit", "View", "Session", "Scene", "Device", "Help"}) {
     click(menu, "##MainMenuBar");
@@ -287,7 +302,7 @@ TEST_F(Words, OfPlaybackLeadThroughTheRecording) {
   EXPECT_TRUE(find("Pause", "transport"));
   const std::string panel = words("coupling");
   for (const char* title :
-       {"In this recording", "For the re-run (E)", "Coupling", "Grip stiffness"}) {
+       {"In this recording", "Settings of the re-run (E)", "Coupling", "Grip stiffness"}) {
     EXPECT_THAT(panel, HasSubstr(title));
   }
   EXPECT_THAT(sentences(kSidePanel),
