@@ -50,6 +50,7 @@ TEST_F(Words, SayThatASceneWhichIsLoadedWaitsForTheEndOfARecording) {
   };
   EXPECT_TRUE(until([&] { return says("loaded, and shown when the recording ends (R)"); }));
   EXPECT_FALSE(says("making it touchable"));
+  ASSERT_TRUE(until([&] { return desktop->live.loop().snapshot().recording; }));
   desktop->world.toggle_recording();
   EXPECT_TRUE(until([&] { return !desktop->document.loader().busy(); }));
   frames(3);
