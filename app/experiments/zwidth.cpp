@@ -119,7 +119,7 @@ std::vector<FigurePanel> empty_panels(const ExperimentArm& on) {
       panel("Over eta", "eta [-]", 0.1, 10),
       panel("Over the tick, eta = 1", "tick [ms]", 0.1, 10),
       panel("Over the encoders' resolution, eta = 1", "encoder step [mrad]", 0.009, 1.1),
-      panel("Versus the hand's mass, eta = 1", "mass of the hand at the tip [kg]", 0.018, 1.1),
+      panel("Over the hand's mass, eta = 1", "mass of the hand at the tip [kg]", 0.018, 1.1),
       panel("Over the device's delay, eta = 1", "delay [ms]", -0.2, 6.2),
       panel(fmt::format("With the arm's own motors, pressed with {} N", kOwnPress), "eta [-]", 0.1,
             10)};

@@ -50,8 +50,7 @@ std::vector<ChannelInfo> first_channels(int dof, const NormUnits& units,
        "E_c with the device's own damping", energy},
       {"energy/controller_commanded", "Energy", "controller, commanded", "E_c commanded", "J",
        "work of motors and proxy alone. E_c also subtracts what the device's own damping took, and "
-       "is "
-       "the energy of the passivity condition",
+       "is the energy of the passivity condition",
        energy, 0.5f, true, true},
       {"energy/compensation", "Energy", "motors, against the device's own forces", "compensation",
        "J", "part of E_c that the motors gave against weight, springs and friction of the device",

@@ -31,19 +31,6 @@ Array as_rows(std::vector<double>&& all, std::size_t stride) {
   return Array({rows, static_cast<py::ssize_t>(stride)}, kept->data(), owner);
 }
 
-// Stretches of neighbours among the offsets of a row: each with its first and its count.
-std::vector<std::pair<std::size_t, std::size_t>> stretches(const std::vector<std::size_t>& kept) {
-  std::vector<std::pair<std::size_t, std::size_t>> all;
-  for (const std::size_t each : kept) {
-    if (!all.empty() && each == all.back().first + all.back().second) {
-      ++all.back().second;
-    } else {
-      all.emplace_back(each, 1);
-    }
-  }
-  return all;
-}
-
 // Keeps these numbers of each row, by their offsets.
 py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
               const std::vector<std::size_t>& kept) {
@@ -52,14 +39,10 @@ py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
   const double seconds = duration > 0 || rows.size() < 4 ? duration : rows[rows.size() - 4];
   all.reserve(kept.size() * static_cast<std::size_t>(std::max(0.0, seconds / loop.period()) + 2));
   SimulatedLoop::RunEnd end;
-  const auto parts = stretches(kept);
   {
     const py::gil_scoped_release others_go_on;
     end = loop.run(rows, duration, [&](std::span<const double> row) {
-      for (const auto& [first, count] : parts) {
-        const auto part = row.subspan(first, count);
-        all.insert(all.end(), part.begin(), part.end());
-      }
+      for (const std::size_t each : kept) all.push_back(row[each]);
       return true;
     });
   }
