@@ -12,6 +12,7 @@
 
 #include "app/base/markup.h"
 #include "app/plot/axis.h"
+#include "app/plot/label_room.h"
 #include "app/plot/plot_canvas.h"
 #include "app/plot/shifted_canvas.h"
 #include "app/plot/trace.h"
@@ -94,7 +95,9 @@ using Point = PlotCanvas::Point;
 using Area = PlotCanvas::Box;
 using Anchor = PlotCanvas::Anchor;
 
-constexpr double kLine = 2;  // [px]
+constexpr double kLine = 2;        // width of a curve [px]
+constexpr double kLabelLine = 14;  // height of a line of labels [px]
+constexpr double kLabelBase = 11;  // of their base line below its top [px]
 constexpr Rgb kPaper{255, 255, 255};
 constexpr double kSvgSign = 3.6, kSvgBetween = 64, kSvgEdge = 3;  // as on the screen [px]
 constexpr int kColumnsPerPixel = 2;  // as pictures are looked at closely
@@ -218,22 +221,33 @@ class PlotDrawing {
     see_columns();
     if (spec_.kind == PlotKind::time) {
       bands();
-      marks();
+      mark_lines();
     }
     curves();
     thresholds();
+    if (spec_.kind == PlotKind::time) mark_labels();
     canvas.clip(nullptr);
     canvas.outline(inside, palette_.axis);
     legend();
   }
 
  private:
-  static double width_of(const std::string& text) {
-    return 0.55 * kCanvasFont * static_cast<double>(text.size());
+  // A character of UTF-8 has one byte that does not continue another one.
+  static double characters(const std::string& text) {
+    return static_cast<double>(
+        std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
   }
+  static double width_of(const std::string& text) { return 0.55 * kCanvasFont * characters(text); }
   void label(double x, double y, Anchor anchor, Rgb rgb, const std::string& what,
              bool bold = false) {
     canvas_->text({x, y}, anchor, rgb, what, bold);
+  }
+
+  // Draws a label in the box that it took, from its left end or up to its right one: widths are
+  // estimates.
+  void put(const Area& box, Anchor anchor, Rgb rgb, const std::string& what) {
+    const double x = anchor == Anchor::end ? box.left + box.width : box.left;
+    label(x, box.top + kLabelBase, anchor, rgb, what);
   }
 
   void line(double x1, double y1, double x2, double y2, Rgb rgb, double dash = 0, double gap = 0) {
@@ -283,32 +297,53 @@ class PlotDrawing {
     }
   }
 
-  // Draws marks; those that a band says and those without room have no label.
-  void marks() {
+  // Calls draw(mark, x, rgb) for the marks in sight, from the left.
+  template <class Draw>
+  void for_marks(Draw&& draw) {
+    for (const PlotMark& mark : history_.marks()) {
+      if (mark.time < picture_.start || mark.time > picture_.stop) continue;
+      draw(mark, x_of(mark.time), mark.key == kNoteMark ? palette_.text : palette_.muted);
+    }
+  }
+
+  void mark_lines() {
+    for_marks([&](const PlotMark& mark, double x, Rgb rgb) {
+      line(x, top_, x, bottom_, rgb, mark.key == kNoteMark ? 0 : 2, 3);
+    });
+  }
+
+  // Labels marks in rows from the bottom up; those that a band says and those without room have no
+  // label.
+  void mark_labels() {
     std::vector<std::string> said;
     for (const Band& band : spec_.bands) {
       if (!band.key.empty() && !band_stretches(band, history_, rows_).empty()) {
         said.push_back(band.key);
       }
     }
-    double free_from = left_;
-    for (const PlotMark& mark : history_.marks()) {
-      if (mark.time < picture_.start || mark.time > picture_.stop) continue;
-      const bool note = mark.key == kNoteMark;
-      const Rgb rgb = note ? palette_.text : palette_.muted;
-      line(x_of(mark.time), top_, x_of(mark.time), bottom_, rgb, note ? 0 : 2, 3);
-      const double x = x_of(mark.time) + 4;
-      if (std::ranges::find(said, mark.key) != said.end() || x < free_from) continue;
-      label(x, bottom_ - 5, Anchor::start, rgb, mark.label);
-      free_from = x + width_of(mark.label) + 8;
-    }
+    for_marks([&](const PlotMark& mark, double x, Rgb rgb) {
+      if (std::ranges::find(said, mark.key) != said.end()) return;
+      const double wide = width_of(mark.label);
+      const Anchor anchor = x + 4 + wide > right_ ? Anchor::end : Anchor::start;
+      const double left = anchor == Anchor::end ? x - 4 - wide : x + 4;
+      std::array<Area, 4> rows;
+      for (std::size_t row = 0; row < rows.size(); ++row) {
+        rows[row] = {left, bottom_ - 2 - kLabelLine * static_cast<double>(row + 1), wide,
+                     kLabelLine};
+      }
+      if (const auto box = room_.take_first(rows)) put(*box, anchor, rgb, mark.label);
+    });
   }
 
   void thresholds() {
     for (const Threshold& each : spec_.thresholds) {
       const Rgb rgb = ink(palette_, each.ink);
-      line(left_, y_of(each.value), right_, y_of(each.value), rgb, 4, 3);
-      label(right_ - 6, y_of(each.value) - 4, Anchor::end, rgb, each.label);
+      const double y = y_of(each.value);
+      line(left_, y, right_, y, rgb, 4, 3);
+      const auto box = room_.take_first(room_.beside_level(y, width_of(each.label), kLabelLine, 6));
+      if (!box) continue;
+      const bool left_half = box->left + box->width < (left_ + right_) / 2;
+      put(*box, left_half ? Anchor::start : Anchor::end, rgb, each.label);
     }
   }
 
@@ -352,6 +387,7 @@ class PlotDrawing {
         if (!named || x < free_from || (each.laws && box.width < wide)) continue;
         label(x, y, Anchor::start, palette_.text, name);
         free_from = x + wide + 8;
+        room_.take({x, y - kLabelBase, wide + 8, kLabelLine});
       }
     }
   }
@@ -432,7 +468,7 @@ class PlotDrawing {
       canvas_->line({x, y - 4}, {x + 18, y - 4}, colour_of(palette_, curve), kLine, 0, 0);
       sign(x + 9, y - 4, curve.sign, colour_of(palette_, curve));
       label(x + 23, y, Anchor::start, palette_.text, curve.label);
-      x += 40 + 0.6 * kCanvasFont * static_cast<double>(curve.label.size());
+      x += 40 + 0.6 * kCanvasFont * characters(curve.label);
     }
   }
 
@@ -449,6 +485,7 @@ class PlotDrawing {
   PixelWindow window_{};
   std::vector<SampleIndex> rows_;  // of the columns
   PlotCanvas* canvas_ = nullptr;
+  LabelRoom room_{area()};
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "app/plot/axis.h"
 #include "app/plot/history.h"
+#include "app/plot/label_room.h"
 #include "app/plot/plot_spec.h"
 #include "app/plot/trace.h"
 #include "app/style/theme.h"
@@ -45,6 +46,10 @@ struct PlotFrame {
   float y_of(double value) const {
     return area.max.y - static_cast<float>(std::clamp(y.part(value) * area.height(), -1e5, 1e5));
   }
+  LabelRoom label_room() const {
+    return LabelRoom({static_cast<double>(area.min.x), static_cast<double>(area.min.y),
+                      static_cast<double>(area.width()), static_cast<double>(area.height())});
+  }
   double x_at(float pixel) const { return x.value((pixel - area.min.x) / area.width()); }
   double y_at(float pixel) const { return y.value((area.max.y - pixel) / area.height()); }
   TraceArea trace_area() const {
@@ -67,14 +72,14 @@ void draw_axes(const PlotFrame& frame, const PlotSpec& spec, double time_offset)
 void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                 const std::vector<SampleIndex>& rows);
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
-                     const std::vector<SampleIndex>& rows);
-void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec);
+                     const std::vector<SampleIndex>& rows, LabelRoom& room);
+void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec, LabelRoom& room);
 // Draw a line behind the curves wherever something was changed, and over them what it was, where
 // they leave room.
 void draw_mark_lines(const PlotFrame& frame, const History& history);
 void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                       const std::vector<SampleIndex>& rows, std::span<const Trace> traces,
-                      ImVec2 mouse);
+                      ImVec2 mouse, LabelRoom& room);
 
 // Returns the time of the note under the mouse; nothing without one.
 std::optional<double> note_near(const PlotFrame& frame, const History& history, ImVec2 mouse);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/plot/axis.h"
+#include "app/plot/label_room.h"
 #include "app/plot/plot_frame.h"
 #include "app/plot/trace.h"
 #include "app/style/ticks.h"
@@ -302,41 +303,46 @@ bool crosses(const PlotFrame& frame, const Trace& trace, const ScreenRect& box) 
   return false;
 }
 
-// Rows of labels from the bottom up, each free from some place on.
+LabelRoom::Box room_box(const ScreenRect& rect) {
+  return {static_cast<double>(rect.min.x), static_cast<double>(rect.min.y),
+          static_cast<double>(rect.width()), static_cast<double>(rect.height())};
+}
+
+// Rows of labels from the bottom up.
 class MarkRows {
  public:
-  explicit MarkRows(const PlotFrame& frame, float line) : frame_(frame), line_(line) {
-    free_from_.fill(frame.area.min.x);
+  MarkRows(const PlotFrame& frame, float line) : frame_(frame), line_(line) {
     const float fit = frame.area.height() / line;
     most_ = std::clamp(static_cast<std::size_t>(fit), std::size_t{1}, kRows);
     usual_ = std::clamp(static_cast<std::size_t>(fit / 2), std::size_t{1}, kRows);
   }
   ScreenRect box(std::size_t row, float left, float width) const {
-    const float bottom = frame_.area.max.y - static_cast<float>(row) * line_ - 2 * frame_.scale;
+    const float bottom =
+        frame_.area.max.y - static_cast<float>(within(row)) * line_ - 2 * frame_.scale;
     return {{left, bottom - line_}, {left + width, bottom}};
   }
-  // Returns the lowest row that no curve crosses, else the lowest one in the lower half.
-  std::optional<std::size_t> find(std::span<const Trace> traces, float left, float width) const {
+  // Returns the lowest row with room that no curve crosses, else the lowest one in the lower half.
+  std::optional<std::size_t> find(const LabelRoom& room, std::span<const Trace> traces, float left,
+                                  float width) const {
     std::optional<std::size_t> crossed;
     for (std::size_t row = 0; row < most_; ++row) {
-      if (left < free_from_[row]) continue;
       const ScreenRect place = box(row, left, width);
+      if (!room.has(room_box(place))) continue;
       if (std::ranges::none_of(traces, [&](const Trace& t) { return crosses(frame_, t, place); }))
         return row;
       if (!crossed && row < usual_) crossed = row;
     }
     return crossed;
   }
-  std::size_t within(std::size_t row) const { return std::min(row, most_ - 1); }
-  void take(std::size_t row, float until) { free_from_[row] = std::max(free_from_[row], until); }
 
  private:
   static constexpr std::size_t kRows = 5;
 
+  std::size_t within(std::size_t row) const { return std::min(row, most_ - 1); }
+
   const PlotFrame& frame_;
   float line_;
   std::size_t most_ = 1, usual_ = 1;
-  std::array<float, kRows> free_from_{};
 };
 
 // Marks of one pixel; a note stands alone.
@@ -381,7 +387,7 @@ void for_stretches(const PlotFrame& frame, const Band& band, const History& hist
 
 // Draws the names of a band at `line`, counted from the top; each band has its own.
 void draw_names(const PlotFrame& frame, const Band& band, float line, const History& history,
-                const std::vector<SampleIndex>& rows) {
+                const std::vector<SampleIndex>& rows, LabelRoom& room) {
   const auto edges = static_cast<float>(std::max(1, band.lane + 1));
   float free_from = frame.area.min.x;
   int before = -1;
@@ -400,6 +406,7 @@ void draw_names(const PlotFrame& frame, const Band& band, float line, const Hist
     draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
                      0.85f);
     free_from = x + label.x + 12 * frame.scale;
+    room.take(room_box({{x, y}, {free_from, y + label.y}}));
   });
 }
 
@@ -534,7 +541,7 @@ float draw_clipped_text(ImDrawList& list, Face face, ImVec2 at, Rgb rgb, const s
   return text_size(face, shown).x;
 }
 
-void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec) {
+void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec, LabelRoom& room) {
   for (const Threshold& each : spec.thresholds) {
     const float y = std::round(frame.y_of(each.value));
     if (y < frame.area.min.y || y > frame.area.max.y) continue;
@@ -542,9 +549,12 @@ void draw_thresholds(const PlotFrame& frame, const PlotSpec& spec) {
     dashed_line(frame, {frame.area.min.x, y}, {frame.area.max.x, y}, colour(rgb, 0.8f),
                 3 * frame.scale);
     const ImVec2 size = text_size(Face::small, each.label);
-    const float above = y - size.y - 2 * frame.scale;
-    const ImVec2 at{frame.area.max.x - size.x - 5 * frame.scale,
-                    above < frame.area.min.y ? y + 2 * frame.scale : above};
+    const auto places =
+        room.beside_level(static_cast<double>(y), static_cast<double>(size.x),
+                          static_cast<double>(size.y), static_cast<double>(5 * frame.scale));
+    const auto box = room.take_first(places);
+    if (!box) continue;
+    const ImVec2 at{static_cast<float>(box->left), static_cast<float>(box->top)};
     draw_backed_text(frame, at, rgb, each.label, 0.75f);
   }
 }
@@ -580,8 +590,8 @@ std::optional<double> note_near(const PlotFrame& frame, const History& history, 
 // Draws labels right of their lines, at the end left of them.
 void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const History& history,
                       const std::vector<SampleIndex>& pixels, std::span<const Trace> traces,
-                      ImVec2 mouse) {
-  MarkRows rows(frame, text_size(Face::small, "0").y);
+                      ImVec2 mouse, LabelRoom& room) {
+  const MarkRows rows(frame, text_size(Face::small, "0").y);
   std::vector<std::string> said;
   for (const Band& band : spec.bands) {
     if (!band.key.empty() && !band_stretches(band, history, pixels).empty())
@@ -595,13 +605,12 @@ void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const Histor
       const float width = text_size(Face::small, label).x;
       const bool at_the_end = at.x + gap + width > frame.area.max.x;
       const float left = at_the_end ? at.x - gap - width : at.x + gap;
-      const auto row = rows.find(traces, left, width);
+      const auto row = rows.find(room, traces, left, width);
       if (!row && !pointed_at) continue;
-      const std::size_t in_row = row ? *row : rows.within(forced++);
-      draw_backed_text(frame, rows.box(in_row, left, width).min,
-                       at.note ? frame.palette.text : frame.palette.muted, label,
+      const ScreenRect place = rows.box(row ? *row : forced++, left, width);
+      draw_backed_text(frame, place.min, at.note ? frame.palette.text : frame.palette.muted, label,
                        pointed_at ? 1.0f : 0.85f);
-      rows.take(in_row, left + width + 6 * frame.scale);
+      room.take(room_box({place.min, {place.max.x + 6 * frame.scale, place.max.y}}));
     }
   }
 }
@@ -632,9 +641,9 @@ void draw_bands(const PlotFrame& frame, const PlotSpec& spec, const History& his
 }
 
 void draw_band_names(const PlotFrame& frame, const PlotSpec& spec, const History& history,
-                     const std::vector<SampleIndex>& rows) {
+                     const std::vector<SampleIndex>& rows, LabelRoom& room) {
   float line = 0;
-  for (const Band& band : spec.bands) draw_names(frame, band, line++, history, rows);
+  for (const Band& band : spec.bands) draw_names(frame, band, line++, history, rows, room);
 }
 
 void draw_menu_button(const PlotFrame& frame, const ScreenRect& button, bool pointed_at) {

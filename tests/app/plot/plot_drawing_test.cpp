@@ -302,7 +302,9 @@ TEST_F(ADrawing, HasThresholdsAtTheirValues) {
 TEST_F(ADrawing, HasMarksWithinItsStretch) {
   history_.mark(1, "early", kNoteMark);
   history_.mark(3, "eta = 2", "eta");
-  history_.mark(3.1, "no room", "k_vc");
+  history_.mark(3.1, "above it", "k_vc");
+  for (const char* key : {"third", "fourth"}) history_.mark(3.15, key, key);
+  history_.mark(3.2, "no room", "alpha");
   history_.mark(9, "late", kNoteMark);
   picture_.start = 2;
   picture_.stop = 8;
@@ -313,6 +315,7 @@ TEST_F(ADrawing, HasMarksWithinItsStretch) {
   const auto& label = notes.said("eta = 2");
   EXPECT_NEAR(label.at.x, x_of(3) + 4, 1e-9);
   EXPECT_EQ(label.at.y, 318 - 5);
+  EXPECT_EQ(notes.said("above it").at.y, label.at.y - 14) << "in the next row";
   EXPECT_TRUE(same(label.rgb, palette_.muted));
   const auto lines_at = [&](const Notes& of, double t) {
     std::vector<Notes::Lined> found;
@@ -325,7 +328,7 @@ TEST_F(ADrawing, HasMarksWithinItsStretch) {
   };
   ASSERT_EQ(lines_at(notes, 3).size(), 1u);
   EXPECT_EQ(lines_at(notes, 3)[0].dash, 2);
-  EXPECT_EQ(lines_at(notes, 3.1).size(), 1u) << "a mark without a label has its line";
+  EXPECT_EQ(lines_at(notes, 3.2).size(), 1u) << "a mark without a label has its line";
   picture_.start = 0;
   picture_.stop = 10;
   const Notes whole = draw();

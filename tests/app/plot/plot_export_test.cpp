@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -270,6 +272,49 @@ TEST(PlotSvg, DrawsABandFromTheHighestToTheLowestOfEachColumn) {
     }
   }
   EXPECT_LT(points[half - 1][0] - number("x") - number("width"), 2);
+}
+
+// A text's place, from where it begins; its height is that of a line.
+struct TextPlace {
+  std::string text;
+  double left = 0, right = 0, base = 0;
+};
+
+std::vector<TextPlace> places_of(const std::string& svg, const std::vector<std::string>& texts) {
+  const std::regex pattern(
+      R"re(<text x="([-0-9.]+)" y="([-0-9.]+)" text-anchor="(start|end)"[^>]*>([^<]*)</text>)re");
+  std::vector<TextPlace> found;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), pattern), end; it != end; ++it) {
+    const std::string text = (*it)[4];
+    if (std::ranges::find(texts, text) == texts.end()) continue;
+    const double wide = 0.55 * 12 * static_cast<double>(text.size()), x = std::stod((*it)[1]);
+    const double left = (*it)[3] == "end" ? x - wide : x;
+    found.push_back({text, left, left + wide, std::stod((*it)[2])});
+  }
+  return found;
+}
+
+TEST(PlotSvg, HasNoLabelOnAnotherOneNorBeyondTheArea) {
+  History history = two_channels();
+  history.mark(1.502, "stiffness 400", "stiffness");
+  history.mark(1.51, "stiffness 700", "stiffness 2");
+  history.mark(2.95, "law: proposed", "law");
+  PlotSpec with = spec();
+  with.curves.resize(1);
+  with.thresholds = {{1.5, "a limit"}, {1.52, "another limit"}, {0.05, "near the ground"}};
+  const std::vector<std::string> texts{"stiffness 400", "stiffness 700", "law: proposed",
+                                       "a limit",       "another limit", "near the ground"};
+  const PlotPicture picture{0, 3, {}, {{0, 3}}};
+  const auto places = places_of(plot_svg(with, history, picture), texts);
+  ASSERT_EQ(places.size(), texts.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_LE(places[i].right, picture.width - 14) << places[i].text;
+    for (std::size_t k = 0; k < i; ++k) {
+      const bool apart = places[i].right <= places[k].left || places[k].right <= places[i].left ||
+                         std::abs(places[i].base - places[k].base) >= 12;
+      EXPECT_TRUE(apart) << places[i].text << " lies on " << places[k].text;
+    }
+  }
 }
 
 }  // namespace
