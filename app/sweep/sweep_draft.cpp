@@ -68,6 +68,14 @@ std::string plan_text(const SweepDraft& draft) {
   toml::array axes;
   for (const DraftAxis& axis : draft.axes) axes.push_back(table_of(axis));
   plan.insert("axis", std::move(axes));
+  const auto varies = [&](const char* key) {
+    return std::ranges::find(draft.axes, std::string(key), &DraftAxis::key) != draft.axes.end();
+  };
+  // The line of theory is the proposed law's.
+  if (varies("coupling.eta") && !varies("coupling.kind") &&
+      draft.parameters.kind == CouplingKind::proposed) {
+    plan.insert("figure", toml::table{{"theory", toml::array{"pr"}}});
+  }
   std::ostringstream text;
   text << plan << '\n';
   return text.str();

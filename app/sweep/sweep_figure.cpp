@@ -77,6 +77,9 @@ class Drawing {
         draw_map(panel, values);
       } else {
         draw_slice(panel, values);
+        for (Series& line : upright_theory(plan_, values.begin()->second.point, x, {low_, high_})) {
+          panel.series.push_back(std::move(line));
+        }
       }
     }
     return all;

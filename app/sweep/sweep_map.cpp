@@ -105,6 +105,11 @@ class Making {
         map_.lines.push_back(theory_line(plan_, map_.spots.front().point, x_, line));
       }
     }
+    if (map_.kind == SweepMap::Kind::curve && !plan_.boundary && !map_.spots.empty()) {
+      for (Series& line : upright_theory(plan_, map_.spots.front().point, x_, map_.y_range)) {
+        map_.lines.push_back(std::move(line));
+      }
+    }
     return std::move(map_);
   }
 
@@ -287,13 +292,35 @@ double eta_limit(const std::string& line, const RunPlan& run) {
   return eta_min_compliant(M_L, b_d, p, K_h, B_h);
 }
 
+namespace {
+
+Series series_of_theory(const std::string& line) {
+  const auto which = std::ranges::find(kTheories, line) - std::begin(kTheories);
+  return {theory_label(line),
+          kTheoryInk[which],
+          which == 0 ? Series::Style::dashed : Series::Style::line,
+          {}};
+}
+
+}  // namespace
+
+std::vector<Series> upright_theory(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,
+                                   std::pair<double, double> heights) {
+  std::vector<Series> lines;
+  if (x.key != "coupling.eta" || plan.worlds.empty()) return lines;
+  const auto [from, to] = AxisCells(x).all();
+  for (const std::string& line : plan.figure.theory) {
+    const double at = eta_limit(line, run_of(plan, point));
+    if (!(at >= from && at <= to)) continue;
+    Series& series = lines.emplace_back(series_of_theory(line));
+    series.points = {{at, heights.first}, {at, heights.second}};
+  }
+  return lines;
+}
+
 Series theory_line(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,
                    const std::string& line) {
-  const auto which = std::ranges::find(kTheories, line) - std::begin(kTheories);
-  Series series{theory_label(line),
-                kTheoryInk[which],
-                which == 0 ? Series::Style::dashed : Series::Style::line,
-                {}};
+  Series series = series_of_theory(line);
   const auto* key = find_parameter(x.key);
   const auto [from, to] = AxisCells(x).all();
   RunPlan run = run_of(plan, point);

@@ -90,5 +90,9 @@ double eta_limit(const std::string& line, const RunPlan& run);
 // A line of theory along x, with all other settings of `point`. The plan needs its worlds.
 Series theory_line(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,
                    const std::string& line);
+// The plan's lines of theory where x is eta itself: each upright over `heights` at its limit;
+// without those beyond the axis, and none over another x.
+std::vector<Series> upright_theory(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,
+                                   std::pair<double, double> heights);
 
 }  // namespace limpid

@@ -93,5 +93,17 @@ TEST_F(Drafts, CountThePointsThatDiverged) {
   EXPECT_EQ(diverged_points(table), 1u);
 }
 
+TEST_F(Drafts, ShowTheLimitOfTheoryOverEtaForTheLawThatHasOne) {
+  EXPECT_THAT(read().figure.theory, ElementsAre("pr"));
+  draft_.axes.push_back({.key = "coupling.kind", .words = {"standard", "predictive"}});
+  EXPECT_TRUE(read().figure.theory.empty()) << "curves of other laws are among them";
+  draft_.axes.pop_back();
+  draft_.parameters.kind = CouplingKind::standard;
+  EXPECT_TRUE(read().figure.theory.empty());
+  draft_.parameters.kind = CouplingKind::proposed;
+  draft_.axes = {{.key = "hand.stiffness", .from = 10, .to = 20, .count = 2}};
+  EXPECT_TRUE(read().figure.theory.empty());
+}
+
 }  // namespace
 }  // namespace limpid

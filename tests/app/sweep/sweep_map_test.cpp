@@ -239,5 +239,38 @@ theory = ["pr", "routh", "routh_compliant"]
       << "lines are over eta alone";
 }
 
+// Over eta alone the limit is one number: where the map over the grip has it for this grip.
+TEST_F(HandMadeMaps, HaveUprightLinesOfTheoryOverEta) {
+  const SweepPlan curve = plan(R"(measure = ["human_rms"]
+set = ["hand.damping = 0", "hand.stiffness = 900"]
+axis = [ { key = "coupling.eta", values = [0.1, 2.0, 4.0] } ]
+[figure]
+theory = ["pr", "routh"]
+)");
+  const SweepMap map = make_map(sweep(curve, {{-2, 6}}), over(0, {}, 1));
+  ASSERT_EQ(map.lines.size(), 2u);
+  for (const Series& line : map.lines) {
+    ASSERT_EQ(line.points.size(), 2u);
+    EXPECT_EQ(line.points[0].x, line.points[1].x);
+    EXPECT_EQ(line.points[0].y, map.y_range.first) << "from edge to edge";
+    EXPECT_EQ(line.points[1].y, map.y_range.second);
+  }
+  const SweepPlan grips = plan(R"(measure = ["human_rms"]
+set = ["hand.damping = 0"]
+axis = [ { key = "hand.stiffness", values = [400, 900] } ]
+)");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string name = i == 0 ? "pr" : "routh";
+    EXPECT_EQ(map.lines[i].label, theory_label(name));
+    EXPECT_NEAR(map.lines[i].points[0].x, eta_limit(name, run_of(grips, 1)), 1e-12) << name;
+  }
+  const SweepPlan beyond = plan(R"(measure = ["human_rms"]
+axis = [ { key = "coupling.eta", values = [3.0, 4.0] } ]
+[figure]
+theory = ["pr"]
+)");
+  EXPECT_TRUE(make_map(sweep(beyond, {{-2, 6}}), over(0, {}, 1)).lines.empty());
+}
+
 }  // namespace
 }  // namespace limpid
