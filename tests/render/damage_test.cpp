@@ -8,7 +8,7 @@
 namespace limpid {
 namespace {
 
-constexpr int kWidth = 200, kHeight = 100;
+constexpr int kWide = 200, kHigh = 100;
 
 std::span<const std::byte> bytes(const int& look) { return std::as_bytes(std::span(&look, 1)); }
 
@@ -23,14 +23,14 @@ class ADamage : public testing::Test {
     float margin = 3;
   };
   PixelArea frame(const std::vector<Thing>& things, const glm::mat4& to_clip = glm::mat4(1),
-                  int width = kWidth, int height = kHeight) {
+                  int width = kWide, int height = kHigh) {
     damage_.begin(to_clip, width, height);
     for (const Thing& thing : things) {
       damage_.add(bytes(thing.look), std::span(&thing.at, 1), thing.margin);
     }
     return damage_.end();
   }
-  static void expect_all(const PixelArea& area, int width = kWidth, int height = kHeight) {
+  static void expect_all(const PixelArea& area, int width = kWide, int height = kHigh) {
     EXPECT_EQ(area.min(), Eigen::Vector2i(0, 0));
     EXPECT_EQ(area.max(), Eigen::Vector2i(width, height));
   }
@@ -44,18 +44,17 @@ class ADamage : public testing::Test {
 
 TEST_F(ADamage, IsAllOfItAtFirstAndNothingWhereNothingChanges) {
   Damage fresh;
-  fresh.begin(glm::mat4(1), kWidth, kHeight);
+  fresh.begin(glm::mat4(1), kWide, kHigh);
   expect_all(fresh.end());
   EXPECT_TRUE(frame({{1, {0, 0, 0}}}).isEmpty());
 }
 
 TEST_F(ADamage, IsAllOfItWhereTheSizeOrTheCameraIsAnother) {
-  expect_all(frame({{1, {0, 0, 0}}}, glm::mat4(1), kWidth + 1, kHeight), kWidth + 1, kHeight);
-  expect_all(frame({{1, {0, 0, 0}}}, glm::mat4(1), kWidth + 1, kHeight - 1), kWidth + 1,
-             kHeight - 1);
-  EXPECT_TRUE(frame({{1, {0, 0, 0}}}, glm::mat4(1), kWidth + 1, kHeight - 1).isEmpty());
+  expect_all(frame({{1, {0, 0, 0}}}, glm::mat4(1), kWide + 1, kHigh), kWide + 1, kHigh);
+  expect_all(frame({{1, {0, 0, 0}}}, glm::mat4(1), kWide + 1, kHigh - 1), kWide + 1, kHigh - 1);
+  EXPECT_TRUE(frame({{1, {0, 0, 0}}}, glm::mat4(1), kWide + 1, kHigh - 1).isEmpty());
   const glm::mat4 aside = glm::translate(glm::mat4(1), glm::vec3(1e-3f, 0, 0));
-  expect_all(frame({{1, {0, 0, 0}}}, aside, kWidth + 1, kHeight - 1), kWidth + 1, kHeight - 1);
+  expect_all(frame({{1, {0, 0, 0}}}, aside, kWide + 1, kHigh - 1), kWide + 1, kHigh - 1);
 }
 
 TEST_F(ADamage, IsAllOfItOnceItIsSpoilt) {
@@ -92,11 +91,11 @@ TEST_F(ADamage, IsAllOfItForWhatIsBehindTheEye) {
 }
 
 TEST(Cropped, FillsTheViewWithAnArea) {
-  const PixelArea whole(Eigen::Vector2i(0, 0), Eigen::Vector2i(kWidth, kHeight));
+  const PixelArea whole(Eigen::Vector2i(0, 0), Eigen::Vector2i(kWide, kHigh));
   const PixelArea area(Eigen::Vector2i(50, 20), Eigen::Vector2i(150, 45));
   const glm::mat4 to_clip = cropped(glm::mat4(1), area, whole);
   const auto shown = [&](float x, float y) -> Eigen::Vector3f {  // clip space of a pixel's corner
-    const glm::vec4 p = to_clip * glm::vec4(2 * x / kWidth - 1, 2 * y / kHeight - 1, 0.25f, 1);
+    const glm::vec4 p = to_clip * glm::vec4(2 * x / kWide - 1, 2 * y / kHigh - 1, 0.25f, 1);
     return Eigen::Vector3f(p.x, p.y, p.z) / p.w;
   };
   EXPECT_TRUE(shown(50, 20).isApprox(Eigen::Vector3f(-1, -1, 0.25f), 1e-5f));

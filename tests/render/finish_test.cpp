@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSize = 64;
 
-void fill(int x, int y, int width, int height, float grey) {
+void fill_grey(int x, int y, int width, int height, float grey) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(x, y, width, height);
   glClearColor(grey, grey, grey, 1);
@@ -42,8 +42,8 @@ TEST(Finish, LeavesLinesAsThinAsAPixelWithoutGaps) {
     const auto level = [&](int x) { return 8 + x / run; };
     const int end = std::min(kSize, 48 * run);
     const auto picture = finished([&] {
-      fill(0, 0, kSize, kSize, 0.4f);
-      for (int x = 0; x < end; ++x) fill(x, level(x), 1, 1, 0.9f);
+      fill_grey(0, 0, kSize, kSize, 0.4f);
+      for (int x = 0; x < end; ++x) fill_grey(x, level(x), 1, 1, 0.9f);
     });
     for (int x = 4; x < end - 4; ++x)
       EXPECT_GT(green(picture, x, level(x)), 255 * 0.62) << run << ", " << x;
@@ -52,8 +52,8 @@ TEST(Finish, LeavesLinesAsThinAsAPixelWithoutGaps) {
 
 TEST(Finish, SmoothsTheStepsOfAnEdge) {
   const auto picture = finished([] {
-    fill(0, 0, kSize, kSize, 0.1f);
-    for (int x = 0; x < kSize; ++x) fill(x, 0, 1, 20 + x / 2, 0.9f);
+    fill_grey(0, 0, kSize, kSize, 0.1f);
+    for (int x = 0; x < kSize; ++x) fill_grey(x, 0, 1, 20 + x / 2, 0.9f);
   });
   int between = 0;
   for (int x = 4; x < kSize - 4; ++x)

@@ -20,7 +20,8 @@
 namespace limpid {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
+using test::kHeight;
+using test::kWidth;
 using Colour = Eigen::Vector3i;
 
 // The arm stretched along x, so far behind the plane of its joints.
@@ -80,7 +81,7 @@ class Layers : public testing::Test {
     return std::make_shared<const Model>(std::move(model));
   }
   void put(std::vector<MeshPicture> meshes) { view_->set_meshes(meshes); }
-  // A wall before kPoint and the arm.
+  // A wall before kSeenPoint and the arm.
   void put_wall() {
     put({{block(Vec3(0.14, 0.02, 0.14)), pose_at(Vec3(0.1, -0.05, 0.15))},
          {block(Vec3(0.14, 0.02, 0.14)), pose_at(Vec3(0.3, -0.05, 0))}});
@@ -92,7 +93,7 @@ class Layers : public testing::Test {
   Camera camera_;
 };
 
-const Vec3 kPoint(0.1, 0.05, 0.15), kOnArm(0.3, 0.05, 0);
+const Vec3 kSeenPoint(0.1, 0.05, 0.15), kOnArm(0.3, 0.05, 0);
 
 // A part of the picture, the place at which to look for it, and what a wall before it leaves of it.
 enum class Left { nothing, less, all };
@@ -108,35 +109,35 @@ const std::vector<Layer>& layers() {
   static const std::vector<Layer> all{
       {"trail",
        [](ViewState& s) {
-         s.proxy.trail = {kPoint - 0.06 * x, kPoint - 0.01 * x, kPoint + 0.01 * x};
+         s.proxy.trail = {kSeenPoint - 0.06 * x, kSeenPoint - 0.01 * x, kSeenPoint + 0.01 * x};
        },
-       kPoint, Left::nothing},
+       kSeenPoint, Left::nothing},
       {"patch of a contact",
        [](ViewState& s) {
-         s.contacts = {{kPoint, -Vec3::UnitY(), 1, -Vec3::UnitY()}};
+         s.contacts = {{kSeenPoint, -Vec3::UnitY(), 1, -Vec3::UnitY()}};
          s.show_forces = false;
        },
-       kPoint, Left::nothing},
+       kSeenPoint, Left::nothing},
       {"cone of friction",
        [](ViewState& s) {
-         s.contacts = {{kPoint, 3 * z, 1, z, 0.5}};
+         s.contacts = {{kSeenPoint, 3 * z, 1, z, 0.5}};
        },
-       kPoint + 0.05 * z + 0.012 * x, Left::nothing},
+       kSeenPoint + 0.05 * z + 0.012 * x, Left::nothing},
       {"proxy", [](ViewState& s) { s.proxy = behind(0.05); }, kOnArm, Left::nothing},
       {"arrow of a force",
        [](ViewState& s) {
-         s.contacts = {{kPoint, 3 * z, 1, z}};
+         s.contacts = {{kSeenPoint, 3 * z, 1, z}};
        },
-       kPoint + 0.012 * z, Left::less},
+       kSeenPoint + 0.012 * z, Left::less},
       {"device", [](ViewState& s) { s.device.links = behind(0.05).links; }, kOnArm, Left::less},
       {"re-run", [](ViewState& s) { s.rerun = behind(0.05); }, kOnArm, Left::less},
       {"line of the hand",
        [](ViewState& s) {
          s.show_hand = s.hand_grips = true;
-         s.hand_target = kPoint + 0.06 * x;
-         s.device.tip = kPoint - 0.06 * x;
+         s.hand_target = kSeenPoint + 0.06 * x;
+         s.device.tip = kSeenPoint - 0.06 * x;
        },
-       kPoint, Left::all},
+       kSeenPoint, Left::all},
   };
   return all;
 }
@@ -659,7 +660,7 @@ TEST_F(Layers, LeaveTheNextPictureAsItWouldBe) {
     const auto fresh = picture(next);
     for (const bool shaded : {false, true}) {
       all.shade.reset();
-      if (shaded) all.shade = ContactShade{kPoint, -Vec3::UnitY()};
+      if (shaded) all.shade = ContactShade{kSeenPoint, -Vec3::UnitY()};
       picture(all);
       view_->set_quality({.msaa = 4, .shadow_size = 0, .soft = false});
       EXPECT_EQ(picture(next), fresh) << layer.name << ", " << shaded;
@@ -736,8 +737,8 @@ TEST_F(Layers, HaveAnOutlineOfTheGhostThroughAWall) {
 // A mesh of a body that is not there, or not yet, does no harm.
 TEST_F(Layers, HaveNoMeshOfABodyThatIsNotThere) {
   const Bounds before = view_->bounds();
-  put({{block(Vec3::Constant(0.1)), pose_at(kPoint), 1, false, 0},
-       {block(Vec3::Constant(0.1)), pose_at(kPoint), 1, false, 7}});
+  put({{block(Vec3::Constant(0.1)), pose_at(kSeenPoint), 1, false, 0},
+       {block(Vec3::Constant(0.1)), pose_at(kSeenPoint), 1, false, 7}});
   picture(nothing());
   EXPECT_TRUE(view_->bounds().contains(before));
   EXPECT_LT(view_->bounds().diagonal().norm(), 2 * before.diagonal().norm());
@@ -750,7 +751,7 @@ TEST_F(Layers, LeaveOpenGlAsTheyFoundIt) {
   ViewState all = nothing();
   for (const Layer& layer : layers()) layer.add(all);
   all.show_forces = all.show_grid = true;
-  all.shade = ContactShade{kPoint};
+  all.shade = ContactShade{kSeenPoint};
   for (const int samples : {1, 4}) {
     view_->set_quality({.msaa = samples, .shadow_size = 256, .soft = false});
     GLint framebuffer = 0;

@@ -14,7 +14,7 @@
 namespace limpid {
 namespace {
 
-using Shape = SolidMark::Shape;
+using MarkShape = SolidMark::Shape;
 
 Vec3 vec(const glm::vec4& v) { return {v.x, v.y, v.z}; }
 Vec3 at(const glm::mat4& place) { return vec(place[3]); }
@@ -29,8 +29,8 @@ void expect_near(const Vec3& a, const Vec3& b) {
 // Expects an arrow: a tube and a cone in line, from the point on along the force, 2 cm/N.
 void expect_arrow(const SolidMark& tube, const SolidMark& cone, const Vec3& from,
                   const Vec3& force) {
-  EXPECT_EQ(tube.shape, Shape::tube);
-  EXPECT_EQ(cone.shape, Shape::cone);
+  EXPECT_EQ(tube.shape, MarkShape::tube);
+  EXPECT_EQ(cone.shape, MarkShape::cone);
   expect_near(at(tube.place), from);
   expect_near(at(tube.place) + along(tube.place), at(cone.place));
   expect_near(at(cone.place) + along(cone.place), from + 0.02 * force);
@@ -55,13 +55,13 @@ TEST(Marks, AreAPenAtTheTipsOfDeviceAndProxy) {
     const SolidMark &cone = marks.solids[3 * arm], &tube = marks.solids[3 * arm + 1],
                     &button = marks.solids[3 * arm + 2];
     const Vec3 tip = arm == 0 ? kPoint : Vec3(2 * kPoint);
-    EXPECT_EQ(cone.shape, Shape::cone);
+    EXPECT_EQ(cone.shape, MarkShape::cone);
     expect_near(at(cone.place) + along(cone.place), tip);
     expect_near(along(cone.place).normalized(), x);
-    EXPECT_EQ(tube.shape, Shape::tube);
+    EXPECT_EQ(tube.shape, MarkShape::tube);
     expect_near(at(tube.place), at(cone.place));
     expect_near(at(tube.place) + along(tube.place), tip - kPenLength * x);
-    EXPECT_EQ(button.shape, Shape::ball);
+    EXPECT_EQ(button.shape, MarkShape::ball);
     const Vec3 off = at(button.place) - tip;
     EXPECT_LT(off.dot(x), 0);
     expect_near(off - off.dot(x) * x, across(tube.place) * z);
@@ -158,7 +158,7 @@ TEST(Marks, LeaveOutWhatIsNoForceOrNoPlace) {
   state.hand_target = kPoint;
   marks = collect_marks(state, Camera(), 1);
   ASSERT_EQ(marks.solids.size(), 3u);
-  EXPECT_EQ(marks.solids[0].shape, Shape::ball);
+  EXPECT_EQ(marks.solids[0].shape, MarkShape::ball);
   expect_near(at(marks.solids[0].place), kPoint);
 }
 

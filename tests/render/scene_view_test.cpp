@@ -18,17 +18,12 @@
 namespace limpid {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
+using test::kHeight;
+using test::kWidth;
+using test::pose_of;
+
 const std::filesystem::path kRoot = LIMPID_SOURCE_DIR;
 const std::vector<VisualPicture> kNoVisuals, kMissing{{"/nowhere/table.glb", Pose::Identity(), 1}};
-
-ArmPose pose_of(const ArmDescription& arm, double first, double second) {
-  Pose a = arm.joints[0].origin;
-  a.rotate(Eigen::AngleAxisd(first, Vec3::UnitY()));
-  Pose b = a * arm.joints[1].origin;
-  b.rotate(Eigen::AngleAxisd(second, Vec3::UnitY()));
-  return {{a, b}, b * Vec3(arm.tip.translation()), {}};
-}
 
 class Picture : public testing::Test {
  protected:
@@ -196,26 +191,20 @@ std::shared_ptr<const Model> patch_of(const Eigen::Vector3f& color) {
   return model;
 }
 
-Pose at(const Vec3& place) {
-  Pose pose = Pose::Identity();
-  pose.translation() = place;
-  return pose;
-}
-
-bool green(const Eigen::Vector3i& c) { return c[1] > c[0] + 25 && c[1] > c[2] + 25; }
+bool is_green(const Eigen::Vector3i& c) { return c[1] > c[0] + 25 && c[1] > c[2] + 25; }
 
 TEST_F(Picture, ShowsMeshesWhereTheyAre) {
   const auto model = patch_of({0.05f, 0.6f, 0.05f});
   const Vec3 there(0.1, 0, 0.15), elsewhere(0.3, 0, -0.15);
-  view_->set_meshes(std::vector<MeshPicture>{{model, at(there), 1, false}});
-  EXPECT_TRUE(green(seen_at(there)));
-  EXPECT_FALSE(green(seen_at(elsewhere)));
-  view_->set_meshes(std::vector<MeshPicture>{{model, at(elsewhere), 0.5, true}});
-  EXPECT_FALSE(green(seen_at(there)));
-  EXPECT_TRUE(green(seen_at(elsewhere)));
-  EXPECT_FALSE(green(seen_at(elsewhere + Vec3(0.04, 0, 0))));
+  view_->set_meshes(std::vector<MeshPicture>{{model, pose_at(there), 1, false}});
+  EXPECT_TRUE(is_green(seen_at(there)));
+  EXPECT_FALSE(is_green(seen_at(elsewhere)));
+  view_->set_meshes(std::vector<MeshPicture>{{model, pose_at(elsewhere), 0.5, true}});
+  EXPECT_FALSE(is_green(seen_at(there)));
+  EXPECT_TRUE(is_green(seen_at(elsewhere)));
+  EXPECT_FALSE(is_green(seen_at(elsewhere + Vec3(0.04, 0, 0))));
   view_->set_meshes({});
-  EXPECT_FALSE(green(seen_at(elsewhere)));
+  EXPECT_FALSE(is_green(seen_at(elsewhere)));
 }
 
 TEST_F(Picture, OutlinesAHighlightedMesh) {
@@ -223,7 +212,7 @@ TEST_F(Picture, OutlinesAHighlightedMesh) {
   const Vec3 there(0.1, 0, 0.15);
   camera_.look(Camera::View::side);
   const auto bright_pixels = [&](bool highlighted) {
-    view_->set_meshes(std::vector<MeshPicture>{{model, at(there), 1, highlighted}});
+    view_->set_meshes(std::vector<MeshPicture>{{model, pose_at(there), 1, highlighted}});
     view_->draw(state_, camera_, 0, 0, kWidth, kHeight);
     const auto rgba = read_rgba(kWidth, kHeight);
     int count = 0;
@@ -240,8 +229,8 @@ TEST_F(Picture, ShowsTheTextureOfAMesh) {
   model.parts[0].material.color = 0;
   const Vec3 there(0.1, 0, 0.15);
   const auto shared = std::make_shared<const Model>(std::move(model));
-  view_->set_meshes(std::vector<MeshPicture>{{shared, at(there), 1, false}});
-  EXPECT_TRUE(green(seen_at(there)));
+  view_->set_meshes(std::vector<MeshPicture>{{shared, pose_at(there), 1, false}});
+  EXPECT_TRUE(is_green(seen_at(there)));
 }
 
 TEST_F(Picture, LetsTheBackgroundThroughWhereAMeshIsCutOut) {
@@ -253,26 +242,26 @@ TEST_F(Picture, LetsTheBackgroundThroughWhereAMeshIsCutOut) {
   state_.show_grid = false;
   view_->set_quality({.msaa = 1, .shadow_size = 0, .soft = false});
   const auto shared = std::make_shared<const Model>(std::move(model));
-  view_->set_meshes(std::vector<MeshPicture>{{shared, at(there), 1, false}});
+  view_->set_meshes(std::vector<MeshPicture>{{shared, pose_at(there), 1, false}});
   EXPECT_LE((seen_at(there) - empty).cwiseAbs().maxCoeff(), 2);
 }
 
 TEST_F(Picture, FramesMeshesWithinReachOnly) {
   const auto model = patch_of({1, 1, 1});
   const Bounds before = view_->bounds();
-  view_->set_meshes(std::vector<MeshPicture>{{model, at(Vec3(20, 0, 0)), 1, false}});
+  view_->set_meshes(std::vector<MeshPicture>{{model, pose_at(Vec3(20, 0, 0)), 1, false}});
   EXPECT_TRUE(view_->bounds().isApprox(before));
   const Vec3 below(0.2, 0, before.min().z() - 0.04);
-  view_->set_meshes(std::vector<MeshPicture>{{model, at(below), 1, false}});
+  view_->set_meshes(std::vector<MeshPicture>{{model, pose_at(below), 1, false}});
   EXPECT_TRUE(view_->bounds().contains(Vec3(below)));
 }
 
 TEST_F(Picture, LeavesOutMeshesThatCannotBeDrawn) {
   const auto model = patch_of({0.05f, 0.6f, 0.05f});
   const Eigen::Vector3i empty = seen_at(Vec3(0.1, 0, 0.15));
-  view_->set_meshes(std::vector<MeshPicture>{{nullptr, at(Vec3(0.1, 0, 0.15)), 1, false},
-                                             {model, at(Vec3(std::nan(""), 0, 0)), 1, true},
-                                             {model, at(Vec3(0.1, 0, 0.15)), 0, false},
+  view_->set_meshes(std::vector<MeshPicture>{{nullptr, pose_at(Vec3(0.1, 0, 0.15)), 1, false},
+                                             {model, pose_at(Vec3(std::nan(""), 0, 0)), 1, true},
+                                             {model, pose_at(Vec3(0.1, 0, 0.15)), 0, false},
                                              {std::make_shared<Model>(), Pose::Identity()}});
   EXPECT_EQ(seen_at(Vec3(0.1, 0, 0.15)), empty);
 }
@@ -282,7 +271,7 @@ TEST_F(Picture, ExchangesTheSceneAndKeepsTheRest) {
   const Vec3 there(0.1, 0, 0.15);
   const Eigen::Vector3i empty = seen_at(there);
   Scene scene;
-  scene.add({"", at(there), Box{}});
+  scene.add({"", pose_at(there), Box{}});
   view_->set_scene(scene, kNoVisuals);
   EXPECT_GT((seen_at(there) - empty).cwiseAbs().maxCoeff(), 15);
   EXPECT_TRUE(blue(seen_at(kMiddleOfSecondLink)));

@@ -16,15 +16,9 @@
 namespace limpid {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
-
-ArmPose pose_of(const ArmDescription& arm, double first, double second) {
-  Pose a = arm.joints[0].origin;
-  a.rotate(Eigen::AngleAxisd(first, Vec3::UnitY()));
-  Pose b = a * arm.joints[1].origin;
-  b.rotate(Eigen::AngleAxisd(second, Vec3::UnitY()));
-  return {{a, b}, b * Vec3(arm.tip.translation()), {}};
-}
+using test::kHeight;
+using test::kWidth;
+using test::pose_of;
 
 Scene table() {
   Scene scene;

@@ -1,12 +1,12 @@
 // A trembling hand that taps a wall, holds it and presses slowly, and what comes of it.
 #pragma once
 
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/dynamics/arm.h"
+#include "core/math/eigen.h"
 #include "core/math/high_pass.h"
 #include "devices/simulated/rig.h"
 
@@ -118,8 +118,7 @@ struct Press {
     s.tip = arm.tip(frames);
     Jacobian<kAnyDof> J;
     arm.point_jacobian(frames, arm.dof() - 1, s.tip, J);
-    const Eigen::MatrixXd levers = J.transpose();
-    s.force = out.dot(Vec3(levers.colPivHouseholderQr().solve(column(Column::motor_torque))));
+    s.force = out.dot(Vec3(least_squares(J.transpose(), column(Column::motor_torque))));
     s.port = layout.in(row, Column::energy_port)[0];
     return s;
   }

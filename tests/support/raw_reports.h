@@ -7,10 +7,19 @@
 #include <vector>
 
 #include "devices/hid/raw_protocol.h"
+#include "tests/support/fake_hid.h"
 
 namespace limpid::test {
 
 using RawReport = std::array<std::uint8_t, RawProtocol::kReportSize>;
+
+// Opens it on a device that has this feature report.
+inline void open_raw(RawProtocol& protocol, const Report& feature) {
+  const auto device = std::make_shared<FakeHid>();
+  device->features[0] = feature;
+  FakeTransport transport(device);
+  protocol.open(transport);
+}
 
 // Index in a report of byte `at` of the protocol's tables.
 constexpr std::size_t byte(std::size_t at) { return 1 + at; }

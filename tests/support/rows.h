@@ -44,6 +44,12 @@ class Rows {
     }
     return out;
   }
+  // Sum of their forces [N].
+  Vec3 force(std::size_t k) const {
+    Vec3 all = Vec3::Zero();
+    for (const Touch& touch : touches(k)) all += touch.force;
+    return all;
+  }
   const RowLayout& layout() const { return layout_; }
 
  private:

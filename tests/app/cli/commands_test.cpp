@@ -23,8 +23,8 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-constexpr const char* kLaws[] = {"standard", "proposed", "predictive", "tank", "direct",
-                                 "eba",      "popc",     "wave",       "tdpn", "sfa"};
+constexpr const char* kLawWords[] = {"standard", "proposed", "predictive", "tank", "direct",
+                                     "eba",      "popc",     "wave",       "tdpn", "sfa"};
 
 class Commands : public test::Program {
  protected:
@@ -322,7 +322,7 @@ TEST_F(Commands, AnalyzeSaysInLinesWhatItSaysInJson) {
   near("stiffest wall, in any hand", told["tip"]["every_hand"], 0.6);
   near("stiffest in the scene", told["tip"]["scene"], 0.6);
   EXPECT_EQ(told["tip"]["scene"], 600) << "the table's";
-  for (const char* law : kLaws) {
+  for (const char* law : kLawWords) {
     near((std::string("stiffest wall, ") + law).c_str(), told["tip"][law]["wall"], 0.6);
     EXPECT_THAT(text, HasSubstr(told["tip"][law]["bound"].get<std::string>()));
   }
@@ -340,7 +340,7 @@ TEST_F(Commands, AnalyzeSaysInLinesWhatItSaysInJson) {
     std::string word;
     in >> f >> word;
     EXPECT_EQ(f, told["tip"]["frequency"][i].get<double>());
-    for (const char* law : kLaws) {
+    for (const char* law : kLawWords) {
       double mass = 0, damping = 0;
       in >> mass >> word >> damping >> word >> word;
       EXPECT_NEAR(mass, 1e3 * told["tip"][law]["felt_mass"][i].get<double>(), 0.006) << law << f;
@@ -370,7 +370,7 @@ TEST_F(Commands, AnalyzeOfARangeOfHandsSaysWhatIsKnownOfEveryLaw) {
   const std::string text = done({"analyze", "--grip", "300", "3000", "--all"});
   EXPECT_EQ(told["grip"]["from"], 300);
   EXPECT_EQ(told["grip"]["to"], 3000);
-  for (const char* law : kLaws) {
+  for (const char* law : kLawWords) {
     const json& of = told["grip"][law];
     for (const char* which : {"stable", "passive"}) {
       EXPECT_THAT(of[which]["by"].get<std::string>(), Not(IsEmpty())) << law;

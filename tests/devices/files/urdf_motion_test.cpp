@@ -5,6 +5,7 @@
 namespace limpid {
 namespace {
 
+using test::at;
 using test::joint;
 using test::kInertial;
 using test::kLimit;
@@ -18,7 +19,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-std::string at(const std::string& xyz) { return "<origin xyz='" + xyz + "'/>"; }
 std::string limit(const std::string& range, const std::string& effort) {
   return "<limit " + range + " effort='" + effort + "' velocity='1'/>";
 }

@@ -22,6 +22,8 @@ inline std::string joint(const std::string& parent, const std::string& child,
          "'/><child link='" + child + "'/>" + inside + "</joint>\n";
 }
 
+inline std::string at(const std::string& xyz) { return "<origin xyz='" + xyz + "'/>"; }
+
 inline std::string robot(const std::string& inside) {
   return "<robot name='r'>\n" + inside + "</robot>\n";
 }

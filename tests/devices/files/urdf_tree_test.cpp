@@ -7,6 +7,7 @@
 namespace limpid {
 namespace {
 
+using test::at;
 using test::joint;
 using test::kInertial;
 using test::kLimit;
@@ -17,8 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string at(const std::string& xyz) { return "<origin xyz='" + xyz + "'/>"; }
-std::string limit(double lower, double upper) {
+std::string range_limit(double lower, double upper) {
   return fmt::format("<limit lower='{}' upper='{}' effort='2' velocity='1'/>", lower, upper);
 }
 const std::string kBall =
@@ -35,12 +35,12 @@ std::vector<std::string> joints_of(const ArmDescription& arm) {
 std::string hand_with_fingers(const std::string& second) {
   return link("a") + joint("a", "b", "revolute", kLimit + at("0 0 1") + "<axis xyz='0 0 1'/>") +
          link("b") + joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
-         joint("hand", "left", "prismatic", "<axis xyz='0 1 0'/>" + limit(0.01, 0.04)) +
+         joint("hand", "left", "prismatic", "<axis xyz='0 1 0'/>" + range_limit(0.01, 0.04)) +
          link("left", kBall) + joint("hand", "right", "prismatic", second) + link("right", kBall);
 }
 
 TEST(UrdfTree, HoldsGrippersStillAtTheLimitNextToZero) {
-  const std::string opposite = "<axis xyz='0 -1 0'/>" + limit(0.01, 0.04);
+  const std::string opposite = "<axis xyz='0 -1 0'/>" + range_limit(0.01, 0.04);
   for (const std::string& second :
        {opposite, opposite + "<mimic joint='hand_left' multiplier='1'/>"}) {
     const ArmDescription arm = parse(hand_with_fingers(second));
@@ -60,11 +60,11 @@ TEST(UrdfTree, HoldsGrippersStillAtTheLimitNextToZero) {
 }
 
 TEST(UrdfTree, TakesASlideAtTheEndOfTheChainForAJoint) {
-  const ArmDescription arm = parse(
-      link("a") + joint("a", "b") + link("b") +
-      joint("b", "c", "prismatic",
-            "<axis xyz='0 0 -1'/>" + limit(-0.05, 0.2) + "<dynamics damping='3' friction='1'/>") +
-      link("c"));
+  const ArmDescription arm = parse(link("a") + joint("a", "b") + link("b") +
+                                   joint("b", "c", "prismatic",
+                                         "<axis xyz='0 0 -1'/>" + range_limit(-0.05, 0.2) +
+                                             "<dynamics damping='3' friction='1'/>") +
+                                   link("c"));
   ASSERT_THAT(joints_of(arm), ElementsAre("a_b", "b_c"));
   EXPECT_TRUE(arm.warnings.empty());
   // Units of (5): 1 unit of travel is 0.1 m, power is kept.
@@ -188,11 +188,12 @@ TEST(UrdfTree, TakesLimitsOfNothingButZerosForNone) {
 }
 
 TEST(UrdfTree, HoldsAJointWithoutRoomStillWhereItIs) {
-  const ArmDescription arm = parse(
-      link("a") + joint("a", "b") + link("b") +
-      joint("b", "c", "revolute",
-            "<axis xyz='0 0 1'/>" + at("1 0 0") + limit(1.5707963267948966, 1.5707963267948966)) +
-      link("c") + joint("c", "d", "revolute", kLimit + at("1 0 0")) + link("d"));
+  const ArmDescription arm =
+      parse(link("a") + joint("a", "b") + link("b") +
+            joint("b", "c", "revolute",
+                  "<axis xyz='0 0 1'/>" + at("1 0 0") +
+                      range_limit(1.5707963267948966, 1.5707963267948966)) +
+            link("c") + joint("c", "d", "revolute", kLimit + at("1 0 0")) + link("d"));
   ASSERT_THAT(joints_of(arm), ElementsAre("a_b", "c_d"));
   EXPECT_LT((arm.joints[1].origin.translation() - Vec3(1, 1, 0)).norm(), 1e-12);
 }
@@ -225,7 +226,7 @@ TEST(UrdfTree, HoldsASlideStillAlongItsOwnAxis) {
                 joint("b", "hand", "fixed", at("1 0 0")) + link("hand", kBall) +
                 joint("hand", "left", "prismatic",
                       "<origin xyz='0 0.5 0' rpy='0 1.5707963267948966 0'/><axis xyz='1 0 0'/>" +
-                          limit(0.25, 0.5)) +
+                          range_limit(0.25, 0.5)) +
                 link("left", kBall),
             "hand");
   EXPECT_THAT(joints_of(arm), ElementsAre("a_b"));

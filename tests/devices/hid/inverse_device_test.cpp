@@ -18,7 +18,7 @@ using test::InverseService;
 
 bool pushes(const std::string& line) { return line.starts_with("force") && line != "force 0 0 0"; }
 
-std::unique_ptr<Device> open(const ServiceAddress& address, const std::string& id = {}) {
+std::unique_ptr<Device> open_inverse(const ServiceAddress& address, const std::string& id = {}) {
   const auto found = list_inverse_devices(InverseName{id, address}, address);
   if (found.empty()) throw HidError("none");
   return open_device(found.back());
@@ -68,7 +68,7 @@ struct AnInverseService : testing::Test {
 
 TEST_F(AnInverseService, MovesAsItsForcePushesIt) {
   service.tell("spring 100");
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   EXPECT_TRUE(turn(*device, {0.1, 0, -0.05}, [](const DeviceReading& r, bool) {  // 1 N, -0.5 N
     return std::abs(r.x[0] - 0.1) < 1e-6 && std::abs(r.x[2] - (1.6 - 0.05)) < 1e-6;
   }));
@@ -77,7 +77,7 @@ TEST_F(AnInverseService, MovesAsItsForcePushesIt) {
 
 TEST_F(AnInverseService, HasAZeroForceBeforeItIsLetGo) {
   {
-    const auto device = open(service.address());
+    const auto device = open_inverse(service.address());
     push(*device);
   }
   service.wait_for("force 0 0 0");
@@ -85,20 +85,20 @@ TEST_F(AnInverseService, HasAZeroForceBeforeItIsLetGo) {
 }
 
 TEST_F(AnInverseService, HasAZeroForceOnceTheLoopStands) {
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   push(*device);
   service.wait_for("force 0 0 0");
 }
 
 TEST_F(AnInverseService, HasAZeroForceOnceNobodyAsks) {
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   push(*device);
   device->stop();
   service.wait_for("force 0 0 0");
 }
 
 TEST_F(AnInverseService, ThatFallsSilentHasAZeroForceAndGivesOldReadings) {
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   push(*device);
   service.tell("silent");
   EXPECT_TRUE(turn(*device, {0.1, 0, 0}, [](const DeviceReading& r, bool here) {
@@ -118,7 +118,7 @@ TEST_F(AnInverseService, ThatTalksNonsenseHasAZeroForce) {
        {"nonsense", R"({"inverse3":[]})",
         R"({"inverse3":[{"device_id":"04BA","state":{"cursor_position":{"x":0,"y":0,"z":0}}}]})"}) {
     service.tell("answer");
-    const auto device = open(service.address());
+    const auto device = open_inverse(service.address());
     push(*device);
     service.tell(std::string("say ") + words);
     EXPECT_TRUE(turn(*device, {0.1, 0, 0},
@@ -130,7 +130,7 @@ TEST_F(AnInverseService, ThatTalksNonsenseHasAZeroForce) {
 // The loop with its safety, tick by tick; a stop pushes the device's first axis back.
 TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
   service.tell("spring 400");
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   ASSERT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
   ArmDescription arm = test::random_arm(3, 71, test::Slides::all);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -190,7 +190,7 @@ TEST_F(AnInverseService, ThatRepeatsItsLastCursorHasNoForceAfterAWhile) {
 
 // A service that answers after 20 ms must not get a queue of forces.
 TEST_F(AnInverseService, ThatIsSlowIsNotFlooded) {
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   EXPECT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
   service.tell("slow 0.02");
   DeviceReading before;
@@ -208,31 +208,31 @@ TEST_F(AnInverseService, ThatIsSlowIsNotFlooded) {
 }
 
 TEST_F(AnInverseService, ThatDropsTheConnectionIsLostAndCanBeHadAgain) {
-  auto device = open(service.address());
+  auto device = open_inverse(service.address());
   push(*device);
   service.tell("drop");
   EXPECT_TRUE(turn(*device, {0.1, 0, 0}, [](auto&, bool here) { return !here; }));
   device.reset();
-  device = open(service.address());
+  device = open_inverse(service.address());
   DeviceReading reading;
   EXPECT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
   push(*device);
 }
 
 TEST_F(AnInverseService, ThatIsStartedAnewIsAnotherConnection) {
-  auto device = open(service.address());
+  auto device = open_inverse(service.address());
   push(*device);
   service.end();
   EXPECT_TRUE(turn(*device, {0.1, 0, 0}, [](auto&, bool here) { return !here; }));
   device.reset();
   EXPECT_TRUE(list_inverse_devices({}, service.address()).empty());
   InverseService again(service.address().port);
-  device = open(again.address());
+  device = open_inverse(again.address());
   EXPECT_TRUE(turn(*device, {0, 0, 0}, [](const DeviceReading& r, bool) { return r.count > 0; }));
 }
 
 TEST_F(AnInverseService, ThatIsToldAnotherFrameMeanwhileHasAZeroForce) {
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   push(*device);
   service.tell(R"(merge {"config": {"basis": {"permutation": "XZY"}}})");
   EXPECT_TRUE(turn(*device, {0.1, 0, 0}, [](const DeviceReading& r, bool) { return r.fault; }));
@@ -243,7 +243,7 @@ TEST_F(AnInverseService, ThatIsToldAnotherFrameMeanwhileHasAZeroForce) {
 
 // Any name of the address counts: a second stream of forces would pull the device to and fro.
 TEST_F(AnInverseService, IsHadByOneAndHearsNothingOfAnother) {
-  const auto device = open(service.address());
+  const auto device = open_inverse(service.address());
   push(*device);
   const ServiceAddress other_name{"localhost", service.address().port};
   for (const ServiceAddress& address : {service.address(), other_name}) {
@@ -278,7 +278,7 @@ TEST_F(AnInverseService, OfWhichNoDeviceIsNamedIsClaimedAsItsFirst) {
 TEST_F(AnInverseService, HasAZeroForceWhenWeAreKilled) {
   const pid_t child = fork();
   if (child == 0) {
-    const auto device = open(service.address());
+    const auto device = open_inverse(service.address());
     turn(*device, {0.1, 0, 0}, [](auto&, bool) { return false; });
     _exit(1);
   }

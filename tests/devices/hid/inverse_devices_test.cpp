@@ -12,19 +12,19 @@ namespace {
 
 using test::InverseService;
 
-std::string whole(const std::string& words) {
+std::string whole_name(const std::string& words) {
   const auto name = inverse_name(words);
   return name ? name->text() : "none";
 }
 
 TEST(InverseName, IsFilledUpWithWhatIsUsual) {
-  EXPECT_EQ(whole("inverse3"), "inverse3@localhost:10001");
-  EXPECT_EQ(whole("inverse3:049D"), "inverse3:049D@localhost:10001");
-  EXPECT_EQ(whole("inverse3@desk"), "inverse3@desk:10001");
-  EXPECT_EQ(whole("inverse3:049D@10.0.0.7:9000"), "inverse3:049D@10.0.0.7:9000");
-  EXPECT_EQ(whole("inverse3.urdf"), "none");
-  EXPECT_EQ(whole("046d:c62b"), "none");
-  EXPECT_EQ(whole(""), "none");
+  EXPECT_EQ(whole_name("inverse3"), "inverse3@localhost:10001");
+  EXPECT_EQ(whole_name("inverse3:049D"), "inverse3:049D@localhost:10001");
+  EXPECT_EQ(whole_name("inverse3@desk"), "inverse3@desk:10001");
+  EXPECT_EQ(whole_name("inverse3:049D@10.0.0.7:9000"), "inverse3:049D@10.0.0.7:9000");
+  EXPECT_EQ(whole_name("inverse3.urdf"), "none");
+  EXPECT_EQ(whole_name("046d:c62b"), "none");
+  EXPECT_EQ(whole_name(""), "none");
 }
 
 TEST(InverseName, ThatCannotBeIsRefused) {

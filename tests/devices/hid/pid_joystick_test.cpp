@@ -19,7 +19,7 @@ using test::operator+;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-ReportDescriptor whole() { return parse_report_descriptor(parts::whole()); }
+ReportDescriptor whole_descriptor() { return parse_report_descriptor(parts::whole()); }
 
 // The first effect is block 1, the next one block 2.
 class PidDevice final : public HidTransport {
@@ -59,7 +59,7 @@ struct OpenPidJoystick : testing::Test {
     return sent;
   }
   PidDevice device;
-  PidJoystick joystick{whole()};
+  PidJoystick joystick{whole_descriptor()};
   DeviceReading reading;
 };
 
@@ -153,7 +153,7 @@ TEST_F(OpenPidJoystick, TakesABitThatNeverSaidThatAllIsWellForNothing) {
 
 TEST_F(OpenPidJoystick, ForgetsItsBitsWithTheConnection) {
   joystick.decode(Report{2, kWell, 0}, reading);
-  PidJoystick again(whole());
+  PidJoystick again(whole_descriptor());
   DeviceReading news;
   again.decode(Report{2, 0, 0}, news);
   EXPECT_TRUE(news.hand);
@@ -216,7 +216,7 @@ TEST_F(OpenPidJoystick, StopReportsStayZeroAfterForces) {
 
 TEST(PidJoystick, CanBeTurnedRound) {
   PidDevice device;
-  PidJoystick joystick(whole(), {.effort = 1, .reverse = {true, false}});
+  PidJoystick joystick(whole_descriptor(), {.effort = 1, .reverse = {true, false}});
   joystick.open(device);
   Report first;
   joystick.encode(std::vector<double>{1.0, 0.0}, {}, [&](auto report) {
@@ -247,9 +247,9 @@ TEST(PidJoystick, CanBeTurnedRoundWhereOnlyYCanBePushed) {
   }
 }
 
-std::string complaint(PidDevice& device) {
+std::string complaint_of_joystick(PidDevice& device) {
   try {
-    PidJoystick joystick(whole());
+    PidJoystick joystick(whole_descriptor());
     joystick.open(device);
   } catch (const HidError& error) {
     return error.what();
@@ -260,34 +260,34 @@ std::string complaint(PidDevice& device) {
 TEST(PidJoystick, SaysWhenThereIsNoRoomForAnEffect) {
   PidDevice device;
   device.load_status = 2;
-  EXPECT_THAT(complaint(device), HasSubstr("no room"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("no room"));
   EXPECT_THAT(device.received, testing::Not(testing::Contains(kEnable)));
 }
 
 TEST(PidJoystick, SaysWhenTheDeviceCannotMakeAnEffect) {
   PidDevice device;
   device.load_status = 3;
-  EXPECT_THAT(complaint(device), HasSubstr("cannot make an effect"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("cannot make an effect"));
 }
 
 TEST(PidJoystick, SaysWhenTheDeviceDoesNotAnswer) {
   PidDevice device;
   device.load_status = 0;
-  EXPECT_THAT(complaint(device), HasSubstr("does not say where"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("does not say where"));
 }
 
 // Blocks count from 1; 0 stands for no effect.
 TEST(PidJoystick, TakesNoBlockZero) {
   PidDevice device;
   device.first_block = 0;
-  EXPECT_THAT(complaint(device), HasSubstr("does not say where"));
+  EXPECT_THAT(complaint_of_joystick(device), HasSubstr("does not say where"));
   EXPECT_THAT(device.received, testing::Not(testing::Contains(kEnable)));
 }
 
 TEST(PidJoystick, UsesTheBlocksThatItIsGiven) {
   PidDevice device;
   device.first_block = 39;
-  PidJoystick joystick(whole());
+  PidJoystick joystick(whole_descriptor());
   joystick.open(device);
   EXPECT_THAT(device.received, testing::IsSupersetOf({Report{5, 39, 0, 0}, Report{5, 40, 0, 0}}));
   EXPECT_THAT(joystick.stop_reports(),
@@ -328,7 +328,7 @@ TEST(PidJoystick, TakesAGamePadForNoArm) {
 }
 
 TEST(PidJoystick, RefusesSettingsThatMakeNoSense) {
-  const ReportDescriptor descriptor = whole();
+  const ReportDescriptor descriptor = whole_descriptor();
   EXPECT_THROW(PidJoystick(descriptor, {.range = 0}), HidError);
   EXPECT_THROW(PidJoystick(descriptor, {.effort = -1}), HidError);
   EXPECT_THROW(PidJoystick(descriptor, {.duration = 5}), HidError);

@@ -14,6 +14,7 @@ namespace limpid {
 namespace {
 
 using test::byte;
+using test::open_raw;
 using test::Raw2Description;
 using test::Raw2Joint;
 using test::Raw2Report;
@@ -23,19 +24,12 @@ using test::sealed_2;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 // A joint that turns by +-1 rad at most at 10 rad/s, and one that slides by +-0.2 m at 2 m/s.
-const std::vector<Raw2Joint> kJoints{{false, 1, 0.5f, 10}, {true, 0.2f, 4, 2}};
+const std::vector<Raw2Joint> kTwoJoints{{false, 1, 0.5f, 10}, {true, 0.2f, 4, 2}};
 
-void open(RawProtocol& protocol, const Report& feature) {
-  const auto device = std::make_shared<test::FakeHid>();
-  device->features[0] = feature;
-  test::FakeTransport transport(device);
-  protocol.open(transport);
-}
-
-std::string complaint(const Raw2Description& feature) {
+std::string complaint_2(const Raw2Description& feature) {
   RawProtocol protocol;
   try {
-    open(protocol, sealed_2(feature));
+    open_raw(protocol, sealed_2(feature));
   } catch (const HidError& error) {
     return error.what();
   }
@@ -43,7 +37,7 @@ std::string complaint(const Raw2Description& feature) {
 }
 
 struct OpenRaw2 : testing::Test {
-  OpenRaw2() { open(protocol, sealed_2(raw_2_feature(kJoints))); }
+  OpenRaw2() { open_raw(protocol, sealed_2(raw_2_feature(kTwoJoints))); }
   Decoded decode(const Raw2Report& report) { return protocol.decode(sealed_2(report), reading); }
   RawProtocol protocol;
   DeviceReading reading;
@@ -251,20 +245,20 @@ TEST(Raw2, GivesNoTorqueToAJointWithoutAMotor) {
 
 TEST(Raw2, RefusesDevicesThatAreNotFitForAHand) {
   using testing::HasSubstr;
-  const Raw2Description good = raw_2_feature(kJoints);
-  EXPECT_EQ(complaint(good), "none");
-  EXPECT_EQ(complaint(raw_2_feature(std::vector<Raw2Joint>(8, {true, 1, 1}))), "none");
-  EXPECT_THAT(complaint(raw_2_feature(std::vector<Raw2Joint>(9))), HasSubstr("9 joints"));
-  EXPECT_THAT(complaint(raw_2_feature({{false, 1, 0}})), HasSubstr("no joint has a motor"));
-  EXPECT_EQ(complaint(raw_2_feature({{false, 1, 0}}, false)), "none");
+  const Raw2Description good = raw_2_feature(kTwoJoints);
+  EXPECT_EQ(complaint_2(good), "none");
+  EXPECT_EQ(complaint_2(raw_2_feature(std::vector<Raw2Joint>(8, {true, 1, 1}))), "none");
+  EXPECT_THAT(complaint_2(raw_2_feature(std::vector<Raw2Joint>(9))), HasSubstr("9 joints"));
+  EXPECT_THAT(complaint_2(raw_2_feature({{false, 1, 0}})), HasSubstr("no joint has a motor"));
+  EXPECT_EQ(complaint_2(raw_2_feature({{false, 1, 0}}, false)), "none");
   const auto with = [&](std::size_t at, float value) {
     Raw2Description bad = good;
     store_float_le(bad, byte(at), value);
-    return complaint(bad);
+    return complaint_2(bad);
   };
   Raw2Description kind = good;
   kind[byte(9)] = 2;
-  EXPECT_THAT(complaint(kind), HasSubstr("joint 2 is of kind 2"));
+  EXPECT_THAT(complaint_2(kind), HasSubstr("joint 2 is of kind 2"));
   EXPECT_THAT(with(16, 2), HasSubstr("the range of joint 1 is 2 to 1 rad"));
   EXPECT_THAT(with(52, 11), HasSubstr("the range of joint 2 is"));
   EXPECT_THAT(with(52, kNan), HasSubstr("the range of joint 2 is"));
@@ -295,7 +289,7 @@ TEST(Raw2, AsksADeviceOfVersion1ForNoMoreThanItHas) {
   };
   Asked first, second;
   first.feature = test::sealed(test::raw_feature(2));
-  second.feature = sealed_2(raw_2_feature(kJoints));
+  second.feature = sealed_2(raw_2_feature(kTwoJoints));
   RawProtocol().open(first);
   RawProtocol().open(second);
   EXPECT_EQ(first.sizes, (std::vector<std::size_t>{65}));

@@ -14,21 +14,15 @@ namespace limpid {
 namespace {
 
 using test::byte;
+using test::open_raw;
 using test::raw_reading;
 using test::RawReport;
 using test::sealed;
 
-void open(RawProtocol& protocol, const Report& feature) {
-  const auto device = std::make_shared<test::FakeHid>();
-  device->features[0] = feature;
-  test::FakeTransport transport(device);
-  protocol.open(transport);
-}
-
-std::string complaint(const RawReport& feature) {
+std::string complaint_1(const RawReport& feature) {
   RawProtocol protocol;
   try {
-    open(protocol, sealed(feature));
+    open_raw(protocol, sealed(feature));
   } catch (const HidError& error) {
     return error.what();
   }
@@ -36,7 +30,7 @@ std::string complaint(const RawReport& feature) {
 }
 
 struct OpenRawProtocol : testing::Test {
-  OpenRawProtocol() { open(protocol, sealed(test::raw_feature(2))); }
+  OpenRawProtocol() { open_raw(protocol, sealed(test::raw_feature(2))); }
   Decoded decode(const Report& report) { return protocol.decode(report, reading); }
   test::RawCommand encode(const std::vector<double>& torque) {
     Report sent;
@@ -176,11 +170,11 @@ TEST(RawProtocol, RefusesDevicesThatAreNotFitForAHand) {
   const auto with = [&](std::size_t at, std::uint16_t value) {
     RawReport bad = good;
     store_le(bad, byte(at), value);
-    return complaint(bad);
+    return complaint_1(bad);
   };
-  EXPECT_EQ(complaint(good), "none");
-  EXPECT_THAT(complaint(test::raw_feature(0)), HasSubstr("0 joints"));
-  EXPECT_THAT(complaint(test::raw_header(7, 1)), HasSubstr("7 joints"));
+  EXPECT_EQ(complaint_1(good), "none");
+  EXPECT_THAT(complaint_1(test::raw_feature(0)), HasSubstr("0 joints"));
+  EXPECT_THAT(complaint_1(test::raw_header(7, 1)), HasSubstr("7 joints"));
   EXPECT_THAT(with(4, 100), HasSubstr("100 Hz"));
   EXPECT_THAT(with(6, 11), HasSubstr("11 ms"));
   EXPECT_THAT(with(6, 0), HasSubstr("0 ms"));
@@ -190,23 +184,23 @@ TEST(RawProtocol, RefusesDevicesThatAreNotFitForAHand) {
   for (const float bad : {0.f, -1.f, std::numeric_limits<float>::quiet_NaN()}) {
     RawReport feature = good;
     store_float_le(feature, byte(32), bad);
-    EXPECT_THAT(complaint(feature), HasSubstr("resolution"));
+    EXPECT_THAT(complaint_1(feature), HasSubstr("resolution"));
   }
 }
 
 TEST(RawProtocol, RefusesASilentOrDamagedDescription) {
   RawProtocol protocol;
-  EXPECT_THROW(open(protocol, {}), HidError);
+  EXPECT_THROW(open_raw(protocol, {}), HidError);
   Report damaged = sealed(test::raw_feature(2));
   damaged[byte(50)] ^= 1;
-  EXPECT_THROW(open(protocol, damaged), HidError);
+  EXPECT_THROW(open_raw(protocol, damaged), HidError);
 }
 
 TEST(RawProtocol, AsksLessOfADeviceWithoutMotors) {
   RawReport feature = test::raw_feature(2, false);
   store_le<std::uint16_t>(feature, byte(4), 60);
   store_le<std::uint16_t>(feature, byte(6), 0);
-  EXPECT_EQ(complaint(feature), "none");
+  EXPECT_EQ(complaint_1(feature), "none");
 }
 
 TEST(RawProtocol, IsKnownByItsVendorPage) {

@@ -18,7 +18,7 @@ using test::operator+;
 
 constexpr Usage kX = make_usage(1, 0x30);
 
-std::string complaint(const Bytes& bytes) {
+std::string complaint_of_parser(const Bytes& bytes) {
   try {
     parse_report_descriptor(bytes);
   } catch (const HidError& error) {
@@ -212,7 +212,8 @@ TEST(ReportDescriptor, SkipsLongItems) {
 
 TEST(ReportDescriptor, RefusesWhatMakesNoSense) {
   const auto contains = [](const Bytes& bytes, const char* text) {
-    EXPECT_NE(complaint(bytes).find(text), std::string::npos) << complaint(bytes);
+    EXPECT_NE(complaint_of_parser(bytes).find(text), std::string::npos)
+        << complaint_of_parser(bytes);
   };
   contains({0x05, 0x01, 0x26, 0xFF}, "byte 2: the item is cut off");
   contains({0xFE}, "cut off");

@@ -10,7 +10,7 @@
 namespace limpid {
 namespace {
 
-const Vec3 kDown(0, 0, -9.81);
+const Vec3 kGravity(0, 0, -9.81);
 
 struct Motions {
   ArmDescription truth;
@@ -36,10 +36,12 @@ void expect_found_by_load(const ArmDescription& file, Unlikeness bench, double m
 
 TEST(TorqueScale, IsFoundByALoadAtTheTip) {
   const ArmDescription omni = test::omni();
-  expect_found_by_load(
-      omni, {.gravity = kDown, .encoder_step = 3e-5, .delay = 2, .torque_scale = 0.8}, 0.05, 601);
-  expect_found_by_load(
-      omni, {.gravity = kDown, .encoder_step = 1e-4, .delay = 1, .torque_scale = 1.3}, 0.05, 602);
+  expect_found_by_load(omni,
+                       {.gravity = kGravity, .encoder_step = 3e-5, .delay = 2, .torque_scale = 0.8},
+                       0.05, 601);
+  expect_found_by_load(omni,
+                       {.gravity = kGravity, .encoder_step = 1e-4, .delay = 1, .torque_scale = 1.3},
+                       0.05, 602);
   const ArmDescription paddle = read_urdf(test::assets_dir() / "devices/paddle.urdf");
   // An upright axis sees nothing of the load's weight, but its inertia.
   expect_found_by_load(paddle, {.encoder_step = 1e-4, .delay = 1, .torque_scale = 1.2}, 0.02, 603);
@@ -47,18 +49,19 @@ TEST(TorqueScale, IsFoundByALoadAtTheTip) {
 
 TEST(TorqueScale, IsFoundByTheFilesMassesWhereTheyAreRight) {
   const ArmDescription file = test::omni();
-  const Unlikeness bench{.gravity = kDown, .encoder_step = 3e-5, .delay = 2, .torque_scale = 0.75};
+  const Unlikeness bench{
+      .gravity = kGravity, .encoder_step = 3e-5, .delay = 2, .torque_scale = 0.75};
   const Motions m = motions_of(file, file, bench, 0.05);
-  const FitSettings settings{.gravity = kDown};
+  const FitSettings settings{.gravity = kGravity};
   const Identified told = identify(file, m.bare, settings);
   EXPECT_NEAR(torque_scale_by_masses(file, told, m.bare, settings).value, 0.75, 0.02 * 0.75);
 }
 
 TEST(TorqueScale, IsNotGuessedFromALoadThatSaysNothing) {
   const ArmDescription file = test::omni();
-  const Unlikeness bench{.gravity = kDown, .encoder_step = 1e-3, .delay = 2};
+  const Unlikeness bench{.gravity = kGravity, .encoder_step = 1e-3, .delay = 2};
   const Motions m = motions_of(file, unlike(file, 604, 0.02), bench, 0);
-  const FitSettings settings{.gravity = kDown};
+  const FitSettings settings{.gravity = kGravity};
   const Identified told = identify(file, m.bare, settings);
   EXPECT_THROW(torque_scale_by_load(told, m.bare, m.with_load, 1e-4, settings),
                std::invalid_argument);

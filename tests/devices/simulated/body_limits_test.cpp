@@ -24,7 +24,7 @@ struct Books {
   }
 };
 
-Parameters predictive() {
+Parameters default_predictive() {
   Parameters p;
   p.kind = CouplingKind::predictive;
   return p;
@@ -40,7 +40,7 @@ TEST(BodyLimits, SceneEditsWhileTouchingGiveNothingAndNeverJump) {
   scene.add(floor_below(-0.03));
   scene.add(cube("pushed", Vec3::Constant(0.03), {0.18, 0.03, -0.015}, kind));
   scene.add(cube("beside", Vec3::Constant(0.02), {0.23, 0.03, -0.02}, kind));
-  const Parameters p = predictive();
+  const Parameters p = default_predictive();
   Rig rig(arm, scene);
   const auto hand = [](std::size_t k) {
     return Vec3(0.18, -0.01 + 2e-5 * std::min(static_cast<double>(k), 2500.0), -0.017);
@@ -92,7 +92,7 @@ TEST(BodyLimits, ABodyIsPressedOntoTheTableAndGivesNothing) {
       scene.tip_radius = 0.004;
       scene.add(floor_below(-0.04));
       scene.add(cube("block", {0.03, 0.03, 0.02}, {0.18, 0, -0.03}, {mass, stiffness, 0.5}));
-      Parameters p = predictive();
+      Parameters p = default_predictive();
       p.hand_stiffness = 600;
       Rig rig(arm, scene);
       const auto hand = [](std::size_t k) {
@@ -132,7 +132,7 @@ TEST(BodyLimits, ALargeModelFallsIsPushedAndGivesNothing) {
   ring.body = Body{};
   ring.body->mass = 0.03;
   scene.add(ring);
-  const Parameters p = predictive();
+  const Parameters p = default_predictive();
   Rig rig(arm, scene);
   const auto hand = [](std::size_t k) {
     return Vec3(0.18, -0.01 + 2e-5 * std::clamp(static_cast<double>(k) - 500, 0.0, 1500.0), -0.033);

@@ -5,6 +5,7 @@
 
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
+#include "core/math/eigen.h"
 #include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
 #include "tests/support/fake_device.h"
@@ -15,9 +16,8 @@ namespace limpid {
 namespace {
 
 using test::Rows;
-using Vector = Eigen::VectorXd;
 
-const Vec3 kHome(0.19, 0, 0);
+const Vec3 kHeldAt(0.19, 0, 0);
 
 ArmDescription sprung() {
   ArmDescription arm = test::omni();
@@ -37,11 +37,11 @@ Parameters of(CouplingKind kind) {
 // Rows of a second and a half in a hand that moves to and fro and may let go in the middle.
 Rows moved(const ArmDescription& arm, const Parameters& p, double amplitude, double grip = 1) {
   Rig rig(arm, Scene{});
-  rig.start(p, rest_at(arm, kHome));
+  rig.start(p, rest_at(arm, kHeldAt));
   Rows rows(rig.layout());
   for (int k = 0; k < 1500; ++k) {
     const double t = k * p.tick, swing = amplitude * (1 - std::cos(6 * t));
-    rig.step(p, {{kHome + Vec3(0.3 * swing, swing, -0.5 * swing), grip}}, rows.add());
+    rig.step(p, {{kHeldAt + Vec3(0.3 * swing, swing, -0.5 * swing), grip}}, rows.add());
   }
   return rows;
 }
@@ -76,7 +76,7 @@ TEST_P(CompensatedRig, HoldsAnArmThatWouldFall) {
   Arm<kAnyDof>::Frames f;
   const Vec<kAnyDof> x = held.vec(1499, Column::device_position);
   any.frames(x, f);
-  Vector loads = any.weight(f, Vec3(0, 0, -9.81)) + 0.1 * x;
+  Eigen::VectorXd loads = any.weight(f, Vec3(0, 0, -9.81)) + 0.1 * x;
   loads.array() += 0.02;
   EXPECT_LT((held.vec(1499, Column::motor_torque) - loads).norm(), 2e-3 * loads.norm());
 }
@@ -142,13 +142,13 @@ TEST(Compensated, GoesOnFromARecordingsFirstRowBitForBit) {
   p.friction = 0.02;
   p.friction_share = 0.7;
   Rig rig(arm, Scene{});
-  rig.start(p, rest_at(arm, kHome));
+  rig.start(p, rest_at(arm, kHeldAt));
   Rows thrown(rig.layout()), recorded(rig.layout()), again(rig.layout());
   const auto hand = [](int k) {
-    return RigInput{{kHome + Vec3(0, 0.02 * std::sin(8e-3 * k), 0.01), 1}};
+    return RigInput{{kHeldAt + Vec3(0, 0.02 * std::sin(8e-3 * k), 0.01), 1}};
   };
   for (int k = 0; k < 300; ++k) rig.step(p, hand(k), thrown.add());
-  RigStart scratch = rest_at(arm, kHome);
+  RigStart scratch = rest_at(arm, kHeldAt);
   rig.restart_here(p, scratch, hand(299).hand.target);
   for (int k = 300; k < 800; ++k) rig.step(p, hand(k), recorded.add());
   Rig other(arm, Scene{});
@@ -291,7 +291,7 @@ TEST_F(HeldDevice, StaysWithinLimitsWithTheLawsTorqueAddedUp) {
   own.frames(x0, f);
   Jacobian<3> J;
   own.point_jacobian(f, 2, own.tip(f), J);
-  const Eigen::Vector3d force = J.transpose().colPivHouseholderQr().solve(told());
+  const Vec3 force = least_squares(J.transpose(), told());
   EXPECT_LT(force.norm(), 0.3 * 1.01);
 }
 

@@ -14,15 +14,16 @@ namespace {
 using test::Press;
 using test::Pressed;
 
-struct Device {
+struct DeviceToPress {
   const char* file;
   double step;   // of its encoders; 0.1 m of a slide are 1 rad [rad]
   double press;  // of the hand on a wall [N]
   double friction = kFromArm;
 };
-constexpr Device kTouch{"touch.urdf", 4.19e-4, 1.5}, kSmoothTouch{"touch.urdf", 4.19e-4, 1.5, 0};
-constexpr Device kOmega{"omega.urdf", 1e-4, 4}, kFalcon{"falcon.urdf", 3.84e-4, 4};
-constexpr Device kInverse3{"inverse3.urdf", 1e-4, 4, 0.02};  // friction assumed
+constexpr DeviceToPress kTouch{"touch.urdf", 4.19e-4, 1.5},
+    kSmoothTouch{"touch.urdf", 4.19e-4, 1.5, 0};
+constexpr DeviceToPress kOmega{"omega.urdf", 1e-4, 4}, kFalcon{"falcon.urdf", 3.84e-4, 4};
+constexpr DeviceToPress kInverse3{"inverse3.urdf", 1e-4, 4, 0.02};  // friction assumed
 
 // Grips, in which the hand's mass does or does not move with the tip.
 struct Grip {
@@ -44,7 +45,7 @@ struct Worst {
 
 using Change = std::function<void(Parameters&)>;
 
-Worst worst_of(const Device& device, double wall, std::span<const Grip> grips, int delay = 0,
+Worst worst_of(const DeviceToPress& device, double wall, std::span<const Grip> grips, int delay = 0,
                const Change& change = {}) {
   const ArmDescription arm = read_urdf(test::assets_dir() / "devices" / device.file);
   const RigStart start = rest_at(arm, Vec3(0.2, 0, -0.04 + Press::kAbove));
@@ -79,7 +80,7 @@ struct Bounds {
   double given = 0.05;  // [mJ]
 };
 
-void expect_quiet(const Device& device, double wall, int delay, const Bounds& bounds,
+void expect_quiet(const DeviceToPress& device, double wall, int delay, const Bounds& bounds,
                   const Change& change = {}) {
   SCOPED_TRACE(testing::Message() << device.file << ", " << wall << " N/m, " << delay << " ms");
   const Worst worst = worst_of(device, wall, kGrips, delay, change);
@@ -121,7 +122,8 @@ TEST(EncoderSteps, OfAFalconAreQuietAndItsWallsAreFeltAsTheyAreSet) {
 
 TEST(EncoderSteps, OfFineDevicesAreQuietOnStiffWalls) {
   for (int delay = 0; delay <= 2; ++delay) {
-    for (const Device& device : {kOmega, kInverse3}) expect_quiet(device, 10000, delay, kQuiet);
+    for (const DeviceToPress& device : {kOmega, kInverse3})
+      expect_quiet(device, 10000, delay, kQuiet);
   }
 }
 
@@ -134,7 +136,7 @@ TEST(EncoderSteps, AreAsQuietWithAFasterTick) {
 
 // On walls that are far stiffer than those that are named for these devices.
 TEST(EncoderSteps, GiveNoMoreThanThePromiseOnTheStiffestWalls) {
-  for (const Device& device : {kTouch, kSmoothTouch, kFalcon, kOmega, kInverse3}) {
+  for (const DeviceToPress& device : {kTouch, kSmoothTouch, kFalcon, kOmega, kInverse3}) {
     const int latest = device.friction == 0 ? 1 : 2;
     for (int delay = 0; delay <= latest; ++delay) {
       const Worst worst = worst_of(device, 20000, kUndamped, delay);

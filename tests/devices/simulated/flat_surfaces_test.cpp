@@ -18,14 +18,14 @@ namespace {
 using test::Random;
 using test::Rows;
 
-constexpr double kTop = -0.03;  // [m]
-const Vec3 kMiddle(0.19, 0, kTop);
+constexpr double kFlatTop = -0.03;  // [m]
+const Vec3 kMiddle(0.19, 0, kFlatTop);
 constexpr std::array kKinds{CouplingKind::standard, CouplingKind::proposed,
                             CouplingKind::predictive};
 constexpr std::array kRadii{0.0, 0.002, 0.005};  // of the tip [m]
 
 // A closed box of triangles, its top in the middle of the model.
-test::Triangles block(const Vec3& size) {
+test::Triangles block_below(const Vec3& size) {
   test::Triangles out;
   for (int i = 0; i < 8; ++i) {
     out.vertices.push_back(Vec3((i & 1) != 0 ? size.x() / 2 : -size.x() / 2,
@@ -38,12 +38,13 @@ test::Triangles block(const Vec3& size) {
   return out;
 }
 
-// A box or a model whose top is level and lies in the plane z = kTop, turned about the vertical.
+// A box or a model whose top is level and lies in the plane z = kFlatTop, turned about the
+// vertical.
 Object slab(const Vec3& middle, const Vec3& size, double turn, bool model, Material material) {
   Object object;
   object.material = material;
   if (model) {
-    object.shape = Mesh{.triangles = block(size).mesh()};
+    object.shape = Mesh{.triangles = block_below(size).mesh()};
   } else {
     object.shape = Box{size};
   }
@@ -111,7 +112,7 @@ std::vector<Floor> floors_of_models() {
 
 using Hand = std::function<Vec3(double)>;  // target of the tip at a time
 
-Rows run(const Scene& scene, CouplingKind kind, const Hand& hand, double seconds) {
+Rows run_under(const Scene& scene, CouplingKind kind, const Hand& hand, double seconds) {
   const ArmDescription arm = test::omni();
   Parameters p;
   p.kind = kind;
@@ -123,19 +124,13 @@ Rows run(const Scene& scene, CouplingKind kind, const Hand& hand, double seconds
 }
 
 // Goes down, presses by 6 mm of the hand's spring, and strokes by 4 cm along y with 2 cm/s.
-Rows stroke(const Scene& scene, CouplingKind kind) {
-  const double low = kTop - 0.006 + scene.tip_radius;
+Rows stroked(const Scene& scene, CouplingKind kind) {
+  const double low = kFlatTop - 0.006 + scene.tip_radius;
   const auto hand = [&](double t) {
     const double down = std::min(2 * t, 1.0), way = std::clamp(0.02 * (t - 0.7), 0.0, 0.04);
     return Vec3(kMiddle.x(), way - 0.02, down * low);
   };
-  return run(scene, kind, hand, 3);
-}
-
-Vec3 force(const Rows& rows, std::size_t k) {
-  Vec3 all = Vec3::Zero();
-  for (const Rows::Touch& touch : rows.touches(k)) all += touch.force;
-  return all;
+  return run_under(scene, kind, hand, 3);
 }
 
 Vec3 end_of(const Rows& rows) {  // of the proxy
@@ -144,11 +139,11 @@ Vec3 end_of(const Rows& rows) {  // of the proxy
 }
 
 void expect_flat(const Scene& scene, CouplingKind kind, double friction) {
-  const Rows rows = stroke(scene, kind);
-  Vec3 before = force(rows, 650);
+  const Rows rows = stroked(scene, kind);
+  Vec3 before = rows.force(650);
   double change = 0, against = 0, least = before.z();
   for (std::size_t k = 650; k < rows.size(); ++k) {
-    const Vec3 now = force(rows, k);
+    const Vec3 now = rows.force(k);
     change = std::max(change, (now - before).norm());
     against = std::max(against, now.head<2>().norm() - friction * now.z());
     least = std::min(least, now.z());
@@ -187,12 +182,12 @@ TEST(FlatSurfaces, OfModelsAndSolidsHaveNoSeamsForTheTip) {
 TEST(FlatSurfaces, OfModelsAndSolidsRubAsOne) { expect_all_flat(floors_of_models(), 96, 0.4); }
 
 // Presses slowly, by 45 mm of the hand's spring.
-Rows press(const Scene& scene, CouplingKind kind) {
+Rows pressed_through(const Scene& scene, CouplingKind kind) {
   const auto hand = [&](double t) {
     const double down = std::min(2 * t, 1.0), further = std::clamp(0.009 * (t - 0.5), 0.0, 0.045);
-    return Vec3(kMiddle.x(), 0, down * (kTop + scene.tip_radius) - further);
+    return Vec3(kMiddle.x(), 0, down * (kFlatTop + scene.tip_radius) - further);
   };
-  return run(scene, kind, hand, 6);
+  return run_under(scene, kind, hand, 6);
 }
 
 void expect_holds(Scene scene, Random& random) {
@@ -202,11 +197,11 @@ void expect_holds(Scene scene, Random& random) {
       scene.tip_radius = radius;
       const double K = random.between(300, 1000);
       set_surface_stiffness(scene, K);
-      const Rows rows = press(scene, kind);
-      const double pressed = force(rows, rows.size() - 1).z();
+      const Rows rows = pressed_through(scene, kind);
+      const double pressed = rows.force(rows.size() - 1).z();
       EXPECT_GT(pressed, 3);
       // The board gives as its spring does, one that moves a little more where it rests.
-      EXPECT_NEAR(end_of(rows).z(), kTop + radius - pressed / K, 5e-4);
+      EXPECT_NEAR(end_of(rows).z(), kFlatTop + radius - pressed / K, 5e-4);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "core/coupling/walls.h"
 #include "core/dynamics/arm.h"
+#include "core/math/eigen.h"
 #include "devices/simulated/rig.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
@@ -60,9 +61,7 @@ FarPress press_far(const Parameters& p, const Vec3& out, double K, double depth,
   model.frames(x, frames);
   Jacobian<3> J;
   model.point_jacobian(frames, 2, model.tip(frames), J);
-  const Vec3 force = Eigen::MatrixXd(J.transpose())
-                         .fullPivLu()
-                         .solve(rows.vec(rows.size() - 1, Column::motor_torque));
+  const Vec3 force = least_squares(J.transpose(), rows.vec(rows.size() - 1, Column::motor_torque));
   pressed.felt = out.dot(force) / out.dot(kFarWallAt - model.tip_at(x));
   return pressed;
 }

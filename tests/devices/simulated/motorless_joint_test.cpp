@@ -8,12 +8,13 @@
 #include "tests/support/built_in.h"
 #include "tests/support/guarded_arm.h"
 #include "tests/support/rows.h"
+#include "tests/support/table.h"
 #include "tests/support/wisher.h"
 
 namespace limpid {
 namespace {
 
-const Vec3 kTable(0.2, 0, -0.04);
+using test::kTable;
 
 class AJointWithoutAMotor : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Laws, AJointWithoutAMotor, testing::Range(0, static_cast<int>(kLaws)));
@@ -22,9 +23,7 @@ TEST_P(AJointWithoutAMotor, GetsNoTorqueAndLeavesTheOthersTheirsAtABoundedRate) 
   ArmDescription arm = test::omni();
   arm.joints[0].effort = 0;
   test::GuardedArm device(arm);
-  Scene scene;
-  scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, {600}});
-  Rig rig(arm, scene, &device);
+  Rig rig(arm, test::table({600}), &device);
   test::Rows rows(rig.layout());
   test::Wisher wisher;
   Parameters p;

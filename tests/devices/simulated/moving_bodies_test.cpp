@@ -12,7 +12,7 @@
 namespace limpid::test {
 namespace {
 
-Object block(double mass, const Vec3& at, double friction, double stiffness) {
+Object loose_block(double mass, const Vec3& at, double friction, double stiffness) {
   Object o;
   o.name = "block";
   o.shape = Box{Vec3::Constant(0.03)};
@@ -23,7 +23,7 @@ Object block(double mass, const Vec3& at, double friction, double stiffness) {
   return o;
 }
 
-struct Outcome {
+struct PushOutcome {
   double energy = 0;        // highest E_c [J]
   double beyond = 0;        // most energy to the hand beyond what bodies gave [J]
   double gain = 0;          // most energy that the bodies' world made [J]
@@ -31,8 +31,8 @@ struct Outcome {
   Vec3 end = Vec3::Zero();  // end of the last body's centre
 };
 
-Outcome run(const Scene& scene, double eta, double grip, int ticks,
-            const std::function<HandInput(double)>& hand) {
+PushOutcome push(const Scene& scene, double eta, double grip, int ticks,
+                 const std::function<HandInput(double)>& hand) {
   const ArmDescription arm = omni();
   Parameters p;
   p.kind = CouplingKind::predictive;
@@ -43,7 +43,7 @@ Outcome run(const Scene& scene, double eta, double grip, int ticks,
   const RowLayout& layout = rig.layout();
   std::vector<double> row(static_cast<std::size_t>(layout.stride()));
   const auto at = [&](Column c) { return layout.in(std::span<const double>(row), c); };
-  Outcome all;
+  PushOutcome all;
   for (int k = 0; k < ticks; ++k) {
     rig.step(p, {hand(k * p.tick)}, row);
     all.energy = std::max(all.energy, at(Column::energy_total)[0]);
@@ -69,8 +69,8 @@ TEST_P(MovingBodies, ArePushedWithoutEnergyFromContact) {
       Scene scene;
       scene.tip_radius = 0.004;
       scene.gravity.setZero();
-      scene.add(block(mass, {0.18, 0.03, 0}, 0, GetParam()));
-      const Outcome r = run(scene, eta, 300, 2000, across);
+      scene.add(loose_block(mass, {0.18, 0.03, 0}, 0, GetParam()));
+      const PushOutcome r = push(scene, eta, 300, 2000, across);
       EXPECT_LE(r.energy, 5e-5) << mass;
       EXPECT_LE(r.beyond, 5e-5) << mass;
       EXPECT_LE(r.gain, 1e-6) << mass;
@@ -82,8 +82,9 @@ TEST_P(MovingBodies, ArePushedWithoutEnergyFromContact) {
 TEST_P(MovingBodies, FallOnTheTipAndGiveNoMoreThanTheyHad) {
   Scene scene;
   scene.tip_radius = 0.004;
-  scene.add(block(0.05, {0.18, 0, 0.119}, 0.5, GetParam()));
-  const Outcome r = run(scene, 1, 300, 500, [](double) { return HandInput{Vec3(0.18, 0, 0)}; });
+  scene.add(loose_block(0.05, {0.18, 0, 0.119}, 0.5, GetParam()));
+  const PushOutcome r =
+      push(scene, 1, 300, 500, [](double) { return HandInput{Vec3(0.18, 0, 0)}; });
   EXPECT_GT(r.force, 1);
   EXPECT_LE(r.beyond, 5e-5);
   EXPECT_LE(r.gain, 1e-6);
@@ -93,7 +94,7 @@ TEST_P(MovingBodies, FallOnTheTipAndGiveNoMoreThanTheyHad) {
 TEST(MagnetThatBreaks, IsWantedAgainAsTheHandDid) {
   Scene scene;
   scene.tip_radius = 0.004;
-  Object o = block(0.05, {0.18, 0.018, 0}, 0, 2000);
+  Object o = loose_block(0.05, {0.18, 0.018, 0}, 0, 2000);
   o.body->magnet = true;
   BodyJoint& joint = o.body->joint.emplace();  // a strong spring holds it back
   joint.axis = Vec3::UnitY();
@@ -131,10 +132,10 @@ TEST_P(MovingBodies, HangOnTheMagnetHoweverLight) {
     Scene scene;
     scene.tip_radius = 0.004;
     scene.gravity.setZero();
-    Object o = block(mass, {0.18, 0.018, 0}, 0, GetParam());
+    Object o = loose_block(mass, {0.18, 0.018, 0}, 0, GetParam());
     o.body->magnet = true;
     scene.add(o);
-    const Outcome r = run(scene, 1, 300, 1500, [](double t) {
+    const PushOutcome r = push(scene, 1, 300, 1500, [](double t) {
       HandInput hand{Vec3(0.18, 0.02 * std::sin(6 * t) - 0.002, 0)};
       hand.magnet = t < 1;
       return hand;
@@ -151,7 +152,7 @@ TEST_P(MovingBodies, ArePulledAgainstTheTip) {
   Scene scene;
   scene.tip_radius = 0.004;
   scene.gravity.setZero();
-  scene.add(block(0.05, {0.18, 0.05, 0}, 0, GetParam()));
+  scene.add(loose_block(0.05, {0.18, 0.05, 0}, 0, GetParam()));
   const ArmDescription arm = omni();
   Parameters p;
   p.kind = CouplingKind::predictive;
@@ -192,12 +193,12 @@ TEST_P(MovingBodies, ArePulledAgainstTheTip) {
 TEST(Magnet, PicksUpAModel) {
   Scene scene;
   scene.tip_radius = 0.004;
-  Object o = block(0.05, {0.18, 0, -0.02}, 0, 2000);
+  Object o = loose_block(0.05, {0.18, 0, -0.02}, 0, 2000);
   o.shape = Mesh{.triangles = box(Vec3::Constant(0.03)).mesh()};
   o.body->magnet = true;
   scene.add(o);
   scene.add({.name = "floor", .pose = pose_at({0, 0, -0.035}), .shape = Plane{}});
-  const Outcome r = run(scene, 1, 300, 1500, [](double t) {
+  const PushOutcome r = push(scene, 1, 300, 1500, [](double t) {
     HandInput hand{Vec3(0.18, 0, std::min(0.03, std::abs(0.03 * (t - 0.2)) - 0.0015))};
     hand.magnet = true;
     return hand;
@@ -215,7 +216,7 @@ TEST(Stop, TouchedAfterABodyIsFelt) {
     Scene scene;
     scene.tip_radius = 0.004;
     scene.gravity.setZero();
-    scene.add(block(0.5, {0.18, 0.03, 0}, 0.3, 1000));
+    scene.add(loose_block(0.5, {0.18, 0.03, 0}, 0.3, 1000));
     scene.add({.name = "stop", .shape = JointStop{0, kStop, -1}, .material = {20, 0, 0, 0}});
     Parameters p;
     p.kind = static_cast<CouplingKind>(kind);

@@ -1,11 +1,11 @@
 // The predictive coupling on arms of one to seven joints.
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <vector>
 
 #include "core/dynamics/inverse_kinematics.h"
+#include "core/math/eigen.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/taps.h"
@@ -40,9 +40,7 @@ Vec3 easiest(const ArmDescription& description, const RigStart& start) {
   arm.frames(start.x1, f);
   Jacobian<kAnyDof> J;
   arm.point_jacobian(f, arm.dof() - 1, start.target, J);
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(Eigen::MatrixXd(J), Eigen::ComputeThinU)
-      .matrixU()
-      .col(0);
+  return symmetric_eigen(J * J.transpose()).vectors.col(2);
 }
 
 TEST(PredictiveArms, FeelWallsAsTheyAreSetAndWithoutEnergy) {

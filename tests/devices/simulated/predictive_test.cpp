@@ -9,16 +9,17 @@
 #include "core/touch/contacts.h"
 #include "tests/support/built_in.h"
 #include "tests/support/random_arm.h"
+#include "tests/support/table.h"
 #include "tests/support/taps.h"
 
 namespace limpid {
 namespace {
 
 using test::Felt;
+using test::kTable;
 using test::Rows;
+using test::table;
 using test::Taps;
-
-const Vec3 kTable(0.2, 0, -0.04);
 
 Parameters predictive(double eta) {
   Parameters p;
@@ -26,12 +27,6 @@ Parameters predictive(double eta) {
   p.eta = eta;
   p.torque_limit = 100;  // strong motors
   return p;
-}
-
-Scene table(const Material& material) {
-  Scene scene;
-  scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, material});
-  return scene;
 }
 
 Felt tapped(const Taps& taps, const Parameters& p) {
@@ -137,14 +132,14 @@ Scene corner(int planes, const Material& material) {
   return scene;
 }
 
-struct Pressed {
+struct CornerPress {
   double energy = 0, port = 0;  // highest [J]
   double gain = -1;             // most energy given by pressed contacts in a tick [J]
   std::size_t touched = 0;      // most planes touched at a time
 };
 
 // Rows of a hand that presses into the corner and circles there.
-Pressed press_into(const Scene& scene, const Parameters& p) {
+CornerPress press_into(const Scene& scene, const Parameters& p) {
   const ArmDescription arm = test::omni();
   Rig rig(arm, scene);
   const auto hand = [](double t) {
@@ -154,7 +149,7 @@ Pressed press_into(const Scene& scene, const Parameters& p) {
   };
   rig.start(p, rest_at(arm, hand(0)));
   Rows rows(rig.layout());
-  Pressed pressed;
+  CornerPress pressed;
   for (std::size_t k = 0; k < 4000; ++k) {
     rig.step(p, {{hand(static_cast<double>(k) * p.tick), 1}}, rows.add());
     pressed.energy = std::max(pressed.energy, rows.at(k, Column::energy_total));
@@ -175,7 +170,7 @@ TEST(PredictiveContacts, InAnEdgeAndACornerGiveNoEnergy) {
           Parameters p = predictive(eta);
           p.hand_mass_at_tip = mass;
           const Scene scene = corner(static_cast<int>(planes), {3000, 0, friction, friction});
-          const Pressed pressed = press_into(scene, p);
+          const CornerPress pressed = press_into(scene, p);
           SCOPED_TRACE(testing::Message() << planes << " planes, friction " << friction << ", eta "
                                           << eta << ", hand " << mass << " kg");
           EXPECT_EQ(pressed.touched, planes);
@@ -208,8 +203,7 @@ TEST(PredictiveFriction, NeverGivesEnergyInATick) {
     const auto tip = [&](std::size_t k) { return arm.tip_at(rows.vec(k, Column::proxy_position)); };
     // Friction force across the table in the tick, and its limit by the push [N].
     const auto across = [&](std::size_t k, double& limit) {
-      Vec3 force = Vec3::Zero();
-      for (const Rows::Touch& touch : rows.touches(k)) force += touch.force;
+      const Vec3 force = rows.force(k);
       limit = kFriction * force.z();
       return Vec3(force.x(), force.y(), 0);
     };

@@ -14,23 +14,22 @@ namespace limpid {
 namespace {
 
 using test::Rows;
-using Vector = Eigen::VectorXd;
 
-const Vec3 kHome(0.19, 0, 0);
+const Vec3 kAboveTable(0.19, 0, 0);
 constexpr double kTableTop = -0.04;
 
-// Rows of a hand that goes from kHome to `depth` below the table top in a second and stays `rest`
-// seconds.
-Rows press(const Parameters& p, double depth, double rest) {
+// Rows of a hand that goes from kAboveTable to `depth` below the table top in a second and stays
+// `rest` seconds.
+Rows press_table(const Parameters& p, double depth, double rest) {
   const ArmDescription arm = test::omni();
   Rig rig(arm, test::omni_scene("table.toml"));
-  rig.start(p, rest_at(arm, kHome));
+  rig.start(p, rest_at(arm, kAboveTable));
   Rows rows(rig.layout());
   const auto ticks = static_cast<std::size_t>((1 + rest) / p.tick);
   for (std::size_t k = 0; k < ticks; ++k) {
     const double s = std::min(1.0, static_cast<double>(k) * p.tick);
     const double smooth = s * s * (3 - 2 * s);
-    const Vec3 target(kHome.x(), kHome.y(), smooth * (kTableTop - depth));
+    const Vec3 target(kAboveTable.x(), kAboveTable.y(), smooth * (kTableTop - depth));
     rig.step(p, {{target, 1}}, rows.add());
   }
   return rows;
@@ -49,12 +48,12 @@ Rows follow(const Parameters& p, const Scene& scene, const HandPath& hand) {
   return rows;
 }
 
-struct Press {
+struct SettledPress {
   double contact, error;  // |f2| [N m], |x_E| [rad]
 };
-Press settled(const Rows& rows) {
+SettledPress settled(const Rows& rows) {
   const std::size_t last = rows.size() - 1;
-  const Vector x_E =
+  const Eigen::VectorXd x_E =
       rows.vec(last, Column::device_position) - rows.vec(last, Column::proxy_position);
   return {rows.vec(last, Column::contact_torque).norm(), x_E.norm()};
 }
@@ -64,7 +63,8 @@ TEST(CoordinationError, GrowsByOneOverTheSpringWithTheStandardCoupling) {
   p.kind = CouplingKind::standard;
   for (const double k_vc : {5.0, 10.0}) {
     p.k_vc = k_vc;
-    const Press light = settled(press(p, 0.002, 3)), hard = settled(press(p, 0.006, 3));
+    const SettledPress light = settled(press_table(p, 0.002, 3)),
+                       hard = settled(press_table(p, 0.006, 3));
     ASSERT_GT(hard.contact, light.contact + 0.02);
     const double slope = (hard.error - light.error) / (hard.contact - light.contact);
     EXPECT_NEAR(slope, 1 / k_vc, 1e-4 / k_vc);
@@ -75,7 +75,8 @@ TEST(CoordinationError, DoesNotGrowWithTheContactWithTheProposedCoupling) {
   for (const double eta : {0.7, 1.0, 3.0}) {
     Parameters p;
     p.eta = eta;
-    const Press light = settled(press(p, 0.002, 3)), hard = settled(press(p, 0.006, 3));
+    const SettledPress light = settled(press_table(p, 0.002, 3)),
+                       hard = settled(press_table(p, 0.006, 3));
     ASSERT_GT(hard.contact, light.contact + 0.02);
     const double slope = (hard.error - light.error) / (hard.contact - light.contact);
     EXPECT_LT(std::abs(slope), 1e-3) << eta;  // a hundredth of 1/k_vc
@@ -150,10 +151,10 @@ TEST(ForceEstimate, DoesNotWindUpInASaturatedContactIfItIsFedWhatTheMotorsGave) 
     Parameters p;
     p.torque_limit = 0.05;
     p.anti_windup = anti_windup;
-    const Rows rows = press(p, 0.02, 3);
+    const Rows rows = press_table(p, 0.02, 3);
     const std::size_t last = rows.size() - 1;
-    const Vector f1 = rows.vec(last, Column::hand_torque);
-    const Vector command = rows.vec(last, Column::commanded_torque);
+    const Eigen::VectorXd f1 = rows.vec(last, Column::hand_torque);
+    const Eigen::VectorXd command = rows.vec(last, Column::commanded_torque);
     EXPECT_GT(command.cwiseAbs().maxCoeff(), 0.05);  // the motor was at its limit
     return (rows.vec(last, Column::hand_torque_estimate) - f1).norm() / f1.norm();
   };
@@ -162,10 +163,10 @@ TEST(ForceEstimate, DoesNotWindUpInASaturatedContactIfItIsFedWhatTheMotorsGave) 
 }
 
 TEST(ForceEstimate, OfAStaticPressIsTheHandsTorque) {
-  const Rows rows = press(Parameters{}, 0.003, 3);
+  const Rows rows = press_table(Parameters{}, 0.003, 3);
   const std::size_t last = rows.size() - 1;
-  const Vector f1 = rows.vec(last, Column::hand_torque);
-  const Vector f1_hat = rows.vec(last, Column::hand_torque_estimate);
+  const Eigen::VectorXd f1 = rows.vec(last, Column::hand_torque);
+  const Eigen::VectorXd f1_hat = rows.vec(last, Column::hand_torque_estimate);
   EXPECT_GT(f1.norm(), 0.05);
   EXPECT_LT((f1_hat - f1).norm(), 1e-3 * f1.norm());
   EXPECT_LT((f1 + rows.vec(last, Column::contact_torque)).norm(), 1e-3 * f1.norm());
@@ -183,12 +184,12 @@ double growth(double eta) {
   p.hand_damping = 0;
   p.torque_limit = 100;
   Rig rig(arm, Scene{});
-  rig.start(p, rest_at(arm, kHome));
+  rig.start(p, rest_at(arm, kAboveTable));
   Rows rows(rig.layout());
   double early = 0, late = 0;
   for (std::size_t k = 0; k < 3000; ++k) {
     const double nudge = k < 20 ? 1e-4 : 0;
-    rig.step(p, {{kHome + Vec3(nudge, nudge, nudge), 1}}, rows.add());
+    rig.step(p, {{kAboveTable + Vec3(nudge, nudge, nudge), 1}}, rows.add());
     const double speed = rows.vec(k, Column::device_velocity).norm();
     if (k < 500) early = std::max(early, speed);
     if (k >= 2500) late = std::max(late, speed);
@@ -202,13 +203,13 @@ TEST(EtaMin, OfAStiffUndampedGripIsWhereTheLoopTurnsUnstable) {
   Arm<kAnyDof>::Frames f;
   Mat<kAnyDof> M;
   Jacobian<kAnyDof> J;
-  arm.frames(rest_at(description, kHome).x1, f);
+  arm.frames(rest_at(description, kAboveTable).x1, f);
   arm.inertia(f, M);
-  arm.point_jacobian(f, 2, kHome, J);
+  arm.point_jacobian(f, 2, kAboveTable, J);
   const Parameters p;
   const Eigen::MatrixXd K = kStiffGrip * J.transpose() * J;
-  const double limit = eta_min_grip((1 + p.inertia_ratio) * M, Vector::Constant(3, 0.024), p.alpha,
-                                    K, Eigen::MatrixXd::Zero(3, 3));
+  const double limit = eta_min_grip((1 + p.inertia_ratio) * M, Eigen::VectorXd::Constant(3, 0.024),
+                                    p.alpha, K, Eigen::MatrixXd::Zero(3, 3));
   EXPECT_NEAR(limit, 0.56, 0.03);
   // The theory ignores sampling, which costs a little.
   EXPECT_LT(growth(1.1 * limit), 0.1);
@@ -224,15 +225,15 @@ TEST(Loop, ThatIsUnstableSaysSoAndGivesNoMoreTorque) {
   p.torque_limit = 1e4;
   p.hand_stiffness = 0;
   Rig rig(arm, Scene{});
-  rig.start(p, rest_at(arm, kHome));
+  rig.start(p, rest_at(arm, kAboveTable));
   Rows rows(rig.layout());
   std::size_t k = 0;
   for (; k < 20000 && !rig.diverged(); ++k) {
-    rig.step(p, {{kHome + Vec3(0.01, 0.01, 0.01), 1}}, rows.add());
+    rig.step(p, {{kAboveTable + Vec3(0.01, 0.01, 0.01), 1}}, rows.add());
   }
   ASSERT_TRUE(rig.diverged()) << rows.vec(k - 1, Column::device_velocity).norm();
   for (int i = 0; i < 10; ++i) {
-    rig.step(p, {{kHome, 1}}, rows.add());
+    rig.step(p, {{kAboveTable, 1}}, rows.add());
     EXPECT_EQ(rows.vec(rows.size() - 1, Column::motor_torque).norm(), 0);
   }
   EXPECT_EQ(rows.vec(k - 1, Column::motor_torque).norm(), 0);

@@ -66,7 +66,7 @@ class Script {
   Vec3 home_;
 };
 
-Rows run(Rig& rig, const Script& script, std::size_t from, std::size_t ticks) {
+Rows run_script(Rig& rig, const Script& script, std::size_t from, std::size_t ticks) {
   Rows rows(rig.layout());
   for (std::size_t k = from; k < from + ticks; ++k) {
     rig.step(Script::parameters(k), script.at(k), rows.add());
@@ -94,22 +94,22 @@ TEST_P(RigOfJoints, GivesTheSameBitsTwice) {
   Rig one(arm_, scene_), two(arm_, scene_);
   one.start(Script::parameters(0), rest_at(arm_, home_));
   two.start(Script::parameters(0), rest_at(arm_, home_));
-  const Rows a = run(one, script_, 0, 3000);
-  EXPECT_EQ(first_difference(a, run(two, script_, 0, 3000)), -1);
+  const Rows a = run_script(one, script_, 0, 3000);
+  EXPECT_EQ(first_difference(a, run_script(two, script_, 0, 3000)), -1);
   // Also in a rig that was used before.
   one.start(Script::parameters(0), rest_at(arm_, home_));
-  EXPECT_EQ(first_difference(a, run(one, script_, 0, 3000)), -1);
+  EXPECT_EQ(first_difference(a, run_script(one, script_, 0, 3000)), -1);
 }
 
 // The rig does not depend on the type of the device.
 TEST_P(RigOfJoints, DrivesASimulatedDeviceThatIsPluggedInAsItDoesItsOwn) {
   Rig own(arm_, scene_);
   own.start(Script::parameters(0), rest_at(arm_, home_));
-  const Rows expected = run(own, script_, 0, 2000);
+  const Rows expected = run_script(own, script_, 0, 2000);
   const auto expect_same = [&](Device& device) {
     Rig rig(arm_, scene_, &device);
     rig.start(Script::parameters(0), rest_at(arm_, home_));
-    EXPECT_EQ(first_difference(expected, run(rig, script_, 0, 2000)), -1);
+    EXPECT_EQ(first_difference(expected, run_script(rig, script_, 0, 2000)), -1);
   };
   with_dof(arm_.dof(), [&](auto n) {
     VirtualDevice<n> device(arm_);
@@ -122,10 +122,10 @@ TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {
   // then suffices for another rig to give the same rows.
   Rig live(arm_, scene_);
   live.start(Script::parameters(0), rest_at(arm_, home_));
-  run(live, script_, 0, 777);
+  run_script(live, script_, 0, 777);
   RigStart start = rest_at(arm_, home_);
   live.restart_here(Script::parameters(777), start, script_.at(777).hand.target);
-  const Rows recorded = run(live, script_, 777, 2000);
+  const Rows recorded = run_script(live, script_, 777, 2000);
 
   Rig again(arm_, scene_);
   again.start(Script::parameters(777), start_of(recorded.layout(), recorded.row(0)));
@@ -134,11 +134,11 @@ TEST_P(RigOfJoints, GoesOnFromItsPresentStateAsARecordingDoes) {
 
   Rig undisturbed(arm_, scene_);
   undisturbed.start(Script::parameters(0), rest_at(arm_, home_));
-  const Rows whole = run(undisturbed, script_, 0, 778);
+  const Rows whole = run_script(undisturbed, script_, 0, 778);
   for (const Column c : {Column::device_position, Column::device_velocity, Column::proxy_position,
                          Column::proxy_velocity})
     EXPECT_EQ(recorded.vec(0, c), whole.vec(777, c)) << "column " << static_cast<int>(c);
-  EXPECT_EQ(first_difference(recorded, run(again, script_, 777, 2000)), -1);
+  EXPECT_EQ(first_difference(recorded, run_script(again, script_, 777, 2000)), -1);
 }
 
 TEST_P(RigOfJoints, RestsWhereItIsPut) {
@@ -157,7 +157,7 @@ TEST_P(RigOfJoints, RestsWhereItIsPut) {
 TEST_P(RigOfJoints, WritesWhatTheHandDid) {
   Rig rig(arm_, scene_);
   rig.start(Script::parameters(0), rest_at(arm_, home_));
-  const Rows rows = run(rig, script_, 0, 1500);
+  const Rows rows = run_script(rig, script_, 0, 1500);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const RigInput input = script_.at(k);
     ASSERT_EQ(rows.vec(k, Column::hand_target), Eigen::VectorXd(input.hand.target));
@@ -207,7 +207,7 @@ TEST(Rig, RecordsContactForcesThatMakeTheContactTorque) {
   scene.probes.push_back({"link", 2, Vec3::Zero(), description.tip.translation(), 0.005});
   Rig rig(description, scene);
   rig.start(Script::parameters(0), rest_at(description, home));
-  const Rows rows = run(rig, Script(home), 0, 2000);
+  const Rows rows = run_script(rig, Script(home), 0, 2000);
   int at_tip = 0, on_link = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     arm.frames(rows.vec(k, Column::proxy_position), f);

@@ -18,7 +18,7 @@ LimitedCorner random_corner(unsigned seed, const CornerWidth& width) {
   return limited_corner(seed, width, test::omni());
 }
 
-struct Outcome {
+struct CornerOutcome {
   double energy = 0;   // highest E_c, from torques and positions [J]
   double torque = 0;   // largest contact torque on a joint, over the motor's limit [-]
   double jump = 0;     // largest step of the proxy's joints in a tick [rad]
@@ -29,7 +29,7 @@ struct Outcome {
   int ticks = 0;
 };
 
-Outcome run(const LimitedCorner& c) {
+CornerOutcome run_corner(const LimitedCorner& c) {
   Rig rig(c.arm, c.scene);
   rig.start(c.p, c.start);
   Rows rows(rig.layout());
@@ -37,7 +37,7 @@ Outcome run(const LimitedCorner& c) {
   for (std::size_t k = 0; k <= count; ++k) {
     rig.step(c.p, {{c.hand(static_cast<double>(k) * c.p.tick), 1}}, rows.add());
   }
-  Outcome outcome;
+  CornerOutcome outcome;
   double energy = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::VectorXd dx1 =
@@ -62,11 +62,11 @@ Outcome run(const LimitedCorner& c) {
   return outcome;
 }
 
-struct Worst {
-  Outcome of;  // worst of each value
+struct WorstCorner {
+  CornerOutcome of;  // worst of each value
   int over_energy = 0, over_torque = 0, over_jump = 0, below = 0, limited_runs = 0;
 
-  void add(unsigned seed, const Outcome& o) {
+  void add(unsigned seed, const CornerOutcome& o) {
     const auto tell = [&](const char* what, double value) {
       std::printf("seed %u: %s %.4g\n", seed, what, value);
     };
@@ -94,8 +94,8 @@ struct Worst {
 };
 
 TEST(MotorsAtTheirLimit, BetweenWallsGiveNoEnergyAndLetTheProxyNotJump) {
-  Worst worst;
-  for (unsigned seed = 0; seed < 300; ++seed) worst.add(seed, run(random_corner(seed, {})));
+  WorstCorner worst;
+  for (unsigned seed = 0; seed < 300; ++seed) worst.add(seed, run_corner(random_corner(seed, {})));
   worst.print();
   EXPECT_GT(worst.limited_runs, 150);
   EXPECT_EQ(worst.over_energy, 0);
@@ -108,9 +108,9 @@ TEST(MotorsAtTheirLimit, BetweenWallsGiveNoEnergyAndLetTheProxyNotJump) {
 
 // Random arms, with more walls, more friction and other eta.
 TEST(MotorsAtTheirLimit, OfOtherArmsInMoreWallsGiveNoEnergyEither) {
-  Worst worst;
+  WorstCorner worst;
   for (unsigned seed = 1000; seed < 1150; ++seed)
-    worst.add(seed, run(random_corner(seed, kWideCorners)));
+    worst.add(seed, run_corner(random_corner(seed, kWideCorners)));
   worst.print();
   EXPECT_GT(worst.limited_runs, 50);
   EXPECT_EQ(worst.over_energy, 0);

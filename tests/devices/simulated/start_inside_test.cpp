@@ -16,7 +16,7 @@ constexpr double kReserve = 5e-3;  // of the account at a start [J]
 
 // Runs a hand that holds still for a second and lifts the tip by 40 mm in the next; a wall's
 // surface is `above` the start.
-Rows run(double stiffness, double above) {
+Rows lifted_out(double stiffness, double above) {
   Scene scene;
   scene.tip_radius = 0.002;
   Object wall;
@@ -46,7 +46,7 @@ TEST(AStartInsideOfAWall, GivesNoMoreThanTheAccountHas) {
   for (const double stiffness : {300.0, 2000.0, 10000.0}) {
     for (const double above : {0.001, 0.005, 0.02}) {
       SCOPED_TRACE(testing::Message() << stiffness << " N/m, " << above << " m");
-      const Rows rows = run(stiffness, above);
+      const Rows rows = lifted_out(stiffness, above);
       double given = 0;
       for (std::size_t k = 0; k < rows.size(); ++k) {
         given = std::max(given, rows.at(k, Column::energy_port));

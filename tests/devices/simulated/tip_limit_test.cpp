@@ -10,11 +10,14 @@
 #include "tests/support/built_in.h"
 #include "tests/support/guarded_arm.h"
 #include "tests/support/rows.h"
+#include "tests/support/table.h"
 
 namespace limpid {
 namespace {
 
-struct Outcome {
+using test::kTable;
+
+struct TipOutcome {
   double energy = 0;           // highest E_c, from torques and positions [J]
   double given = 0;            // most energy given to the hand since the start [J]
   double reserve = 1, at = 0;  // lowest, and at the end [J]
@@ -24,10 +27,10 @@ struct Outcome {
   Vec3 tip = Vec3::Zero();  // place of the device's tip at the end [m]
 };
 
-class Pressed {
+class PressedRig {
  public:
-  Pressed(const ArmDescription& arm, const Scene& scene, const Parameters& parameters,
-          double tip_force)
+  PressedRig(const ArmDescription& arm, const Scene& scene, const Parameters& parameters,
+             double tip_force)
       : device(arm), rig(arm, scene, &device), rows(rig.layout()), model(arm), p(parameters) {
     rig.limit({.tip_force = tip_force});
   }
@@ -70,7 +73,7 @@ class Pressed {
     return tip_force<3>(tau, J);
   }
   double force() const { return force_of(rows.vec(rows.size() - 1, Column::motor_torque), x_); }
-  Outcome all;
+  TipOutcome all;
   test::GuardedArm device;
   Rig rig;
   test::Rows rows;
@@ -83,10 +86,8 @@ class Pressed {
   double energy_ = 0, port_ = 0;
 };
 
-const Vec3 kTable(0.2, 0, -0.04);
-
 // A hand presses into a wall with 4 N, then with 1 N.
-struct Press {
+struct WallPress {
   double tip = 1.5, K = 3000;  // [N, N/m]
   double eta = 1, torque_limit = kFromArm;
   double grip = 300, damping = 2;  // [N/m, N s/m]
@@ -94,23 +95,21 @@ struct Press {
   CouplingKind kind = CouplingKind::predictive;
 
   struct Both {
-    Outcome all;
+    TipOutcome all;
     double deep, end;  // depth of the tip in the wall when pressed with 4 N and 1 N [m]
     double force;      // force at the tip at the end [N]
     double given;      // most energy to the hand, until it presses with 1 N [J]
   };
   Both run() const {
     const ArmDescription arm = test::omni();
-    Scene scene;
     const double friction = rubs ? 0.3 : 0;
-    scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, {K, 0, friction, friction}});
     Parameters p;
     p.kind = kind;
     p.eta = eta;
     p.hand_stiffness = grip;
     p.hand_damping = damping;
     p.torque_limit = torque_limit;
-    Pressed run(arm, scene, p, tip);
+    PressedRig run(arm, test::table({K, 0, friction, friction}), p, tip);
     run.start(rest_at(arm, kTable + Vec3(0, 0, 0.005)));
     double now = 0;
     const auto go = [&](double newton, double seconds) {
@@ -130,7 +129,7 @@ struct Press {
     const double whole = newton / grip + newton / K;
     return newton <= most ? newton / K : whole - most / grip;
   }
-  friend std::ostream& operator<<(std::ostream& out, const Press& p) {
+  friend std::ostream& operator<<(std::ostream& out, const WallPress& p) {
     return out << "tip " << p.tip << " N, K " << p.K << " N/m, eta " << p.eta << ", joints "
                << p.torque_limit << " N m, grip " << p.grip << " N/m, " << p.damping << " N s/m, "
                << (p.rubs ? "rubs, " : "") << name(p.kind);
@@ -142,9 +141,9 @@ TEST(TipLimit, IsKnownToThePredictiveLawWhichLosesNoReserveToIt) {
   for (const bool rubs : {false, true}) {
     for (const double tip : {0.2, 0.5, 0.7, 1.5, 3.0}) {
       for (const double K : {1000.0, 3000.0}) {
-        const Press press{.tip = tip, .K = K, .rubs = rubs};
+        const WallPress press{.tip = tip, .K = K, .rubs = rubs};
         SCOPED_TRACE(testing::Message() << press);
-        const Press::Both found = press.run();
+        const WallPress::Both found = press.run();
         EXPECT_LE(found.all.energy, 0.05e-3);
         EXPECT_LE(found.all.given, 0.05e-3);
         EXPECT_GT(found.all.reserve, 3e-3);
@@ -169,10 +168,10 @@ TEST(TipLimit, LeavesNoDebtThatAHandAtRestCannotPay) {
       for (const double eta : {1.0, 0.3}) {
         for (const double grip : {300.0, 1000.0, 3000.0}) {
           for (const double damping : {0.0, 2.0}) {
-            const Press press{
+            const WallPress press{
                 .tip = tip, .eta = eta, .torque_limit = limit, .grip = grip, .damping = damping};
             SCOPED_TRACE(testing::Message() << press);
-            const Press::Both found = press.run();
+            const WallPress::Both found = press.run();
             EXPECT_NEAR(found.end, 1 / press.K, 0.1e-3) << "force has come back";
             EXPECT_GT(found.all.at, 1e-3);
             EXPECT_LE(found.given, 5e-3) << "until it rests";
@@ -185,9 +184,9 @@ TEST(TipLimit, LeavesNoDebtThatAHandAtRestCannotPay) {
 
 TEST(TipLimit, LeavesTheTanksAsTheyAre) {
   for (const double tip : {0.2, 0.7, 1.5, 3.0}) {
-    const Press press{.tip = tip, .kind = CouplingKind::tank};
+    const WallPress press{.tip = tip, .kind = CouplingKind::tank};
     SCOPED_TRACE(testing::Message() << press);
-    const Press::Both found = press.run();
+    const WallPress::Both found = press.run();
     EXPECT_LE(found.all.energy, 0.05e-3);
     EXPECT_LE(found.all.given, 0.05e-3);
     EXPECT_GT(found.all.reserve, 3e-3);
@@ -198,12 +197,12 @@ TEST(TipLimit, LeavesTheTanksAsTheyAre) {
 // Random corners of planes: the limit makes them no worse.
 TEST(TipLimit, MakesNoEnergyBetweenWalls) {
   const auto worst = [](bool limited) {
-    Outcome all;
+    TipOutcome all;
     for (unsigned seed = 0; seed < 60; ++seed) {
       LimitedCorner c = limited_corner(seed, {}, test::omni());
       c.p.torque_limit = kFromArm;
       const double tip = limited ? 0.2 * std::pow(15, (seed % 10) / 9.0) : 10;
-      Pressed run(c.arm, c.scene, c.p, tip);
+      PressedRig run(c.arm, c.scene, c.p, tip);
       run.start(c.start);
       for (int k = 0; k < LimitedCorner::kLasts * 1e3; ++k) run.step(c.hand(1e-3 * k));
       EXPECT_LE(run.all.force, 1.005 * tip) << seed;
@@ -216,7 +215,7 @@ TEST(TipLimit, MakesNoEnergyBetweenWalls) {
     }
     return all;
   };
-  const Outcome with = worst(true), without = worst(false);
+  const TipOutcome with = worst(true), without = worst(false);
   EXPECT_LE(with.energy, without.energy);
   EXPECT_GE(with.reserve, without.reserve);
   EXPECT_EQ(with.unsettled, 0);
@@ -229,7 +228,7 @@ TEST(TipLimit, HoldsForTheForceThatMeasuresAGrip) {
   Parameters p;
   p.kind = CouplingKind::predictive;
   constexpr double kTip = 1.5;  // [N]
-  Pressed one(arm, Scene{}, p, kTip);
+  PressedRig one(arm, Scene{}, p, kTip);
   const Vec3 target = rest_tip(arm);
   const Eigen::VectorXd rest = rest_pose(arm), zero = Eigen::VectorXd::Zero(3);
   const RigStart at{rest, zero, rest, zero, zero, target};

@@ -10,14 +10,16 @@
 #include "tests/support/built_in.h"
 #include "tests/support/fake_device.h"
 #include "tests/support/rows.h"
+#include "tests/support/table.h"
 
 namespace limpid {
 namespace {
 
+using test::kTable;
+
 constexpr double kTime = 2;          // of the motors [s]
 constexpr double kBears = 0.25;      // part of their torque, for hours
-constexpr double kStiffness = 2000;  // of the wall [N/m]
-const Vec3 kTable(0.2, 0, -0.04);
+constexpr double kStiffWall = 2000;  // [N/m]
 
 ArmDescription warming(double time = kTime) {
   ArmDescription arm = test::omni();
@@ -28,15 +30,11 @@ ArmDescription warming(double time = kTime) {
   return arm;
 }
 
-Scene wall() {
-  Scene scene;
-  scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, {kStiffness}});
-  return scene;
-}
+Scene stiff_wall() { return test::table({kStiffWall}); }
 
 struct WarmPress {
   explicit WarmPress(CouplingKind kind, const ArmDescription& described = warming())
-      : arm(described), rig(arm, wall()), rows(rig.layout()) {
+      : arm(described), rig(arm, stiff_wall()), rows(rig.layout()) {
     p.kind = kind;
     p.hand_stiffness = 300;
     p.hand_damping = 2;
@@ -159,7 +157,7 @@ TEST(WarmMotors, AreAsWarmInARerunFromTheMiddle) {
     return RigInput{{kTable - Vec3(0, 0, kHard * (1 + 0.1 * std::sin(0.01 * k))), 1}};
   };
   for (int k = 0; k < 2000; ++k) run.rig.step(run.p, input(k), recorded.add());
-  Rig other(run.arm, wall());
+  Rig other(run.arm, stiff_wall());
   RigStart start = start_of(other.layout(), recorded.row(0));
   start.target = target;
   other.start(run.p, start);

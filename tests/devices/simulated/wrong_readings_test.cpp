@@ -9,29 +9,27 @@
 #include "tests/support/built_in.h"
 #include "tests/support/guarded_arm.h"
 #include "tests/support/rows.h"
+#include "tests/support/table.h"
 #include "tests/support/wisher.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+using test::kTable;
+
+constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kT = 1e-3;
 
 // A device pressed a centimetre into a wall by a hand that holds still.
 class LyingDevice : public testing::TestWithParam<CouplingKind> {
  protected:
-  LyingDevice() : rig(arm, wall(), &device), rows(rig.layout()) {
+  LyingDevice() : rig(arm, test::table({600}), &device), rows(rig.layout()) {
     p.kind = GetParam();
     rig.start(p, rest_at(arm, kTable + Vec3(0, 0, 0.01)));
     step(500);
     armed = true;
     step(1500);
     full = torque();
-  }
-  static Scene wall() {
-    Scene scene;
-    scene.add({"", pose_at(kTable), Plane{Vec3::UnitZ()}, {600}});
-    return scene;
   }
   ForceState step(int ticks = 1) {
     for (int i = 0; i < ticks; ++i) {
@@ -46,8 +44,6 @@ class LyingDevice : public testing::TestWithParam<CouplingKind> {
   double apart(std::size_t k) const {
     return (rows.vec(k, Column::proxy_position) - rows.vec(k, Column::device_position)).norm();
   }
-
-  static inline const Vec3 kTable{0.2, 0, -0.04};
   const ArmDescription arm = test::omni();
   test::GuardedArm device{arm};
   Parameters p;
@@ -64,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, LyingDevice,
 
 TEST_P(LyingDevice, IsWithoutForceAtOnceAndForGoodAfterOneWrongReading) {
   ASSERT_GT(full, 0.1);
-  for (const double off : {1e6, -100.0, kTurn, -kTurn, 0.7}) {
+  for (const double off : {1e6, -100.0, kWholeTurn, -kWholeTurn, 0.7}) {
     for (std::size_t joint = 0; joint < 3; ++joint) {
       SCOPED_TRACE(testing::Message() << off << " rad, joint " << joint + 1);
       const std::size_t first = rows.size();

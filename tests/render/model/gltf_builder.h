@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "render/model/gltf_model.h"
 
 namespace limpid {
 
@@ -35,6 +38,16 @@ inline Bytes glb(std::string json, Bytes binary) {
   append_word(bytes, 0x004E4942);
   bytes.insert(bytes.end(), binary.begin(), binary.end());
   return bytes;
+}
+
+// Returns why a file is refused; empty if it is read.
+inline std::string refusal(const Bytes& bytes) {
+  try {
+    parse_gltf(bytes, "part.glb");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
 }
 
 // A file with one mesh; every piece of JSON can be replaced before it is written.

@@ -11,15 +11,6 @@
 namespace limpid {
 namespace {
 
-std::string refusal(const Bytes& bytes) {
-  try {
-    parse_gltf(bytes, "part.glb");
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 // Twice the area of all triangles that face +z.
 float area(const Model& model) {
   float sum = 0;

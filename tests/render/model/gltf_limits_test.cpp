@@ -12,8 +12,8 @@
 namespace limpid {
 namespace {
 
-void expect_refusal(const Bytes& bytes, const std::string& reason,
-                    const std::filesystem::path& folder = {}) {
+void expect_part_refused(const Bytes& bytes, const std::string& reason,
+                         const std::filesystem::path& folder = {}) {
   try {
     parse_gltf(bytes, "part.gltf", folder);
     ADD_FAILURE() << "was read, though: " << reason;
@@ -60,7 +60,7 @@ TEST_F(GltfFolder, ReadsBuffersAndImagesBesideTheFile) {
 TEST_F(GltfFolder, NamesABufferThatIsMissing) {
   GltfBuilder file = triangle();
   file.uri = "nowhere.bin";
-  expect_refusal(file.text(), "nowhere.bin", folder_);
+  expect_part_refused(file.text(), "nowhere.bin", folder_);
 }
 
 TEST_F(GltfFolder, DrawsWithoutAnImageThatIsMissing) {
@@ -81,35 +81,35 @@ TEST_F(GltfFolder, RefusesFilesOutsideOfItsFolder) {
        {"../outside.bin", "/etc/passwd", "file:///etc/passwd", "%2e%2e/outside.bin",
         "http://example.org/a.bin", "a/../../outside.bin", "C:\\\\a.bin", "link.bin"}) {
     file.uri = uri;
-    expect_refusal(file.text(), "own folder", folder_ / "parts");
+    expect_part_refused(file.text(), "own folder", folder_ / "parts");
   }
 }
 
 TEST_F(GltfFolder, RefusesWhatIsNoFile) {
   GltfBuilder file = triangle();
   file.uri = "parts";
-  expect_refusal(file.text(), "cannot be read", folder_);
+  expect_part_refused(file.text(), "cannot be read", folder_);
   EXPECT_THROW(load_gltf(folder_), std::runtime_error);
 }
 
 TEST(GltfLimits, RefusesOtherFilesWithoutAFolder) {
   GltfBuilder file = triangle();
   file.uri = "part.bin";
-  expect_refusal(file.text(), "must contain everything itself");
+  expect_part_refused(file.text(), "must contain everything itself");
 }
 
 TEST(GltfLimits, NamesAnExtensionThatIsRequiredAndUnknown) {
   for (const char* name : {"EXT_mesh_gpu_instancing", "ACME_shape"}) {
     GltfBuilder file = triangle();
     file.more = R"(,"extensionsRequired":[")" + std::string(name) + "\"]";
-    expect_refusal(file.binary(), name);
+    expect_part_refused(file.binary(), name);
   }
 }
 
 TEST(GltfLimits, RefusesANodeWithTwoParents) {
   GltfBuilder file = triangle();
   file.nodes = R"({"children":[1,1]},{"mesh":0})";
-  expect_refusal(file.binary(), "node 1 has two parents or is in a circle");
+  expect_part_refused(file.binary(), "node 1 has two parents or is in a circle");
 }
 
 TEST(GltfLimits, RefusesDeepNesting) {
@@ -117,9 +117,9 @@ TEST(GltfLimits, RefusesDeepNesting) {
   file.nodes.clear();
   for (int i = 1; i <= 300; ++i) file.nodes += R"({"children":[)" + std::to_string(i) + "]},";
   file.nodes += R"({"mesh":0})";
-  expect_refusal(file.binary(), "nested deeper than 256");
+  expect_part_refused(file.binary(), "nested deeper than 256");
   const std::string brackets = R"({"asset":)" + std::string(100'000, '[');
-  expect_refusal(Bytes(brackets.begin(), brackets.end()), "nested deeper than 64");
+  expect_part_refused(Bytes(brackets.begin(), brackets.end()), "nested deeper than 64");
 }
 
 // A small file may ask for a lot: here 20 copies of half a million triangles.
@@ -133,7 +133,7 @@ TEST(GltfLimits, CountsTrianglesOverAllNodes) {
     file.nodes += std::string(i > 0 ? "," : "") + R"({"mesh":0})";
     if (i > 0) file.roots += "," + std::to_string(i);
   }
-  expect_refusal(file.binary(), "more than 6 million triangles, all nodes counted");
+  expect_part_refused(file.binary(), "more than 6 million triangles, all nodes counted");
 }
 
 // An accessor without a view is zeros, which take memory that the file does not have.
@@ -142,7 +142,7 @@ TEST(GltfLimits, RefusesZerosThatTakeHalfAGibibyte) {
   file.view(std::vector<float>(4));     // the file's own data
   const std::size_t many = 50'000'000;  // of 12 bytes
   file.attribute("POSITION", file.accessor(-1, 5126, "VEC3", many));
-  expect_refusal(file.binary(), "more than 512 MiB in compressed, sparse or empty accessors");
+  expect_part_refused(file.binary(), "more than 512 MiB in compressed, sparse or empty accessors");
 }
 
 TEST(GltfLimits, RefusesSeveralBuffersForOneBinaryChunk) {
@@ -152,27 +152,27 @@ TEST(GltfLimits, RefusesSeveralBuffersForOneBinaryChunk) {
     json.replace(json.find(list), list.size(),
                  list + (list.find("Views") == list.npos ? R"({"byteLength":4},)"
                                                          : R"({"buffer":1,"byteLength":4},)"));
-  expect_refusal(glb(json, file.data), "more than one buffer without a uri");
+  expect_part_refused(glb(json, file.data), "more than one buffer without a uri");
 }
 
 TEST(GltfLimits, RefusesASmallFileThatWouldMakeAMillionMaterials) {
   std::string json = R"({"asset":{"version":"2.0"},"materials":[{})";
   for (int i = 0; i < 1'100'000; ++i) json += ",{}";
   json += "]}";
-  expect_refusal(Bytes(json.begin(), json.end()), "more than 1 million JSON objects");
+  expect_part_refused(Bytes(json.begin(), json.end()), "more than 1 million JSON objects");
 }
 
 TEST(GltfLimits, RefusesVerticesOutOfThisWorld) {
   GltfBuilder file;
   file.positions({0, 0, 0, 1e30f, 0, 0, 0, 1, 0});
-  expect_refusal(file.binary(), "farther than a million");
+  expect_part_refused(file.binary(), "farther than a million");
 }
 
 TEST(GltfLimits, RefusesADegenerateModel) {
   GltfBuilder file = triangle();
   file.primitive = R"(,"indices":)" +
                    std::to_string(file.accessor(file.view(Bytes{1, 1, 1}), 5121, "SCALAR", 3));
-  expect_refusal(file.binary(), "contains no triangles");
+  expect_part_refused(file.binary(), "contains no triangles");
 }
 
 // A percent sign, or Draco's name, has the JSON read once more before the usual reader.
@@ -191,7 +191,7 @@ TEST(GltfLimits, RefusesJsonThatIsNoObjectAsEveryOtherModel) {
 
 TEST(GltfLimits, SaysWhereTheJsonBreaks) {
   const std::string json = R"({"asset":{"version":"2.0"},)";
-  expect_refusal(Bytes(json.begin(), json.end()), "is not valid JSON at its byte");
+  expect_part_refused(Bytes(json.begin(), json.end()), "is not valid JSON at its byte");
 }
 
 TEST(GltfLimits, ReportsProgressAndStopsWhenAsked) {
@@ -223,7 +223,7 @@ TEST(GltfViews, AreRefusedWhereTheyReachOutsideOfTheirBuffer) {
     file.view(std::vector<float>(9, 0.5f));
     file.views = view;
     file.attribute("POSITION", file.accessor(0, 5126, "VEC3", 3));
-    expect_refusal(file.binary(), "reaches outside of its buffer");
+    expect_part_refused(file.binary(), "reaches outside of its buffer");
   }
 }
 

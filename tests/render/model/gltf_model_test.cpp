@@ -6,33 +6,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tests/render/model/gltf_builder.h"
+
 namespace limpid {
 namespace {
-
-using Bytes = std::vector<unsigned char>;
 
 void append(Bytes& bytes, const void* data, std::size_t size) {
   if (size == 0) return;
   bytes.resize(bytes.size() + size);
   std::memcpy(bytes.data() + bytes.size() - size, data, size);
-}
-
-void append_word(Bytes& bytes, std::uint32_t word) { append(bytes, &word, 4); }
-
-Bytes glb(std::string json, Bytes binary) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  binary.resize((binary.size() + 3) / 4 * 4, 0);
-  Bytes bytes;
-  append_word(bytes, 0x46546C67);
-  append_word(bytes, 2);
-  append_word(bytes, static_cast<std::uint32_t>(28 + json.size() + binary.size()));
-  append_word(bytes, static_cast<std::uint32_t>(json.size()));
-  append_word(bytes, 0x4E4F534A);
-  append(bytes, json.data(), json.size());
-  append_word(bytes, static_cast<std::uint32_t>(binary.size()));
-  append_word(bytes, 0x004E4942);
-  append(bytes, binary.data(), binary.size());
-  return bytes;
 }
 
 // A triangle in the xy plane: 36 bytes of positions, then three 16-bit indices.
@@ -57,15 +39,6 @@ std::string triangle_json(const std::string& node = R"("mesh":0)", int count = 3
          R"(,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],)"
          R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},)"
          R"({"buffer":0,"byteOffset":36,"byteLength":6}],"buffers":[{"byteLength":42}]})";
-}
-
-std::string refusal(const Bytes& bytes) {
-  try {
-    parse_gltf(bytes, "part.glb");
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 void expect_refusal(const Bytes& bytes, const std::string& reason) {

@@ -87,7 +87,7 @@ float volume(const Model& model) {
   return sum;
 }
 
-std::string refusal(const Bytes& bytes, const std::string& name) {
+std::string refusal_of(const Bytes& bytes, const std::string& name) {
   try {
     parse_model(bytes, name);
   } catch (const std::runtime_error& error) {
@@ -288,13 +288,13 @@ TEST(ModelFile, NeedsNoOtherFileOfOneThatStandsAlone) {
 }
 
 TEST(ModelFile, SaysWhatCannotBeRead) {
-  EXPECT_NE(refusal({1}, "a.step").find("allowed are .glb, .gltf, .stl"), std::string::npos);
-  EXPECT_EQ(refusal({}, "a.stl"), "a.stl: is empty");
-  EXPECT_EQ(refusal(bytes_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex a b c\nendloop\n"
-                             "endfacet\nendsolid\n"),
-                    "a.stl"),
+  EXPECT_NE(refusal_of({1}, "a.step").find("allowed are .glb, .gltf, .stl"), std::string::npos);
+  EXPECT_EQ(refusal_of({}, "a.stl"), "a.stl: is empty");
+  EXPECT_EQ(refusal_of(bytes_of("solid a\nfacet normal 0 0 1\nouter loop\nvertex a b c\nendloop\n"
+                                "endfacet\nendsolid\n"),
+                       "a.stl"),
             "a.stl: a number is expected, and there is \"a b c\"");
-  EXPECT_NE(refusal(bytes_of("v 0 0 0\nv 1 0 0\nl 1 2\n"), "a.obj").find("no triangles"),
+  EXPECT_NE(refusal_of(bytes_of("v 0 0 0\nv 1 0 0\nl 1 2\n"), "a.obj").find("no triangles"),
             std::string::npos);
 }
 
@@ -306,7 +306,7 @@ TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
     for (std::size_t i = 1; i < 8; ++i) {
       Bytes broken(bytes.begin(), bytes.begin() + static_cast<long>(i * bytes.size() / 8));
       broken[broken.size() / 2] ^= 0x55;
-      if (const std::string why = refusal(broken, name); !why.empty()) {
+      if (const std::string why = refusal_of(broken, name); !why.empty()) {
         EXPECT_EQ(why.find(name + ": "), 0u) << why;
       }
     }
@@ -316,7 +316,7 @@ TEST(ModelFile, OutlivesFilesThatAreCutOffOrChanged) {
 // Without a check of the header first this took seconds.
 TEST(ModelFile, SaysThatAPlyIsCutOffInItsHeader) {
   const std::string text = ply();
-  EXPECT_EQ(refusal(bytes_of(text.substr(0, text.find("end_header"))), "a.ply"),
+  EXPECT_EQ(refusal_of(bytes_of(text.substr(0, text.find("end_header"))), "a.ply"),
             "a.ply: is cut off: its header has no end_header");
 }
 
@@ -332,7 +332,7 @@ TEST(ModelFile, SaysThatItWouldTakeTooMuch) {
   text.insert(text.find("<library_visual_scenes>"), nodes + "</library_nodes>");
   const std::string one = "<instance_geometry url=\"#g\"/></node></visual_scene>";
   text.replace(text.find(one), one.size(), "<instance_node url=\"#n39\"/></node></visual_scene>");
-  const std::string why = refusal(bytes_of(text), "a.dae");
+  const std::string why = refusal_of(bytes_of(text), "a.dae");
   EXPECT_NE(why.find("which is all that a model of its size gets"), std::string::npos) << why;
 }
 
@@ -365,10 +365,10 @@ TEST(ModelFile, SaysHowItsReaderEnded) {
 TEST(ModelFile, OutlivesAPlyOfFourBillionVertices) {
   std::string text = ply();
   text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
-  EXPECT_EQ(refusal(bytes_of(text), "a.ply"), "a.ply: says that it has more than fits into it");
+  EXPECT_EQ(refusal_of(bytes_of(text), "a.ply"), "a.ply: says that it has more than fits into it");
   text = dae();
   text.replace(text.find("count=\"12\""), 10, "count=\"4000000000\"");
-  EXPECT_EQ(refusal(bytes_of(text), "a.dae"), "a.dae: says that it has more than fits into it");
+  EXPECT_EQ(refusal_of(bytes_of(text), "a.dae"), "a.dae: says that it has more than fits into it");
 }
 
 TEST(ModelFile, GivesUpWhenItIsNotWanted) {

@@ -33,7 +33,7 @@ void add_square(Model& model, const Vector3f& corner, const Vector3f& u, const V
 }
 
 // Area of the triangles, negative where they face away from their first vertex' normal.
-float area(const Model& model, const std::vector<std::uint32_t>& indices) {
+float outward_area(const Model& model, const std::vector<std::uint32_t>& indices) {
   float twice = 0;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     const Vertex &a = model.vertices[indices[i]], &b = model.vertices[indices[i + 1]],
@@ -67,7 +67,7 @@ TEST(Simplify, KeepsSharpEdgesSharp) {
   add_coarse(model, 2000);
   EXPECT_GT(model.coarse.size() / 3, 12u);
   EXPECT_LT(model.coarse.size() / 3, 4000u);
-  EXPECT_NEAR(area(model, model.coarse), 6, 0.01);
+  EXPECT_NEAR(outward_area(model, model.coarse), 6, 0.01);
   for (std::size_t i = 0; i < model.coarse.size(); i += 3) {
     const auto normal = [&](std::size_t k) { return model.vertices[model.coarse[i + k]].normal; };
     EXPECT_EQ(normal(0), normal(1));
@@ -81,7 +81,7 @@ TEST(Simplify, MergesSingleTrianglesToo) {
   add_coarse(model, 20'000);
   EXPECT_GT(model.coarse.size() / 3, 10'000u);
   EXPECT_LT(model.coarse.size() / 3, 40'000u);
-  EXPECT_NEAR(area(model, model.coarse), 1, 0.05);
+  EXPECT_NEAR(outward_area(model, model.coarse), 1, 0.05);
 }
 
 TEST(Simplify, KeepsAPartOfFewTrianglesAndEachPartsMaterial) {

@@ -19,7 +19,7 @@ using test::Random;
 using test::refusal;
 using testing::HasSubstr;
 
-ArmDescription arm() {
+ArmDescription one_joint() {
   ArmDescription a;
   a.joints = {{"turn"}};
   a.links = {{"one"}};
@@ -27,9 +27,9 @@ ArmDescription arm() {
   return a;
 }
 
-SceneDocument parse(const std::string& text, const std::filesystem::path& folder = "/tmp",
-                    const SceneFiles& files = {}) {
-  return parse_scene(text, "x.toml", folder, arm(), files);
+SceneDocument parse_bodies(const std::string& text, const std::filesystem::path& folder = "/tmp",
+                           const SceneFiles& files = {}) {
+  return parse_scene(text, "x.toml", folder, one_joint(), files);
 }
 
 std::string body(const std::string& rest, const std::string& name = "a") {
@@ -48,15 +48,15 @@ void expect_same_scene(const Scene& a, const Scene& b) {
 }
 
 void expect_kept(const SceneDocument& document) {
-  const std::string text = scene_text(document, arm());
+  const std::string text = scene_text(document, one_joint());
   SCOPED_TRACE(text);
-  const SceneDocument again = parse(text, "", files_of(document));
+  const SceneDocument again = parse_bodies(text, "", files_of(document));
   expect_same_scene(again.scene, document.scene);
-  EXPECT_EQ(scene_text(again, arm()), text);
+  EXPECT_EQ(scene_text(again, one_joint()), text);
 }
 
 TEST(BodyFile, ReadsADieAndAKeyAsTheSheetHasThem) {
-  const SceneDocument document = parse(R"(
+  const SceneDocument document = parse_bodies(R"(
 gravity = [0, 0, -1.62]
 [[body]]
 name = "die"
@@ -137,7 +137,7 @@ breaks_at = 20
 
 TEST(BodyFile, ReadsEveryShape) {
   const auto shape = [](const std::string& key) {
-    return parse("[[body]]\nname = \"a\"\n" + key + "\nmass = 1\nposition = [0, 0, 0]\n")
+    return parse_bodies("[[body]]\nname = \"a\"\n" + key + "\nmass = 1\nposition = [0, 0, 0]\n")
         .scene.objects.at(0)
         .shape;
   };
@@ -149,7 +149,7 @@ TEST(BodyFile, ReadsEveryShape) {
 
 TEST(BodyFile, TurnsDensityIntoMass) {
   const Scene scene =
-      parse(
+      parse_bodies(
           "[[body]]\nname = \"a\"\nbox = [0.1, 0.1, 0.1]\ndensity = 500\nposition = [0, 0, 0]\n"
           "[[body.part]]\nbox = [0.1, 0.1, 0.2]\n")
           .scene;
@@ -161,17 +161,17 @@ TEST(BodyFile, GivesAMeshItsMassWhenItIsBuilt) {
   test::write_file(dir / "a.stl", "bytes");
   const std::string text =
       "[[body]]\nname = \"a\"\nfile = \"a.stl\"\ndensity = 500\nposition = [0, 0, 0]\n";
-  SceneDocument document = parse(text, dir / "");
+  SceneDocument document = parse_bodies(text, dir / "");
   EXPECT_EQ(document.models.size(), 1u);
-  EXPECT_THAT(scene_text(document, arm()), HasSubstr("density = 500"));
+  EXPECT_THAT(scene_text(document, one_joint()), HasSubstr("density = 500"));
   Mesh& mesh = std::get<Mesh>(document.scene.objects.at(0).shape);
   mesh.triangles = test::icosphere(3).mapped([](const Vec3& p) { return Vec3(100 * p); }).mesh();
   settle_masses(document);
   const double found = document.scene.objects[0].body->mass;
   EXPECT_NEAR(found, 500 * 4.18879e-3, 0.02 * found);
-  EXPECT_EQ(scene_text(document, arm()).find("density"), std::string::npos);
+  EXPECT_EQ(scene_text(document, one_joint()).find("density"), std::string::npos);
 
-  SceneDocument heavy = parse(text, dir / "");
+  SceneDocument heavy = parse_bodies(text, dir / "");
   mesh = std::get<Mesh>(document.scene.objects[0].shape);
   std::get<Mesh>(heavy.scene.objects[0].shape) = mesh;
   std::get<Mesh>(heavy.scene.objects[0].shape).unit = 1;
@@ -179,11 +179,11 @@ TEST(BodyFile, GivesAMeshItsMassWhenItIsBuilt) {
 }
 
 TEST(BodyFile, KeepsTheirOrderBehindWhatStandsStill) {
-  const SceneDocument document =
-      parse("[[body]]\nname = \"b\"\nsphere = 0.1\nmass = 1\nposition = [0, 0, 0]\n" + body("") +
-            "[[sphere]]\nname = \"s\"\ncenter = [0, 0, 0]\nradius = 1\nstiffness = 1\n"
-            "[[cylinder]]\nname = \"c\"\nposition = [0, 0, 0]\nradius = 1\nlength = 1\n"
-            "stiffness = 1\n");
+  const SceneDocument document = parse_bodies(
+      "[[body]]\nname = \"b\"\nsphere = 0.1\nmass = 1\nposition = [0, 0, 0]\n" + body("") +
+      "[[sphere]]\nname = \"s\"\ncenter = [0, 0, 0]\nradius = 1\nstiffness = 1\n"
+      "[[cylinder]]\nname = \"c\"\nposition = [0, 0, 0]\nradius = 1\nlength = 1\n"
+      "stiffness = 1\n");
   std::string names;
   for (const Object& object : document.scene.objects) names += object.name;
   EXPECT_EQ(names, "scba");
@@ -197,7 +197,7 @@ struct Case {
 
 void expect_refused(const std::vector<Case>& cases) {
   for (const Case& c : cases) {
-    const std::string said = refusal([&] { parse(c.text); });
+    const std::string said = refusal([&] { parse_bodies(c.text); });
     for (const std::string& part : c.said) EXPECT_THAT(said, HasSubstr(part)) << c.text;
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
   }
@@ -299,8 +299,8 @@ TEST(BodyFile, RefusesWhatASpringCannotBe) {
 TEST(BodyFile, HoldsAtMost64Bodies) {
   std::string text;
   for (int i = 0; i < 64; ++i) text += body("", fmt::format("b{}", i));
-  EXPECT_EQ(count_bodies(parse(text).scene), 64);
-  EXPECT_THAT(refusal([&] { parse(text + body("")); }),
+  EXPECT_EQ(count_bodies(parse_bodies(text).scene), 64);
+  EXPECT_THAT(refusal([&] { parse_bodies(text + body("")); }),
               testing::AllOf(HasSubstr("x.toml:1: body: 65 bodies"), HasSubstr("at most 64")));
 }
 

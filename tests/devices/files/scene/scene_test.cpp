@@ -8,7 +8,7 @@ namespace {
 using test::refusal;
 using testing::HasSubstr;
 
-ArmDescription arm() {
+ArmDescription two_joints() {
   ArmDescription a;
   a.joints = {{"turn"}, {"lift"}};
   a.links = {{"one"}, {"two"}};
@@ -19,7 +19,9 @@ ArmDescription arm() {
   return a;
 }
 
-SceneDocument parse(const std::string& text) { return parse_scene(text, "x.toml", "/tmp", arm()); }
+SceneDocument parse(const std::string& text) {
+  return parse_scene(text, "x.toml", "/tmp", two_joints());
+}
 
 TEST(Scene, MayBeEmpty) {
   const Scene scene = parse("").scene;
@@ -182,7 +184,7 @@ TEST(Scene, ReadsCylindersAndCapsulesThatStandStill) {
                 found.shape == Shape(Capsule{0.02, 0.06}));
     EXPECT_LT((found.pose * Vec3(0, 0, 0.03) - Vec3(1.03, 2, 3)).norm(), 1e-15);
     EXPECT_EQ(found.material.stiffness, 300);
-    const SceneDocument again = parse(scene_text(parse(text), arm()));
+    const SceneDocument again = parse(scene_text(parse(text), two_joints()));
     test::expect_same(again.scene.objects.at(0), found);
     for (const char* key : {"radius", "length"}) {
       std::string wrong = text;
@@ -193,7 +195,8 @@ TEST(Scene, ReadsCylindersAndCapsulesThatStandStill) {
 }
 
 TEST(Scene, LeavesOutRelativeFilesOfATextWithoutAFolder) {
-  EXPECT_TRUE(parse_scene("[[visual]]\nfile = \"a.glb\"\n", "session", "", arm()).visuals.empty());
+  EXPECT_TRUE(
+      parse_scene("[[visual]]\nfile = \"a.glb\"\n", "session", "", two_joints()).visuals.empty());
 }
 
 std::string mesh(const std::string& file) {
@@ -205,7 +208,7 @@ TEST(Scene, HasTheModelsOfItsMeshesEachOnce) {
   test::write_file(dir / "a.glb", "bytes of a");
   test::write_file(dir / "b.glb", "bytes of b");
   const SceneDocument read =
-      parse_scene(mesh("a.glb") + mesh("b.glb") + mesh("a.glb"), "x.toml", dir / "", arm());
+      parse_scene(mesh("a.glb") + mesh("b.glb") + mesh("a.glb"), "x.toml", dir / "", two_joints());
   ASSERT_EQ(read.scene.objects.size(), 3u);
   EXPECT_EQ(test::shape<Mesh>(read.scene, 2).model, "a.glb");
   ASSERT_EQ(read.models.size(), 2u);
@@ -214,7 +217,7 @@ TEST(Scene, HasTheModelsOfItsMeshesEachOnce) {
   EXPECT_EQ(files.at("b.glb"), read.models.at("b.glb").bytes);
 
   // Files handed in take precedence over those in the folder, and only named ones are kept.
-  const SceneDocument again = parse_scene(mesh("b.glb"), "x.toml", dir / "", arm(), files);
+  const SceneDocument again = parse_scene(mesh("b.glb"), "x.toml", dir / "", two_joints(), files);
   ASSERT_EQ(again.models.size(), 1u);
   EXPECT_EQ(again.models.at("b.glb").path, "");
   EXPECT_EQ(again.models.at("b.glb").bytes, files.at("b.glb"));

@@ -65,7 +65,7 @@ std::string odd_name(test::Random& random) {
   return name + "\xCE\xB7";
 }
 
-Pose random_pose(test::Random& random) {
+Pose far_pose(test::Random& random) {
   Pose pose = Pose::Identity();
   pose.translation() = random.point(1);
   pose.linear() = rotation((random.point(3) * 1e9).array().round() / 1e9);
@@ -99,11 +99,11 @@ SceneDocument random_scene(const ArmDescription& arm, unsigned seed) {
                random_material(random)});
   }
   for (int i = count(); i > 0; --i) {
-    scene.add({odd_name(random), random_pose(random), Box{Vec3::Constant(1.2) + random.point(1)},
+    scene.add({odd_name(random), far_pose(random), Box{Vec3::Constant(1.2) + random.point(1)},
                random_material(random)});
   }
   for (int i = count(); i > 0; --i) {
-    Object object{odd_name(random), random_pose(random), Mesh{}, random_material(random)};
+    Object object{odd_name(random), far_pose(random), Mesh{}, random_material(random)};
     Mesh& mesh = std::get<Mesh>(object.shape);
     // STL is read in millimetres unless it says otherwise, other formats in metres.
     mesh.model = "models/" + std::to_string(i) + " \"of\" \xCE\xB7" +

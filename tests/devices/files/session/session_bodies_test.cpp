@@ -10,12 +10,14 @@
 #include "devices/files/session/session_csv.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/rows.h"
 
 namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
 using test::refusal;
+using test::same_numbers;
 using test::sample_rows;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -32,14 +34,10 @@ std::vector<double> rows_of(const SessionInfo& info, std::size_t count) {
   return sample_rows(info.layout(), 0, count);
 }
 
-void write(const fs::path& out, const SessionInfo& info, std::size_t rows) {
+void write_with_bodies(const fs::path& out, const SessionInfo& info, std::size_t rows) {
   SessionWriter writer(out, info, false);
   writer.append(rows_of(info, rows));
   writer.close();
-}
-
-bool same_bits(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 TEST(RowLayout, HasRoomForWhatMoves) {
@@ -88,11 +86,11 @@ TEST(SessionWithBodies, ComesBackBitForBit) {
     for (std::size_t i = 0; i < count; ++i) names.push_back("body \xCE\xB7 " + std::to_string(i));
     const SessionInfo info = info_of(names);
     const fs::path file = dir / (std::to_string(count) + ".h5").c_str();
-    write(file, info, 1234);
+    write_with_bodies(file, info, 1234);
     const Session session = read_session(file);
     EXPECT_EQ(session.info.bodies, names);
     EXPECT_EQ(session.layout.bodies(), static_cast<int>(count));
-    EXPECT_TRUE(same_bits(session.rows, rows_of(info, 1234)));
+    EXPECT_TRUE(same_numbers(session.rows, rows_of(info, 1234)));
   }
 }
 
@@ -117,15 +115,15 @@ TEST(SessionWithBodies, OfATwinHasThoseOfBothRuns) {
   }
   const Session session = read_session(dir / "a.h5");
   ASSERT_EQ(session.lanes(), 2u);
-  EXPECT_TRUE(same_bits(session.rows, first));
-  EXPECT_TRUE(same_bits(session.lane(kTwinLane).rows, second));
-  EXPECT_TRUE(same_bits(session.world, world));
-  EXPECT_TRUE(same_bits(session.lane(kTwinLane).world, other));
+  EXPECT_TRUE(same_numbers(session.rows, first));
+  EXPECT_TRUE(same_numbers(session.lane(kTwinLane).rows, second));
+  EXPECT_TRUE(same_numbers(session.world, world));
+  EXPECT_TRUE(same_numbers(session.lane(kTwinLane).world, other));
 }
 
 TEST(SessionWithBodies, NeedNotSayWithWhatTheyBegin) {
   const test::TempDir dir;
-  write(dir / "a.h5", info_of({"die"}), 10);
+  write_with_bodies(dir / "a.h5", info_of({"die"}), 10);
   EXPECT_TRUE(read_session(dir / "a.h5").world.empty());
 }
 
@@ -140,9 +138,9 @@ TEST(SessionWithBodies, KeepsWhatTheyBeginWithWhereItWasKilled) {
   }
   const Session session = read_session(dir / "a.h5.part");
   EXPECT_EQ(session.size(), 1024u);
-  EXPECT_TRUE(same_bits(session.world, world));
+  EXPECT_TRUE(same_numbers(session.world, world));
   EXPECT_EQ(recover_session(dir / "a.h5.part", false).rows, 1024u);
-  EXPECT_TRUE(same_bits(read_session(dir / "a.h5").world, world));
+  EXPECT_TRUE(same_numbers(read_session(dir / "a.h5").world, world));
 }
 
 TEST(SessionWithBodies, TakesNoMoreOfThemThanItGivesBack) {
@@ -197,7 +195,7 @@ TEST(Session, WithoutBodiesSaysNothingOfThem) {
 
 TEST(SessionWithBodies, NamesEachNumberOfTheirsInATable) {
   const test::TempDir dir;
-  write(dir / "a.h5", info_of({"big die", "object 2", "big die"}), 3);
+  write_with_bodies(dir / "a.h5", info_of({"big die", "object 2", "big die"}), 3);
   write_csv(read_session(dir / "a.h5"), dir / "a.csv", false);
   const std::string table = test::file_bytes(dir / "a.csv");
   const std::string head = table.substr(0, table.find('\n'));
@@ -242,13 +240,13 @@ TEST(SessionWithBodies, OfAnotherShapeIsRefusedWithWhatIsWrong) {
   };
   for (const Case& wrong : cases) {
     const test::TempDir dir;
-    write(dir / "a.h5", info_of({"die", "key"}), 50);
+    write_with_bodies(dir / "a.h5", info_of({"die", "key"}), 50);
     replace(dir / "a.h5", wrong.path, H5T_IEEE_F64LE, wrong.shape);
     const std::string why = refusal([&] { read_session(dir / "a.h5"); });
     for (const std::string& said : wrong.said) EXPECT_THAT(why, HasSubstr(said));
   }
   const test::TempDir dir;
-  write(dir / "a.h5", info_of({"die", "key"}), 50);
+  write_with_bodies(dir / "a.h5", info_of({"die", "key"}), 50);
   replace(dir / "a.h5", "/objects/state", H5T_STD_I64LE, {10});
   EXPECT_THAT(refusal([&] { read_session(dir / "a.h5"); }), HasSubstr("float64"));
 }
@@ -256,7 +254,7 @@ TEST(SessionWithBodies, OfAnotherShapeIsRefusedWithWhatIsWrong) {
 TEST(SessionWithBodies, OfAnotherProgramNeedNotSayMoreThanWhereTheyAre) {
   const test::TempDir dir;
   const SessionInfo info = info_of({"die", "key"});
-  write(dir / "a.h5", info, 50);
+  write_with_bodies(dir / "a.h5", info, 50);
   const hid_t file = H5Fopen((dir / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   for (const char* path :
        {"/energy/to_objects", "/energy/objects", "/energy/objects_gain", "/objects/awake",
@@ -272,10 +270,10 @@ TEST(SessionWithBodies, OfAnotherProgramNeedNotSayMoreThanWhereTheyAre) {
   EXPECT_EQ(session.at(3, Column::magnet)[0], 0);
   EXPECT_TRUE(std::isnan(session.at(3, Column::energy_to_objects)[0]));
   const std::vector<double> rows = rows_of(info, 50);
-  EXPECT_TRUE(same_bits(session.at(0, Column::body_pose),
-                        info.layout().in(std::span<const double>(rows).first(
-                                             static_cast<std::size_t>(info.layout().stride())),
-                                         Column::body_pose)));
+  EXPECT_TRUE(same_numbers(session.at(0, Column::body_pose),
+                           info.layout().in(std::span<const double>(rows).first(
+                                                static_cast<std::size_t>(info.layout().stride())),
+                                            Column::body_pose)));
 }
 
 }  // namespace

@@ -17,20 +17,18 @@
 #include "devices/files/session/session_stream.h"
 #include "tests/devices/files/session/sample_session.h"
 #include "tests/devices/files/test_files.h"
+#include "tests/support/rows.h"
 
 namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
 using test::refusal;
+using test::same_numbers;
 using test::sample_info;
 using test::sample_rows;
 using testing::AllOf;
 using testing::HasSubstr;
-
-bool same_bits(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
 
 class SessionOfJoints : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Arms, SessionOfJoints, testing::Values(1, 2, 3, 7, 32));
@@ -62,7 +60,7 @@ TEST_P(SessionOfJoints, ComesBackBitForBit) {
   }
   EXPECT_FALSE(fs::exists(dir / "a.h5.part"));
   const Session session = read_session(dir / "a.h5");
-  EXPECT_TRUE(same_bits(session.rows, rows));
+  EXPECT_TRUE(same_numbers(session.rows, rows));
   const SessionInfo info = sample_info(dof);
   EXPECT_EQ(session.info.tick, info.tick);
   EXPECT_EQ(session.info.dof, dof);
@@ -121,7 +119,7 @@ std::uintmax_t size_recorded(const fs::path& out, const std::vector<double>& row
   SessionWriter writer(out, sample_info(), false);
   writer.append(rows);
   writer.close();
-  EXPECT_TRUE(same_bits(read_session(out).rows, rows));
+  EXPECT_TRUE(same_numbers(read_session(out).rows, rows));
   return fs::file_size(out);
 }
 
@@ -186,7 +184,7 @@ TEST(Session, IsReadableWhileItIsWritten) {
   writer.append(sample_rows(layout, 0, 1700));
   const Session session = read_session(writer.part());
   EXPECT_GE(session.size(), 1200u) << "at most half a second is missing";
-  EXPECT_TRUE(same_bits(session.rows, sample_rows(layout, 0, session.size())));
+  EXPECT_TRUE(same_numbers(session.rows, sample_rows(layout, 0, session.size())));
 }
 
 TEST(Session, IsHdf5AsPythonExpectsItAlsoWhileItIsWritten) {
@@ -415,7 +413,7 @@ TEST(Session, KeepsABlockWithoutASingleNumber) {
     SessionWriter writer(dir / "a.h5", sample_info(2), false);
     writer.append(rows);
     writer.close();
-    EXPECT_TRUE(same_bits(read_session(dir / "a.h5").rows, rows)) << nothing;
+    EXPECT_TRUE(same_numbers(read_session(dir / "a.h5").rows, rows)) << nothing;
   }
 }
 
@@ -467,8 +465,8 @@ TEST(Session, OfAsManyRunsAsThereCanBeIsReadInPieces) {
   ASSERT_EQ(whole.lanes(), kMostLanes);
   EXPECT_EQ(whole.info.beside, info.beside);
   for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
-    EXPECT_TRUE(same_bits(got[lane], rows[lane])) << lane;
-    EXPECT_TRUE(same_bits(whole.lane(lane).rows, rows[lane])) << lane;
+    EXPECT_TRUE(same_numbers(got[lane], rows[lane])) << lane;
+    EXPECT_TRUE(same_numbers(whole.lane(lane).rows, rows[lane])) << lane;
   }
   for (std::size_t lane = 1; lane < kMostLanes; ++lane) {
     EXPECT_EQ(whole.lane(lane).info.config, info.beside[lane - 1]);
