@@ -83,10 +83,10 @@ int law_channel(std::size_t run, const TraceChannels& channels) {
   return static_cast<int>(Channel::kind) + static_cast<int>(run) * channels.count();
 }
 
-// Returns the curve of the same channel of a further run.
-Curve of_run(std::size_t run, const Curve& first, std::size_t number, const TraceChannels& channels,
+// Returns the curve of the same channel of a further run. A plot of one thing has the colours of
+// the runs' laws, a plot of several those of the things.
+Curve of_run(std::size_t run, const Curve& first, bool only, const TraceChannels& channels,
              const RunNames& names) {
-  constexpr std::array kShades{0.0f, 0.5f, -0.5f, 0.25f, -0.25f};
   Curve curve = first;
   const int offset = static_cast<int>(run) * channels.count();
   curve.channel += offset;
@@ -100,10 +100,14 @@ Curve of_run(std::size_t run, const Curve& first, std::size_t number, const Trac
     if (!another) curve.shade = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
   } else {
     curve.sign = RunSign::ring;
-    curve.law = names.law(run);
-    curve.law_channel = curve.law >= 0 ? law_channel(run, channels) : -1;
-    curve.ink = Ink::rerun;
-    curve.shade = kShades[number % kShades.size()];
+    if (only) {
+      curve.law = names.law(run);
+      curve.law_channel = curve.law >= 0 ? law_channel(run, channels) : -1;
+      curve.ink = Ink::rerun;
+      curve.shade = 0;
+    } else {
+      curve.shade = std::clamp(first.shade + kLaneShades[1], -1.0f, 1.0f);
+    }
   }
   return curve;
 }
@@ -250,7 +254,8 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
   for (std::size_t run = 0; run < std::max<std::size_t>(1, names.names.size()); ++run) {
     const std::string name = names.name(run);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-      Curve curve = run > 0 ? of_run(run, firsts[i], i, channels, names) : firsts[i];
+      Curve curve =
+          run > 0 ? of_run(run, firsts[i], firsts.size() == 1, channels, names) : firsts[i];
       const bool recorded = run == 0 && !names.beside;
       if (!name.empty() && firsts.size() == 1) {
         curve.label = name;

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
 #include "app/experiments/moving.h"
+#include "core/math/eigen.h"
 #include "tests/support/built_in.h"
 
 namespace limpid {
@@ -19,7 +19,7 @@ double largest_eigenvalue(double m, double K, double B) {
   Eigen::Matrix2d step;
   const double v_x = -T * K / m, v_v = 1 - T * B / m;
   step << 1 + T * v_x, T * v_v, v_x, v_v;
-  return step.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(step).cwiseAbs().maxCoeff();
 }
 
 TEST(StaggeredBody, NeedsTheMassThatJurysCriterionSays) {

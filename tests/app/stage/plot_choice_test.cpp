@@ -149,6 +149,20 @@ TEST(PlotChoice, DrawsARerunInItsLawsColour) {
   EXPECT_NE(colour_of(kLightPalette, spec.curves[0]), law_ink(kLightPalette, 2));
 }
 
+// In a plot of several things a law's tints would be alike: those of the standard one are greys.
+TEST(PlotChoice, DrawsThingsOfARerunInTheirOwnColours) {
+  const TraceChannels channels{RowLayout(3)};
+  RunNames names = kRerun;
+  names.laws = {-1, static_cast<int>(CouplingKind::standard)};
+  const PlotSpec spec = plot_spec(default_plots()[2], channels, names);
+  ASSERT_EQ(spec.curves.size(), 6U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(spec.curves[3 + i].law, -1) << spec.curves[i].label;
+    EXPECT_EQ(spec.curves[3 + i].ink, spec.curves[i].ink) << spec.curves[i].label;
+    EXPECT_NE(spec.curves[3 + i].shade, spec.curves[i].shade) << spec.curves[i].label;
+  }
+}
+
 // A plot of one thing is about the runs, a plot of several about the things.
 TEST(PlotChoice, NamesTheRecordedRunBesideARerun) {
   const TraceChannels channels{RowLayout(3)};

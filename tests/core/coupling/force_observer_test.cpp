@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "core/math/eigen.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -37,7 +37,7 @@ TEST(ForceObserver, FindsAConstantForceWithEveryGainAndTick) {
   for (const int n : {1, 3, 7}) {
     Random random(80);
     const Eigen::MatrixXd M = random.positive_definite(n, 1e-4, 1e-3);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(M);
+    const SymmetricEigen modes = symmetric_eigen(M);
     const Vector f1 = random.vector(n, 1), tau = random.vector(n, 0.5);
     for (double alpha = 1e-4; alpha <= 1e3; alpha *= 10) {
       for (const double T : {1e-4, 1e-3, 1e-2}) {
@@ -50,11 +50,11 @@ TEST(ForceObserver, FindsAConstantForceWithEveryGainAndTick) {
           body.live(T, tau + f1);
           body.estimate(observer, alpha, T);
         }
-        Eigen::VectorXd left = modes.eigenvectors().transpose() * f1;
+        Eigen::VectorXd left = modes.vectors.transpose() * f1;
         for (int i = 0; i < n; ++i) {
-          left[i] *= std::exp(-alpha / modes.eigenvalues()[i] * kTicks * T);
+          left[i] *= std::exp(-alpha / modes.values[i] * kTicks * T);
         }
-        const Eigen::VectorXd wanted = f1 - modes.eigenvectors() * left;
+        const Eigen::VectorXd wanted = f1 - modes.vectors * left;
         EXPECT_LT((observer.present() - wanted).norm(), 1e-4 * f1.norm())
             << n << " joints, alpha " << alpha << ", T " << T;
       }
@@ -100,7 +100,7 @@ TEST(ForceObserver, FollowsTheFilterOfEveryModeOfAMatrix) {
   // In the modes of M the filters are scalar: exp(-alpha/m_i t).
   Random random(81);
   const Eigen::MatrixXd M = random.positive_definite(3, 2e-4, 8e-4);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(M);
+  const SymmetricEigen modes = symmetric_eigen(M);
   constexpr double alpha = 0.035, T = 1e-5;
   const Eigen::VectorXd f1 = random.vector(3, 1);
   Observer observer(3);
@@ -110,9 +110,9 @@ TEST(ForceObserver, FollowsTheFilterOfEveryModeOfAMatrix) {
     body.live(T, f1);
     body.estimate(observer, alpha, T);
   }
-  Eigen::VectorXd share = modes.eigenvectors().transpose() * f1;
-  for (int i = 0; i < 3; ++i) share[i] *= 1 - std::exp(-alpha / modes.eigenvalues()[i] * 600 * T);
-  EXPECT_LT((observer.present() - modes.eigenvectors() * share).norm(), 1e-5);
+  Eigen::VectorXd share = modes.vectors.transpose() * f1;
+  for (int i = 0; i < 3; ++i) share[i] *= 1 - std::exp(-alpha / modes.values[i] * 600 * T);
+  EXPECT_LT((observer.present() - modes.vectors * share).norm(), 1e-5);
 }
 
 TEST(ForceObserver, TakesTheDevicesOwnDampingForNoHumanForce) {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <complex>
 
+#include "core/math/eigen.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -23,9 +23,7 @@ constexpr double kA1 = 1.0081, kA2 = 1.4799, kA3 = 0.344, kR = 1.3198, kR1 = 0.0
 double price(double eta, const Matrix& M_L, double T, double band) {
   const double w2 = 2 * std::numbers::pi * band, k = w2 * w2 / kA1;
   const Matrix N = (1 - eta) / (1 + (kR + kR1) * w2 * T / 2) * M_L;
-  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(N, Eigen::EigenvaluesOnly)
-                             .eigenvalues()
-                             .maxCoeff();
+  const double largest = symmetric_eigen(N).values.maxCoeff();
   return largest * (k * T / 2 + k * k * T * T / (16 * w2 * kR1));
 }
 

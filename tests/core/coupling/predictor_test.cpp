@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <deque>
 #include <numbers>
 #include <vector>
 
+#include "core/math/eigen.h"
 #include "tests/support/random_arm.h"
 #include "tests/support/tick.h"
 
@@ -232,7 +232,7 @@ TEST(TipMoved, IsBoundByTheEasiestDirectionAndTheLongestLever) {
   for (int i = 0; i < 200; ++i) {
     const Mat3 A = random.positive_definite(3, 0.01, 50);
     const TipMoved tip = tip_moved(A, A);
-    const double largest = Eigen::SelfAdjointEigenSolver<Mat3>(A).eigenvalues()[2];
+    const double largest = symmetric_eigen(A).values[2];
     ASSERT_LE(tip.mass, 1 / largest * (1 + 1e-12));
     ASSERT_GE(tip.mass, 1 / largest / std::pow(3.0, 1.0 / 8));
     ASSERT_GE(tip.lever, std::sqrt(largest) * (1 - 1e-12));
