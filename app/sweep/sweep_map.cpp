@@ -242,6 +242,14 @@ class Making {
 constexpr int kTheoryPoints = 80;
 constexpr const char* kTheoryInk[] = {kNeutralInk, kHandInk, kEnergyInk};
 
+Series series_of_theory(const std::string& line) {
+  const auto which = std::ranges::find(kTheories, line) - std::begin(kTheories);
+  return {theory_label(line),
+          kTheoryInk[which],
+          which == 0 ? Series::Style::dashed : Series::Style::line,
+          {}};
+}
+
 }  // namespace
 
 MapChoice first_choice(const SweepPlan& plan, const SweepTable& table) {
@@ -291,18 +299,6 @@ double eta_limit(const std::string& line, const RunPlan& run) {
   if (line == "routh") return eta_min_grip(M_L, b_d.array() + p.b_v, p.alpha, K_h, B_h);
   return eta_min_compliant(M_L, b_d, p, K_h, B_h);
 }
-
-namespace {
-
-Series series_of_theory(const std::string& line) {
-  const auto which = std::ranges::find(kTheories, line) - std::begin(kTheories);
-  return {theory_label(line),
-          kTheoryInk[which],
-          which == 0 ? Series::Style::dashed : Series::Style::line,
-          {}};
-}
-
-}  // namespace
 
 std::vector<Series> upright_theory(const SweepPlan& plan, std::uint64_t point, const SweepAxis& x,
                                    std::pair<double, double> heights) {
