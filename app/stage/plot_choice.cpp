@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -83,10 +84,26 @@ int law_channel(std::size_t run, const TraceChannels& channels) {
   return static_cast<int>(Channel::kind) + static_cast<int>(run) * channels.count();
 }
 
+// Returns the shade of this colour that is farthest from those that curves have.
+float free_shade(Ink ink, std::span<const Curve> others) {
+  float best = 0, farthest = -1;
+  for (int i = 15; i >= -11; --i) {
+    const float shade = 0.05f * static_cast<float>(i);
+    float nearest = 2;
+    for (const Curve& other : others) {
+      if (other.ink == ink) nearest = std::min(nearest, std::abs(other.shade - shade));
+    }
+    if (nearest <= farthest) continue;
+    farthest = nearest;
+    best = shade;
+  }
+  return best;
+}
+
 // Returns the curve of the same channel of a further run. A plot of one thing has the colours of
 // the runs' laws, a plot of several those of the things.
-Curve of_run(std::size_t run, const Curve& first, bool only, const TraceChannels& channels,
-             const RunNames& names) {
+Curve of_run(std::size_t run, const Curve& first, bool only, std::span<const Curve> others,
+             const TraceChannels& channels, const RunNames& names) {
   Curve curve = first;
   const int offset = static_cast<int>(run) * channels.count();
   curve.channel += offset;
@@ -106,7 +123,7 @@ Curve of_run(std::size_t run, const Curve& first, bool only, const TraceChannels
       curve.ink = Ink::rerun;
       curve.shade = 0;
     } else {
-      curve.shade = std::clamp(first.shade + kLaneShades[1], -1.0f, 1.0f);
+      curve.shade = free_shade(curve.ink, others);
     }
   }
   return curve;
@@ -254,8 +271,9 @@ PlotSpec plot_spec(const PlotChoice& choice, const TraceChannels& channels, cons
   for (std::size_t run = 0; run < std::max<std::size_t>(1, names.names.size()); ++run) {
     const std::string name = names.name(run);
     for (std::size_t i = 0; i < firsts.size(); ++i) {
-      Curve curve =
-          run > 0 ? of_run(run, firsts[i], firsts.size() == 1, channels, names) : firsts[i];
+      Curve curve = run > 0
+                        ? of_run(run, firsts[i], firsts.size() == 1, spec.curves, channels, names)
+                        : firsts[i];
       const bool recorded = run == 0 && !names.beside;
       if (!name.empty() && firsts.size() == 1) {
         curve.label = name;
