@@ -17,6 +17,7 @@
 #include "app/run/replay.h"
 #include "app/run/scene_meshes.h"
 #include "app/run/varied_hand.h"
+#include "core/base/utf8.h"
 #include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/urdf_file.h"
@@ -121,14 +122,10 @@ std::string in_lines(std::string_view text, std::size_t indent, std::size_t widt
     if (!line.empty()) all += std::string(indent, ' ') + line + '\n';
     line.clear();
   };
-  const auto letters = [](std::string_view word) {  // counts letters of UTF-8
-    return static_cast<std::size_t>(
-        std::ranges::count_if(word, [](char c) { return (c & 0xc0) != 0x80; }));
-  };
   while (!text.empty()) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (letters(line) + 1 + letters(word) + indent > width) end_line();
+    if (count_characters(line) + 1 + count_characters(word) + indent > width) end_line();
     line += (line.empty() ? "" : " ") + std::string(word);
   }
   end_line();

@@ -24,6 +24,7 @@
 #include "app/base/markup.h"
 #include "app/base/version.h"
 #include "app/run/provenance.h"
+#include "core/base/utf8.h"
 #include "devices/files/atomic_file.h"
 #include "devices/files/text_file.h"
 
@@ -138,12 +139,7 @@ std::string quoted(const std::string& text) {
 
 std::string printed(const std::string& text) { return quoted(typeset(text)); }
 
-// Number of letters, not of bytes of UTF-8.
-double letters(const std::string& text) {
-  return static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-}
+double letters(const std::string& text) { return static_cast<double>(count_characters(text)); }
 
 // An entry of the legend. Entries flow in lines above the axes, where no curve can lie under them;
 // gnuplot does not know its own legend's size beforehand.

@@ -353,7 +353,7 @@ void Plot::draw_inside(const PlotFrame& frame, const History& history, const Plo
     if (group.range()) draw_range(frame, group.range()->start, group.range()->stop);
   }
   draw_curves(frame, history);
-  LabelRoom room = frame.label_room();
+  LabelRoom room(frame.area.box());
   if (over_time()) draw_band_names(frame, spec_, history, rows_, room);
   draw_thresholds(frame, spec_, room);
   if (over_time()) draw_mark_labels(frame, spec_, history, rows_, traces_, mouse, room);

@@ -18,6 +18,7 @@
 #include "app/plot/trace.h"
 #include "app/run/provenance.h"
 #include "app/style/ticks.h"
+#include "core/base/utf8.h"
 
 namespace limpid {
 
@@ -232,12 +233,9 @@ class PlotDrawing {
   }
 
  private:
-  // A character of UTF-8 has one byte that does not continue another one.
-  static double characters(const std::string& text) {
-    return static_cast<double>(
-        std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+  static double width_of(const std::string& text, double font = 0.55 * kCanvasFont) {
+    return font * static_cast<double>(count_characters(text));
   }
-  static double width_of(const std::string& text) { return 0.55 * kCanvasFont * characters(text); }
   void label(double x, double y, Anchor anchor, Rgb rgb, const std::string& what,
              bool bold = false) {
     canvas_->text({x, y}, anchor, rgb, what, bold);
@@ -315,12 +313,7 @@ class PlotDrawing {
   // Labels marks in rows from the bottom up; those that a band says and those without room have no
   // label.
   void mark_labels() {
-    std::vector<std::string> said;
-    for (const Band& band : spec_.bands) {
-      if (!band.key.empty() && !band_stretches(band, history_, rows_).empty()) {
-        said.push_back(band.key);
-      }
-    }
+    const std::vector<std::string> said = said_by_bands(spec_.bands, history_, rows_);
     for_marks([&](const PlotMark& mark, double x, Rgb rgb) {
       if (std::ranges::find(said, mark.key) != said.end()) return;
       const double wide = width_of(mark.label);
@@ -468,7 +461,7 @@ class PlotDrawing {
       canvas_->line({x, y - 4}, {x + 18, y - 4}, colour_of(palette_, curve), kLine, 0, 0);
       sign(x + 9, y - 4, curve.sign, colour_of(palette_, curve));
       label(x + 23, y, Anchor::start, palette_.text, curve.label);
-      x += 40 + 0.6 * kCanvasFont * characters(curve.label);
+      x += 40 + width_of(curve.label, 0.6 * kCanvasFont);
     }
   }
 

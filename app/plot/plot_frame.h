@@ -25,6 +25,10 @@ struct ScreenRect {
   float width() const { return max.x - min.x; }
   float height() const { return max.y - min.y; }
   ImVec2 size() const { return {width(), height()}; }
+  LabelRoom::Box box() const {
+    return {static_cast<double>(min.x), static_cast<double>(min.y), static_cast<double>(width()),
+            static_cast<double>(height())};
+  }
   bool contains(ImVec2 p) const {
     return p.x >= min.x && p.x < max.x && p.y >= min.y && p.y < max.y;
   }
@@ -45,10 +49,6 @@ struct PlotFrame {
   }
   float y_of(double value) const {
     return area.max.y - static_cast<float>(std::clamp(y.part(value) * area.height(), -1e5, 1e5));
-  }
-  LabelRoom label_room() const {
-    return LabelRoom({static_cast<double>(area.min.x), static_cast<double>(area.min.y),
-                      static_cast<double>(area.width()), static_cast<double>(area.height())});
   }
   double x_at(float pixel) const { return x.value((pixel - area.min.x) / area.width()); }
   double y_at(float pixel) const { return y.value((area.max.y - pixel) / area.height()); }

@@ -303,11 +303,6 @@ bool crosses(const PlotFrame& frame, const Trace& trace, const ScreenRect& box) 
   return false;
 }
 
-LabelRoom::Box room_box(const ScreenRect& rect) {
-  return {static_cast<double>(rect.min.x), static_cast<double>(rect.min.y),
-          static_cast<double>(rect.width()), static_cast<double>(rect.height())};
-}
-
 // Rows of labels from the bottom up.
 class MarkRows {
  public:
@@ -327,7 +322,7 @@ class MarkRows {
     std::optional<std::size_t> crossed;
     for (std::size_t row = 0; row < most_; ++row) {
       const ScreenRect place = box(row, left, width);
-      if (!room.has(room_box(place))) continue;
+      if (!room.has(place.box())) continue;
       if (std::ranges::none_of(traces, [&](const Trace& t) { return crosses(frame_, t, place); }))
         return row;
       if (!crossed && row < usual_) crossed = row;
@@ -406,7 +401,7 @@ void draw_names(const PlotFrame& frame, const Band& band, float line, const Hist
     draw_backed_text(frame, {x, y}, band.striped ? frame.palette.text : frame.palette.muted, name,
                      0.85f);
     free_from = x + label.x + 12 * frame.scale;
-    room.take(room_box({{x, y}, {free_from, y + label.y}}));
+    room.take(ScreenRect{{x, y}, {free_from, y + label.y}}.box());
   });
 }
 
@@ -592,11 +587,7 @@ void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const Histor
                       const std::vector<SampleIndex>& pixels, std::span<const Trace> traces,
                       ImVec2 mouse, LabelRoom& room) {
   const MarkRows rows(frame, text_size(Face::small, "0").y);
-  std::vector<std::string> said;
-  for (const Band& band : spec.bands) {
-    if (!band.key.empty() && !band_stretches(band, history, pixels).empty())
-      said.push_back(band.key);
-  }
+  const std::vector<std::string> said = said_by_bands(spec.bands, history, pixels);
   const float gap = 4 * frame.scale;
   for (const MarksAt& at : marks_by_place(frame, history, said)) {
     const bool pointed_at = frame.area.contains(mouse) && std::abs(mouse.x - at.x) < gap;
@@ -610,7 +601,7 @@ void draw_mark_labels(const PlotFrame& frame, const PlotSpec& spec, const Histor
       const ScreenRect place = rows.box(row ? *row : forced++, left, width);
       draw_backed_text(frame, place.min, at.note ? frame.palette.text : frame.palette.muted, label,
                        pointed_at ? 1.0f : 0.85f);
-      room.take(room_box({place.min, {place.max.x + 6 * frame.scale, place.max.y}}));
+      room.take(ScreenRect{place.min, {place.max.x + 6 * frame.scale, place.max.y}}.box());
     }
   }
 }

@@ -27,6 +27,15 @@ std::vector<BandStretch> band_stretches(const Band& band, const History& history
   return stretches;
 }
 
+std::vector<std::string> said_by_bands(std::span<const Band> bands, const History& history,
+                                       const std::vector<SampleIndex>& rows) {
+  std::vector<std::string> keys;
+  for (const Band& band : bands) {
+    if (!band.key.empty() && !band_stretches(band, history, rows).empty()) keys.push_back(band.key);
+  }
+  return keys;
+}
+
 int law_at(const History& history, const Curve& curve, SampleIndex row) {
   if (curve.law_channel < 0) return -1;
   const float law = history.value(curve.law_channel, row);

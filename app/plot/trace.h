@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "app/base/welch.h"
@@ -22,6 +24,9 @@ struct BandStretch {
 // nothing of interest there.
 std::vector<BandStretch> band_stretches(const Band& band, const History& history,
                                         const std::vector<SampleIndex>& rows);
+// Returns the keys of the marks that bands say there.
+std::vector<std::string> said_by_bands(std::span<const Band> bands, const History& history,
+                                       const std::vector<SampleIndex>& rows);
 
 // A stretch of the time axis over a row of pixels. It begins at a whole multiple of a pixel's
 // duration: a moving window then gathers the same samples in a pixel from frame to frame, and noise

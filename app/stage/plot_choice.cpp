@@ -108,23 +108,20 @@ Curve of_run(std::size_t run, const Curve& first, bool only, std::span<const Cur
   const int offset = static_cast<int>(run) * channels.count();
   curve.channel += offset;
   if (curve.across >= 0) curve.across += offset;
+  curve.sign = names.beside ? sign_of_lane(run) : RunSign::ring;
   if (names.beside) {
-    curve.sign = sign_of_lane(run);
     const auto before = std::span(names.laws).first(std::min(run, names.laws.size()));
     const bool another = curve.law >= 0 && std::ranges::count(before, names.law(run)) == 0;
     if (curve.law >= 0) curve.law = names.law(run);
     if (curve.law >= 0) curve.law_channel = law_channel(run, channels);
     if (!another) curve.shade = std::clamp(first.shade + kLaneShades[run], -1.0f, 1.0f);
+  } else if (only) {
+    curve.law = names.law(run);
+    curve.law_channel = curve.law >= 0 ? law_channel(run, channels) : -1;
+    curve.ink = Ink::rerun;
+    curve.shade = 0;
   } else {
-    curve.sign = RunSign::ring;
-    if (only) {
-      curve.law = names.law(run);
-      curve.law_channel = curve.law >= 0 ? law_channel(run, channels) : -1;
-      curve.ink = Ink::rerun;
-      curve.shade = 0;
-    } else {
-      curve.shade = free_shade(curve.ink, others);
-    }
+    curve.shade = free_shade(curve.ink, others);
   }
   return curve;
 }

@@ -15,13 +15,16 @@ toml::array texts_of(const std::vector<std::string>& texts) {
   return array;
 }
 
+bool varies(const SweepDraft& draft, const std::string& key) {
+  return std::ranges::find(draft.axes, key, &DraftAxis::key) != draft.axes.end();
+}
+
 toml::array settings_of(const SweepDraft& draft) {
   toml::array settings;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(draft.parameters, info);
     if (value.empty() || value == parameter_text(Parameters{}, info)) continue;
-    if (std::ranges::find(draft.axes, std::string(info.key), &DraftAxis::key) != draft.axes.end())
-      continue;
+    if (varies(draft, info.key)) continue;
     settings.push_back(fmt::format("{} = {}", info.key, value));
   }
   return settings;
@@ -68,11 +71,8 @@ std::string plan_text(const SweepDraft& draft) {
   toml::array axes;
   for (const DraftAxis& axis : draft.axes) axes.push_back(table_of(axis));
   plan.insert("axis", std::move(axes));
-  const auto varies = [&](const char* key) {
-    return std::ranges::find(draft.axes, std::string(key), &DraftAxis::key) != draft.axes.end();
-  };
   // The line of theory is the proposed law's.
-  if (varies("coupling.eta") && !varies("coupling.kind") &&
+  if (varies(draft, "coupling.eta") && !varies(draft, "coupling.kind") &&
       draft.parameters.kind == CouplingKind::proposed) {
     plan.insert("figure", toml::table{{"theory", toml::array{"pr"}}});
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -77,9 +78,8 @@ class Drawing {
         draw_map(panel, values);
       } else {
         draw_slice(panel, values);
-        for (Series& line : upright_theory(plan_, values.begin()->second.point, x, {low_, high_})) {
-          panel.series.push_back(std::move(line));
-        }
+        std::ranges::move(upright_theory(plan_, values.begin()->second.point, x, {low_, high_}),
+                          std::back_inserter(panel.series));
       }
     }
     return all;

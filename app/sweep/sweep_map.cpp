@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -106,9 +107,8 @@ class Making {
       }
     }
     if (map_.kind == SweepMap::Kind::curve && !plan_.boundary && !map_.spots.empty()) {
-      for (Series& line : upright_theory(plan_, map_.spots.front().point, x_, map_.y_range)) {
-        map_.lines.push_back(std::move(line));
-      }
+      std::ranges::move(upright_theory(plan_, map_.spots.front().point, x_, map_.y_range),
+                        std::back_inserter(map_.lines));
     }
     return std::move(map_);
   }

@@ -108,4 +108,10 @@ std::string utf8_of(std::string_view bytes) {
   return text;
 }
 
+std::size_t count_characters(std::string_view text) {
+  // A character has one byte that does not continue another one.
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
 }  // namespace limpid

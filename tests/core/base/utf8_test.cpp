@@ -47,5 +47,12 @@ TEST(Utf8Of, MakesTheDeclarationSayWhatTheTextIs) {
             "<?xml version='1.0' encoding='UTF-8'?><a b='\xC3\xA9'/>");
 }
 
+TEST(CountCharacters, CountsNoByteThatContinuesACharacter) {
+  EXPECT_EQ(count_characters(""), 0u);
+  EXPECT_EQ(count_characters("eta"), 3u);
+  EXPECT_EQ(count_characters("\xCE\xB7 \xE2\x89\xA5 1"), 5u);  // of two, one, three bytes
+  EXPECT_EQ(count_characters("\xF0\x9D\x84\x9E"), 1u);
+}
+
 }  // namespace
 }  // namespace limpid
