@@ -15,7 +15,7 @@ TABLE = ROOT / "app/desktop/shell/dialogs.cpp"
 SESSION = sorted((ASSETS / "sessions").glob("*.h5"))[0]
 # Dialogs that no key opens; their frames are those of the others. "ask" is a program's, and stays
 # open until it is answered; "quit" asks about a recording, which test_window_keys makes.
-WITHOUT_KEY = {"about", "open arm", "device arm", "find session", "ask", "quit"}
+WITHOUT_KEY = {"about", "messages", "open arm", "device arm", "find session", "ask", "quit"}
 
 
 def dialogs() -> set[str]:

@@ -9,7 +9,10 @@ using SteadyClock = std::chrono::steady_clock;
 void Notices::say(std::string text, bool bad) {
   std::erase_if(notices_, [&](const Notice& notice) { return notice.text == text; });
   const auto seconds = std::chrono::seconds(bad ? 10 : 5);
-  notices_.push_back({std::move(text), bad, SteadyClock::now() + seconds});
+  notices_.push_back(
+      {std::move(text), bad, SteadyClock::now() + seconds, std::chrono::system_clock::now()});
+  past_.push_back(notices_.back());
+  if (past_.size() > kKept) past_.pop_front();
 }
 
 void Notices::say_once(const std::string& text, bool bad) {

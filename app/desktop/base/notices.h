@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <string>
@@ -17,6 +18,7 @@ struct Notice {
   std::string text;
   bool bad = false;
   std::chrono::steady_clock::time_point until = {};
+  std::chrono::system_clock::time_point said = {};
 };
 
 class Notices {
@@ -26,12 +28,16 @@ class Notices {
   // Shows a text unless it is shown already.
   void say_once(const std::string& text, bool bad);
   const std::deque<Notice>& all() const { return notices_; }
+  // Returns all that was said since the start, the last kKept of it, oldest first.
+  const std::deque<Notice>& past() const { return past_; }
   // Removes notices whose time is over; to be called once a frame.
   void forget_old();
   void clear() { notices_.clear(); }
 
+  static constexpr std::size_t kKept = 200;
+
  private:
-  std::deque<Notice> notices_;
+  std::deque<Notice> notices_, past_;
 };
 
 }  // namespace limpid

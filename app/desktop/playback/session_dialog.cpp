@@ -27,9 +27,7 @@ fs::path SessionDialog::list(const char* name, const fs::path& folder) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     const bool meant =
-        typed_.find('/') != std::string::npos ||
-        small_letters(entry.path().filename().string()).find(small_letters(typed_)) !=
-            std::string::npos;
+        typed_.find('/') != std::string::npos || has_part(entry.path().filename().string(), typed_);
     if (entry.path().extension() == ".h5" && meant) files.push_back(entry.path());
   }
   std::ranges::sort(files, std::greater{});

@@ -1,6 +1,7 @@
 #include "app/desktop/scene/gallery.h"
 
 #include <imgui.h>
+#include <imgui_stdlib.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -35,6 +36,18 @@ void draw_placeholder(const ImVec2& at, const ImVec2& size) {
                   1.5f * current_scale());
   draw->AddRect({at.x + 0.52f * size.x, ground - 1.7f * r}, {at.x + 0.66f * size.x, ground},
                 colour(p.muted), 0, 0, 1.5f * current_scale());
+}
+
+// Returns the cards whose title, text or file has a part.
+std::vector<const GalleryCard*> cards_with(const std::string& part,
+                                           const std::vector<GalleryCard>& cards) {
+  std::vector<const GalleryCard*> with;
+  for (const GalleryCard& card : cards) {
+    const std::string words =
+        card.title + "\n" + card.about + "\n" + card.scene.filename().string();
+    if (has_part(words, part)) with.push_back(&card);
+  }
+  return with;
 }
 
 }  // namespace
@@ -73,36 +86,50 @@ fs::path Gallery::draw(bool& open) {
   const bool shown = begin_modal("Gallery", open,
                                  {std::min(64 * em, 0.94f * screen->WorkSize.x),
                                   std::min(44 * em, 0.9f * screen->WorkSize.y)});
-  if (shown && !was_shown_) {
-    read();
-    keys_.forget();
-  }
+  const bool begins = shown && !was_shown_;
   was_shown_ = shown;
   fs::path chosen;
   if (!shown) return chosen;
+  if (begins) {
+    read();
+    typed_.clear();
+    keys_.forget();
+    ImGui::SetKeyboardFocusHere();
+  }
+  ImGui::SetNextItemWidth(-1);
+  const bool entered =
+      ImGui::InputTextWithHint("##part", "a part of a name, or of what it is about", &typed_,
+                               ImGuiInputTextFlags_EnterReturnsTrue);
+  if (ImGui::IsItemEdited()) keys_.forget();
+  const auto own = cards_with(typed_, own_), shipped = cards_with(typed_, shipped_);
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
   const int columns = std::max(1, static_cast<int>((room + gap) / (18 * em)));
   const float width = (room - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
-  keys_.move(static_cast<int>(own_.size() + shipped_.size()), columns);
+  keys_.move(static_cast<int>(own.size() + shipped.size()), columns);
   int number = 0;
-  const auto cards = [&](const char* name, const std::vector<GalleryCard>& list) {
+  const auto cards = [&](const char* name, const std::vector<const GalleryCard*>& list) {
     if (list.empty()) return;
     heading(name);
     int column = 0;
-    for (const GalleryCard& card : list) {
+    for (const GalleryCard* card : list) {
       if (column++ % columns != 0) ImGui::SameLine();
-      const fs::path file = draw_card(card, &list == &own_, width, number++);
+      const fs::path file = draw_card(*card, &list == &own, width, number++);
       if (!file.empty()) chosen = file;
     }
   };
   ImGui::BeginChild("cards", {0, -ImGui::GetFrameHeightWithSpacing()});
-  cards("Yours", own_);
-  cards("Shipped with Limpid", shipped_);
+  cards("Yours", own);
+  cards("Shipped with Limpid", shipped);
+  const GalleryCard* first = !own.empty()       ? own.front()
+                             : !shipped.empty() ? shipped.front()
+                                                : nullptr;
+  if (first == nullptr) ImGui::TextDisabled("no scene of this name");
   ImGui::EndChild();
+  if (entered && chosen.empty() && !typed_.empty() && first != nullptr) chosen = first->scene;
   close_button("Close (Esc)", open);
   ImGui::SameLine();
-  ImGui::TextDisabled("arrows and Enter choose a scene");
+  ImGui::TextDisabled("Arrows and Enter choose a scene; Enter after a name opens the first.");
   ImGui::EndPopup();
   if (!chosen.empty()) open = false;
   return chosen;

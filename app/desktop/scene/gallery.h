@@ -34,6 +34,7 @@ class Gallery {
 
   ListKeys keys_;
   bool was_shown_ = false;
+  std::string typed_;
   std::vector<GalleryCard> shipped_, own_;
   PictureShelf pictures_;
 };

@@ -601,6 +601,8 @@ constexpr std::array kCommands{
         {.checked = is_shown<&Settings::your_turn>}),
     row("help.keys", "Keys and mouse", "Help", "?, F1", "this list",
         [](Desktop& d) { show_or_close(d, "help"); }),
+    row("help.messages", "Messages so far", "Help", nullptr, nullptr,
+        [](Desktop& d) { show_or_close(d, "messages"); }),
     row("help.about", "About Limpid", "Help", nullptr, nullptr,
         [](Desktop& d) { d.dialog.open("about"); }),
 };

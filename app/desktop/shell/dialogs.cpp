@@ -1,11 +1,15 @@
 #include "app/desktop/shell/dialogs.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <ctime>
 #include <memory>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -31,6 +35,7 @@
 #include "app/desktop/shell/window.h"
 #include "app/desktop/widgets/modal.h"
 #include "app/desktop/widgets/widgets.h"
+#include "app/style/palette.h"
 #include "app/style/theme.h"
 #include "core/base/model_kinds.h"
 
@@ -54,6 +59,10 @@ void begin_reading(const char* title, float width, float height, bool& open) {
 
 DrawDialog help(Desktop& d) {
   return [&d](bool& open, ScreenRect) { draw_help(open, *d.key_labels); };
+}
+
+DrawDialog messages(Desktop& d) {
+  return [&d](bool& open, ScreenRect) { draw_messages(open, d.notices); };
 }
 
 DrawDialog about(Desktop&) {
@@ -315,6 +324,7 @@ constexpr auto kModal = DialogKind::Keys::modal;
 
 constexpr std::array kDialogs{
     DialogKind{"help", kViews, help},
+    DialogKind{"messages", kViews, messages},
     DialogKind{"about", kViews, about},
     DialogKind{"experiments", kViews, experiments},
     DialogKind{"sweep", kViews, sweep_map},
@@ -365,6 +375,30 @@ void draw_help(bool& open, const KeyLabels& labels) {
   }
   ImGui::EndChild();
   close_button("Close (Esc)", open);
+  ImGui::End();
+}
+
+void draw_messages(bool& open, const Notices& notices) {
+  if (!open) return;
+  begin_reading("Messages", 46, 0.6f, open);
+  ImGui::BeginChild("all", {0, -ImGui::GetFrameHeightWithSpacing()});
+  if (notices.past().empty()) ImGui::TextDisabled("none since the start");
+  std::string all;
+  for (const Notice& notice : notices.past() | std::views::reverse) {
+    const std::time_t at = std::chrono::system_clock::to_time_t(notice.said);
+    const std::string line = fmt::format("{:%H:%M:%S}  {}", fmt::localtime(at), notice.text);
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_vector(notice.bad ? current_palette().broken
+                                                                  : current_palette().text));
+    ImGui::TextWrapped("%s", line.c_str());
+    ImGui::PopStyleColor();
+    all += line + "\n";
+  }
+  ImGui::EndChild();
+  close_button("Close (Esc)", open);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(all.empty());
+  if (noted_button("Copy all")) ImGui::SetClipboardText(all.c_str());
+  ImGui::EndDisabled();
   ImGui::End();
 }
 

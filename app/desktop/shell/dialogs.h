@@ -19,6 +19,7 @@ namespace limpid {
 // Draws a text to read while `open`; closing it clears `open`.
 void draw_help(bool& open, const KeyLabels& labels);
 void draw_about(bool& open);
+void draw_messages(bool& open, const Notices& notices);
 
 class Desktop;
 

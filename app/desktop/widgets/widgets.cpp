@@ -17,6 +17,10 @@
 
 namespace limpid {
 
+bool has_part(const std::string& text, const std::string& part) {
+  return small_letters(text).find(small_letters(part)) != std::string::npos;
+}
+
 std::string small_letters(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;

@@ -12,6 +12,8 @@ namespace limpid {
 
 // Returns the text with small letters, of those of ASCII.
 std::string small_letters(std::string text);
+// Returns whether a text has this part, in small or capital letters.
+bool has_part(const std::string& text, const std::string& part);
 
 // Draws a border between panels. Dragging it changes `size` by the mouse's motion along one axis,
 // in `direction`, between `least` and `most` [px at scale 1].
@@ -40,7 +42,7 @@ void underline_button(Rgb rgb);
 void progress_bar(double part, float width, std::string text = {});
 
 // Arrow keys in a list that is drawn item by item; Enter takes the item they are at. A text field
-// beside the list keeps left, right, Home and End.
+// beside a list of one column keeps left and right.
 class ListKeys {
  public:
   void forget() { at_ = kNone; }

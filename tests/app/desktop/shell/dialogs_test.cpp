@@ -292,13 +292,54 @@ TEST_F(Dialog, OfTheGalleryOpensAScene) {
   frames(4);
   const std::string shown = words();
   EXPECT_THAT(shown, HasSubstr("Shipped with Limpid"));
-  EXPECT_THAT(shown, HasSubstr("arrows and Enter choose a scene"));
+  EXPECT_THAT(shown, HasSubstr("Arrows and Enter choose a scene"));
   EXPECT_THAT(shown, HasSubstr("Play its recorded session"));
   press(GLFW_KEY_RIGHT);
   press(GLFW_KEY_RIGHT);
   press(GLFW_KEY_ENTER);
   EXPECT_EQ(desktop->dialog.name(), "");
   EXPECT_TRUE(until([&] { return said("Scene:"); }));
+}
+
+TEST_F(Dialog, OfTheGalleryShowsTheScenesWithAPartOfAName) {
+  height = 1600;
+  run("scene.gallery");
+  frames(4);
+  write("SEESAW");
+  frames(2);
+  const std::string shown = words();
+  EXPECT_THAT(shown, HasSubstr("Seesaw"));
+  EXPECT_THAT(shown, Not(HasSubstr("Dominoes")));
+  write("x");
+  frames(2);
+  EXPECT_THAT(words(), HasSubstr("no scene of this name"));
+  press(GLFW_KEY_ENTER);
+  EXPECT_EQ(desktop->dialog.name(), "gallery") << "nothing to open";
+  press(GLFW_KEY_ESCAPE);
+  frames(3);
+  run("scene.gallery");
+  frames(4);
+  EXPECT_THAT(words(), HasSubstr("Dominoes")) << "begins anew";
+  write("seesaw");
+  frames(2);
+  press(GLFW_KEY_ENTER);
+  EXPECT_EQ(desktop->dialog.name(), "");
+  EXPECT_TRUE(until([&] { return said("Scene: Seesaw"); }));
+}
+
+TEST_F(Dialog, OfMessagesHasAllThatWasSaid) {
+  for (int i = 0; i < 3; ++i) desktop->notices.say("number " + std::to_string(i), i == 1);
+  desktop->notices.clear();
+  run("help.messages");
+  frames(4);
+  const std::string shown = words();
+  EXPECT_LT(shown.find("number 2"), shown.find("number 0")) << "the newest comes first";
+  click("Copy all");
+  EXPECT_THAT(std::string(ImGui::GetClipboardText()), HasSubstr("number 1"));
+  for (std::size_t i = 0; i < 2 * Notices::kKept; ++i)
+    desktop->notices.say("more " + std::to_string(i));
+  EXPECT_EQ(desktop->notices.past().size(), Notices::kKept) << "the oldest leave";
+  EXPECT_EQ(desktop->notices.past().back().text, "more 399");
 }
 
 TEST_F(Dialog, OfAPersonGivesTheAnswerThatIsClickedOrTyped) {

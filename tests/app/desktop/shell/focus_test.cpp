@@ -39,8 +39,8 @@ TEST(Focus, WhatIsOnlyReadLeavesTheKeysToTheView) {
     EXPECT_EQ(owner, kind.modal() ? KeyOwner::dialog : KeyOwner::view) << kind.name;
     if (owner == KeyOwner::view) to_the_view.insert(kind.name);
   }
-  EXPECT_EQ(to_the_view,
-            (std::set<std::string_view>{"help", "about", "experiments", "sweep", "plot"}));
+  EXPECT_EQ(to_the_view, (std::set<std::string_view>{"help", "messages", "about", "experiments",
+                                                     "sweep", "plot"}));
 }
 
 TEST(HeldKeys, KeyHeldWhileTheFocusChangesIsStaleUntilItIsPressedAgain) {

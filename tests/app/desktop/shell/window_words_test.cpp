@@ -162,7 +162,8 @@ TEST_F(Words, OfTextsNeverLieOverEachOther) {
     height = h;
     frames(4);
     expect_apart("live");
-    for (const char* dialog : {"help", "about", "export", "layouts", "presets", "mark", "quit"}) {
+    for (const char* dialog :
+         {"help", "messages", "about", "export", "layouts", "presets", "mark", "quit"}) {
       desktop->dialog.open(dialog);
       frames(5);
       expect_apart(dialog);
