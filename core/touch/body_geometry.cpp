@@ -8,6 +8,7 @@
 
 #include "core/touch/body_motion.h"
 #include "core/touch/contact_points.h"
+#include "core/touch/rod_on_face.h"
 
 namespace limpid {
 namespace {
@@ -16,7 +17,6 @@ constexpr double kNear = 1e-3;    // points further apart than this are ignored 
 constexpr double kBeside = 1e-6;  // a corner this far from a face's normal is beside the face [m]
 constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
 constexpr int kPointsOfPair = 4;  // points of a pair that Bullet keeps
-constexpr double kStands = 0.7;   // rise of a cylinder's axis from which on it stands on an end [-]
 
 // A body may pass what it goes by this part of both extents. It meets again what it is in where it
 // gets deeper by this part of them [-]. Error of the way to where it meets something, and distance
@@ -65,6 +65,7 @@ struct BodyGeometry::Inside {
     std::optional<RoundPart> round;
     double radius = 0, half = 0;  // of a cylinder or a capsule; half of its length [m]
     bool rolls() const { return round && !round->axis.isZero(0); }
+    bool boxy() const { return shape->getShapeType() == BOX_SHAPE_PROXYTYPE; }
     bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
     double thick() const { return model ? 0 : least; }  // a model is a skin [m]
     double reach = 0;  // of what turns with it, from its object's place [m]
@@ -77,6 +78,7 @@ struct BodyGeometry::Inside {
     bool refresh = true;   // its search does not remove points that are gone
     bool corners = false;  // a box on a plane or a model: its corners are tested
     bool rolls = false;    // a round shape: points do not stay where they are on it
+    bool on_face = false;  // a cylinder or a capsule with a plane or a box
     int points = 0;        // points of its manifold
   };
 
@@ -93,7 +95,7 @@ struct BodyGeometry::Inside {
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
   static void find_corners(const Pair& pair, PairPoints& result);
-  static bool find_ends(const Pair& pair, PairPoints& result);
+  static bool find_on_face(const Pair& pair, PairPoints& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void find(const Pair& pair, PairPoints& result);
   void meet(Pair& pair);
@@ -294,7 +296,8 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   const bool convex = a.shape->isConvex() && b.shape->isConvex();
   p.single = (ball(a) || ball(b)) && convex;
   p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
-  p.corners = a.shape->getShapeType() == BOX_SHAPE_PROXYTYPE && (b.level || b.model);
+  p.corners = a.boxy() && (b.level || b.model);
+  p.on_face = (a.rolls() && (b.level || b.boxy())) || (b.rolls() && a.boxy());
   p.refresh = !convex || (ball(a) && ball(b)) || p.corners;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -450,30 +453,43 @@ void BodyGeometry::Inside::find_corners(const Pair& p, PairPoints& result) {
   }
 }
 
-// Finds the lowest points of both ends of a cylinder or a capsule that lies on a plane.
-bool BodyGeometry::Inside::find_ends(const Pair& p, PairPoints& result) {
-  if (!p.a->rolls() || !p.b->level) return false;
-  const btTransform& at = p.a->at.getWorldTransform();
-  const btVector3& normal = *p.b->level;
-  const btVector3 axis = at.getBasis().getColumn(2);
-  const btScalar rise = normal.dot(axis);
-  if (std::abs(rise) > kStands) return false;
-  const bool capsule = p.a->shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE;
-  const btVector3 down = capsule ? -normal : (rise * axis - normal).normalized();
-  const btScalar near = p.manifold->getContactBreakingThreshold();
-  for (const double end : {-p.a->half, p.a->half}) {
-    const btVector3 point = at.getOrigin() + end * axis + p.a->radius * down;
-    const btScalar distance = normal.dot(point) - p.b->height;
-    if (distance <= near) result.addContactPoint(normal, point - distance * normal, distance);
+// Finds the points where a cylinder or a capsule meets a plane or a face of a box; false if it
+// meets something else.
+bool BodyGeometry::Inside::find_on_face(const Pair& p, PairPoints& result) {
+  const bool first = p.a->rolls();
+  const Solid &round = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
+  const btTransform &at = round.at.getWorldTransform(), &on = flat.at.getWorldTransform();
+  const Rod rod{.center = from_bullet(at.getOrigin()),
+                .axis = from_bullet(at.getBasis().getColumn(2)),
+                .radius = round.radius,
+                .half = round.half,
+                .round_ends = round.shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE};
+  Face face;
+  if (flat.level) {
+    face.normal = from_bullet(*flat.level);
+    face.center = flat.height * face.normal;
+  } else {
+    Mat3 turned;
+    for (int i = 0; i < 3; ++i) turned.col(i) = from_bullet(on.getBasis().getColumn(i));
+    const auto& box = static_cast<const btBoxShape&>(*flat.shape);
+    face = face_towards(rod, from_bullet(on.getOrigin()), turned,
+                        from_bullet(box.getHalfExtentsWithMargin()));
+  }
+  const auto found = rod_on_face(rod, face, p.manifold->getContactBreakingThreshold());
+  if (!found) return false;
+  for (const auto& point : std::span(found->points).first(found->count)) {
+    const Vec3 on_face = point.at - point.distance * point.normal;
+    const Vec3 normal = first ? point.normal : Vec3(-point.normal);  // out of the second
+    result.add(to_bullet(normal), to_bullet(first ? on_face : point.at), point.distance);
   }
   return true;
 }
 
 void BodyGeometry::Inside::find(const Pair& p, PairPoints& result) {
   result.setPersistentManifold(p.manifold);
-  const bool ends = find_ends(p, result);
+  const bool on_face = p.on_face && find_on_face(p, result);
   if (p.corners) find_corners(p, result);
-  if (!ends && (!p.corners || !p.b->level)) {
+  if (!on_face && (!p.corners || !p.b->level)) {
     result.only_edges = p.corners;
     p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
   }

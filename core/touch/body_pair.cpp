@@ -73,8 +73,7 @@ void BodyPair::prepare(Bodies& bodies) {
 // that it throws up no body.
 void BodyPair::fade(const Bodies& bodies) {
   BodyContact& c = *contact;
-  c.rest = std::max(c.rest, c.depth - c.pressed);
-  c.rest = std::min(c.rest, std::max(0.0, c.depth));
+  c.rest = std::max(0.0, c.depth - c.pressed);
   if (!(c.rest > 0)) return;
   const double d = std::max(0.0, c.depth - c.rest), T = bodies.T;
   const double paid = std::sqrt(d * d + 2 * std::max(0.0, c.lost) / K) - d;
