@@ -36,6 +36,7 @@ using Jacobian = Eigen::Matrix<double, 3, N, 0, 3, kCapacity<N>>;  // rows x, y,
 template <int N>
 using Levers = Eigen::Matrix<double, N, 3, 0, kCapacity<N>, 3>;  // a Jacobian's transpose
 
+using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Pose = Eigen::Isometry3d;

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "core/touch/body_motion.h"
 #include "core/touch/contact_points.h"
-#include "core/touch/rod_on_face.h"
+#include "core/touch/face_points.h"
 
 namespace limpid {
 namespace {
@@ -16,7 +17,8 @@ namespace {
 constexpr double kNear = 1e-3;    // points further apart than this are ignored [m]
 constexpr double kBeside = 1e-6;  // a corner this far from a face's normal is beside the face [m]
 constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
-constexpr int kPointsOfPair = 4;  // points of a pair that Bullet keeps
+constexpr std::size_t kMostCorners = 128;  // of a hull whose corners are tested on a model
+constexpr int kPointsOfPair = 4;           // points of a pair that Bullet keeps
 
 // A body may pass what it goes by this part of both extents. It meets again what it is in where it
 // gets deeper by this part of them [-]. Error of the way to where it meets something, and distance
@@ -64,6 +66,8 @@ struct BodyGeometry::Inside {
     double least = 0;                // smallest extent [m]
     std::optional<RoundPart> round;
     double radius = 0, half = 0;  // of a cylinder or a capsule; half of its length [m]
+    std::vector<Vec3> corners;    // of a box or a hull that moves, in its own frame [m]
+    Vec3 middle = Vec3::Zero();   // of these corners [m]
     bool rolls() const { return round && !round->axis.isZero(0); }
     bool boxy() const { return shape->getShapeType() == BOX_SHAPE_PROXYTYPE; }
     bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
@@ -76,9 +80,9 @@ struct BodyGeometry::Inside {
     btPersistentManifold* manifold = nullptr;
     bool single = false;   // the two meet in one point at most
     bool refresh = true;   // its search does not remove points that are gone
-    bool corners = false;  // a box on a plane or a model: its corners are tested
+    bool lowest = false;   // on a model: the lowest points of a are tested
     bool rolls = false;    // a round shape: points do not stay where they are on it
-    bool on_face = false;  // a cylinder or a capsule with a plane or a box
+    bool on_face = false;  // one may meet flat faces of the other by its own geometry
     int points = 0;        // points of its manifold
   };
 
@@ -94,7 +98,11 @@ struct BodyGeometry::Inside {
   static void keep_deepest(const Pair& pair);
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
-  static void find_corners(const Pair& pair, PairPoints& result);
+  static void find_lowest(const Pair& pair, PairPoints& result);
+  static std::optional<Convex> convex(const Solid& solid);
+  static Rod rod(const Solid& solid);
+  static std::optional<Face> face_towards(const Convex& solid, const Solid& flat);
+  static bool meets_faces_of(const Solid& solid, const Solid& flat);
   static bool find_on_face(const Pair& pair, PairPoints& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void find(const Pair& pair, PairPoints& result);
@@ -219,6 +227,10 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
   if (const auto* box = std::get_if<Box>(&shape)) {
     solid->shape = std::make_unique<btBoxShape>(to_bullet(Vec3(box->size / 2)));
     solid->least = box->size.minCoeff();
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+      solid->corners.push_back(0.5 * side.cwiseProduct(box->size));
+    }
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     solid->shape = std::make_unique<btSphereShape>(sphere->radius);
     solid->least = 2 * sphere->radius;
@@ -267,6 +279,10 @@ void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, i
       }
       hull->optimizeConvexHull();
       hull->recalcLocalAabb();
+      for (int i = 0; i < hull->getNumPoints(); ++i) {
+        solid->corners.push_back(from_bullet(hull->getUnscaledPoints()[i]));
+        solid->middle += solid->corners.back() / hull->getNumPoints();
+      }
       solid->shape = std::move(hull);
     }
     solid->shape->setMargin(kMargin);
@@ -296,9 +312,9 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   const bool convex = a.shape->isConvex() && b.shape->isConvex();
   p.single = (ball(a) || ball(b)) && convex;
   p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
-  p.corners = a.boxy() && (b.level || b.model);
-  p.on_face = (a.rolls() && (b.level || b.boxy())) || (b.rolls() && a.boxy());
-  p.refresh = !convex || (ball(a) && ball(b)) || p.corners;
+  p.lowest = b.model && (a.rolls() || (!a.corners.empty() && a.corners.size() <= kMostCorners));
+  p.on_face = meets_faces_of(a, b) || meets_faces_of(b, a);
+  p.refresh = !convex || (ball(a) && ball(b)) || p.lowest;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
   configuration.setConvexConvexMultipointIterations(wanted, wanted);
@@ -367,8 +383,9 @@ void BodyGeometry::Inside::keep_deepest(const Pair& p) {
   }
 }
 
-// Treats a new point of a pair as one that has just gone, moved, and keeps its state. Otherwise
-// bodies on points that come and go would sink; of two balls Bullet makes a new point every time.
+// Treats a new point of a pair as one that has just gone, moved, and keeps its state: the nearest of
+// them first. Otherwise bodies on points that come and go would sink; of two balls Bullet makes a
+// new point every time.
 void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
   btPersistentManifold& m = *p.manifold;
   const auto is_there = [&](const BodyContact* c) {
@@ -377,16 +394,23 @@ void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> be
     }
     return false;
   };
-  for (int i = 0; i < m.getNumContacts(); ++i) {
-    btManifoldPoint& point = m.getContactPoint(i);
-    if (point.m_userPersistentData != nullptr) continue;
-    const Vec3 at = middle(point);
-    BodyContact* nearest = nullptr;
-    for (BodyContact* c : before) {
-      if (is_there(c)) continue;
-      if (nearest == nullptr || (c->point - at).norm() < (nearest->point - at).norm()) nearest = c;
+  while (true) {
+    btManifoldPoint* point = nullptr;
+    BodyContact* gone = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < m.getNumContacts(); ++i) {
+      if (m.getContactPoint(i).m_userPersistentData != nullptr) continue;
+      const Vec3 at = middle(m.getContactPoint(i));
+      for (BodyContact* c : before) {
+        const double away = (c->point - at).squaredNorm();
+        if (away >= least || is_there(c)) continue;
+        point = &m.getContactPoint(i);
+        gone = c;
+        least = away;
+      }
     }
-    point.m_userPersistentData = nearest;
+    if (point == nullptr) return;
+    point->m_userPersistentData = gone;
   }
 }
 
@@ -413,90 +437,114 @@ bool BodyGeometry::Inside::face_below(const Solid& model, const btVector3& corne
   return !beside;
 }
 
-// Finds the corners of a box that are near to the plane or to faces of the model, at most the four
-// lowest.
-void BodyGeometry::Inside::find_corners(const Pair& p, PairPoints& result) {
-  const auto& box = static_cast<const btBoxShape&>(*p.a->shape);
+// Finds the lowest points of a solid that are near to faces of a model, four at most: corners, or
+// at each end of a rod the lowest points by the face that is nearest to it.
+void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
   const btTransform& at = p.a->at.getWorldTransform();
-  btVector3 normal = p.b->level.value_or(btVector3(0, 0, 0));
-  const btVector3 half = box.getHalfExtentsWithMargin();
-  const btVector3 rise = normal * at.getBasis();  // rise of each axis above a plane
-  const btScalar middle = normal.dot(at.getOrigin()) - p.b->height;
+  const btVector3 middle = at * to_bullet(p.a->middle);
   const btScalar near = p.manifold->getContactBreakingThreshold();
   const double within = std::max(near, 0.5 * p.a->least);
-  struct Corner {
-    btScalar distance;
-    int number;
-    btVector3 own;
-  };
-  std::array<Corner, 8> found;
-  std::array<btVector3, 8> normals;  // of a model, by number
+  std::array<FacePoints::Point, kMostCorners> found;
   std::size_t count = 0;
-  for (int i = 0; i < 8; ++i) {
-    const btVector3 own((i & 1) != 0 ? half.x() : -half.x(), (i & 2) != 0 ? half.y() : -half.y(),
-                        (i & 4) != 0 ? half.z() : -half.z());
-    btScalar distance = middle + rise.dot(own);
-    if (!p.b->level) {
-      if (!face_below(*p.b, at * own, at.getOrigin(), within, normal, distance)) continue;
-      normals[static_cast<std::size_t>(i)] = normal;
+  const auto try_at = [&](const btVector3& point) {
+    btVector3 normal;
+    btScalar distance = 0;
+    if (!face_below(*p.b, point, middle, within, normal, distance)) return;
+    if (distance <= near) found[count++] = {from_bullet(point), from_bullet(normal), distance};
+  };
+  for (const Vec3& corner : p.a->corners) try_at(at * to_bullet(corner));
+  if (p.a->rolls()) {
+    const Rod one = rod(*p.a);
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 end = one.center + side * one.half * one.axis;
+      btVector3 normal;
+      btScalar distance = 0;
+      if (!face_below(*p.b, to_bullet(end), middle, one.radius + kNear, normal, distance))
+        continue;
+      for (const Vec3& point : end_points(one, end, from_bullet(normal)).all())
+        try_at(to_bullet(point));
     }
-    if (distance <= near) found[count++] = {distance, i, own};
   }
-  if (count > kPointsOfPair) {
-    std::ranges::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), {},
-                      [](const Corner& c) { return std::pair(c.distance, c.number); });
-    count = kPointsOfPair;
-  }
-  for (const Corner& corner : std::span(found.data(), count)) {
-    if (!p.b->level) normal = normals[static_cast<std::size_t>(corner.number)];
-    result.add(normal, at * corner.own - corner.distance * normal, corner.distance);
+  for (const FacePoints::Point& point : widest_of(std::span(found).first(count)).all()) {
+    const Vec3 on_face = point.at - point.distance * point.normal;
+    result.add(to_bullet(point.normal), to_bullet(on_face), point.distance);
   }
 }
 
-// Finds the points where a cylinder or a capsule meets a plane or a face of a box; false if it
-// meets something else.
-bool BodyGeometry::Inside::find_on_face(const Pair& p, PairPoints& result) {
-  const bool first = p.a->rolls();
-  const Solid &round = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
-  const btTransform &at = round.at.getWorldTransform(), &on = flat.at.getWorldTransform();
-  const Rod rod{.center = from_bullet(at.getOrigin()),
-                .axis = from_bullet(at.getBasis().getColumn(2)),
-                .radius = round.radius,
-                .half = round.half,
-                .round_ends = round.shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE};
-  Face face;
+// Returns a solid as what it may meet a face with; nothing: it is no hull and no rod.
+std::optional<Convex> BodyGeometry::Inside::convex(const Solid& solid) {
+  const Pose pose = from_bullet(solid.at.getWorldTransform());
+  if (solid.rolls()) return rod(solid);
+  if (solid.corners.empty()) return std::nullopt;
+  return Hull{.pose = pose, .corners = solid.corners, .center = pose * solid.middle};
+}
+
+Rod BodyGeometry::Inside::rod(const Solid& solid) {
+  const btTransform& at = solid.at.getWorldTransform();
+  return {.center = from_bullet(at.getOrigin()),
+          .axis = from_bullet(at.getBasis().getColumn(2)),
+          .radius = solid.radius,
+          .half = solid.half,
+          .round_ends = solid.shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE};
+}
+
+// Returns the flat face of a solid that is towards another one; nothing if it has none there.
+std::optional<Face> BodyGeometry::Inside::face_towards(const Convex& solid, const Solid& flat) {
   if (flat.level) {
-    face.normal = from_bullet(*flat.level);
-    face.center = flat.height * face.normal;
-  } else {
-    Mat3 turned;
-    for (int i = 0; i < 3; ++i) turned.col(i) = from_bullet(on.getBasis().getColumn(i));
+    Face plane{.center = flat.height * from_bullet(*flat.level),
+               .normal = from_bullet(*flat.level)};
+    plane.along[0] = plane.normal.unitOrthogonal();
+    plane.along[1] = plane.normal.cross(plane.along[0]);
+    return plane;
+  }
+  if (flat.boxy()) {
     const auto& box = static_cast<const btBoxShape&>(*flat.shape);
-    face = face_towards(rod, from_bullet(on.getOrigin()), turned,
-                        from_bullet(box.getHalfExtentsWithMargin()));
+    return face_of_box(solid, from_bullet(flat.at.getWorldTransform()),
+                       from_bullet(box.getHalfExtentsWithMargin()));
   }
-  const auto found = rod_on_face(rod, face, p.manifold->getContactBreakingThreshold());
-  if (!found) return false;
-  for (const auto& point : std::span(found->points).first(found->count)) {
-    const Vec3 on_face = point.at - point.distance * point.normal;
-    const Vec3 normal = first ? point.normal : Vec3(-point.normal);  // out of the second
-    result.add(to_bullet(normal), to_bullet(first ? on_face : point.at), point.distance);
+  const Rod rod_of_it = rod(flat);
+  return rod_of_it.round_ends ? std::nullopt : end_of_cylinder(solid, rod_of_it);
+}
+
+// Finds the points where one of a pair meets a flat face of the other; false if there is none.
+bool BodyGeometry::Inside::find_on_face(const Pair& p, PairPoints& result) {
+  for (const bool first : {true, false}) {
+    const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
+    if (!meets_faces_of(one, flat)) continue;
+    const auto solid = convex(one);
+    const auto face = face_towards(*solid, flat);
+    if (!face) continue;
+    const auto found = points_on_face(*solid, *face, p.manifold->getContactBreakingThreshold());
+    if (!found) continue;
+    p.manifold->clearManifold();
+    for (const FacePoints::Point& point : found->all()) {
+      const Vec3 on_face = point.at - point.distance * point.normal;
+      const Vec3 normal = first ? point.normal : Vec3(-point.normal);  // out of the second
+      result.add(to_bullet(normal), to_bullet(first ? on_face : point.at), point.distance);
+    }
+    return true;
   }
-  return true;
+  return false;
+}
+
+// Whether a solid may meet flat faces of another one by its own geometry. Boxes among themselves
+// meet in points that Bullet finds well.
+bool BodyGeometry::Inside::meets_faces_of(const Solid& solid, const Solid& flat) {
+  if (!solid.rolls() && solid.corners.empty()) return false;
+  if (flat.boxy()) return flat.level || !solid.boxy();
+  return flat.rolls();
 }
 
 void BodyGeometry::Inside::find(const Pair& p, PairPoints& result) {
   result.setPersistentManifold(p.manifold);
-  const bool on_face = p.on_face && find_on_face(p, result);
-  if (p.corners) find_corners(p, result);
-  if (!on_face && (!p.corners || !p.b->level)) {
-    result.only_edges = p.corners;
-    p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
-  }
+  if (p.on_face && find_on_face(p, result)) return;
+  if (p.lowest) find_lowest(p, result);
+  result.only_edges = p.lowest;
+  p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
 }
 
 void BodyGeometry::Inside::meet(Pair& p) {
-  if (!p.corners && !p.rolls) slide_along(p);
+  if (!p.lowest && !p.rolls) slide_along(p);
   std::array<BodyContact*, kPointsOfPair> before{};
   std::size_t count = 0;
   for (int i = 0; i < p.manifold->getNumContacts(); ++i) {

@@ -34,7 +34,8 @@ constexpr int kMostRounds = 4;       // rounds of sweeps for forces that make en
 // second none is assumed [rad^2].
 constexpr int kMostTurnings = 5;
 constexpr double kSameTurn2 = 2.5e-5, kTooFar2 = 1;
-constexpr double kHitsFollow = -1;  // stands for the pair of a contact where hits follow
+constexpr double kSamePlace = 1e-12;  // change of a spring's way that is none [m]
+constexpr double kHitsFollow = -1;    // stands for the pair of a contact where hits follow
 
 // Calls visit(forces along it) for each joint that may have stops.
 template <class Constraints, class Visit>
@@ -343,9 +344,21 @@ double BodyWorld::turn_again(bool touched, double before) {
   return most;
 }
 
+// Takes the places of springs by the spins found so far; returns the largest change of a way [m].
+double BodyWorld::turn_springs(bool touched) {
+  double most = 0;
+  for (SpringLink& spring : constraints_.springs) {
+    if (!spring.off() && in_turn(spring.a, spring.b, touched))
+      most = std::max(most, spring.turn(bodies_));
+  }
+  return most;
+}
+
 // Ends where bodies turn as was assumed, or where that comes no nearer.
 void BodyWorld::sweep_turning(bool touched, double enough, int most) {
   sweep(touched, enough, most);
+  for (int i = 0; i < kMostTurnings && turn_springs(touched) > kSamePlace; ++i)
+    sweep(touched, enough, most);
   if (constraints_.joint_links.empty()) return;
   double otherwise = kTooFar2;
   for (int i = 0; i < kMostTurnings; ++i) {

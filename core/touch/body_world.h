@@ -44,6 +44,7 @@ class BodyWorld {
   Vec3 velocity(const End& end) const { return bodies_.velocity(end); }
   Mat3 answer(const End& end) const { return bodies_.answer(end); }
   void push(const End& end, const Vec3& force) {
+    if (force.isZero(0)) return;
     bodies_.push(end, force);
     bodies_.press(end.body);
   }
@@ -125,6 +126,7 @@ class BodyWorld {
   void wake_neighbours();
   void find_islands();
   double turn_again(bool touched, double before);
+  double turn_springs(bool touched);
   void sweep_turning(bool touched, double enough, int most);
   int root(int body);
   void join(int a, int b);

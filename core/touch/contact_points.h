@@ -23,6 +23,13 @@ inline btTransform to_bullet(const Pose& pose) {
       to_bullet(Vec3(pose.translation())));
 }
 
+inline Pose from_bullet(const btTransform& at) {
+  Pose pose = Pose::Identity();
+  for (int i = 0; i < 3; ++i) pose.linear().col(i) = from_bullet(at.getBasis().getColumn(i));
+  pose.translation() = from_bullet(at.getOrigin());
+  return pose;
+}
+
 // A model among the solids: a collision object's user pointer.
 struct TouchedModel {
   std::shared_ptr<const TriangleMesh> mesh;

@@ -10,7 +10,6 @@
 
 namespace limpid {
 
-using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
 // The slope of a force over a motion: with the damper's directions fixed, which is quickly found,
