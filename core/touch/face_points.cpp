@@ -130,14 +130,19 @@ template <class ForEach>
 FacePoints widest(const ForEach& for_each) {
   constexpr double kApart = 1e-12;  // areas of less are none [m^2]
   FacePoints found;
-  const auto choose = [&](auto&& worth_of) {  // the point of the largest worth, if that is positive
+  // Chooses the point of the largest worth, if that is positive: one inside before one that is
+  // apart.
+  const auto choose = [&](auto&& worth_of) {
     double most = 0;
+    bool inside = false;
     FacePoints::Point best;
     for_each([&](const FacePoints::Point& p) {
-      if (const double worth = worth_of(p); worth > most) {
-        most = worth;
-        best = p;
-      }
+      const double worth = worth_of(p);
+      const bool in = p.distance < 0;
+      if (!(worth > 0) || in < inside || (in == inside && worth <= most)) return;
+      most = worth;
+      inside = in;
+      best = p;
     });
     if (most > 0) found.points[found.count++] = best;
     return most > 0;

@@ -69,7 +69,7 @@ struct FacePoints {
 };
 
 // Returns four of the points, or all if they are fewer: the deepest, the furthest from it, and
-// those that make the largest triangles with both on either side.
+// those that make the largest triangles with both on either side. Points inside go before others.
 FacePoints widest_of(std::span<const FacePoints::Point> points);
 
 // Finds the points in which a solid is at most `near` from a face [m], four of them at most.

@@ -236,6 +236,14 @@ try:
     data = session.dataset(["device/position", "contact/force"])
     assert data["device/position"].attrs["units"] == session.unit("device/position")
     assert data["contact/force"].shape == session["contact/force"].shape
+    apart = session.dataset(["device/position", "proxy/position", "device/tip"])
+    difference = apart["device/position"] - apart["proxy/position"]
+    assert difference.dims == ("time", "joint"), difference.dims
+    assert (difference.values == session["device/position"] - session["proxy/position"]).all()
+    assert list(difference["joint"].values) == session.joints
+    assert list(apart["axis"].values) == ["x", "y", "z"]
+    assert frame.attrs["units"] == {"device/position[0]": "rad", "device/position[1]": "rad",
+                                    "device/position[2]": "rad", "hand/grip": session.unit("hand/grip")}
     assert (data["device/position"].sel(time=0.05, method="nearest").values == session["device/position"][50]).all()
     print("tables")
 except limpid.LimpidError as error:

@@ -57,6 +57,7 @@ class _Recording:
         self.file = path_of("session", file)
         self.units: Dict[str, str] = {}
         self.about: Dict[str, str] = {}
+        self.axes: Dict[str, List[str]] = {}  # names of the dimensions behind the time
         self._read: Dict[str, Any] = {}
         self._opened_as: Optional[Tuple[int, ...]] = None
         lengths: List[int] = []
@@ -65,7 +66,8 @@ class _Recording:
             bare = name[len(_lane_of(name)):]
             rows = hasattr(item, "shape") and bare.split("/")[0] not in BESIDE_ROWS and bare != ONE_STATE
             if rows and item.ndim > 0 and item.attrs.get("unit") is not None:
-                self.units[name] = str(item.attrs["unit"])
+                self.units[name] = _words(item.attrs["unit"])
+                self.axes[name] = [_dimension(item.dims[i], f"{bare} {i}") for i in range(1, item.ndim)]
                 self.about[name] = str(item.attrs.get("what", ""))
                 lengths.append(len(item))
 
@@ -131,12 +133,32 @@ class _Recording:
                 self._read[name] = numpy.asarray(opened[name][: self.rows])
         return self._read[name]
 
+    def places(self, axis: str, count: int) -> "Optional[List[str]]":
+        """Names of the places along a dimension, as joints have; None where there are none."""
+        with self.opened() as opened:
+            if axis not in opened or len(opened[axis]) != count:
+                return None
+            return [value.decode() if isinstance(value, bytes) else str(value) for value in opened[axis]]
+
     def keep(self) -> None:
         """All channels are in memory from now on, and the file may go."""
         with self.opened() as opened:
             for name in self.units:
                 if name not in self._read:
                     self._read[name] = opened[name][: self.rows]
+
+
+def _words(unit: Any) -> str:
+    """A unit as a text; where joints differ, one of each."""
+    import numpy
+
+    return ", ".join(str(each) for each in numpy.atleast_1d(unit))
+
+
+def _dimension(dim: Any, otherwise: str) -> str:
+    """Its name in the file."""
+    names = [name for name in dim.keys() if name]
+    return names[0] if names else otherwise
 
 
 def _lane_of(channel: str) -> str:
@@ -211,7 +233,7 @@ class Session:
     __getitem__ = channel
 
     def unit(self, name: str) -> str:
-        """The channel's unit, "-" for none; of joints that slide see the attribute joint_types."""
+        """The channel's unit, "-" for none; where joints differ, one of each: "rad, rad, m"."""
         return self._recording.units[self._recording.known(self._named(name))]
 
     def about(self, name: str) -> str:
@@ -290,33 +312,45 @@ class Session:
 
     def frame(self, channels: Optional[Sequence[str]] = None) -> "pandas.DataFrame":
         """The channels as a table of pandas, a row for each tick and the time as its index; those of
-        several numbers have columns "device/position[0]", .... Needs pandas (Debian: python3-pandas)."""
+        several numbers have columns "device/position[0]", .... attrs["units"] has the unit of each
+        column. Needs pandas (Debian: python3-pandas)."""
         try:
             import pandas
         except ImportError as error:
             raise LimpidError(f"{self.file}: tables need pandas, which is missing") from error
 
-        columns = {}
+        columns, units = {}, {}
         for name in self._chosen(channels):
             values = self.channel(name).reshape(len(self), -1)
             several = self.channel(name).ndim > 1
-            columns.update({f"{name}[{i}]" if several else name: values[:, i] for i in range(values.shape[1])})
-        return pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
+            of_each = self.unit(name).split(", ")
+            for i in range(values.shape[1]):
+                column = f"{name}[{i}]" if several else name
+                columns[column] = values[:, i]
+                units[column] = of_each[i % len(of_each)]
+        frame = pandas.DataFrame(columns, index=pandas.Index(self.time, name="time"))
+        frame.attrs["units"] = units
+        return frame
 
     def dataset(self, channels: Optional[Sequence[str]] = None) -> "xarray.Dataset":
-        """The channels as a dataset of xarray, over the time, with their units and words as attributes.
+        """The channels as a dataset of xarray, over the time and the dimensions of the file (joint, axis
+        and others), so that channels of one kind can be subtracted. Units and words are attributes.
         Needs xarray (Debian: python3-xarray)."""
         try:
             import xarray
         except ImportError as error:
             raise LimpidError(f"{self.file}: datasets need xarray, which is missing") from error
 
-        found = {}
+        found, coordinates = {}, {"time": self.time}
         for name in self._chosen(channels):
             values = self.channel(name)
-            axes = ["time", *(f"{name} {i + 1}" for i in range(values.ndim - 1))]
-            found[name] = (axes, values, {"units": self.unit(name), "long_name": self.about(name)})
-        return xarray.Dataset(found, coords={"time": self.time}, attrs={"law": self.law, "file": self.file})
+            axes = self._recording.axes[self._recording.known(self._named(name))]
+            for axis, count in zip(axes, values.shape[1:]):
+                places = self._recording.places(axis, count)
+                if places is not None:
+                    coordinates[axis] = places
+            found[name] = (["time", *axes], values, {"units": self.unit(name), "long_name": self.about(name)})
+        return xarray.Dataset(found, coords=coordinates, attrs={"law": self.law, "file": self.file})
 
     def _chosen(self, channels: Optional[Sequence[str]]) -> List[str]:
         names = self.channels if channels is None else names_of("channels", channels)

@@ -1,0 +1,237 @@
+#include "core/touch/face_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/random_arm.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+Vec3 any_way(Random& random) {
+  return Vec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)).normalized();
+}
+
+Face plane_of(const Vec3& center, const Vec3& normal) {
+  Face face{.center = center, .normal = normal};
+  face.along[0] = normal.unitOrthogonal();
+  face.along[1] = normal.cross(face.along[0]);
+  return face;
+}
+
+// A rod whose axis rises by `rise` over a face, at a height at which a part of it is below.
+Rod rod_over(Random& random, const Face& face, double rise, bool round_ends = false) {
+  const double turn = random.between(-3, 3);
+  const Vec3 level = std::cos(turn) * face.along[0] + std::sin(turn) * face.along[1];
+  return {.center = face.center + random.between(0, 0.01) * face.normal +
+                    random.between(-0.01, 0.01) * face.along[0],
+          .axis = rise * face.normal + std::sqrt(1 - rise * rise) * level,
+          .radius = random.between(0.005, 0.03),
+          .half = random.between(0.005, 0.04),
+          .round_ends = round_ends};
+}
+
+Rod moved(const Rod& rod, const Vec3& way, const Vec3& turn) {
+  Rod there = rod;
+  there.center += way;
+  if (turn.norm() > 0) there.axis = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * rod.axis;
+  return there;
+}
+
+// Energy of springs of 1 N/m at all points, and the force and torque about the centre that they
+// exert.
+struct Springs {
+  double energy = 0;
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+};
+Springs springs_of(const Rod& rod, const Face& face) {
+  Springs all;
+  const auto found = points_on_face(rod, face, 0);
+  EXPECT_TRUE(found);
+  if (!found) return all;
+  for (const FacePoints::Point& p : found->all()) {
+    all.energy += 0.5 * p.distance * p.distance;
+    all.force -= p.distance * p.normal;
+    all.torque -= p.distance * (p.at - rod.center).cross(p.normal);
+  }
+  return all;
+}
+
+TEST(FacePoints, OfALyingRodAreTheLowestOfBothEnds) {
+  Random random(401);
+  for (int i = 0; i < 40; ++i) {
+    const Face face = plane_of(any_way(random), any_way(random));
+    const double rise = random.between(-0.69, 0.69);
+    const bool capsule = i % 2 == 1;
+    const Rod rod = rod_over(random, face, rise, capsule);
+    const auto found = points_on_face(rod, face, kFar);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->count, 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec3 end = rod.center + (k == 0 ? -1 : 1) * rod.half * rod.axis;
+      const double lower = rod.radius * (capsule ? 1 : std::sqrt(1 - rise * rise));
+      EXPECT_NEAR(found->points[k].distance, face.above(end) - lower, 1e-15);
+      EXPECT_NEAR(face.above(found->points[k].at), found->points[k].distance, 1e-15);
+      EXPECT_NEAR((found->points[k].at - end).norm(), rod.radius, 1e-15) << "it is on the rod";
+    }
+  }
+}
+
+TEST(FacePoints, OfAStandingCylinderAreOnItsRimWithTheLowestFirst) {
+  Random random(402);
+  for (int i = 0; i < 40; ++i) {
+    const Face face = plane_of(any_way(random), any_way(random));
+    const double rise = (i % 2 == 0 ? 1 : -1) * random.between(0.72, 1);
+    const Rod rod = rod_over(random, face, rise);
+    const auto found = points_on_face(rod, face, kFar);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->count, 4u);
+    const Vec3 end = rod.center - std::copysign(rod.half, rise) * rod.axis;
+    const double slope = rod.radius * std::sqrt(1 - rise * rise);
+    EXPECT_NEAR(found->points[0].distance, face.above(end) - slope, 1e-15);
+    EXPECT_NEAR(found->points[1].distance, face.above(end) + slope, 1e-15);
+    for (const FacePoints::Point& p : found->all()) {
+      EXPECT_NEAR((p.at - end).norm(), rod.radius, 1e-15);
+      EXPECT_NEAR((p.at - end).dot(rod.axis), 0, 1e-15);
+    }
+  }
+}
+
+// Springs at the points push as their energy falls, wherever the rod goes or turns: nothing is
+// gained on the way round.
+TEST(FacePoints, HoldSpringsWhoseForceIsTheSlopeOfTheirEnergy) {
+  Random random(403);
+  constexpr double kStep = 1e-6;
+  int edges = 0;
+  for (int i = 0; i < 200; ++i) {
+    Face face = plane_of(any_way(random), any_way(random));
+    if (i % 2 == 1) {
+      face.bounds = i % 4 == 1 ? Face::Bounds::rectangle : Face::Bounds::circle;
+      face.half = {random.between(0.01, 0.05), 0.05};
+    }
+    const bool stands = i % 5 == 0 && i % 2 == 0;
+    Rod rod =
+        rod_over(random, face, stands ? random.between(0.72, 0.999) : random.between(-0.3, 0.3),
+                 i % 3 == 0 && !stands);
+    if (!points_on_face(rod, face, 0)) continue;
+    const Springs now = springs_of(rod, face);
+    if (now.energy == 0) continue;
+    edges += face.bounds != Face::Bounds::none ? 1 : 0;
+    const double tolerance = 1e-4 * now.force.norm();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 step = kStep * Vec3::Unit(k);
+      const auto slope = [&](const Vec3& way, const Vec3& turn) {
+        return (springs_of(moved(rod, way, turn), face).energy -
+                springs_of(moved(rod, -way, -turn), face).energy) /
+               (2 * kStep);
+      };
+      EXPECT_NEAR(slope(step, Vec3::Zero()), -now.force[k], tolerance) << i;
+      EXPECT_NEAR(slope(Vec3::Zero(), step), -now.torque[k], tolerance * 0.04) << i;
+    }
+  }
+  EXPECT_GT(edges, 30);
+}
+
+TEST(FacePoints, OfARodAcrossAnEdgeAreWhereBothLinesAreNearest) {
+  Random random(404);
+  for (int i = 0; i < 40; ++i) {
+    const Pose box = Pose(Eigen::AngleAxisd(random.between(-3, 3), any_way(random)));
+    const Vec3 half(0.05, 0.03, 0.02);
+    // A rod that hangs over the edge at x = 0.05, with the face z = 0.02 above.
+    const double turn = random.between(-0.6, 0.6), rise = random.between(-0.3, 0);
+    const Vec3 axis =
+        Vec3(std::cos(turn), std::sin(turn), 0) * std::sqrt(1 - rise * rise) + Vec3(0, 0, rise);
+    const double r = random.between(0.004, 0.01);
+    const Vec3 normal = Vec3::UnitY().cross(axis).normalized();
+    const Vec3 up = normal.z() < 0 ? Vec3(-normal) : normal;
+    const Vec3 touched(0.05, random.between(-0.01, 0.01), 0.02);
+    const double gap = random.between(-1e-3, 1e-3);
+    const Rod rod{
+        .center = box * Vec3(touched + (r + gap) * up + random.between(-0.01, 0.01) * axis),
+        .axis = box.linear() * axis,
+        .radius = r,
+        .half = 0.03};
+    const Face face = face_of_box(rod, box, half);
+    EXPECT_NEAR(face.normal.dot(box.linear().col(2)), 1, 1e-12);
+    const auto found = points_on_face(rod, face, 1e-3);
+    ASSERT_TRUE(found) << i;
+    bool seen = false;
+    for (const FacePoints::Point& p : found->all()) {
+      if ((p.at - p.distance * p.normal - box * touched).norm() > 1e-9) continue;
+      seen = true;
+      EXPECT_NEAR(p.distance, gap, 1e-12);
+      EXPECT_NEAR(p.normal.dot(box.linear() * up), 1, 1e-12);
+    }
+    EXPECT_TRUE(seen) << i;
+  }
+}
+
+TEST(FacePoints, AreNoneBesideAFaceWhichSomethingElseFinds) {
+  const Vec3 half(0.05, 0.03, 0.02);
+  const Rod beside{
+      .center = {0.07, 0.001, 0.0201}, .axis = Vec3::UnitY(), .radius = 0.015, .half = 0.01};
+  const Face face = face_of_box(beside, Pose::Identity(), half);
+  EXPECT_FALSE(points_on_face(beside, face, 1e-3)) << "its lowest line is beside the top";
+  const Rod above{.center = {0, 0, 0.1}, .axis = Vec3::UnitY(), .radius = 0.015, .half = 0.01};
+  const auto none = points_on_face(above, face_of_box(above, Pose::Identity(), half), 1e-3);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->count, 0u);
+}
+
+TEST(FacePoints, OfADiscOverACornerAreWithinBoth) {
+  Random random(405);
+  for (int i = 0; i < 100; ++i) {
+    const bool circle = i % 2 == 0;
+    Face face = plane_of(Vec3::Zero(), Vec3::UnitZ());
+    face.bounds = circle ? Face::Bounds::circle : Face::Bounds::rectangle;
+    face.half = {random.between(0.01, 0.04), random.between(0.01, 0.04)};
+    const Rod disc{
+        .center = Vec3(random.between(-0.03, 0.03), random.between(-0.03, 0.03), 0.009999),
+        .axis = Vec3::UnitZ(),
+        .radius = random.between(0.01, 0.03),
+        .half = 0.01};
+    const auto found = points_on_face(disc, face, 1e-4);
+    if (!found) continue;
+    ASSERT_GT(found->count, 0u);
+    for (const FacePoints::Point& p : found->all()) {
+      EXPECT_TRUE(face.over(p.at));
+      EXPECT_LT((p.at - disc.center).head<2>().norm(), disc.radius + 1e-9);
+      EXPECT_NEAR(p.distance, -1e-6, 1e-12);
+    }
+  }
+}
+
+TEST(FacePoints, OfAPrismAreCornersThatAreWideApart) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 24; ++i) {
+    const double turn = 2 * M_PI * i / 24;
+    for (const double z : {-0.02, 0.02})
+      corners.emplace_back(0.03 * std::cos(turn), 0.03 * std::sin(turn), z);
+  }
+  const Hull prism{
+      .pose = pose_at({0.1, 0.2, 0.02}), .corners = corners, .center = {0.1, 0.2, 0.02}};
+  const auto found = points_on_face(prism, plane_of(Vec3::Zero(), Vec3::UnitZ()), 1e-3);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->count, 4u);
+  Vec3 middle = Vec3::Zero();
+  for (const FacePoints::Point& p : found->all()) middle += p.at / 4;
+  EXPECT_LT((middle - Vec3(0.1, 0.2, 0)).norm(), 1e-12) << "they make a square around the middle";
+}
+
+TEST(FacePoints, OfAnEndAreForWhatIsAboveItNotBeside) {
+  const Rod post{.center = Vec3::Zero(), .axis = Vec3::UnitZ(), .radius = 0.02, .half = 0.05};
+  const Rod on{.center = {0.005, 0, 0.06}, .axis = Vec3::UnitX(), .radius = 0.01, .half = 0.03};
+  const auto end = end_of_cylinder(on, post);
+  ASSERT_TRUE(end);
+  EXPECT_LT((end->center - Vec3(0, 0, 0.05)).norm(), 1e-15);
+  const Rod beside{.center = {0.03, 0, 0.02}, .axis = Vec3::UnitZ(), .radius = 0.01, .half = 0.03};
+  EXPECT_FALSE(end_of_cylinder(beside, post));
+}
+
+}  // namespace
+}  // namespace limpid::test

@@ -1,0 +1,213 @@
+// Bodies on flat faces of every kind: they rest where their weight presses them, stay there, roll
+// and bounce as closed forms say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/body_worlds.h"
+#include "tests/support/meshes.h"
+
+namespace limpid::test {
+namespace {
+
+constexpr double kStiff = 20000, kWeight = 0.05 * 9.81;  // of a contact [N/m]; of the bodies [N]
+
+// Fixed objects with a level face at z = 0.
+std::vector<std::pair<const char*, Object>> floors() {
+  std::vector<std::pair<const char*, Object>> all;
+  all.emplace_back("plane", floor_at(0));
+  Object shelf;
+  shelf.shape = Box{Vec3(0.8, 0.5, 0.1)};
+  shelf.pose = pose_at({0.03, 0.02, -0.05});
+  shelf.pose.linear() = turned(0.4, Vec3::UnitZ());
+  all.emplace_back("box", shelf);
+  Object drum;
+  drum.shape = Cylinder{0.4, 0.1};
+  drum.pose = pose_at({0.03, 0.02, -0.05});
+  all.emplace_back("end of a cylinder", drum);
+  all.emplace_back("model", obstacle(sheet(7, 0.8), 1000));
+  for (auto& [name, floor] : all) {
+    floor.name = "floor";
+    floor.material = {2000, 0, 0.6, 0.5};
+  }
+  return all;
+}
+
+Triangles prism(int sides, double radius, double half) {
+  Triangles all;
+  for (int i = 0; i < sides; ++i) {
+    const double turn = 2 * std::numbers::pi * i / sides;
+    for (const double z : {-half, half})
+      all.vertices.push_back(
+          Vec3(radius * std::cos(turn), radius * std::sin(turn), z).cast<float>());
+  }
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
+    all.indices.insert(all.indices.end(), {a, b, a + 1, a + 1, b, b + 1});
+    if (i > 0 && i + 1 < n) all.indices.insert(all.indices.end(), {0, b, a, 1, a + 1, b + 1});
+  }
+  return all;
+}
+
+struct Thing {
+  const char* name;
+  Shape shape;
+  double height;  // of its centre at rest [m]
+  Mat3 turned;
+  int points;  // that bear it
+};
+std::vector<Thing> things() {
+  const Mat3 up = turned(0.3, Vec3::UnitZ());
+  const Mat3 lying = turned(0.43, Vec3::UnitZ()) * turned(std::numbers::pi / 2, Vec3::UnitX());
+  return {{"standing can", Cylinder{0.02, 0.05}, 0.025, up, 4},
+          {"lying can", Cylinder{0.02, 0.05}, 0.02, lying, 2},
+          {"lying capsule", Capsule{0.02, 0.05}, 0.02, lying, 2},
+          {"cube", Box{Vec3(0.04, 0.05, 0.02)}, 0.01, up, 4},
+          {"model of a prism", mesh_of(obstacle(prism(24, 0.02, 0.025))), 0.025, up, 4}};
+}
+
+Object placed(const Thing& thing, double above) {
+  Object o = body("thing", thing.shape, 0.05, {0.0137, 0.0123, thing.height + above}, 0.6);
+  o.pose.linear() = thing.turned;
+  return o;
+}
+
+TEST(FlatContacts, BearAThingByItsWeightOverTheirStiffnessAndKeepIt) {
+  for (const auto& [on, floor] : floors()) {
+    for (const Thing& thing : things()) {
+      SCOPED_TRACE(std::string(thing.name) + " on a " + on);
+      Scene scene;
+      scene.add(floor);
+      scene.add(placed(thing, 0.003));
+      BodyWorld world(scene);
+      const Pose first = world.pose(0);
+      EXPECT_LT(run(world, 1500), 1e-12);
+      const Pose last = world.pose(0);
+      EXPECT_NEAR(last.translation().z(), thing.height - kWeight / (thing.points * kStiff), 2e-6);
+      EXPECT_LT((last.translation() - first.translation()).head<2>().norm(), 1e-5);
+      EXPECT_LT((last.linear() - first.linear()).norm(), 1e-4);
+      EXPECT_EQ(world.awake(), 0);
+    }
+  }
+}
+
+TEST(FlatContacts, ThrowBackWhatFallsFlatAsItsRestitutionSays) {
+  for (const auto& [on, floor] : floors()) {
+    for (const Thing& thing : things()) {
+      SCOPED_TRACE(std::string(thing.name) + " on a " + on);
+      Scene scene;
+      scene.add(floor);
+      scene.add(placed(thing, 0.05));
+      scene.objects.back().body->restitution = 0.8;
+      BodyWorld world(scene);
+      const double falls = std::sqrt(2 * 0.05 / 9.81);
+      double up = 0;
+      for (int k = 0; k < static_cast<int>(1.2 * falls / kTick); ++k) {
+        run(world, 1);
+        up = std::max(up, world.speed(0).z());
+      }
+      EXPECT_NEAR(up, 0.8 * std::sqrt(2 * 9.81 * 0.05), 0.02);
+      EXPECT_LT(world.spin(0).norm(), 0.02);
+      EXPECT_LT(world.speed(0).head<2>().norm(), 1e-3);
+    }
+  }
+}
+
+TEST(FlatContacts, LetRodsRollAsTheirInertiaSays) {
+  for (const auto& [on, floor] : floors()) {
+    for (const bool capsule : {false, true}) {
+      SCOPED_TRACE(std::string(capsule ? "capsule" : "cylinder") + " on a " + on);
+      const double r = 0.02, l = 0.05, slope = 0.17;
+      Scene scene;
+      scene.gravity = 9.81 * Vec3(std::sin(slope), 0, -std::cos(slope));
+      scene.add(floor);
+      const Shape shape = capsule ? Shape(Capsule{r, l}) : Shape(Cylinder{r, l});
+      Object rod = body("rod", shape, 0.05, {-0.1, 0.01, r}, 0.6);
+      rod.pose.linear() = turned(std::numbers::pi / 2, Vec3::UnitX());
+      scene.add(rod);
+      BodyWorld world(scene);
+      run(world, 200);
+      const double v = world.speed(0).x();
+      run(world, 200);
+      // I / (m r^2): of a capsule by its cylinder and the two halves of a ball.
+      const double ball = 4.0 / 3 * r, all = l + ball;
+      const double inertia = capsule ? (0.5 * l + 0.4 * ball) / all : 0.5;
+      const double a = 9.81 * std::sin(slope) / (1 + inertia);
+      EXPECT_NEAR((world.speed(0).x() - v) / 0.2, a, 0.01 * a);
+      EXPECT_LT(std::abs(world.center(0).y() - 0.01), 1e-4);
+    }
+  }
+}
+
+// A can that is let go at an angle wobbles on its rim, and comes to rest on its end.
+TEST(FlatContacts, StandACanUpThatIsLetGoAtAnAngle) {
+  for (const auto& [on, floor] : floors()) {
+    for (const double tilt : {0.01, 0.035, 0.1, 0.2}) {
+      SCOPED_TRACE(std::string(on) + ", " + std::to_string(tilt));
+      Scene scene;
+      scene.add(floor);
+      Object can = body("can", Cylinder{0.02, 0.05}, 0.05, {0.0137, 0.0123, 0}, 0.6);
+      can.pose.linear() = turned(tilt, Vec3(0.9, 0.4, 0));
+      can.pose.translation().z() = 0.025 * std::cos(tilt) + 0.02 * std::sin(tilt);
+      scene.add(can);
+      BodyWorld world(scene);
+      EXPECT_LT(run(world, 5000), 1e-12);
+      EXPECT_NEAR(world.center(0).z(), 0.025 - kWeight / (4 * kStiff), 2e-6);
+      EXPECT_EQ(world.awake(), 0);
+    }
+  }
+}
+
+// Thrown in any pose, a thing ends at rest on the floor, not in it.
+TEST(FlatContacts, HoldWhateverFallsOnThem) {
+  Random random(2718);
+  const Triangles tetrahedron{{{0.02f, 0.013f, -0.01f},
+                               {-0.02f, 0.011f, -0.012f},
+                               {0.001f, -0.022f, -0.009f},
+                               {0.003f, 0.002f, 0.021f}},
+                              {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0}};
+  for (int i = 0; i < 60; ++i) {
+    const auto all = floors();
+    const auto& [on, floor] = all[static_cast<std::size_t>(i) % all.size()];
+    const std::array<Shape, 4> shapes{
+        Cylinder{random.between(0.006, 0.03), random.between(0.006, 0.08)},
+        Capsule{random.between(0.006, 0.03), random.between(0.006, 0.08)},
+        mesh_of(obstacle(tetrahedron)), Box{Vec3(0.02, 0.03, 0.05)}};
+    const std::size_t kind = static_cast<std::size_t>(i / 4) % shapes.size();
+    SCOPED_TRACE(std::to_string(i) + ": shape " + std::to_string(kind) + " on a " + on);
+    Scene scene;
+    scene.add(floor);
+    Object o = body("thing", shapes[kind], random.between(0.02, 0.4), {0.013, -0.012, 0.08}, 0.5);
+    o.pose.linear() =
+        turned(random.between(-3, 3), Vec3(random.between(-1, 1), random.between(-1, 1), 0.3));
+    scene.add(o);
+    BodyWorld world(scene);
+    EXPECT_LT(run(world, 8000), 1e-9);
+    const double deepest = 3 * scene.objects[1].body->mass * 9.81 / kStiff;
+    const Pose pose = world.pose(0);
+    double lowest = 0;
+    if (const auto* rod = std::get_if<Cylinder>(&o.shape)) {
+      const double rise = std::min(1.0, std::abs(pose.linear()(2, 2)));
+      lowest = pose.translation().z() - rise * rod->length / 2 -
+               std::sqrt(1 - rise * rise) * rod->radius;
+    } else if (const auto* capsule = std::get_if<Capsule>(&o.shape)) {
+      lowest = pose.translation().z() - std::abs(pose.linear()(2, 2)) * capsule->length / 2 -
+               capsule->radius;
+    } else if (const auto* box = std::get_if<Box>(&o.shape)) {
+      lowest = pose.translation().z() - pose.linear().row(2).cwiseAbs().dot(box->size) / 2;
+    } else {
+      lowest = 1;
+      for (const Eigen::Vector3f& v : tetrahedron.vertices) {
+        lowest = std::min(lowest, (pose * Vec3(v.cast<double>())).z());
+      }
+    }
+    EXPECT_GT(lowest, -deepest - 1e-5);
+    EXPECT_LT(lowest, 1e-4);
+    EXPECT_LT(world.speed(0).norm(), 2e-3);
+  }
+}
+
+}  // namespace
+}  // namespace limpid::test
