@@ -70,8 +70,11 @@ constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
 
 void print(const TipLimits& tip, const Parameters& p, bool all) {
   const std::vector<CouplingKind> told = laws_told(p.kind, all);
-  fmt::print("\nat the tip: {:.3g} g, {:.3g} N s/m of its own damping\n", 1e3 * tip.tip.mass,
-             tip.tip.damping);
+  fmt::print(
+      "\nat the tip: {:.3g} g if a hand leads it, {:.3g} g if it may give way sideways; {:.3g} N "
+      "s/m "
+      "of its own damping\n",
+      1e3 * tip.tip.led, 1e3 * tip.tip.mass, tip.tip.damping);
   for (const CouplingKind kind : told) {
     const TipWall& wall = tip.wall(kind);
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);
@@ -98,14 +101,12 @@ void print(const TipLimits& tip, const Parameters& p, bool all) {
 }
 
 nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
-  nlohmann::ordered_json json{{"mass", tip.tip.mass},
-                              {"damping", tip.tip.damping},
-                              {"every_hand", tip.every_hand},
-                              {"scene", tip.scene},
-                              {"least_damping", tip.felt.least_damping(p.eta, p.band)},
-                              {"frequency", kFelt},
-                              {"eta_felt", tip.added.eta},
-                              {"delay_most", tip.delay_most}};
+  nlohmann::ordered_json json{
+      {"mass", tip.tip.mass},        {"led_mass", tip.tip.led},
+      {"damping", tip.tip.damping},  {"every_hand", tip.every_hand},
+      {"scene", tip.scene},          {"least_damping", tip.felt.least_damping(p.eta, p.band)},
+      {"frequency", kFelt},          {"eta_felt", tip.added.eta},
+      {"delay_most", tip.delay_most}};
   for (std::uint8_t i = 0; i < kLaws; ++i) {
     nlohmann::ordered_json law{{"wall", tip.walls[i].stiffness}, {"bound", tip.walls[i].bound}};
     for (const double f : kFelt) {
@@ -128,6 +129,7 @@ nlohmann::ordered_json units() {
           {"condition3.device_margin", "N m s/rad"},
           {"condition3.proxy_margin", "N m s/rad"},
           {"tip.mass", "kg"},
+          {"tip.led_mass", "kg"},
           {"tip.damping", "N s/m"},
           {"tip.every_hand", "N/m"},
           {"tip.scene", "N/m"},

@@ -134,10 +134,15 @@ int run(const ExperimentOptions& options) {
   std::vector<std::string> failed;  // checks
   try {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      const Outcome outcome = carry_out_with_progress(*wanted[i], on, options, i, wanted.size());
-      print_outcome(wanted[i]->name, outcome);
-      note_failures(wanted[i]->name, outcome, failed);
-      write_report(options.out);
+      try {
+        const Outcome outcome = carry_out_with_progress(*wanted[i], on, options, i, wanted.size());
+        print_outcome(wanted[i]->name, outcome);
+        note_failures(wanted[i]->name, outcome, failed);
+        write_report(options.out);
+      } catch (const OutOfReach& e) {
+        if (wanted.size() == 1) throw;
+        fmt::print(stderr, "limpid: left out: {}\n", e.what());
+      }
     }
   } catch (const Cancelled&) {
     fmt::print(stderr, "limpid: stopped; the same command continues from here\n");

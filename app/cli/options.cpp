@@ -310,6 +310,18 @@ void keep_apart(const char* option, const std::filesystem::path& out, const Inpu
   keep_apart(option, out, read);
 }
 
+void keep_outputs_apart(const char* one, const std::filesystem::path& out, const char* two,
+                        const std::filesystem::path& other) {
+  std::error_code none;
+  if (out.empty() || other.empty() ||
+      std::filesystem::weakly_canonical(out, none) !=
+          std::filesystem::weakly_canonical(other, none)) {
+    return;
+  }
+  throw UsageError(
+      fmt::format("{} {}: {} writes this file; name another one", two, other.string(), one));
+}
+
 std::string allowed_values(const FieldInfo& info) {
   if (!info.words.empty()) return fmt::format("{}", fmt::join(info.words, ", "));
   if (info.kind == FieldInfo::Kind::flag) return "true, false";

@@ -75,6 +75,9 @@ void keep_apart(const char* option, const std::filesystem::path& out,
                 std::span<const std::string> read);
 // Refuses to write over any file that these options name.
 void keep_apart(const char* option, const std::filesystem::path& out, const InputOptions& input);
+// Refuses two outputs in one file. Errors: UsageError.
+void keep_outputs_apart(const char* one, const std::filesystem::path& out, const char* two,
+                        const std::filesystem::path& other);
 
 // Transform of an option's value: a file that does not exist, but came with the program under this
 // name, is replaced by that one. A similar name is refused with the right one. Errors: UsageError.

@@ -124,6 +124,7 @@ void check_outputs(const RunOptions& options) {
   const std::filesystem::path png = options.picture;
   if (png.empty()) return;
   keep_apart("--picture", png, options.input);
+  keep_outputs_apart("--record", options.record, "--picture", png);
   const auto refuse = [&](int code) {
     throw UsageError(fmt::format("--picture {}: {}", png.string(), std::strerror(code)));
   };

@@ -59,6 +59,7 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
   const std::string script = options.script.empty() ? default_story().string() : options.script;
   keep_apart("--record", options.record, std::span(&script, 1));
   keep_apart("--video", options.video.out, std::span(&script, 1));
+  keep_outputs_apart("--record", options.record, "--video", options.video.out);
   if (!options.video.out.empty()) return make_video(script, options.video, 0);
   const Story story = read_story(script);
   if (options.check) {

@@ -1,19 +1,37 @@
 #include "app/cli/summary_json.h"
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+
 namespace limpid {
 
 using nlohmann::ordered_json;
 
+namespace {
+
+// Returns a key with its unit behind: "largest_error_rad", "rms_human_force_N".
+std::string key_in(std::string name, std::string unit) {
+  std::ranges::replace(unit, ' ', '_');
+  return std::move(name) + "_" + unit;
+}
+
+}  // namespace
+
 ordered_json summary_json(const Summary& summary) {
   const Summary::Totals& t = summary.totals();
-  ordered_json json{{"ticks", t.rows},
-                    {"share_in_contact", t.share_in_contact()},
-                    {"largest_error_rad", t.largest_error},
-                    {"largest_contact_torque_N_m", t.largest_contact},
-                    {"rms_human_torque_N_m", t.human_rms()},
-                    {"energy_total_J", t.energy_total},
-                    {"highest_energy_total_J", t.highest_total},
-                    {"energy_commanded_J", t.energy_commanded}};
+  const NormUnits& in = summary.units();
+  const std::string effort = std::string_view(in.torque) == "N" ? "force" : "torque";
+  ordered_json json{
+      {"ticks", t.rows},
+      {"share_in_contact", t.share_in_contact()},
+      {key_in("largest_error", in.angle), in.angles * t.largest_error},
+      {key_in("largest_contact_" + effort, in.torque), in.torques * t.largest_contact},
+      {key_in("rms_human_" + effort, in.torque), in.torques * t.human_rms()},
+      {"energy_total_J", t.energy_total},
+      {"highest_energy_total_J", t.highest_total},
+      {"energy_commanded_J", t.energy_commanded}};
   if (t.warmest > 0) {
     json["largest_motor_warmth"] = t.warmest;
     json["held_by_warmth_s"] = t.held_by_warmth;

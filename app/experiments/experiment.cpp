@@ -437,7 +437,7 @@ void TrialRunner::run(const std::vector<Trial>& trials,
   for (const Trial& trial : trials) {
     conditions_.add(trial.plan.arm, trial.plan.parameters);
     const std::string far = arm().built_in() ? "" : out_of_reach(trial.plan);
-    if (!far.empty()) throw std::runtime_error(experiment_ + ": " + far);
+    if (!far.empty()) throw OutOfReach(experiment_ + ": " + far);
   }
   each(trials.size(), [&](std::size_t i) {
     const TrialResult result = run_one(trials[i]);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -186,6 +187,11 @@ struct Experiment {
   Takes takes = Takes::any;       // arms, of three joints
   const char* own_arms = "";      // what it has instead, if it takes none
   const char* own_readings = "";  // why the readings of an arm's file have no place; empty: they do
+};
+
+// An experiment whose hand's path the arm does not reach.
+struct OutOfReach : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 // Says why an experiment does not run on an arm; empty if it does.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -28,6 +29,12 @@ Point3 point3(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
+}
+
+// Returns the units of a column's parts as a text, once if all are the same.
+std::string said(const std::vector<std::string>& units) {
+  const bool alike = std::ranges::all_of(units, [&](const auto& unit) { return unit == units[0]; });
+  return alike ? units[0] : fmt::format("{}", fmt::join(units, ", "));
 }
 
 // Calls `work`; whatever it throws becomes the library's own error.
@@ -132,7 +139,7 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
   plan.hand.source = "library";
   for (const ColumnInfo& each : kColumnInfo) {
     if (!layout.has(each.column)) continue;
-    columns.push_back({each.path, each.unit, each.what,
+    columns.push_back({each.path, said(units.units(each)), each.what,
                        static_cast<std::size_t>(layout.offset(each.column)),
                        static_cast<std::size_t>(layout.width(each.column))});
   }

@@ -113,6 +113,8 @@ class Summary {
     double value;
   };
   std::vector<Number> numbers() const;
+  // Returns the units of norms over all joints, as its numbers have them.
+  const NormUnits& units() const { return units_; }
   void add_warmth(std::span<const double> row, double passed);
 
   RowLayout layout_;

@@ -39,7 +39,7 @@ TipLimits tip_limits(const ArmDescription& description, const Eigen::VectorXd& x
   l.hand_stiffness = p.hand_stiffness;
   l.inertia_ratio = p.inertia_ratio;
   const double lever2 = l.tip.lever2;
-  l.felt = {(1 + p.inertia_ratio) * l.tip.mass,
+  l.felt = {(1 + p.inertia_ratio) * l.tip.led,
             l.tip.damping,
             p.b_v / lever2,
             p.k_vc / lever2,

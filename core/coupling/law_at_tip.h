@@ -48,7 +48,7 @@ struct LawAtTip {
   // Limits that several laws share: what is felt of the arm alone, and through spring and damper; a
   // wall that is felt through the spring k_vc of a joint [N m/rad]; and a wall on the device itself
   // [N/m], unless an encoder's step bounds it first.
-  FeltAtTip arm_alone() const { return {tip.mass, tip.damping}; }
+  FeltAtTip arm_alone() const { return {tip.led, tip.damping}; }
   FeltAtTip behind_spring(double f) const { return felt_mass(felt.standard(f), f); }
   TipWall through_spring(double k_vc) const;
   TipWall on_device(double stiffness, const char* bound) const;

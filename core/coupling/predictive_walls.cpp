@@ -103,7 +103,7 @@ BoundedWall predictive_wall(const TipMoved& tip, const PredictiveWallSetting& s)
     bound(std::max(cell, held), held > cell ? WallBound::friction : WallBound::cell);
   }
   if (s.at.hand_mass > s.mass_foreseen) {
-    const TipAlong along{tip.mass, 0, tip.lever * tip.lever};
+    const TipAlong along{.mass = tip.mass, .lever2 = tip.lever * tip.lever};
     bound(mistaken_wall(along, s.at) / 2, WallBound::hand);
   }
   const auto late = [&](double by, double part) {

@@ -7,11 +7,28 @@
 
 namespace limpid {
 
+namespace {
+
+// n' A^-1 n, of the directions in which A is not zero.
+double along_inverse(const Mat3& A, const Vec3& n) {
+  constexpr double kNone = 1e-12;  // part of the largest eigenvalue
+  const Eigen::SelfAdjointEigenSolver<Mat3> of(A);
+  const Vec3 along = of.eigenvectors().transpose() * n, values = of.eigenvalues();
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (values[i] > kNone * values[2]) sum += along[i] * along[i] / values[i];
+  }
+  return sum;
+}
+
+}  // namespace
+
 TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eigen::VectorXd& b_d,
                    const Vec3& n) {
   const Eigen::VectorXd lever = J.transpose() * n;
-  return {1 / lever.dot(M.llt().solve(lever)), 1 / lever.dot(lever.cwiseQuotient(b_d)),
-          lever.squaredNorm()};
+  const Mat3 mobility = J * M.llt().solve(J.transpose());
+  return {1 / n.dot(mobility * n), 1 / lever.dot(lever.cwiseQuotient(b_d)), lever.squaredNorm(),
+          along_inverse(mobility, n)};
 }
 
 TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M) {
@@ -31,7 +48,11 @@ double friction_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& friction
 }
 
 Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d) {
-  const Mat3 mobility = J * b_d.cwiseInverse().asDiagonal() * J.transpose();
+  constexpr double kLeast = 1e-9;  // part of the largest damping
+  const double most = b_d.size() > 0 ? b_d.maxCoeff() : 0;
+  const Eigen::VectorXd b = most > 0 ? Eigen::VectorXd(b_d.cwiseMax(kLeast * most))
+                                     : Eigen::VectorXd(Eigen::VectorXd::Ones(b_d.size()));
+  const Mat3 mobility = J * b.cwiseInverse().asDiagonal() * J.transpose();
   return Eigen::SelfAdjointEigenSolver<Mat3>(mobility).eigenvectors().col(2);
 }
 

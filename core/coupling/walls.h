@@ -8,9 +8,10 @@ namespace limpid {
 
 // An arm's tip along one direction n.
 struct TipAlong {
-  double mass = 0;     // 1 / (n' J M^-1 J' n) [kg]
+  double mass = 0;     // free to give way across n: 1 / (n' J M^-1 J' n) [kg]
   double damping = 0;  // by all joints' own dampers [N s/m]
   double lever2 = 0;   // |J' n|^2: a joint's stiffness or damping divided by the tip's [m^2]
+  double led = 0;      // mass led along n, as a hand leads it: n' (J M^-1 J')^-1 n [kg]
 };
 
 // Computes a tip along n (unit). J: of the tip (3 x n) [m]; M: of the device (n x n) [kg m^2]; b_d:
@@ -23,7 +24,7 @@ TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M);
 // over its lever [N]. friction: of each joint [N m].
 double friction_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& friction);
 // Unit vector along which the joints' own dampers hold the tip least: there walls are hardest to
-// render.
+// render. Without dampers the one along which the joints have the longest levers.
 Vec3 least_damped(const Eigen::MatrixXd& J, const Eigen::VectorXd& b_d);
 
 // Settings of a wall's joints, all alike, and of the hand at the tip.

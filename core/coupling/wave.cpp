@@ -107,7 +107,7 @@ FeltAtTip WaveLaw::felt(const LawSettings& p, const LawAtTip& at, double) {
   // The line adds a mass where it is not matched, and its own damper.
   const double line = p.line() / at.tip.lever2, b_v = at.felt.b_v;
   const double mass = at.link.oldest() * at.loop.T * (line - b_v * b_v / line);
-  return {at.tip.mass + mass, at.tip.damping + b_v + (p.wave_matched ? line : 0)};
+  return {at.tip.led + mass, at.tip.damping + b_v + (p.wave_matched ? line : 0)};
 }
 
 template <int N>

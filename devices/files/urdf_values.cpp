@@ -1,6 +1,7 @@
 #include "devices/files/urdf_values.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tinyxml.h>
 #include <urdf_model/model.h>
 
@@ -370,22 +371,42 @@ std::string own_tip(const TiXmlElement& robot) {
   return tip;
 }
 
-void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescription& arm) {
+// Warns of attributes and elements in one of Limpid's own that it does not know.
+void warn_of_unknown(const TiXmlElement& own, const std::vector<std::string>& known,
+                     UrdfPlaces& places) {
+  const auto warn = [&](const char* kind, const std::string& name) {
+    if (std::ranges::find(known, name) != known.end()) return;
+    places.warn(
+        fmt::format("line {}: <{}> has {} '{}', which Limpid does not know and leaves out; "
+                    "known: {}",
+                    own.Row(), own.ValueStr(), kind, name, fmt::join(known, ", ")));
+  };
+  for (auto* each = own.FirstAttribute(); each != nullptr; each = each->Next())
+    warn("the attribute", each->NameTStr());
+  for (auto* each = own.FirstChildElement(); each != nullptr; each = each->NextSiblingElement())
+    warn("the element", each->ValueStr());
+}
+
+void read_own(const TiXmlElement& robot, UrdfPlaces& places, ArmDescription& arm) {
   for (auto* own = robot.FirstChildElement("limpid"); own;
        own = own->NextSiblingElement("limpid")) {
     const Own element(*own, places);
+    warn_of_unknown(*own, {"tip", "gravity", "delay", "spring", "warmth", "readings"}, places);
     if (const auto gravity = element.gravity()) arm.gravity = *gravity;
     if (const auto delay = element.number("delay", 0, kLongestDelay, "s")) arm.delay = delay;
     for (auto* spring = own->FirstChildElement("spring"); spring;
          spring = spring->NextSiblingElement("spring")) {
+      warn_of_unknown(*spring, {"joint", "stiffness", "offset"}, places);
       read_spring(*spring, places, arm);
     }
     for (auto* warmth = own->FirstChildElement("warmth"); warmth;
          warmth = warmth->NextSiblingElement("warmth")) {
+      warn_of_unknown(*warmth, {"joint", "continuous", "time"}, places);
       read_warmth(*warmth, places, arm);
     }
     for (auto* readings = own->FirstChildElement("readings"); readings;
          readings = readings->NextSiblingElement("readings")) {
+      warn_of_unknown(*readings, {"joint", "step", "delay"}, places);
       read_readings(*readings, places, arm);
     }
   }

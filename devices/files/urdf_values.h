@@ -103,6 +103,6 @@ std::string own_tip(const TiXmlElement& robot);
 // Reads everything else of <limpid> into `arm`. Springs and warmth of joints outside of the chain
 // have no effect. Errors: FileError for what is no number or out of range, and for joints that the
 // robot does not have.
-void read_own(const TiXmlElement& robot, const UrdfPlaces& places, ArmDescription& arm);
+void read_own(const TiXmlElement& robot, UrdfPlaces& places, ArmDescription& arm);
 
 }  // namespace limpid

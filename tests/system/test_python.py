@@ -204,7 +204,7 @@ class TestNumbers(InAFolder):
                      [(0, 0, 0, 0), (0, 0, 0, 0)], [(0, 0, 0, 0), (1, 0, 0, float("nan"))], numpy.array(3.0)):
             with self.subTest(hand=hand), self.assertRaisesRegex(limpid.ArgumentError, "^hand: "):
                 hand_rows(hand)
-        for wrong in (lambda: limpid.sweep({"eta": 0.5}), lambda: limpid.sweep({"eta": "standard"}),
+        for wrong in (lambda: limpid.sweep({"eta": 0.5}), lambda: limpid.sweep({"eta": []}), lambda: limpid.sweep({"eta": "standard"}),
                       lambda: limpid.sweep([1]), lambda: limpid.run(hand=5), lambda: limpid.run(scene=5),
                       lambda: limpid.run(duration="a"), lambda: limpid.run(seed=-1), lambda: limpid.run(seed=1.5),
                       lambda: limpid.run(eta=float("nan")), lambda: limpid.run(eta=[1]), lambda: limpid.run(settings=5),
@@ -218,6 +218,17 @@ class TestNumbers(InAFolder):
                       lambda: study.Staircase(1.0, steps=[]), lambda: study.Staircase(1.0, down=0)):
             with self.assertRaises(limpid.LimpidError):
                 wrong()
+
+    def test_of_a_table_go_by_the_names_of_their_columns(self) -> None:
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("needs python3-pandas")
+        mixed = pandas.DataFrame({"x_m": [0.19, 0.2], "time_s": [0, 1], "z_m": [0.03, 0.04], "y_m": [0.01, 0.02]})
+        self.assertEqual(hand_rows(mixed), [[0, 0.19, 0.01, 0.03], [1, 0.2, 0.02, 0.04]])
+        self.assertEqual(hand_rows(pandas.DataFrame([[0, 1, 2, 3], [1, 4, 5, 6]])), [[0, 1, 2, 3], [1, 4, 5, 6]])
+        with self.assertRaisesRegex(limpid.ArgumentError, "needed: time_s, x_m, y_m, z_m"):
+            hand_rows(mixed.rename(columns={"x_m": "x"}))
 
     def test_of_an_array_are_levels(self) -> None:
         plan = study.ConstantStimuli(numpy.linspace(1, 2, 2), 1, "a")

@@ -177,7 +177,7 @@ class LIMPID_API SceneBuilder {
 // A column of a row.
 struct RowColumn {
   std::string path;        // as in recordings: "/device/position"
-  std::string unit;        // of joints that slide it is m for rad, and N for N m
+  std::string unit;        // where joints differ, one of each: "rad, rad, m"
   std::string what;        // a sentence for people
   std::size_t offset = 0;  // of its first number in the row
   std::size_t width = 0;   // numbers: 1, 3, one a joint, ...

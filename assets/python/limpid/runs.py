@@ -61,8 +61,9 @@ def run(scene: Union[None, PathLike, Scene] = None, hand: Optional[Hand] = None,
         channels: Optional[Sequence[str]] = None, **more: Any) -> Session:  # fmt: skip
     """Leads a hand through a coupling and returns what was recorded.
 
-    `hand`: FILE.csv, FILE.h5 of a recorded session, or rows of time [s], x, y, z [m]; the default is
-    a hand that touches a table. `variation`: the hand as the same person would lead it another time,
+    `hand`: FILE.csv, a recorded session or its file, rows of time [s], x, y, z [m], or a table of pandas
+    with the columns time_s, x_m, y_m, z_m; the default is a hand that touches a table. The session's
+    time begins at 0, with the first row of the hand, whatever its time. `variation`: the hand as the same person would lead it another time,
     which one of them `seed` decides with it; 0 is the hand as it is, and nothing else is random.
     `duration` [s]. `twin`: settings of a second run on the same hand, or True; `lane3`: of a third one.
     `settings`: by their keys, {"coupling.k_vc": 8}, or each as a keyword with two underscores for the
@@ -131,7 +132,10 @@ def _values(name: str, values: Any) -> List[Any]:
     try:
         if isinstance(values, (str, bytes, Mapping)):
             raise TypeError
-        return [each.item() if getattr(each, "shape", None) == () else each for each in values]
+        found = [each.item() if getattr(each, "shape", None) == () else each for each in values]
+        if not found:
+            raise TypeError
+        return found
     except TypeError as error:
         raise ArgumentError(f"sweep: {name}: {values!s:.60} is not allowed; allowed: a list of the values "
                             "that it takes") from error  # fmt: skip

@@ -152,7 +152,8 @@ def _words(unit: Any) -> str:
     """A unit as a text; where joints differ, one of each."""
     import numpy
 
-    return ", ".join(str(each) for each in numpy.atleast_1d(unit))
+    units = [str(each) for each in numpy.atleast_1d(unit)]
+    return units[0] if len(set(units)) == 1 else ", ".join(units)
 
 
 def _dimension(dim: Any, otherwise: str) -> str:
@@ -187,6 +188,10 @@ class Session:
     def file(self) -> str:
         """Its name, as it was opened."""
         return self._recording.file
+
+    def __fspath__(self) -> str:
+        """The same: a session stands for its file, as a hand does."""
+        return self.file
 
     @property
     def attributes(self) -> Dict[str, Any]:

@@ -114,12 +114,15 @@ def is_path(value: Any) -> bool:
     return isinstance(value, (str, os.PathLike))
 
 
+HAND_COLUMNS = ("time_s", "x_m", "y_m", "z_m")  # of a hand's file
+
+
 def hand_rows(hand: Any) -> List[List[float]]:
     """Rows of a hand's path: time [s], x, y, z [m], of a list, a generator, an array of N x 4, or
     a table of pandas. Raises ArgumentError for anything else."""
     needed = "needed: at least two rows of time [s], x, y, z [m], each later than the one before"
     if hasattr(hand, "to_numpy"):
-        hand = hand.to_numpy()
+        hand = _in_order(hand).to_numpy()
     if isinstance(hand, (str, bytes, Mapping)) or not isinstance(hand, Iterable):
         raise ArgumentError(f"hand: {_shown(hand)} is no path of a hand; {needed}")
     rows: List[List[float]] = []
@@ -139,6 +142,17 @@ def hand_rows(hand: Any) -> List[List[float]]:
     if len(rows) < FEWEST_ROWS:
         raise ArgumentError(f"hand: has {len(rows)} row{'s' * (len(rows) != 1)}; {needed}")
     return rows
+
+
+def _in_order(table: Any) -> Any:
+    """A table of pandas with its columns as a hand's file has them; numbered columns stay."""
+    names = list(getattr(table, "columns", ()))
+    if not any(isinstance(name, str) for name in names):
+        return table
+    if sorted(map(str, names)) != sorted(HAND_COLUMNS):
+        raise ArgumentError(f"hand: has columns {', '.join(map(str, names))[:60]}; "
+                            f"needed: {', '.join(HAND_COLUMNS)}")  # fmt: skip
+    return table[list(HAND_COLUMNS)]
 
 
 def _shown(value: Any) -> str:

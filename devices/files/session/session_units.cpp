@@ -97,7 +97,7 @@ NormUnits norm_units(const std::vector<bool>& slides) {
   const auto sliding = std::ranges::count(slides, true);
   if (sliding == 0) return {"rad", "mrad", "N m"};
   if (sliding == std::ssize(slides)) return {"m", "mm", "N", kSlideUnit, kUnitsPerMetre};
-  return {"rad, dm", "mrad, 0.1 mm", "N m, daN"};
+  return {"rad or dm", "mrad or 0.1 mm", "N m or daN"};
 }
 
 void file_points(std::span<double> points, std::span<const double> forces) {
