@@ -15,6 +15,7 @@
 #include "app/run/reach_check.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
+#include "app/run/run_watch.h"
 #include "core/tick/as_taken.h"
 #include "core/tick/force_asked.h"
 #include "devices/files/session/session_units.h"
@@ -358,13 +359,16 @@ SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double du
     if (const std::string why = out_of_reach(plan); !why.empty()) throw LoopError(why);
     plan.rows = ticks_in(duration > 0 ? duration : plan.hand.duration(), plan.parameters.tick);
     std::vector<double> si(state_->row_si.size());
+    RunWatch watch(plan.arm, state_->layout, plan.parameters);
     const auto end = simulate(plan, {}, [&](std::span<const double> row, LaneChanges) {
+      watch.add(row);
       state_->in_si(row, si);
       return take(si);
     });
     return {end.rows, end.diverged,
             end.diverged ? fmt::format("unstable since t = {:.3f} s: {}", end.diverged_at, end.why)
-                         : std::string()};
+                         : std::string(),
+            watch.cautions()};
   });
 }
 

@@ -67,6 +67,8 @@ class Summary {
   // Summarizes a run of this arm, also the warmth of those motors whose file says what they bear.
   Summary(const RowLayout& layout, const ArmDescription& arm);
 
+  // Returns the units of norms over all joints, as its numbers have them.
+  const NormUnits& units() const { return units_; }
   // Adds a row; returns whether it is the memorable one, for now.
   bool add(std::span<const double> row);
   double time() const { return time_; }  // of the last row [s]
@@ -113,8 +115,6 @@ class Summary {
     double value;
   };
   std::vector<Number> numbers() const;
-  // Returns the units of norms over all joints, as its numbers have them.
-  const NormUnits& units() const { return units_; }
   void add_warmth(std::span<const double> row, double passed);
 
   RowLayout layout_;

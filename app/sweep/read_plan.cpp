@@ -249,7 +249,8 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
     run.hand.source = world.hand;  // the same wherever the plan lies
   }
   if (const std::string why = out_of_reach(run); !why.empty()) {
-    throw FileError(fmt::format("{}: {}", plan.file.string(), why));
+    throw FileError(fmt::format("{}: {}{}; hand = {{ tap = 1 }} suits any arm", plan.file.string(),
+                                world.hand.empty() ? "the default hand" : "", why));
   }
   return run;
 }

@@ -801,6 +801,7 @@ std::span<const double> BodyGeometry::read(std::span<const double> from) {
     p.points = p.manifold->getNumContacts();
     BodyContact* c = in_->fresh(p);
     if (c == nullptr) break;
+    c->point = middle(point);
     c->rest = from[19];
     c->force = from[20];
     c->friction = Vec3(from[21], from[22], from[23]);

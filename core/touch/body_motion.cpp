@@ -13,6 +13,7 @@ namespace {
 // which they end. A body of a kilohertz tick that spins by 300 rad/s takes ten.
 constexpr int kMostTurns = 20;
 constexpr double kSameSpin = 1e-11;
+constexpr double kStraight = 1e-8;  // turn of a tick whose chord is its arc [rad]
 
 Mat3 turn(const Vec3& axis, double angle) {
   const SineCosine at = sine_cosine(angle);
@@ -194,8 +195,16 @@ BodyMotion::Lever BodyMotion::lever(const Vec3& point, double T) const {
   return arm + 0.5 * T * spin_.cross(arm);
 }
 
-// The mean m of an arm's two places in the tick fulfils m = arm + h x m.
+// The mean m of an arm's two places in the tick fulfils m = arm + h x m. A hinge turns its points
+// by an angle, along a chord.
 BodyMotion::Lever BodyMotion::middle(const Vec3& point, double T) const {
+  if (kind_ == Kind::hinge) {
+    const double angle = T * U_, half = std::sin(angle / 2);
+    const double along = std::abs(angle) > kStraight ? std::sin(angle) / angle : 1;
+    const double inwards = std::abs(angle) > kStraight ? 2 * half * half / angle : angle / 2;
+    const Vec3 r = point - pivot_, c = p_ - pivot_;
+    return along * r + inwards * joint_.axis.cross(r) - c - 0.5 * T * sd_ * joint_.axis.cross(c);
+  }
   const Vec3 arm = point - p_, h = 0.5 * T * o_;
   return (arm + h.cross(arm) + h * h.dot(arm)) / (1 + h.squaredNorm());
 }

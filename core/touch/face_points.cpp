@@ -50,10 +50,10 @@ std::optional<Line> line_over(const Rod& rod, const Face& face, const Vec3& down
   };
   if (face.bounds == Face::Bounds::rectangle) {
     for (int i = 0; i < 2; ++i) {
-      const double half = face.half[static_cast<std::size_t>(i)] + kInside;
+      const double half = face.half[static_cast<std::size_t>(i)];
       const double most = std::abs(slope[i]) * rod.half;
-      if (std::abs(start[i]) > half + most) return std::nullopt;
-      if (std::abs(start[i]) + most <= half) continue;
+      if (std::abs(start[i]) > half + kInside + most) return std::nullopt;
+      if (std::abs(start[i]) + most <= half + kInside) continue;
       for (const double side : {-1.0, 1.0}) {
         if (half - side * start[i] >= most) continue;
         const double at = (side * half - start[i]) / slope[i];
@@ -61,7 +61,7 @@ std::optional<Line> line_over(const Rod& rod, const Face& face, const Vec3& down
       }
     }
   } else if (face.bounds == Face::Bounds::circle) {
-    const double r = face.half[0] + kInside, out = start.squaredNorm() - r * r;
+    const double out = start.squaredNorm() - face.half[0] * face.half[0];
     const double a = slope.squaredNorm(), b = start.dot(slope);
     if (out > 0 && (a == 0 || b * b < a * out)) return std::nullopt;
     if (a > 0) {

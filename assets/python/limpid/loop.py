@@ -9,10 +9,11 @@ import importlib.machinery
 import importlib.util
 import os
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
-from limpid.errors import ArgumentError, LimpidError, ProgramError
+from limpid.errors import ArgumentError, LimpidError, ProgramError, RunWarning
 from limpid.program import find_program
 from limpid.values import PathLike, Value, hand_rows, is_path, names_of, no_channel, number, path_of, settings_of, text_of
 from limpid.worlds import Arm, Scene
@@ -83,9 +84,12 @@ class Channels(Mapping[str, Any]):
 class Run(Channels):
     """The rows of a run, channel by channel: run["time"], run["device/position"]."""
 
-    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Tuple[int, int]], why: str) -> None:
+    def __init__(self, values: "numpy.ndarray", places: Mapping[str, Tuple[int, int]], why: str,
+                 said: Sequence[str] = ()) -> None:  # fmt: skip
         super().__init__(values, places)
         self.why = why  # what was unstable, and when; else empty
+        # What went wrong in the run, a sentence each, as limpid.Session has it.
+        self.warnings: List[str] = [why] * bool(why) + list(said)
 
     @property
     def diverged(self) -> bool:
@@ -208,7 +212,8 @@ class Loop(_AnyLoop):
         of limpid.run(), bit for bit. `hand`: rows of time [s], x, y, z [m]. `channels`: only these are
         kept, and the time, which takes less memory and less time. The loop itself stays as
         it is, and other threads go on meanwhile: loops run in as many threads as there are
-        processors."""
+        processors. A run that gave energy, became unstable, or moved as no hand does warns of it
+        (RunWarning; run.warnings)."""
         if is_path(hand):
             raise ArgumentError("hand: is a file; needed: rows of time [s], x, y, z [m] (limpid.run reads files)")
         seconds = 0.0 if duration is None else number("duration", duration)
@@ -223,8 +228,10 @@ class Loop(_AnyLoop):
                 offset, width = self._places[name]
                 places[name] = (len(kept), width)
                 kept += range(offset, offset + width)
-        values, _, why = self._loop.run(hand_rows(hand), seconds, kept)
-        return Run(values, places, why)
+        values, _, why, said = self._loop.run(hand_rows(hand), seconds, kept)
+        for warning in [why] * bool(why) + said:
+            warnings.warn(warning, RunWarning, stacklevel=2)
+        return Run(values, places, why, said)
 
 
 class DeviceLoop(_AnyLoop):

@@ -493,6 +493,34 @@ ixz="0" iyz="0"/></inertial></link>
 
 constexpr const char* kPlate = "ixx=\"1e-4\" iyy=\"1e-4\" izz=\"2e-4\"";
 
+TEST_F(Commands, RunOfAnArmWithASlideSaysItsUnitsInJson) {
+  write("arm.urdf", arm_text("lower=\"0\" upper=\"0.04\"", "0.3", kPlate));
+  const std::vector<std::string> words{"run",       "--device",   "arm.urdf", "--scene",
+                                       "free.toml", "--duration", "0.3",      "--json"};
+  const json mixed = json::parse(run(words).out)["runs"][0];
+  EXPECT_TRUE(mixed.contains("largest_error_rad_or_dm")) << mixed;
+  EXPECT_TRUE(mixed.contains("rms_human_torque_N_m_or_daN"));
+  std::string rail = arm_text("lower=\"0\" upper=\"0.04\"", "0.3", kPlate);
+  rail.replace(rail.find("revolute"), 8, "prismatic");
+  write("rail.urdf", rail);
+  const Said text =
+      run({"run", "--device", "rail.urdf", "--scene", "free.toml", "--duration", "0.3"});
+  std::vector<std::string> again = words;
+  again[2] = "rail.urdf";
+  const json slides = json::parse(run(again).out)["runs"][0];
+  ASSERT_TRUE(slides.contains("largest_error_m")) << slides;
+  ASSERT_TRUE(slides.contains("rms_human_force_N"));
+  EXPECT_NEAR(behind(text.out, "largest |x_E|"), 1e3 * slides["largest_error_m"].get<double>(),
+              6e-4);
+  EXPECT_NEAR(behind(text.out, "rms human torque"), slides["rms_human_force_N"].get<double>(),
+              6e-5);
+}
+
+TEST_F(Commands, RunRefusesRecordingAndPictureInOneFile) {
+  EXPECT_THAT(refused({"run", "--duration", "0.1", "--record", "same", "--picture", "./same"}),
+              HasSubstr("--picture ./same: --record writes this file"));
+}
+
 TEST_F(Commands, CheckOfAnArmListsJointsInTheirUnits) {
   write("arm.urdf", arm_text("lower=\"0\" upper=\"0.04\"", "0.3", kPlate));
   const Said said = run({"check", "arm.urdf"});

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "app/library/limpid/limpid.h"
 #include "app/run/fitted_gains.h"
@@ -143,6 +144,18 @@ TEST(SimulatedLoop, StepsAndRunsGiveTheRowsOfTheProgramsRun) {
   });
   EXPECT_EQ(end.rows, rows.size());
   EXPECT_FALSE(end.diverged);
+  EXPECT_TRUE(end.warnings.empty());
+}
+
+// As in `limpid run`: far below eta_min, in a stiff hand without damping, the proposed law shakes.
+TEST(SimulatedLoop, WarnsOfARunThatGivesEnergyOrMovesAsNoHandDoes) {
+  LoopOptions options = table("proposed", 0.05);
+  options.settings.insert(options.settings.end(), {"hand.stiffness=3000", "hand.damping=0"});
+  const SimulatedLoop loop(options);
+  const std::vector<double> path{0, 0.19, 0, 0, 1, 0.19, 0, -0.05, 4, 0.19, 0, -0.05};
+  const auto end = loop.run(path, 0, [](std::span<const double>) { return true; });
+  ASSERT_FALSE(end.warnings.empty());
+  EXPECT_NE(end.warnings[0].find("not passive"), std::string::npos) << end.warnings[0];
 }
 
 // A slide along x of 0.1 kg, with a wall from x = 0 on.
@@ -167,6 +180,14 @@ LoopOptions slide() {
   options.settings = {"coupling.kind=direct"};
   options.motors = Motors::simulated;
   return options;
+}
+
+TEST(SimulatedLoop, HasTheUnitsOfJointsThatSlide) {
+  const SimulatedLoop loop(slide());
+  std::map<std::string, std::string> units;
+  for (const RowColumn& column : loop.columns()) units[column.path] = column.unit;
+  EXPECT_EQ(units["/device/position"], "m");
+  EXPECT_EQ(units["/hand/torque"], "N");
 }
 
 TEST(DeviceLoop, TakesMetresAndGivesNewtonsOfASlide) {

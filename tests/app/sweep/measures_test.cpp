@@ -136,6 +136,105 @@ axis = [{ key = "coupling.kind", values = ["standard", "predictive"] },
   }
 }
 
+// Rows that are made by hand: `fill` sets some of their numbers, the rest stays 0. The arm rests.
+RunMeter metered(
+    std::uint64_t rows, int bodies,
+    const std::function<void(std::uint64_t, const RowLayout&, std::span<double>)>& fill,
+    std::uint64_t planned = 0) {
+  const ArmDescription omni = test::omni();
+  const RowLayout layout(omni.dof(), bodies);
+  RunMeter meter(omni, 0.001, planned > 0 ? planned : rows, false, nullptr, bodies);
+  std::vector<double> row(static_cast<std::size_t>(layout.stride()));
+  for (std::uint64_t k = 0; k < rows; ++k) {
+    std::ranges::fill(row, 0);
+    layout.in(std::span(row), Column::time)[0] = 0.001 * static_cast<double>(k);
+    fill(k, layout, row);
+    meter.add(row);
+  }
+  return meter;
+}
+
+// Energies over the rows, by a part of the run from 0 to 1 [J].
+RunMeter with_energies(int bodies, const std::function<double(double)>& port,
+                       const std::function<double(double)>& to_objects,
+                       const std::function<double(double)>& gain) {
+  constexpr std::uint64_t kRows = 200;
+  return metered(kRows, bodies,
+                 [&](std::uint64_t k, const RowLayout& layout, std::span<double> row) {
+                   const double part = static_cast<double>(k) / kRows;
+                   layout.in(row, Column::energy_port)[0] = port(part);
+                   layout.in(row, Column::energy_commanded)[0] = 2 * port(part);
+                   if (bodies == 0) return;
+                   layout.in(row, Column::energy_to_objects)[0] = to_objects(part);
+                   layout.in(row, Column::objects_gain)[0] = gain(part);
+                 });
+}
+
+double peak_at_the_third(double part) { return 0.03 - std::abs(part - 0.3); }
+double nothing(double) { return 0; }
+
+TEST(RunMeter, TakesTheHighestEnergiesNotTheLast) {
+  const RunMeter peak = with_energies(0, peak_at_the_third, nothing, nothing);
+  EXPECT_NEAR(peak.highest_port(), 0.03, 1e-12);
+  EXPECT_NEAR(peak.highest_commanded(), 0.06, 1e-12);
+  EXPECT_NEAR(peak.highest_beyond(), 0.03, 1e-12) << "without bodies all is beyond";
+  const RunMeter below = with_energies(
+      0, [](double part) { return -1 - part; }, nothing, nothing);
+  EXPECT_EQ(below.highest_port(), 0) << "nothing was given";
+  EXPECT_EQ(below.highest_commanded(), 0);
+}
+
+TEST(RunMeter, CountsWhatTheHandGetsBeyondWhatBodiesGave) {
+  // Bodies give 0.5 J of what the hand gets; 0.02 J at a third of the run come from nowhere.
+  const RunMeter meter = with_energies(
+      2, [](double part) { return 0.5 * part + std::max(0.0, peak_at_the_third(part) - 0.01); },
+      [](double part) { return -0.5 * part; },
+      [](double part) { return peak_at_the_third(part) / 3; });
+  EXPECT_NEAR(meter.highest_beyond(), 0.02, 1e-12);
+  EXPECT_NEAR(meter.bodies_gain(), 0.01, 1e-12);
+  EXPECT_GT(meter.highest_port(), 0.49);
+}
+
+TEST(RunMeter, TakesTheLongestWayOfAnyBody) {
+  const RunMeter meter = metered(100, 2, [](std::uint64_t k, const RowLayout& layout, auto row) {
+    const auto pose = layout.in(row, Column::body_pose);
+    const Vec3 way = k == 40 ? Vec3(0.003, -0.004, 0.012) : Vec3(Vec3::Zero());
+    for (int i = 0; i < 3; ++i) {
+      pose[static_cast<std::size_t>(i)] = 0.1 * i + 0.001;
+      pose[kPoseNumbers + static_cast<std::size_t>(i)] = 0.2 - 0.1 * i + way[i];
+    }
+  });
+  EXPECT_NEAR(meter.bodies_moved(), 0.013, 1e-12) << "there and back";
+  const RunMeter none = metered(100, 0, [](auto, const RowLayout&, auto) {});
+  EXPECT_TRUE(std::isnan(none.bodies_moved()));
+  EXPECT_TRUE(std::isnan(none.bodies_gain()));
+}
+
+// Whether the measure takes a speed over the run, by its part from 0 to 1, to die away.
+bool dies(const std::function<double(double)>& speed, std::uint64_t rows = 200,
+          std::uint64_t planned = 200) {
+  return metered(
+             rows, 0,
+             [&](std::uint64_t k, const RowLayout& layout, std::span<double> row) {
+               const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(planned);
+               layout.in(row, Column::device_velocity)[1] = speed(part);
+             },
+             planned)
+      .dies_away();
+}
+
+TEST(RunMeter, SaysThatAMotionDiesAwayWhereItDoes) {
+  EXPECT_TRUE(dies([](double part) { return std::exp(-5 * part); }));
+  EXPECT_FALSE(dies([](double part) { return std::exp(2 * part); }));
+  EXPECT_FALSE(dies([](double) { return 0.3; }));
+  EXPECT_FALSE(dies([](double part) { return part < 0.9 ? std::exp(-9 * part) : 0.5; }))
+      << "less than at first, and more than in the middle";
+  EXPECT_TRUE(dies([](double part) {
+    return part < 0.2 ? 1.0 : part < 0.9 ? 1e-9 : 1e-8;
+  })) << "nothing is left of it, whatever that does";
+  EXPECT_FALSE(dies([](double part) { return std::exp(-5 * part); }, 199)) << "it ended early";
+}
+
 // A tip that trembles at 80 Hz about a joint has an rms speed of r A w / sqrt 2. At 2 Hz it does
 // not count.
 TEST_F(Measures, ChatterIsTheFastPartOfTheTipsSpeed) {

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <cmath>
+
+#include "tests/support/random_arm.h"
 
 namespace limpid {
 namespace {
@@ -21,6 +24,37 @@ TEST(TipAlong, OfABarHasItsInertiaAndDampingOverTheLeverSquared) {
   EXPECT_NEAR(tip.damping, 0.012 / 0.04, 1e-14);
   EXPECT_NEAR(tip.lever2, 0.04, 1e-16);
   EXPECT_NEAR(spring_at_tip(tip, 10), 250, 1e-11);
+}
+
+// Led along n, the tip's kinetic energy is the least of all joint velocities that move it so; free
+// to give way, a force along n moves it more.
+TEST(TipAlong, LedMassIsTheLeastThatMovesTheTipSo) {
+  test::Random random(611);
+  for (int i = 0; i < 20; ++i) {
+    const int joints = 4 + i % 3;
+    const Eigen::MatrixXd J = random.matrix(joints, 0.2).topRows(3);
+    const Eigen::MatrixXd M = random.positive_definite(joints, 1e-4, 1e-2);
+    const Vec3 n = Vec3(random.between(-1, 1), random.between(-1, 1), 0.3).normalized();
+    const TipAlong tip = tip_along(J, M, Eigen::VectorXd::Constant(joints, 0.01), n);
+    EXPECT_GE(tip.led, tip.mass * (1 - 1e-9));
+    const Eigen::MatrixXd reach = J.transpose() * (J * J.transpose()).inverse();
+    const Eigen::MatrixXd still = Eigen::MatrixXd::Identity(joints, joints) - reach * J;
+    // v = J^+ n + N z with the z that has the least energy: (N' M N) z = -N' M J^+ n.
+    const Eigen::VectorXd base = reach * n;
+    const Eigen::VectorXd z = (still.transpose() * M * still)
+                                  .completeOrthogonalDecomposition()
+                                  .solve(-(still.transpose() * M * base));
+    const Eigen::VectorXd v = base + still * z;
+    EXPECT_LT((J * v - n).norm(), 1e-9);
+    EXPECT_NEAR(v.dot(M * v), tip.led, 1e-6 * tip.led);
+  }
+}
+
+TEST(TipAlong, LeastDampedIsWhereTheLongLeverIsIfNothingIsDamped) {
+  Eigen::MatrixXd J(3, 2);
+  J << 0.1, 0, 0, 0.3, 0, 0;
+  EXPECT_NEAR(std::abs(least_damped(J, Eigen::Vector2d(0, 0)).y()), 1, 1e-12);
+  EXPECT_NEAR(std::abs(least_damped(J, Eigen::Vector2d(0, 0.01)).x()), 1, 1e-6);
 }
 
 TEST(TipAlong, LeastDampedIsWhereTheLongLeverOrTheWeakDamperIs) {

@@ -87,7 +87,7 @@ TEST(FlatContacts, BearAThingByItsWeightOverTheirStiffnessAndKeepIt) {
       const Pose last = world.pose(0);
       EXPECT_NEAR(last.translation().z(), thing.height - kWeight / (thing.points * kStiff), 2e-6);
       EXPECT_LT((last.translation() - first.translation()).head<2>().norm(), 1e-5);
-      EXPECT_LT((last.linear() - first.linear()).norm(), 1e-4);
+      EXPECT_LT((last.linear() - first.linear()).norm(), 3e-4);
       EXPECT_EQ(world.awake(), 0);
     }
   }
@@ -123,8 +123,8 @@ TEST(FlatContacts, LetRodsRollAsTheirInertiaSays) {
       Scene scene;
       scene.gravity = 9.81 * Vec3(std::sin(slope), 0, -std::cos(slope));
       scene.add(floor);
-      const Shape shape = capsule ? Shape(Capsule{r, l}) : Shape(Cylinder{r, l});
-      Object rod = body("rod", shape, 0.05, {-0.1, 0.01, r}, 0.6);
+      Object rod = body("rod", Cylinder{r, l}, 0.05, {-0.1, 0.01, r}, 0.6);
+      if (capsule) rod.shape = Capsule{r, l};
       rod.pose.linear() = turned(std::numbers::pi / 2, Vec3::UnitX());
       scene.add(rod);
       BodyWorld world(scene);

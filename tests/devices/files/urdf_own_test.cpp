@@ -35,6 +35,19 @@ TEST(UrdfOwn, HasGravityDelayAndSprings) {
   EXPECT_DOUBLE_EQ(arm.joints[1].offset, 0.2);
 }
 
+TEST(UrdfOwn, WarnsOfWhatItDoesNotKnow) {
+  const ArmDescription arm = parse(
+      kChain +
+      "<limpid dealy='0.002'><sprnig joint='a_b'/><spring joint='a_b' stifness='2'/></limpid>");
+  EXPECT_FALSE(arm.delay);
+  const auto says = [](const char* what) { return testing::Contains(HasSubstr(what)); };
+  EXPECT_THAT(arm.warnings, says("<limpid> has the attribute 'dealy'"));
+  EXPECT_THAT(arm.warnings, says("<limpid> has the element 'sprnig'"));
+  EXPECT_THAT(arm.warnings, says("<spring> has the attribute 'stifness'"));
+  EXPECT_THAT(parse(kChain + "<limpid tip='c' gravity='0 0 -9' delay='0'/>").warnings,
+              testing::Not(says("does not know")));
+}
+
 TEST(UrdfOwn, HasTheTorqueThatMotorsBearForHours) {
   const ArmDescription plain = parse(kChain);
   EXPECT_EQ(plain.joints[0].continuous, 0);
