@@ -8,15 +8,12 @@
 #include <stdexcept>
 
 #include "core/touch/body_motion.h"
-#include "core/touch/contact_points.h"
-#include "core/touch/face_points.h"
+#include "core/touch/collision_solid.h"
 
 namespace limpid {
 namespace {
 
-constexpr double kNear = 1e-3;    // points further apart than this are ignored [m]
 constexpr double kBeside = 1e-6;  // a corner this far from a face's normal is beside the face [m]
-constexpr double kWide = 10;      // half the edge of the box that represents a plane [m]
 constexpr std::size_t kMostCorners = 128;  // of a hull whose corners are tested on a model
 constexpr int kPointsOfPair = 4;           // points of a pair that Bullet keeps
 
@@ -34,7 +31,7 @@ Vec3 middle(const btManifoldPoint& point) {
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
   block.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), plane.normal).matrix();
-  block.translation() = pose.translation() - kWide * plane.normal;
+  block.translation() = pose.translation() - CollisionSolid::kWide * plane.normal;
   return block;
 }
 
@@ -51,29 +48,7 @@ void put(std::vector<double>& into, const Vec3& v) {
 }  // namespace
 
 struct BodyGeometry::Inside {
-  // A convex part of a body, or a fixed object.
-  struct Solid {
-    int body = BodyContact::kStill;
-    int object = 0;
-    Pose in_object = Pose::Identity();
-    std::unique_ptr<btCollisionShape> shape;
-    std::unique_ptr<btTriangleMesh> triangles;
-    std::unique_ptr<TouchedModel> model;
-    btCollisionObject at;
-    std::optional<btVector3> level;  // normal of a plane
-    btScalar height = 0;             // the plane's coordinate along it [m]
-    btVector3 low, high;             // box around it, slightly enlarged
-    double least = 0;                // smallest extent [m]
-    std::optional<RoundPart> round;
-    double radius = 0, half = 0;  // of a cylinder or a capsule; half of its length [m]
-    std::vector<Vec3> corners;    // of a box or a hull that moves, in its own frame [m]
-    Vec3 middle = Vec3::Zero();   // of these corners [m]
-    bool rolls() const { return round && !round->axis.isZero(0); }
-    bool boxy() const { return shape->getShapeType() == BOX_SHAPE_PROXYTYPE; }
-    bool ball() const { return shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE; }
-    double thick() const { return model ? 0 : least; }  // a model is a skin [m]
-    double reach = 0;  // of what turns with it, from its object's place [m]
-  };
+  using Solid = CollisionSolid;
   struct Pair {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
@@ -89,20 +64,12 @@ struct BodyGeometry::Inside {
   explicit Inside(const Scene& scene);
   ~Inside();
   void add(const Scene& scene, std::size_t object, int body);
-  void add_part(const Shape& shape, const Pose& in_object, int object, int body);
   void pair(Solid& a, Solid& b);
-  static void bound(Solid& solid);
-  static bool overlap(const btVector3& low, const btVector3& high, const Solid& b);
-  static bool overlap(const Solid& a, const Solid& b) { return overlap(a.low, a.high, b); }
   static void slide_along(const Pair& pair);
   static void keep_deepest(const Pair& pair);
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
   static void find_lowest(const Pair& pair, PairPoints& result);
-  static std::optional<Convex> convex(const Solid& solid);
-  static Rod rod(const Solid& solid);
-  static std::optional<Face> face_towards(const Convex& solid, const Solid& flat);
-  static bool meets_faces_of(const Solid& solid, const Solid& flat);
   static bool find_on_face(const Pair& pair, PairPoints& result);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
   void find(const Pair& pair, PairPoints& result);
@@ -151,7 +118,7 @@ BodyGeometry::Inside::Inside(const Scene& scene)
     of_body[static_cast<std::size_t>(solid->body)].push_back(solid.get());
   }
   for (const auto& parts : of_body) {
-    double least = kWide, reach = 0;
+    double least = CollisionSolid::kWide, reach = 0;
     for (const Solid* solid : parts) {
       least = std::min(least, solid->least);
       reach = std::max(reach, solid->reach);
@@ -203,8 +170,12 @@ void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body)
   const Object& o = scene.objects[object];
   const auto number = static_cast<int>(object);
   const std::size_t before = solids.size();
-  add_part(o.shape, Pose::Identity(), number, body);
-  for (const BodyPart& part : o.parts) add_part(part.shape, part.pose, number, body);
+  const auto add_part = [&](const Shape& shape, const Pose& in_object) {
+    if (auto solid = collision_solid(shape, in_object, number, body))
+      solids.push_back(std::move(solid));
+  };
+  add_part(o.shape, Pose::Identity());
+  for (const BodyPart& part : o.parts) add_part(part.shape, part.pose);
   for (std::size_t i = before; i < solids.size(); ++i) {
     Solid& solid = *solids[i];
     const auto* plane = std::get_if<Plane>(&o.shape);
@@ -214,92 +185,8 @@ void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body)
     }
     solid.at.setWorldTransform(
         to_bullet(plane != nullptr ? block_below(*plane, o.pose) : o.pose * solid.in_object));
-    bound(solid);
+    solid.bound();
   }
-}
-
-void BodyGeometry::Inside::add_part(const Shape& shape, const Pose& in_object, int object,
-                                    int body) {
-  auto solid = std::make_unique<Solid>();
-  solid->body = body;
-  solid->object = object;
-  solid->in_object = in_object;
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    solid->shape = std::make_unique<btBoxShape>(to_bullet(Vec3(box->size / 2)));
-    solid->least = box->size.minCoeff();
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
-      solid->corners.push_back(0.5 * side.cwiseProduct(box->size));
-    }
-  } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    solid->shape = std::make_unique<btSphereShape>(sphere->radius);
-    solid->least = 2 * sphere->radius;
-    solid->round = RoundPart{in_object.translation()};
-  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    const double r = cylinder->radius;
-    solid->shape = std::make_unique<btCylinderShapeZ>(btVector3(r, r, cylinder->length / 2));
-    solid->shape->setMargin(std::min(kMargin, 0.1 * std::min(r, cylinder->length)));
-    solid->least = std::min(2 * r, cylinder->length);
-    solid->round = RoundPart{in_object.translation(), in_object.linear().col(2)};
-    solid->radius = r;
-    solid->half = cylinder->length / 2;
-  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    solid->shape = std::make_unique<btCapsuleShapeZ>(capsule->radius, capsule->length);
-    solid->least = 2 * capsule->radius;
-    solid->round = RoundPart{in_object.translation(), in_object.linear().col(2)};
-    solid->radius = capsule->radius;
-    solid->half = capsule->length / 2;
-  } else if (std::holds_alternative<Plane>(shape)) {
-    solid->shape = std::make_unique<btBoxShape>(btVector3(kWide, kWide, kWide));
-    solid->least = 1;
-  } else if (const auto* mesh = std::get_if<Mesh>(&shape); mesh != nullptr && mesh->triangles) {
-    solid->in_object = mesh->stood(Pose::Identity());
-    const TriangleMesh& triangles = *mesh->triangles;
-    const auto corners = [&](std::size_t t) {
-      std::array<btVector3, 3> all;
-      std::ranges::transform(triangles.corners(t), all.begin(), [&](const Vec3& corner) {
-        return to_bullet(Vec3(mesh->size() * (corner + triangles.middle())));
-      });
-      return all;
-    };
-    if (body == BodyContact::kStill) {
-      solid->triangles = std::make_unique<btTriangleMesh>();
-      for (std::size_t t = 0; t < triangles.triangles(); ++t) {
-        const auto at = corners(t);
-        solid->triangles->addTriangle(at[0], at[1], at[2]);
-      }
-      solid->shape = std::make_unique<btBvhTriangleMeshShape>(solid->triangles.get(), true);
-      solid->model = std::make_unique<TouchedModel>(
-          TouchedModel{mesh->triangles, MeshEdges(mesh->triangles), mesh->size()});
-      solid->at.setUserPointer(solid->model.get());
-    } else {
-      auto hull = std::make_unique<btConvexHullShape>();
-      for (std::size_t t = 0; t < triangles.triangles(); ++t) {
-        for (const btVector3& corner : corners(t)) hull->addPoint(corner, false);
-      }
-      hull->optimizeConvexHull();
-      hull->recalcLocalAabb();
-      for (int i = 0; i < hull->getNumPoints(); ++i) {
-        solid->corners.push_back(from_bullet(hull->getUnscaledPoints()[i]));
-        solid->middle += solid->corners.back() / hull->getNumPoints();
-      }
-      solid->shape = std::move(hull);
-    }
-    solid->shape->setMargin(kMargin);
-    btVector3 low, high;
-    solid->shape->getAabb(btTransform::getIdentity(), low, high);
-    const btVector3 size = high - low;
-    solid->least = std::min({size.x(), size.y(), size.z()});
-  } else {
-    static_assert(kShapes == 7);
-    return;  // a joint's stop has no place in space
-  }
-  solid->at.setCollisionShape(solid->shape.get());
-  btVector3 around;
-  btScalar radius = 0;
-  solid->shape->getBoundingSphere(around, radius);
-  solid->reach = in_object.translation().norm() + (solid->ball() ? 0 : radius);
-  solids.push_back(std::move(solid));
 }
 
 // Prepares a pair with all its memory, so that no tick has to.
@@ -313,7 +200,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   p.single = (ball(a) || ball(b)) && convex;
   p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
   p.lowest = b.model && (a.rolls() || (!a.corners.empty() && a.corners.size() <= kMostCorners));
-  p.on_face = meets_faces_of(a, b) || meets_faces_of(b, a);
+  p.on_face = a.meets_faces_of(b) || b.meets_faces_of(a);
   p.refresh = !convex || (ball(a) && ball(b)) || p.lowest;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -332,7 +219,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
     throw std::logic_error("no room was made for the contacts of a pair of shapes");
   p.manifold = all[0];
   p.manifold->clearManifold();
-  const double near = std::min(kNear, 0.1 * std::min(a.least, b.least));
+  const double near = std::min(CollisionSolid::kNear, 0.1 * std::min(a.least, b.least));
   p.manifold->setContactBreakingThreshold(near);
   p.manifold->setContactProcessingThreshold(near);
   pairs.push_back(p);
@@ -343,18 +230,6 @@ bool BodyGeometry::Inside::allowed(const Pair& pair) const {
     return (two[0] == pair.a->body && two[1] == pair.b->body) ||
            (two[1] == pair.a->body && two[0] == pair.b->body);
   });
-}
-
-void BodyGeometry::Inside::bound(Solid& solid) {
-  solid.shape->getAabb(solid.at.getWorldTransform(), solid.low, solid.high);
-  const btVector3 more(kNear, kNear, kNear);
-  solid.low -= more;
-  solid.high += more;
-}
-
-bool BodyGeometry::Inside::overlap(const btVector3& low, const btVector3& high, const Solid& b) {
-  return low.x() <= b.high.x() && b.low.x() <= high.x() && low.y() <= b.high.y() &&
-         b.low.y() <= high.y() && low.z() <= b.high.z() && b.low.z() <= high.z();
 }
 
 // Moves a point's end on a plane along below the body's: a plane is the same everywhere, so a body
@@ -383,9 +258,9 @@ void BodyGeometry::Inside::keep_deepest(const Pair& p) {
   }
 }
 
-// Treats a new point of a pair as one that has just gone, moved, and keeps its state: the nearest of
-// them first. Otherwise bodies on points that come and go would sink; of two balls Bullet makes a
-// new point every time.
+// Treats a new point of a pair as one that has just gone, moved, and keeps its state: the nearest
+// of them first. Otherwise bodies on points that come and go would sink; of two balls Bullet makes
+// a new point every time.
 void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
   btPersistentManifold& m = *p.manifold;
   const auto is_there = [&](const BodyContact* c) {
@@ -454,12 +329,13 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
   };
   for (const Vec3& corner : p.a->corners) try_at(at * to_bullet(corner));
   if (p.a->rolls()) {
-    const Rod one = rod(*p.a);
+    const Rod one = p.a->rod();
     for (const double side : {-1.0, 1.0}) {
       const Vec3 end = one.center + side * one.half * one.axis;
       btVector3 normal;
       btScalar distance = 0;
-      if (!face_below(*p.b, to_bullet(end), middle, one.radius + kNear, normal, distance))
+      if (!face_below(*p.b, to_bullet(end), middle, one.radius + CollisionSolid::kNear, normal,
+                      distance))
         continue;
       for (const Vec3& point : end_points(one, end, from_bullet(normal)).all())
         try_at(to_bullet(point));
@@ -471,48 +347,13 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
   }
 }
 
-// Returns a solid as what it may meet a face with; nothing: it is no hull and no rod.
-std::optional<Convex> BodyGeometry::Inside::convex(const Solid& solid) {
-  const Pose pose = from_bullet(solid.at.getWorldTransform());
-  if (solid.rolls()) return rod(solid);
-  if (solid.corners.empty()) return std::nullopt;
-  return Hull{.pose = pose, .corners = solid.corners, .center = pose * solid.middle};
-}
-
-Rod BodyGeometry::Inside::rod(const Solid& solid) {
-  const btTransform& at = solid.at.getWorldTransform();
-  return {.center = from_bullet(at.getOrigin()),
-          .axis = from_bullet(at.getBasis().getColumn(2)),
-          .radius = solid.radius,
-          .half = solid.half,
-          .round_ends = solid.shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE};
-}
-
-// Returns the flat face of a solid that is towards another one; nothing if it has none there.
-std::optional<Face> BodyGeometry::Inside::face_towards(const Convex& solid, const Solid& flat) {
-  if (flat.level) {
-    Face plane{.center = flat.height * from_bullet(*flat.level),
-               .normal = from_bullet(*flat.level)};
-    plane.along[0] = plane.normal.unitOrthogonal();
-    plane.along[1] = plane.normal.cross(plane.along[0]);
-    return plane;
-  }
-  if (flat.boxy()) {
-    const auto& box = static_cast<const btBoxShape&>(*flat.shape);
-    return face_of_box(solid, from_bullet(flat.at.getWorldTransform()),
-                       from_bullet(box.getHalfExtentsWithMargin()));
-  }
-  const Rod rod_of_it = rod(flat);
-  return rod_of_it.round_ends ? std::nullopt : end_of_cylinder(solid, rod_of_it);
-}
-
 // Finds the points where one of a pair meets a flat face of the other; false if there is none.
 bool BodyGeometry::Inside::find_on_face(const Pair& p, PairPoints& result) {
   for (const bool first : {true, false}) {
     const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
-    if (!meets_faces_of(one, flat)) continue;
-    const auto solid = convex(one);
-    const auto face = face_towards(*solid, flat);
+    if (!one.meets_faces_of(flat)) continue;
+    const auto solid = one.convex();
+    const auto face = flat.face_towards(*solid);
     if (!face) continue;
     const auto found = points_on_face(*solid, *face, p.manifold->getContactBreakingThreshold());
     if (!found) continue;
@@ -525,14 +366,6 @@ bool BodyGeometry::Inside::find_on_face(const Pair& p, PairPoints& result) {
     return true;
   }
   return false;
-}
-
-// Whether a solid may meet flat faces of another one by its own geometry. Boxes among themselves
-// meet in points that Bullet finds well.
-bool BodyGeometry::Inside::meets_faces_of(const Solid& solid, const Solid& flat) {
-  if (!solid.rolls() && solid.corners.empty()) return false;
-  if (flat.boxy()) return flat.level || !solid.boxy();
-  return flat.rolls();
 }
 
 void BodyGeometry::Inside::find(const Pair& p, PairPoints& result) {
@@ -567,7 +400,7 @@ void BodyGeometry::Inside::meet(Pair& p) {
 // The deepest point of a pair as it stands, in place of its points; null: the two do not touch.
 const btManifoldPoint* BodyGeometry::Inside::deepest(const Pair& p) {
   p.manifold->clearManifold();
-  if (!overlap(*p.a, *p.b)) return nullptr;
+  if (!p.a->overlaps(*p.b)) return nullptr;
   const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
                                       p.a->at.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper on_b(nullptr, p.b->shape.get(), &p.b->at,
@@ -593,7 +426,7 @@ void BodyGeometry::Inside::meet_on(const Way& way, Pair& p, Solid& moving, Meeti
   const auto deepest_at = [&](double part) {
     const Pose there = pose_between(way.from, way.to, way.center, part);
     moving.at.setWorldTransform(to_bullet(there * moving.in_object));
-    bound(moving);
+    moving.bound();
     return deepest(p);
   };
   const auto depth = [](const btManifoldPoint* point) {
@@ -662,7 +495,7 @@ BodyGeometry& BodyGeometry::operator=(BodyGeometry&&) noexcept = default;
 void BodyGeometry::place(int body, const Pose& pose) {
   for (Inside::Solid* solid : in_->of_body[static_cast<std::size_t>(body)]) {
     solid->at.setWorldTransform(to_bullet(pose * solid->in_object));
-    Inside::bound(*solid);
+    solid->bound();
   }
 }
 
@@ -677,7 +510,7 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake) {
   };
   for (Inside::Pair& p : in.pairs) {
     if (moves(*p.a) || moves(*p.b)) {
-      if (Inside::overlap(*p.a, *p.b)) {
+      if (p.a->overlaps(*p.b)) {
         in.meet(p);
       } else if (p.points > 0) {
         p.manifold->clearManifold();
@@ -702,15 +535,15 @@ Meeting BodyGeometry::first_meeting(int body, const Pose& from, const Pose& to, 
   Meeting first;
   for (Inside::Solid* solid : in_->of_body[static_cast<std::size_t>(body)]) {
     solid->at.setWorldTransform(to_bullet(from * solid->in_object));
-    Inside::bound(*solid);
+    solid->bound();
     btVector3 low = solid->low, high = solid->high;  // of the box around all of its way
     solid->at.setWorldTransform(to_bullet(to * solid->in_object));
-    Inside::bound(*solid);
+    solid->bound();
     low.setMin(solid->low);
     high.setMax(solid->high);
     for (Inside::Pair& p : in_->pairs) {
       if ((p.a != solid && p.b != solid) || p.b->level) continue;
-      if (!Inside::overlap(low, high, p.a == solid ? *p.b : *p.a)) continue;
+      if (!(p.a == solid ? *p.b : *p.a).overlaps(low, high)) continue;
       // Puts its points aside.
       std::array<btManifoldPoint, kPointsOfPair> points;
       const int count = p.manifold->getNumContacts();
@@ -733,7 +566,7 @@ int BodyGeometry::left_out() const { return in_->left_out; }
 bool BodyGeometry::near(int a, int b) const {
   for (const Inside::Solid* one : in_->of_body[static_cast<std::size_t>(a)]) {
     for (const Inside::Solid* two : in_->of_body[static_cast<std::size_t>(b)]) {
-      if (Inside::overlap(*one, *two)) return true;
+      if (one->overlaps(*two)) return true;
     }
   }
   return false;

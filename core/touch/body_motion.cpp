@@ -199,9 +199,11 @@ BodyMotion::Lever BodyMotion::lever(const Vec3& point, double T) const {
 // by an angle, along a chord.
 BodyMotion::Lever BodyMotion::middle(const Vec3& point, double T) const {
   if (kind_ == Kind::hinge) {
-    const double angle = T * U_, half = std::sin(angle / 2);
-    const double along = std::abs(angle) > kStraight ? std::sin(angle) / angle : 1;
-    const double inwards = std::abs(angle) > kStraight ? 2 * half * half / angle : angle / 2;
+    const double angle = T * U_;
+    const SineCosine half = sine_cosine(angle / 2);
+    const bool bent = std::abs(angle) > kStraight;
+    const double along = bent ? 2 * half.sine * half.cosine / angle : 1;
+    const double inwards = bent ? 2 * half.sine * half.sine / angle : angle / 2;
     const Vec3 r = point - pivot_, c = p_ - pivot_;
     return along * r + inwards * joint_.axis.cross(r) - c - 0.5 * T * sd_ * joint_.axis.cross(c);
   }

@@ -181,11 +181,10 @@ template <class Visit>
 void crossings(const Rim& rim, const Face& face, const Visit& visit) {
   // Solves p cos + q sin = c.
   const auto solve = [&](double p, double q, double c) {
-    const double size = std::hypot(p, q);
-    if (!(std::abs(c) < size)) return;
-    const double middle = std::atan2(q, p), turn = std::acos(c / size);
-    for (const double angle : {middle - turn, middle + turn}) {
-      const Vec3 at = rim.at(std::cos(angle), std::sin(angle));
+    const double size2 = p * p + q * q;
+    if (!(c * c < size2)) return;
+    for (const double root : {-std::sqrt(size2 - c * c), std::sqrt(size2 - c * c)}) {
+      const Vec3 at = rim.at((c * p - q * root) / size2, (c * q + p * root) / size2);
       if (face.bounds == Face::Bounds::circle || face.over(at)) visit(at);
     }
   };

@@ -305,8 +305,8 @@ class LIMPID_API SimulatedLoop : public Loop {
     std::uint64_t rows = 0;
     bool diverged = false;
     std::string why;  // what was unstable, and when; else empty
-    // What else no run should do, a sentence each: the coupling gave energy, the tip moved as no
-    // hand does.
+    // Sentences on what else no run should do: the coupling gave energy, the tip moved as no hand
+    // does.
     std::vector<std::string> warnings;
   };
   // Leads a hand along a path as fast as it goes, with the present settings: the rows of `limpid

@@ -46,8 +46,7 @@ py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
       return true;
     });
   }
-  return py::make_tuple(as_rows(std::move(all), kept.size()), end.diverged, end.why,
-                        end.warnings);
+  return py::make_tuple(as_rows(std::move(all), kept.size()), end.diverged, end.why, end.warnings);
 }
 
 Array step(SimulatedLoop& loop, const Array& target, double grip, bool magnet,

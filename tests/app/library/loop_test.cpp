@@ -147,7 +147,8 @@ TEST(SimulatedLoop, StepsAndRunsGiveTheRowsOfTheProgramsRun) {
   EXPECT_TRUE(end.warnings.empty());
 }
 
-// As in `limpid run`: far below eta_min, in a stiff hand without damping, the proposed law shakes.
+// The proposed law shakes far below eta_min in a stiff hand without damping; `limpid run` warns,
+// too.
 TEST(SimulatedLoop, WarnsOfARunThatGivesEnergyOrMovesAsNoHandDoes) {
   LoopOptions options = table("proposed", 0.05);
   options.settings.insert(options.settings.end(), {"hand.stiffness=3000", "hand.damping=0"});

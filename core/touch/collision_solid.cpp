@@ -1,0 +1,158 @@
+#include "core/touch/collision_solid.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace limpid {
+namespace {
+
+std::vector<Vec3> corners_of(const Box& box) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+    corners.push_back(0.5 * side.cwiseProduct(box.size));
+  }
+  return corners;
+}
+
+// Adds a model: its triangles if it stands still, else its convex hull.
+void add_model(const Mesh& mesh, CollisionSolid& solid) {
+  solid.in_object = mesh.stood(Pose::Identity());
+  const TriangleMesh& triangles = *mesh.triangles;
+  const auto corners = [&](std::size_t t) {
+    std::array<btVector3, 3> all;
+    std::ranges::transform(triangles.corners(t), all.begin(), [&](const Vec3& corner) {
+      return to_bullet(Vec3(mesh.size() * (corner + triangles.middle())));
+    });
+    return all;
+  };
+  if (solid.body == BodyContact::kStill) {
+    solid.triangles = std::make_unique<btTriangleMesh>();
+    for (std::size_t t = 0; t < triangles.triangles(); ++t) {
+      const auto at = corners(t);
+      solid.triangles->addTriangle(at[0], at[1], at[2]);
+    }
+    solid.shape = std::make_unique<btBvhTriangleMeshShape>(solid.triangles.get(), true);
+    solid.model = std::make_unique<TouchedModel>(
+        TouchedModel{mesh.triangles, MeshEdges(mesh.triangles), mesh.size()});
+    solid.at.setUserPointer(solid.model.get());
+  } else {
+    auto hull = std::make_unique<btConvexHullShape>();
+    for (std::size_t t = 0; t < triangles.triangles(); ++t) {
+      for (const btVector3& corner : corners(t)) hull->addPoint(corner, false);
+    }
+    hull->optimizeConvexHull();
+    hull->recalcLocalAabb();
+    for (int i = 0; i < hull->getNumPoints(); ++i) {
+      solid.corners.push_back(from_bullet(hull->getUnscaledPoints()[i]));
+      solid.middle += solid.corners.back() / hull->getNumPoints();
+    }
+    solid.shape = std::move(hull);
+  }
+  solid.shape->setMargin(kMargin);
+  btVector3 low, high;
+  solid.shape->getAabb(btTransform::getIdentity(), low, high);
+  const btVector3 size = high - low;
+  solid.least = std::min({size.x(), size.y(), size.z()});
+}
+
+}  // namespace
+
+void CollisionSolid::bound() {
+  shape->getAabb(at.getWorldTransform(), low, high);
+  const btVector3 more(kNear, kNear, kNear);
+  low -= more;
+  high += more;
+}
+
+bool CollisionSolid::overlaps(const btVector3& box_low, const btVector3& box_high) const {
+  return box_low.x() <= high.x() && low.x() <= box_high.x() && box_low.y() <= high.y() &&
+         low.y() <= box_high.y() && box_low.z() <= high.z() && low.z() <= box_high.z();
+}
+
+std::optional<Convex> CollisionSolid::convex() const {
+  const Pose pose = from_bullet(at.getWorldTransform());
+  if (rolls()) return rod();
+  if (corners.empty()) return std::nullopt;
+  return Hull{.pose = pose, .corners = corners, .center = pose * middle};
+}
+
+Rod CollisionSolid::rod() const {
+  const btTransform& now = at.getWorldTransform();
+  return {.center = from_bullet(now.getOrigin()),
+          .axis = from_bullet(now.getBasis().getColumn(2)),
+          .radius = radius,
+          .half = half,
+          .round_ends = shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE};
+}
+
+std::optional<Face> CollisionSolid::face_towards(const Convex& other) const {
+  if (level) {
+    Face plane{.center = height * from_bullet(*level), .normal = from_bullet(*level)};
+    plane.along[0] = plane.normal.unitOrthogonal();
+    plane.along[1] = plane.normal.cross(plane.along[0]);
+    return plane;
+  }
+  if (boxy()) {
+    const auto& box = static_cast<const btBoxShape&>(*shape);
+    return face_of_box(other, from_bullet(at.getWorldTransform()),
+                       from_bullet(box.getHalfExtentsWithMargin()));
+  }
+  const Rod rod_of_it = rod();
+  return rod_of_it.round_ends ? std::nullopt : end_of_cylinder(other, rod_of_it);
+}
+
+bool CollisionSolid::meets_faces_of(const CollisionSolid& flat) const {
+  if (!rolls() && corners.empty()) return false;
+  if (flat.boxy()) return flat.level || !boxy();
+  return flat.rolls();
+}
+
+std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& in_object,
+                                                int object, int body) {
+  auto solid = std::make_unique<CollisionSolid>();
+  solid->body = body;
+  solid->object = object;
+  solid->in_object = in_object;
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    solid->shape = std::make_unique<btBoxShape>(to_bullet(Vec3(box->size / 2)));
+    solid->least = box->size.minCoeff();
+    solid->corners = corners_of(*box);
+  } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    solid->shape = std::make_unique<btSphereShape>(sphere->radius);
+    solid->least = 2 * sphere->radius;
+    solid->round = RoundPart{in_object.translation()};
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    const double r = cylinder->radius;
+    solid->shape = std::make_unique<btCylinderShapeZ>(btVector3(r, r, cylinder->length / 2));
+    solid->shape->setMargin(std::min(kMargin, 0.1 * std::min(r, cylinder->length)));
+    solid->least = std::min(2 * r, cylinder->length);
+    solid->round = RoundPart{in_object.translation(), in_object.linear().col(2)};
+    solid->radius = r;
+    solid->half = cylinder->length / 2;
+  } else if (const auto* capsule = std::get_if<Capsule>(&shape)) {
+    solid->shape = std::make_unique<btCapsuleShapeZ>(capsule->radius, capsule->length);
+    solid->least = 2 * capsule->radius;
+    solid->round = RoundPart{in_object.translation(), in_object.linear().col(2)};
+    solid->radius = capsule->radius;
+    solid->half = capsule->length / 2;
+  } else if (std::holds_alternative<Plane>(shape)) {
+    solid->shape = std::make_unique<btBoxShape>(
+        btVector3(CollisionSolid::kWide, CollisionSolid::kWide, CollisionSolid::kWide));
+    solid->least = 1;
+  } else if (const auto* mesh = std::get_if<Mesh>(&shape); mesh != nullptr && mesh->triangles) {
+    add_model(*mesh, *solid);
+  } else {
+    static_assert(kShapes == 7);
+    return nullptr;  // a joint's stop
+  }
+  solid->at.setCollisionShape(solid->shape.get());
+  btVector3 around;
+  btScalar radius = 0;
+  solid->shape->getBoundingSphere(around, radius);
+  solid->reach = in_object.translation().norm() + (solid->ball() ? 0 : radius);
+  return solid;
+}
+
+}  // namespace limpid
