@@ -243,7 +243,7 @@ std::vector<std::pair<std::size_t, std::size_t>> overlapping(const Scene& scene)
   for (const Object& object : scene.objects) {
     if (object.body) geometry.place(bodies++, object.pose);
   }
-  geometry.search(std::vector<std::uint8_t>(static_cast<std::size_t>(bodies), 1));
+  geometry.search(std::vector<std::uint8_t>(static_cast<std::size_t>(bodies), 1), {});
   for (const BodyContact* contact : geometry.points()) {
     if (contact->depth <= kInEachOther) continue;
     const auto [i, j] = std::minmax(contact->object_a, contact->object_b);

@@ -42,6 +42,11 @@ struct Bodies {
     return {body,
             motion.rolling(point, place(body, rolls->center), directed(body, rolls->axis), T)};
   }
+  // An end at the place where a contact is in the middle of the tick.
+  BodyEnd end_in_the_middle(int body, const Vec3& point) const {
+    if (!moves(body)) return {};
+    return {body, point - (*this)[body].turns_at(0.5 * T)};
+  }
   Vec3 velocity(const BodyEnd& end) const {  // mean over the tick [m/s]
     if (end.body == BodyContact::kStill) return Vec3::Zero();
     return (*this)[end.body].velocity(end.lever);

@@ -49,16 +49,29 @@ void put(std::vector<double>& into, const Vec3& v) {
 
 struct BodyGeometry::Inside {
   using Solid = CollisionSolid;
+  // Points that a pair has by its own geometry.
+  struct Own {
+    struct Point {
+      Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // [m]
+      Vec3 normal = Vec3::UnitZ();                    // out of b, unit
+      double distance = 0;                            // negative: inside [m]
+    };
+    std::array<Point, kPointsOfPair> points{};
+    std::size_t count = 0;
+    std::span<const Point> all() const { return std::span(points).first(count); }
+  };
   struct Pair {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
-    bool single = false;   // the two meet in one point at most
-    bool refresh = true;   // its search does not remove points that are gone
-    bool lowest = false;   // on a model: the lowest points of a are tested
-    bool rolls = false;    // a round shape: points do not stay where they are on it
-    bool on_face = false;  // one may meet flat faces of the other by its own geometry
-    int points = 0;        // points of its manifold
+    bool single = false;  // the two meet in one point at most
+    bool refresh = true;  // its search does not remove points that are gone
+    bool lowest = false;  // on a model: the lowest points of a are tested
+    bool rolls = false;   // a round shape: points do not stay where they are on it
+    bool own = false;     // it may meet by its own geometry
+    int points = 0;       // points of its manifold
+    Own next{};           // its points in the middle of the tick, if they are known
+    double goes = 0;      // way of a point until then, at most [m]
   };
 
   explicit Inside(const Scene& scene);
@@ -70,11 +83,16 @@ struct BodyGeometry::Inside {
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
   static void find_lowest(const Pair& pair, PairPoints& result);
-  static bool find_on_face(const Pair& pair, PairPoints& result);
+  enum class Meets : std::uint8_t { a_on_b, b_on_a, sides };
+  static std::optional<Own> own_points(const Pair& pair, Meets meets, const Pose& a, const Pose& b,
+                                       double near);
+  bool find_own(Pair& pair, PairPoints& result);
+  Pose next_pose(const Solid& solid) const;
+  static void follow(const Pair& pair, BodyContact& contact);
   static void go_on(const Pair& pair, std::span<BodyContact* const> before);
-  void find(const Pair& pair, PairPoints& result);
+  void find(Pair& pair, PairPoints& result);
   void meet(Pair& pair);
-  const btManifoldPoint* deepest(const Pair& pair);
+  const btManifoldPoint* deepest(Pair& pair);
   // A body's way, as first_meeting() has it.
   struct Way {
     const Pose &from, &to;
@@ -97,6 +115,7 @@ struct BodyGeometry::Inside {
   std::vector<BodyContact> pool;
   std::vector<BodyContact*> free_ones, points, last;  // last: the points of the search before
   int left_out = 0;
+  std::span<const Pose> next;  // poses of bodies in the middle of the tick, during a search
 
   static btDefaultCollisionConstructionInfo sizes() {
     btDefaultCollisionConstructionInfo info;
@@ -200,7 +219,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   p.single = (ball(a) || ball(b)) && convex;
   p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
   p.lowest = b.model && (a.rolls() || (!a.corners.empty() && a.corners.size() <= kMostCorners));
-  p.on_face = a.meets_faces_of(b) || b.meets_faces_of(a);
+  p.own = a.meets_faces_of(b) || b.meets_faces_of(a) || (a.rolls() && b.rolls());
   p.refresh = !convex || (ball(a) && ball(b)) || p.lowest;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -329,7 +348,7 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
   };
   for (const Vec3& corner : p.a->corners) try_at(at * to_bullet(corner));
   if (p.a->rolls()) {
-    const Rod one = p.a->rod();
+    const Rod one = p.a->rod(from_bullet(at));
     for (const double side : {-1.0, 1.0}) {
       const Vec3 end = one.center + side * one.half * one.axis;
       btVector3 normal;
@@ -347,30 +366,82 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
   }
 }
 
-// Finds the points where one of a pair meets a flat face of the other; false if there is none.
-bool BodyGeometry::Inside::find_on_face(const Pair& p, PairPoints& result) {
-  for (const bool first : {true, false}) {
+// Returns the points of a pair at these poses, if it meets in this way.
+std::optional<BodyGeometry::Inside::Own> BodyGeometry::Inside::own_points(
+    const Pair& p, Meets meets, const Pose& a, const Pose& b, double near) {
+  std::optional<FacePoints> found;
+  if (meets == Meets::sides) {
+    if (p.a->rolls() && p.b->rolls()) found = points_of_sides(p.a->rod(a), p.b->rod(b), near);
+  } else {
+    const bool first = meets == Meets::a_on_b;
     const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
-    if (!one.meets_faces_of(flat)) continue;
-    const auto solid = one.convex();
-    const auto face = flat.face_towards(*solid);
-    if (!face) continue;
-    const auto found = points_on_face(*solid, *face, p.manifold->getContactBreakingThreshold());
-    if (!found) continue;
+    if (!one.meets_faces_of(flat)) return std::nullopt;
+    const auto solid = one.convex(first ? a : b);
+    const auto face = flat.face_towards(*solid, first ? b : a);
+    if (face) found = points_on_face(*solid, *face, near);
+  }
+  if (!found) return std::nullopt;
+  Own own;
+  for (const FacePoints::Point& point : found->all()) {
+    const Vec3 other = point.at - point.distance * point.normal;
+    const bool on_a = meets != Meets::b_on_a;
+    own.points[own.count++] = {on_a ? point.at : other, on_a ? other : point.at,
+                               on_a ? point.normal : Vec3(-point.normal), point.distance};
+  }
+  return own;
+}
+
+// Finds the points where a pair meets by its own geometry, and where they are in the middle of the
+// tick; false if it does not meet so.
+bool BodyGeometry::Inside::find_own(Pair& p, PairPoints& result) {
+  const Pose a = from_bullet(p.a->at.getWorldTransform());
+  const Pose b = from_bullet(p.b->at.getWorldTransform());
+  const double near = p.manifold->getContactBreakingThreshold();
+  p.next.count = 0;
+  for (const Meets meets : {Meets::a_on_b, Meets::b_on_a, Meets::sides}) {
+    const auto own = own_points(p, meets, a, b, near);
+    if (!own) continue;
     p.manifold->clearManifold();
-    for (const FacePoints::Point& point : found->all()) {
-      const Vec3 on_face = point.at - point.distance * point.normal;
-      const Vec3 normal = first ? point.normal : Vec3(-point.normal);  // out of the second
-      result.add(to_bullet(normal), to_bullet(first ? on_face : point.at), point.distance);
-    }
+    for (const auto& point : own->all())
+      result.add(to_bullet(point.normal), to_bullet(point.on_b), point.distance);
+    if (own->count == 0 || next.empty()) return true;
+    const Pose next_a = next_pose(*p.a), next_b = next_pose(*p.b);
+    p.next = own_points(p, meets, next_a, next_b, near + CollisionSolid::kNear).value_or(Own{});
+    // A point may go as far as rolling takes it; further off it is another one.
+    const double turned =
+        (next_a.linear() - a.linear()).norm() + (next_b.linear() - b.linear()).norm();
+    p.goes =
+        2 * ((next_a.translation() - a.translation()).norm() +
+             (next_b.translation() - b.translation()).norm() + turned * (p.a->reach + p.b->reach));
     return true;
   }
   return false;
 }
 
-void BodyGeometry::Inside::find(const Pair& p, PairPoints& result) {
+Pose BodyGeometry::Inside::next_pose(const Solid& solid) const {
+  if (solid.body == BodyContact::kStill) return from_bullet(solid.at.getWorldTransform());
+  return next[static_cast<std::size_t>(solid.body)] * solid.in_object;
+}
+
+// Tells a contact where it goes within the tick.
+void BodyGeometry::Inside::follow(const Pair& p, BodyContact& c) {
+  c.goes_on = false;
+  double least = p.goes * p.goes;
+  for (const auto& point : p.next.all()) {
+    const Vec3 there = 0.5 * (point.on_a + point.on_b);
+    const double away = (there - c.point).squaredNorm();
+    if (away > least) continue;
+    least = away;
+    c.goes_on = true;
+    c.next_point = there;
+    c.next_normal = point.normal;
+  }
+}
+
+void BodyGeometry::Inside::find(Pair& p, PairPoints& result) {
   result.setPersistentManifold(p.manifold);
-  if (p.on_face && find_on_face(p, result)) return;
+  if (p.own && find_own(p, result)) return;
+  p.next.count = 0;
   if (p.lowest) find_lowest(p, result);
   result.only_edges = p.lowest;
   p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
@@ -398,7 +469,7 @@ void BodyGeometry::Inside::meet(Pair& p) {
 }
 
 // The deepest point of a pair as it stands, in place of its points; null: the two do not touch.
-const btManifoldPoint* BodyGeometry::Inside::deepest(const Pair& p) {
+const btManifoldPoint* BodyGeometry::Inside::deepest(Pair& p) {
   p.manifold->clearManifold();
   if (!p.a->overlaps(*p.b)) return nullptr;
   const btCollisionObjectWrapper on_a(nullptr, p.a->shape.get(), &p.a->at,
@@ -482,6 +553,7 @@ void BodyGeometry::Inside::take(Pair& p) {
     c->normal = (turned ? -1.0 : 1.0) * from_bullet(point.m_normalWorldOnB);
     c->point = middle(point);
     c->depth = -point.getDistance();
+    follow(p, *c);
     c->seen = true;
     points.push_back(c);  // its capacity covers the whole pool
   }
@@ -499,8 +571,9 @@ void BodyGeometry::place(int body, const Pose& pose) {
   }
 }
 
-void BodyGeometry::search(std::span<const std::uint8_t> awake) {
+void BodyGeometry::search(std::span<const std::uint8_t> awake, std::span<const Pose> next) {
   Inside& in = *in_;
+  in.next = next;
   std::swap(in.points, in.last);
   in.points.clear();
   in.left_out = 0;
@@ -523,6 +596,7 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake) {
     if (c->seen) continue;
     in.free_ones.push_back(c);
   }
+  in.next = {};
 }
 
 bool BodyGeometry::may_pass(int body, double way, double turned) const {

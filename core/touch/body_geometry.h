@@ -30,6 +30,9 @@ struct BodyContact {
   Vec3 normal = Vec3::UnitZ();                             // out of b, unit
   double depth = 0;                                        // negative: apart [m]
   const RoundPart *round_a = nullptr, *round_b = nullptr;  // its sides that roll
+  // Where the contact is, and its normal, in the middle of the tick, as bodies go; if it is known.
+  bool goes_on = false;
+  Vec3 next_point = Vec3::Zero(), next_normal = Vec3::UnitZ();
 
   // The rest is kept from tick to tick.
   double lost = 0;  // energy lost in its damper and in impacts, not yet paid back [J]
@@ -72,8 +75,9 @@ class BodyGeometry {
   static constexpr int kMost = 512;
 
   void place(int body, const Pose& pose);
-  // Updates the points of all pairs with an awake body, in the order of the pairs.
-  void search(std::span<const std::uint8_t> awake);
+  // Updates the points of all pairs with an awake body, in the order of the pairs. `next`: poses of
+  // bodies in the middle of the tick.
+  void search(std::span<const std::uint8_t> awake, std::span<const Pose> next);
   std::span<BodyContact* const> points() const;
   // True if a body that goes so far, and turns by so much, may pass something between two searches
   // [m, rad].

@@ -255,6 +255,18 @@ void BodyMotion::fly(double time) {
   pose_.translation() = p_ - pose_.linear() * c_;
 }
 
+Vec3 BodyMotion::turns_at(double time) const {
+  return kind_ == Kind::ball ? p_ : Vec3(p_ + time * speed());
+}
+
+Pose BodyMotion::ahead(double time) const {
+  Pose there = pose_;
+  if (kind_ != Kind::slider)
+    there.linear() = rotation_again(cayley(time * spin()) * pose_.linear());
+  there.translation() = turns_at(time) - there.linear() * turns_about();
+  return there;
+}
+
 void BodyMotion::set_speed(const Vec3& speed, const Vec3& spin) {
   sd_ = joint_.axis.dot(kind_ == Kind::slider ? speed : spin);
   if (kind_ == Kind::free) v_ = speed;

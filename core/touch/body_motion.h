@@ -106,7 +106,11 @@ class BodyMotion {
     sd_ *= by;
   }
 
-  const Pose& pose() const { return pose_; }   // of its object
+  const Pose& pose() const { return pose_; }  // of its object
+  // Where the body is after some time at its present velocities [s]; the point where it turns
+  // about.
+  Pose ahead(double time) const;
+  Vec3 turns_at(double time) const;
   const Vec3& turns_at() const { return p_; }  // the point where it turns about [m]
   Vec3 center() const { return kind_ == Kind::ball ? Vec3(pose_ * c_) : p_; }  // of mass [m]
   Vec3 speed() const;  // of the centre [m/s]

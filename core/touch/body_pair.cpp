@@ -35,12 +35,18 @@ double stiffness(const BodyContact& contact, const Bodies& bodies) {
 
 void BodyPair::prepare(Bodies& bodies) {
   BodyContact& c = *contact;
-  end_a = bodies.end_at(a, c.point, c.round_a);
-  end_b = bodies.end_at(b, c.point, c.round_b);
+  const Vec3& normal = c.goes_on ? c.next_normal : c.normal;
+  if (c.goes_on) {
+    end_a = bodies.end_in_the_middle(a, c.next_point);
+    end_b = bodies.end_in_the_middle(b, c.next_point);
+  } else {
+    end_a = bodies.end_at(a, c.point, c.round_a);
+    end_b = bodies.end_at(b, c.point, c.round_b);
+  }
   K = stiffness(c, bodies);
-  frame.col(0) = c.normal;
-  frame.col(1) = c.normal.unitOrthogonal();
-  frame.col(2) = c.normal.cross(frame.col(1));
+  frame.col(0) = normal;
+  frame.col(1) = normal.unitOrthogonal();
+  frame.col(2) = normal.cross(frame.col(1));
   Mat3 answer = bodies.answer(end_a);
   if (end_b.body != BodyContact::kStill) answer += bodies.answer(end_b);
   turn_into(frame, answer, W);

@@ -164,6 +164,7 @@ class BodyWorld {
   std::vector<int> quick_;                  // bodies that wake others
   std::vector<int> passing_;                // bodies that may pass something in a tick
   std::vector<Pose> started_;               // their poses at its start
+  std::vector<Pose> next_;                  // poses of all in the middle of the tick
   std::vector<int> body_of_;                // by object
   BodyGeometry geometry_;
   BodyConstraints constraints_;

@@ -71,23 +71,21 @@ bool CollisionSolid::overlaps(const btVector3& box_low, const btVector3& box_hig
          low.y() <= box_high.y() && box_low.z() <= high.z() && low.z() <= box_high.z();
 }
 
-std::optional<Convex> CollisionSolid::convex() const {
-  const Pose pose = from_bullet(at.getWorldTransform());
-  if (rolls()) return rod();
+std::optional<Convex> CollisionSolid::convex(const Pose& pose) const {
+  if (round) return rod(pose);
   if (corners.empty()) return std::nullopt;
   return Hull{.pose = pose, .corners = corners, .center = pose * middle};
 }
 
-Rod CollisionSolid::rod() const {
-  const btTransform& now = at.getWorldTransform();
-  return {.center = from_bullet(now.getOrigin()),
-          .axis = from_bullet(now.getBasis().getColumn(2)),
+Rod CollisionSolid::rod(const Pose& pose) const {
+  return {.center = pose.translation(),
+          .axis = pose.linear().col(2),
           .radius = radius,
           .half = half,
-          .round_ends = shape->getShapeType() == CAPSULE_SHAPE_PROXYTYPE};
+          .round_ends = shape->getShapeType() != CYLINDER_SHAPE_PROXYTYPE};
 }
 
-std::optional<Face> CollisionSolid::face_towards(const Convex& other) const {
+std::optional<Face> CollisionSolid::face_towards(const Convex& other, const Pose& pose) const {
   if (level) {
     Face plane{.center = height * from_bullet(*level), .normal = from_bullet(*level)};
     plane.along[0] = plane.normal.unitOrthogonal();
@@ -96,17 +94,16 @@ std::optional<Face> CollisionSolid::face_towards(const Convex& other) const {
   }
   if (boxy()) {
     const auto& box = static_cast<const btBoxShape&>(*shape);
-    return face_of_box(other, from_bullet(at.getWorldTransform()),
-                       from_bullet(box.getHalfExtentsWithMargin()));
+    return face_of_box(other, pose, from_bullet(box.getHalfExtentsWithMargin()));
   }
-  const Rod rod_of_it = rod();
-  return rod_of_it.round_ends ? std::nullopt : end_of_cylinder(other, rod_of_it);
+  const Rod own = rod(pose);
+  return own.round_ends ? std::nullopt : end_of_cylinder(other, own);
 }
 
 bool CollisionSolid::meets_faces_of(const CollisionSolid& flat) const {
-  if (!rolls() && corners.empty()) return false;
+  if (!round && corners.empty()) return false;
   if (flat.boxy()) return flat.level || !boxy();
-  return flat.rolls();
+  return flat.rolls() && flat.shape->getShapeType() == CYLINDER_SHAPE_PROXYTYPE;
 }
 
 std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& in_object,
@@ -122,6 +119,7 @@ std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& 
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     solid->shape = std::make_unique<btSphereShape>(sphere->radius);
     solid->least = 2 * sphere->radius;
+    solid->radius = sphere->radius;
     solid->round = RoundPart{in_object.translation()};
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     const double r = cylinder->radius;

@@ -29,7 +29,7 @@ struct CollisionSolid {
   btVector3 low, high;             // box around it, slightly enlarged
   double least = 0;                // smallest extent [m]
   std::optional<RoundPart> round;
-  double radius = 0, half = 0;  // of a cylinder or a capsule; half of its length [m]
+  double radius = 0, half = 0;  // of a round one; half of its length [m]
   std::vector<Vec3> corners;    // of a box or a hull that moves, in its own frame [m]
   Vec3 middle = Vec3::Zero();   // of these corners [m]
 
@@ -42,11 +42,12 @@ struct CollisionSolid {
   void bound();  // by its present place
   bool overlaps(const btVector3& box_low, const btVector3& box_high) const;
   bool overlaps(const CollisionSolid& other) const { return overlaps(other.low, other.high); }
-  Rod rod() const;  // precondition: rolls()
+  // The next three are for the solid at a pose. rod() needs a solid that is round.
+  Rod rod(const Pose& pose) const;
   // Returns what it may meet a face as; nothing: it is no hull and no rod.
-  std::optional<Convex> convex() const;
+  std::optional<Convex> convex(const Pose& pose) const;
   // Returns its flat face that is towards another solid; nothing if it has none there.
-  std::optional<Face> face_towards(const Convex& other) const;
+  std::optional<Face> face_towards(const Convex& other, const Pose& pose) const;
   // Returns whether it may meet flat faces of another one by its own geometry. Boxes among
   // themselves meet in points that Bullet finds well.
   bool meets_faces_of(const CollisionSolid& flat) const;

@@ -114,6 +114,7 @@ std::optional<FacePoints> lying(const Rod& rod, const Face& face, double near) {
   if (!line) return std::nullopt;
   FacePoints found;
   for (const LineEnd& end : {line->first, line->last}) {
+    if (rod.half == 0 && found.count > 0) break;  // a ball has one point
     const Vec3 at = rod.center + end.at * rod.axis + rod.radius * down;
     const double distance = face.above(at);
     if (end.border && distance <= near + rod.radius) {
@@ -239,6 +240,27 @@ std::optional<FacePoints> standing(const Rod& rod, const Face& face, double near
   return points.count > 0 ? std::optional(points) : std::nullopt;
 }
 
+// Moves two places on axes to where the axes' segments are nearest. a, b: what the way between
+// their middles is along each; cosine: of the angle between them.
+void nearest_of_segments(double half, double other_half, double a, double b, double cosine,
+                         double& at, double& other) {
+  at = std::clamp(at, -half, half);
+  other = std::clamp(b + cosine * at, -other_half, other_half);
+  at = std::clamp(cosine * other - a, -half, half);
+}
+
+// Adds the point of a rod's side at `at` on its axis, by the way there from the other one's axis.
+bool add_side(const Rod& one, double at, const Vec3& way, double other_radius, double near,
+              FacePoints& found) {
+  const double away = way.norm();
+  if (!(away > 0)) return false;
+  const Vec3 normal = way / away;
+  const double distance = away - one.radius - other_radius;
+  if (distance <= near)
+    found.add(one.center + at * one.axis - one.radius * normal, normal, distance);
+  return true;
+}
+
 std::optional<FacePoints> on_face(const Rod& rod, const Face& face, double near) {
   return stands(rod, face.normal) ? standing(rod, face, near) : lying(rod, face, near);
 }
@@ -259,6 +281,41 @@ std::optional<FacePoints> on_face(const Hull& hull, const Face& face, double nea
 }
 
 }  // namespace
+
+std::optional<FacePoints> points_of_sides(const Rod& one, const Rod& two, double near) {
+  const Vec3 between = one.center - two.center;
+  const double cosine = one.axis.dot(two.axis), sine2 = 1 - cosine * cosine;
+  const double b = between.dot(two.axis), a = between.dot(one.axis);
+  FacePoints found;
+  if (sine2 > kCrosses * kCrosses) {
+    double at = (cosine * b - a) / sine2, other = (b - cosine * a) / sine2;
+    if (std::abs(at) > one.half || std::abs(other) > two.half) {
+      if (!one.round_ends || !two.round_ends) return std::nullopt;
+      nearest_of_segments(one.half, two.half, a, b, cosine, at, other);
+    }
+    const Vec3 way = between + at * one.axis - other * two.axis;
+    if (!add_side(one, at, way, two.radius, near, found)) return std::nullopt;
+    return found;
+  }
+  const double reach = two.half / std::abs(cosine),
+               middle = -b / cosine;  // the other's, on this axis
+  const double first = std::max(-one.half, middle - reach),
+               last = std::min(one.half, middle + reach);
+  if (first > last) {  // beside each other only round ends meet
+    if (!one.round_ends || !two.round_ends) return std::nullopt;
+    double at = std::clamp(middle, -one.half, one.half), other = 0;
+    nearest_of_segments(one.half, two.half, a, b, cosine, at, other);
+    const Vec3 way = between + at * one.axis - other * two.axis;
+    if (!add_side(one, at, way, two.radius, near, found)) return std::nullopt;
+    return found;
+  }
+  for (const double at : {first, last}) {
+    const Vec3 from = between + at * one.axis;
+    if (!add_side(one, at, from - from.dot(two.axis) * two.axis, two.radius, near, found))
+      return std::nullopt;
+  }
+  return found;
+}
 
 FacePoints widest_of(std::span<const FacePoints::Point> points) {
   return widest([&](auto&& visit) { std::ranges::for_each(points, visit); });

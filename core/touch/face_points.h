@@ -12,7 +12,7 @@
 
 namespace limpid {
 
-// A cylinder or, with round ends beyond its length, a capsule.
+// A cylinder; with round ends beyond its length, a capsule; without a length, a ball.
 struct Rod {
   Vec3 center = Vec3::Zero();   // [m]
   Vec3 axis = Vec3::UnitZ();    // unit
@@ -81,6 +81,11 @@ FacePoints widest_of(std::span<const FacePoints::Point> points);
 // its rim, the opposite one, and those in the middle between them; across edges also those where
 // the rim and the edges cross. A hull has its corners.
 std::optional<FacePoints> points_on_face(const Convex& solid, const Face& face, double near);
+
+// Finds the points in which the sides of two rods are at most `near` apart, normals out of the
+// second: where their axes are nearest, or if they are parallel at both ends of what they share.
+// Nothing: an end meets the other one.
+std::optional<FacePoints> points_of_sides(const Rod& one, const Rod& two, double near);
 
 // Returns the points of a rod's end that may be the lowest ones on a face with this normal: one if
 // the rod lies, four of its rim if it stands. `end`: the middle of the end [m].

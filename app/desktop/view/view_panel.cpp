@@ -311,7 +311,12 @@ void ViewPanel::draw_hints(const ViewScene& scene, const Settings& settings, Scr
   ImFont* face = font(Face::semibold);
   hinted_.reset();
   auto lines = hints(task_done_ ? std::string() : task_, scene.pad, settings);
-  if (magnet_on_) lines.insert(lines.begin(), "The magnet is on. H lets go.");
+  if (magnet_on_) {
+    lines.insert(lines.begin(),
+                 magnet_broke_ ? "The magnet lost what it held: more pulled at it than it bears. "
+                                 "Press H twice to pick it up again."
+                               : "The magnet is on. H lets go.");
+  }
   if (lines.empty()) return;
   const float size = face->FontSize * 1.15f, wrap = rect.width() - 3 * face->FontSize;
   const auto extent_of = [&](const std::string& line) {
@@ -357,7 +362,9 @@ void ViewPanel::follow_task(const ViewScene& scene, const ViewState& view) {
     task_done_ = false;
   }
   task_done_ = task_done_ || !view.contacts.empty() || pulling_;
+  magnet_broke_ = view.magnet && !view.magnet_holds && (magnet_broke_ || magnet_holds_);
   magnet_on_ = view.magnet;
+  magnet_holds_ = view.magnet_holds;
 }
 
 // Draws over the picture: the selected object's outline, words and numbers.

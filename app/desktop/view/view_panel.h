@@ -112,7 +112,8 @@ class ViewPanel {
   std::optional<ScreenRect> hinted_;   // place of the hints in the last frame
   std::string task_;                   // sentence of the scene that is shown
   bool task_done_ = false;             // something of it was touched since, or pulled on
-  bool magnet_on_ = false;
+  bool magnet_on_ = false, magnet_holds_ = false;
+  bool magnet_broke_ = false;        // it is on, and lost what it held
   std::optional<ScreenRect> drawn_;  // place of the view
   bool dragging_ = false;            // drags the hand
   bool pulls_ = false;               // the left button would take the hand here

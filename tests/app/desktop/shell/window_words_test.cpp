@@ -173,6 +173,28 @@ TEST_F(Words, OfTextsNeverLieOverEachOther) {
   }
 }
 
+TEST_F(Words, SayThatTheMagnetLostWhatItHeld) {
+  const Vec3 tip = desktop->live.controls().goal;
+  const fs::path file = dir / "block.toml";
+  std::ofstream(file) << fmt::format(
+      "tip_radius = 0.004\ngravity = [0, 0, 0]\n[[body]]\nname = \"block\"\n"
+      "box = [0.02, 0.02, 0.02]\nmass = 50\nposition = [{}, {}, {}]\nmagnet = true\n",
+      tip.x(), tip.y(), tip.z() - 0.0135);
+  desktop->world.open_scene(file);
+  ASSERT_TRUE(until([&] { return said("Scene:"); }));
+  const auto says = [&](const char* what) { return words().find(what) != std::string::npos; };
+  run("hand.magnet");
+  EXPECT_TRUE(until([&] {
+    return desktop->live.loop().layout().in(desktop->live.row(), Column::magnet)[0] == 1;
+  }));
+  EXPECT_TRUE(until([&] { return says("The magnet is on. H lets go."); }));
+  desktop->live.controls().grab = true;
+  desktop->live.controls().goal = tip + Vec3(0, 0, 0.08);
+  EXPECT_TRUE(until([&] { return says("The magnet lost what it held"); }));
+  run("hand.magnet");
+  EXPECT_TRUE(until([&] { return !says("The magnet"); }));
+}
+
 TEST_F(Words, OfTheHelpAreAllKeys) {
   height = 3000;
   run("help.keys");
