@@ -30,7 +30,7 @@ struct BodyContact {
   Vec3 normal = Vec3::UnitZ();                             // out of b, unit
   double depth = 0;                                        // negative: apart [m]
   const RoundPart *round_a = nullptr, *round_b = nullptr;  // its sides that roll
-  // Where the contact is, and its normal, in the middle of the tick, as bodies go; if it is known.
+  // The contact and its normal in the middle of the tick, as bodies go; if they are known.
   bool goes_on = false;
   Vec3 next_point = Vec3::Zero(), next_normal = Vec3::UnitZ();
 

@@ -107,8 +107,8 @@ class BodyMotion {
   }
 
   const Pose& pose() const { return pose_; }  // of its object
-  // Where the body is after some time at its present velocities [s]; the point where it turns
-  // about.
+  // Return the pose, and the point where the body turns about, after some time at its present
+  // velocities [s].
   Pose ahead(double time) const;
   Vec3 turns_at(double time) const;
   const Vec3& turns_at() const { return p_; }  // the point where it turns about [m]

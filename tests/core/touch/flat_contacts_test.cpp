@@ -209,5 +209,74 @@ TEST(FlatContacts, HoldWhateverFallsOnThem) {
   }
 }
 
+// A plank that rocks on a lying cylinder without slipping: w^2 = g (R - h) / (k^2 + h^2), h half of
+// its thickness, k its radius of gyration. It never swings higher than it was let go.
+TEST(FlatContacts, LetAPlankRockOnARoundSupportAsItsInertiaSays) {
+  const double R = 0.05, h = 0.002, length = 0.12, tilt = 0.05;
+  const double gyration2 = (length * length + 4 * h * h) / 12;
+  const double period = 2 * std::numbers::pi * std::sqrt((gyration2 + h * h) / (9.81 * (R - h)));
+  for (const bool ball : {false, true}) {
+    SCOPED_TRACE(ball ? "on a ball" : "on a cylinder");
+    Scene scene;
+    Object support;
+    support.name = "support";
+    support.shape = ball ? Shape(Sphere{R}) : Shape(Cylinder{R, 0.2});
+    support.pose = pose_at({0.01, 0.02, 0.2});
+    if (!ball) support.pose.linear() = turned(std::numbers::pi / 2, Vec3::UnitX());
+    support.material = {2000, 0, 0.9, 0.9};
+    scene.add(support);
+    // Rolled by the tilt: the contact is R tilt from the top, and as far from the plank's middle.
+    const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), along(std::cos(tilt), 0, -std::sin(tilt));
+    Object plank = body("plank", Box{Vec3(length, 0.03, 2 * h)}, 0.05,
+                        Vec3(0.01, 0.02, 0.2) + (R + h) * normal - R * tilt * along, 0.9);
+    plank.pose.linear() = turned(tilt, Vec3::UnitY());
+    scene.add(plank);
+    BodyWorld world(scene);
+    const auto slope = [&] { return -world.pose(0).linear()(2, 0); };
+    double before = slope(), highest = 0;
+    std::vector<double> level;  // times at which it is level
+    for (int k = 1; k <= 8000; ++k) {
+      run(world, 1);
+      const double now = slope();
+      if (now * before < 0) level.push_back(k * kTick);
+      if (k > 500) highest = std::max(highest, std::abs(now));
+      before = now;
+    }
+    EXPECT_LT(highest, std::sin(tilt) * 1.001);
+    EXPECT_GT(highest, 0.5 * std::sin(tilt)) << "it rocks on";
+    ASSERT_GT(level.size(), 40u);
+    EXPECT_NEAR((level[40] - level[0]) / 20, period, 0.005 * period);
+    EXPECT_LT(world.center(0).z(), 0.2 + R + h + 1e-3);
+    EXPECT_GT(world.center(0).z(), 0.2 + R + h - 1e-4) << "it does not sink";
+  }
+}
+
+// A capsule in the groove of two others, turned a little from them, lies where all three touch.
+TEST(FlatContacts, HoldACapsuleInTheGrooveOfTwo) {
+  for (const double askew : {0.0, 0.02, 0.2}) {
+    SCOPED_TRACE(askew);
+    const double r = 0.02, apart = 0.05;
+    Scene scene;
+    for (const double side : {-1.0, 1.0}) {
+      Object log;
+      log.name = side < 0 ? "left" : "right";
+      log.shape = Capsule{r, 0.2};
+      log.pose = pose_at({0, side * apart / 2, 0});
+      log.pose.linear() = turned(std::numbers::pi / 2, Vec3::UnitY());
+      log.material = {2000, 0, 0.6, 0.6};
+      scene.add(log);
+    }
+    const double height = std::sqrt(4 * r * r - apart * apart / 4);
+    Object top = body("top", Capsule{r, 0.1}, 0.05, {0.01, 0, height + 0.004}, 0.6);
+    top.pose.linear() = turned(askew, Vec3::UnitZ()) * turned(std::numbers::pi / 2, Vec3::UnitY());
+    scene.add(top);
+    BodyWorld world(scene);
+    EXPECT_LT(run(world, 3000), 1e-12);
+    EXPECT_NEAR(world.center(0).z(), height, askew > 0.1 ? 4e-3 : 3e-4);
+    EXPECT_GT(world.center(0).z(), height - 1e-4);
+    EXPECT_LT(world.speed(0).norm(), 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace limpid::test
