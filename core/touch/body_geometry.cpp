@@ -64,14 +64,14 @@ struct BodyGeometry::Inside {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
     btPersistentManifold* manifold = nullptr;
-    bool single = false;  // the two meet in one point at most
-    bool refresh = true;  // its search does not remove points that are gone
-    bool lowest = false;  // on a model: the lowest points of a are tested
-    bool rolls = false;   // a round shape: points do not stay where they are on it
-    bool own = false;     // it may meet by its own geometry
-    int points = 0;       // points of its manifold
-    Own next{};           // its points in the middle of the tick, if they are known
-    double goes = 0;      // way of a point until then, at most [m]
+    bool single = false;          // the two meet in one point at most
+    bool refresh = true;          // its search does not remove points that are gone
+    bool lowest = false;          // on a model: the lowest points of a are tested
+    bool rolls = false;           // a round shape: points do not stay where they are on it
+    std::array<bool, 3> meets{};  // whether it may meet so by its own geometry, by Meets
+    int points = 0;               // points of its manifold
+    Own next{};                   // its points in the middle of the tick, if they are known
+    double goes = 0;              // way of a point until then, at most [m]
   };
 
   explicit Inside(const Scene& scene);
@@ -219,7 +219,7 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   p.single = (ball(a) || ball(b)) && convex;
   p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
   p.lowest = b.model && (a.rolls() || (!a.corners.empty() && a.corners.size() <= kMostCorners));
-  p.own = a.meets_faces_of(b) || b.meets_faces_of(a) || (a.rolls() && b.rolls());
+  p.meets = {a.meets_faces_of(b), b.meets_faces_of(a), a.rolls() && b.rolls()};
   p.refresh = !convex || (ball(a) && ball(b)) || p.lowest;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -281,30 +281,51 @@ void BodyGeometry::Inside::keep_deepest(const Pair& p) {
 // of them first. Otherwise bodies on points that come and go would sink; of two balls Bullet makes
 // a new point every time.
 void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
+  constexpr double kSame = 1e-5;  // a point in the same order that moved less is the same [m]
   btPersistentManifold& m = *p.manifold;
-  const auto is_there = [&](const BodyContact* c) {
-    for (int i = 0; i < m.getNumContacts(); ++i) {
-      if (m.getContactPoint(i).m_userPersistentData == c) return true;
+  bool all = before.size() == static_cast<std::size_t>(m.getNumContacts());
+  for (std::size_t i = 0; all && i < before.size(); ++i) {
+    const btManifoldPoint& point = m.getContactPoint(static_cast<int>(i));
+    all = point.m_userPersistentData == before[i] ||
+          (point.m_userPersistentData == nullptr &&
+           (before[i]->point - middle(point)).squaredNorm() < kSame * kSame);
+  }
+  if (all) {
+    for (std::size_t i = 0; i < before.size(); ++i)
+      m.getContactPoint(static_cast<int>(i)).m_userPersistentData = before[i];
+    return;
+  }
+  std::array<btManifoldPoint*, kPointsOfPair> fresh{};
+  std::array<BodyContact*, kPointsOfPair> gone{};
+  std::size_t points = 0, contacts = before.size();
+  std::ranges::copy(before, gone.begin());
+  for (int i = 0; i < m.getNumContacts(); ++i) {
+    btManifoldPoint& point = m.getContactPoint(i);
+    if (point.m_userPersistentData == nullptr) {
+      fresh[points++] = &point;
+    } else {
+      const auto left =
+          std::remove(gone.begin(), gone.begin() + static_cast<std::ptrdiff_t>(contacts),
+                      static_cast<BodyContact*>(point.m_userPersistentData));
+      contacts = static_cast<std::size_t>(left - gone.begin());
     }
-    return false;
-  };
-  while (true) {
-    btManifoldPoint* point = nullptr;
-    BodyContact* gone = nullptr;
+  }
+  for (; points > 0 && contacts > 0; --points, --contacts) {
+    std::size_t point = 0, contact = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < m.getNumContacts(); ++i) {
-      if (m.getContactPoint(i).m_userPersistentData != nullptr) continue;
-      const Vec3 at = middle(m.getContactPoint(i));
-      for (BodyContact* c : before) {
-        const double away = (c->point - at).squaredNorm();
-        if (away >= least || is_there(c)) continue;
-        point = &m.getContactPoint(i);
-        gone = c;
+    for (std::size_t i = 0; i < points; ++i) {
+      const Vec3 at = middle(*fresh[i]);
+      for (std::size_t k = 0; k < contacts; ++k) {
+        const double away = (gone[k]->point - at).squaredNorm();
+        if (away >= least) continue;
         least = away;
+        point = i;
+        contact = k;
       }
     }
-    if (point == nullptr) return;
-    point->m_userPersistentData = gone;
+    fresh[point]->m_userPersistentData = gone[contact];
+    std::swap(fresh[point], fresh[points - 1]);
+    std::swap(gone[contact], gone[contacts - 1]);
   }
 }
 
@@ -371,11 +392,10 @@ std::optional<BodyGeometry::Inside::Own> BodyGeometry::Inside::own_points(
     const Pair& p, Meets meets, const Pose& a, const Pose& b, double near) {
   std::optional<FacePoints> found;
   if (meets == Meets::sides) {
-    if (p.a->rolls() && p.b->rolls()) found = points_of_sides(p.a->rod(a), p.b->rod(b), near);
+    found = points_of_sides(p.a->rod(a), p.b->rod(b), near);
   } else {
     const bool first = meets == Meets::a_on_b;
     const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
-    if (!one.meets_faces_of(flat)) return std::nullopt;
     const auto solid = one.convex(first ? a : b);
     const auto face = flat.face_towards(*solid, first ? b : a);
     if (face) found = points_on_face(*solid, *face, near);
@@ -399,12 +419,14 @@ bool BodyGeometry::Inside::find_own(Pair& p, PairPoints& result) {
   const double near = p.manifold->getContactBreakingThreshold();
   p.next.count = 0;
   for (const Meets meets : {Meets::a_on_b, Meets::b_on_a, Meets::sides}) {
+    if (!p.meets[static_cast<std::size_t>(meets)]) continue;
     const auto own = own_points(p, meets, a, b, near);
     if (!own) continue;
     p.manifold->clearManifold();
     for (const auto& point : own->all())
       result.add(to_bullet(point.normal), to_bullet(point.on_b), point.distance);
-    if (own->count == 0 || next.empty()) return true;
+    // Corners go with their body; where round things meet depends on how they roll.
+    if (own->count == 0 || next.empty() || !(p.a->round || p.b->round)) return true;
     const Pose next_a = next_pose(*p.a), next_b = next_pose(*p.b);
     p.next = own_points(p, meets, next_a, next_b, near + CollisionSolid::kNear).value_or(Own{});
     // A point may go as far as rolling takes it; further off it is another one.
@@ -426,6 +448,7 @@ Pose BodyGeometry::Inside::next_pose(const Solid& solid) const {
 // Tells a contact where it goes within the tick.
 void BodyGeometry::Inside::follow(const Pair& p, BodyContact& c) {
   c.goes_on = false;
+  if (p.next.count == 0) return;
   double least = p.goes * p.goes;
   for (const auto& point : p.next.all()) {
     const Vec3 there = 0.5 * (point.on_a + point.on_b);
@@ -440,7 +463,7 @@ void BodyGeometry::Inside::follow(const Pair& p, BodyContact& c) {
 
 void BodyGeometry::Inside::find(Pair& p, PairPoints& result) {
   result.setPersistentManifold(p.manifold);
-  if (p.own && find_own(p, result)) return;
+  if ((p.meets[0] || p.meets[1] || p.meets[2]) && find_own(p, result)) return;
   p.next.count = 0;
   if (p.lowest) find_lowest(p, result);
   result.only_edges = p.lowest;
@@ -632,6 +655,11 @@ Meeting BodyGeometry::first_meeting(int body, const Pose& from, const Pose& to, 
     }
   }
   return first;
+}
+
+bool BodyGeometry::any_round() const {
+  return std::ranges::any_of(in_->solids,
+                             [](const auto& solid) { return solid->round.has_value(); });
 }
 
 std::span<BodyContact* const> BodyGeometry::points() const { return in_->points; }

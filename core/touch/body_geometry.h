@@ -75,8 +75,10 @@ class BodyGeometry {
   static constexpr int kMost = 512;
 
   void place(int body, const Pose& pose);
+  // Returns whether there is a ball, a cylinder or a capsule.
+  bool any_round() const;
   // Updates the points of all pairs with an awake body, in the order of the pairs. `next`: poses of
-  // bodies in the middle of the tick.
+  // bodies in the middle of the tick; round ones need them.
   void search(std::span<const std::uint8_t> awake, std::span<const Pose> next);
   std::span<BodyContact* const> points() const;
   // True if a body that goes so far, and turns by so much, may pass something between two searches

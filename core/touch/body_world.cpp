@@ -67,7 +67,7 @@ BodyWorld::BodyWorld(const Scene& scene) : bodies_(scene), geometry_(scene) {
   tied_.assign(n, 0);
   linked_.assign(n, 0);
   turned_.assign(n, 0);
-  next_.assign(n, Pose::Identity());
+  if (geometry_.any_round()) next_.assign(n, Pose::Identity());
   for (int i = 0; i < count(); ++i) {
     const Body& body = bodies_.about[at(i)];
     tied_[at(i)] = body.joint ? 1 : 0;
@@ -225,7 +225,10 @@ void BodyWorld::begin(double T) {
   if (pull_.body >= count()) pull_ = {};
   if (pull_.body != BodyContact::kStill) wake(pull_.body);
   wake_neighbours();
-  for (int i = 0; i < count(); ++i) next_[at(i)] = moves(i) ? bodies_[i].ahead(0.5 * T) : pose(i);
+  for (std::size_t i = 0; i < next_.size(); ++i) {
+    const auto body = static_cast<int>(i);
+    next_[i] = moves(body) ? bodies_[body].ahead(0.5 * T) : pose(body);
+  }
   geometry_.search(bodies_.awake, next_);
   for (int i = 0; i < count(); ++i) {
     if (moves(i)) bodies_[i].begin(T, bodies_.pressed[at(i)] != 0);

@@ -44,7 +44,6 @@ class BodyWorld {
   Vec3 velocity(const End& end) const { return bodies_.velocity(end); }
   Mat3 answer(const End& end) const { return bodies_.answer(end); }
   void push(const End& end, const Vec3& force) {
-    if (force.isZero(0)) return;
     bodies_.push(end, force);
     bodies_.press(end.body);
   }
@@ -164,7 +163,7 @@ class BodyWorld {
   std::vector<int> quick_;                  // bodies that wake others
   std::vector<int> passing_;                // bodies that may pass something in a tick
   std::vector<Pose> started_;               // their poses at its start
-  std::vector<Pose> next_;                  // poses of all in the middle of the tick
+  std::vector<Pose> next_;                  // in the middle of the tick, if something is round
   std::vector<int> body_of_;                // by object
   BodyGeometry geometry_;
   BodyConstraints constraints_;

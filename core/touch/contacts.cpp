@@ -407,7 +407,8 @@ template <int N>
 void Contacts<N>::step_bodies() {
   if (!world_) return;
   for_each_of(kinds(), [&](auto& c) {
-    if (c.body != BodyContact::kStill) world_->push(world_->end_at(c.body, c.place()), -c.on_arm());
+    if (c.body == BodyContact::kStill || c.on_arm().isZero(0)) return;  // no push, no touch
+    world_->push(world_->end_at(c.body, c.place()), -c.on_arm());
   });
   world_->settle();
   for_each_of(kinds(), [&](auto& c) {

@@ -268,16 +268,22 @@ std::optional<FacePoints> on_face(const Rod& rod, const Face& face, double near)
 std::optional<FacePoints> on_face(const Hull& hull, const Face& face, double near) {
   const Vec3 normal = hull.pose.linear().transpose() * face.normal;
   const double base = face.above(hull.pose.translation());
-  const auto for_each = [&](auto&& visit) {
+  FacePoints few;
+  std::size_t count = 0;
+  for (const Vec3& corner : hull.corners) {
+    const double distance = base + normal.dot(corner);
+    if (distance > near) continue;
+    const Vec3 at = hull.pose * corner;
+    if (!face.over(at)) return std::nullopt;
+    if (count++ < few.points.size()) few.add(at, face.normal, distance);
+  }
+  if (count == few.count) return few;
+  return widest([&](auto&& visit) {
     for (const Vec3& corner : hull.corners) {
       const double distance = base + normal.dot(corner);
       if (distance <= near) visit(FacePoints::Point{hull.pose * corner, face.normal, distance});
     }
-  };
-  bool over = true;
-  for_each([&](const FacePoints::Point& p) { over = over && face.over(p.at); });
-  if (!over) return std::nullopt;
-  return widest(for_each);
+  });
 }
 
 }  // namespace
@@ -392,8 +398,9 @@ std::optional<Face> end_of_cylinder(const Convex& solid, const Rod& cylinder) {
 }
 
 std::optional<FacePoints> points_on_face(const Convex& solid, const Face& face, double near) {
+  if (const auto* hull = std::get_if<Hull>(&solid)) return on_face(*hull, face, near);
   if (height_above(solid, face) > near) return FacePoints{};
-  return std::visit([&](const auto& s) { return on_face(s, face, near); }, solid);
+  return on_face(std::get<Rod>(solid), face, near);
 }
 
 }  // namespace limpid

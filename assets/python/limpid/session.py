@@ -58,6 +58,7 @@ class _Recording:
         self.units: Dict[str, str] = {}
         self.about: Dict[str, str] = {}
         self.axes: Dict[str, List[str]] = {}  # names of the dimensions behind the time
+        self.places: Dict[str, List[str]] = {}  # names of the places along them, as joints have
         self._read: Dict[str, Any] = {}
         self._opened_as: Optional[Tuple[int, ...]] = None
         lengths: List[int] = []
@@ -76,6 +77,8 @@ class _Recording:
                 raise LimpidError(f"{self.file}: is no session of Limpid")
             self.attributes: Dict[str, Any] = dict(opened.attrs)
             opened.visititems(take)
+            for axis in {axis for axes in self.axes.values() for axis in axes} & set(opened):
+                self.places[axis] = [_text(value) for value in opened[axis]]
             self.rows = min(lengths, default=0)
             self.lanes = {name: self._lane(opened[name] if name else opened) for name in LANES
                           if not name or name in opened}  # fmt: skip
@@ -133,19 +136,16 @@ class _Recording:
                 self._read[name] = numpy.asarray(opened[name][: self.rows])
         return self._read[name]
 
-    def places(self, axis: str, count: int) -> "Optional[List[str]]":
-        """Names of the places along a dimension, as joints have; None where there are none."""
-        with self.opened() as opened:
-            if axis not in opened or len(opened[axis]) != count:
-                return None
-            return [value.decode() if isinstance(value, bytes) else str(value) for value in opened[axis]]
-
     def keep(self) -> None:
         """All channels are in memory from now on, and the file may go."""
         with self.opened() as opened:
             for name in self.units:
                 if name not in self._read:
                     self._read[name] = opened[name][: self.rows]
+
+
+def _text(value: Any) -> str:
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
 
 
 def _words(unit: Any) -> str:
@@ -351,9 +351,8 @@ class Session:
             values = self.channel(name)
             axes = self._recording.axes[self._recording.known(self._named(name))]
             for axis, count in zip(axes, values.shape[1:]):
-                places = self._recording.places(axis, count)
-                if places is not None:
-                    coordinates[axis] = places
+                if len(self._recording.places.get(axis, ())) == count:
+                    coordinates[axis] = self._recording.places[axis]
             found[name] = (["time", *axes], values, {"units": self.unit(name), "long_name": self.about(name)})
         return xarray.Dataset(found, coords=coordinates, attrs={"law": self.law, "file": self.file})
 
