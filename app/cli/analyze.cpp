@@ -71,10 +71,8 @@ constexpr double kFelt[] = {0.5, 1, 2, 5, 10, 20};  // [Hz]
 void print(const TipLimits& tip, const Parameters& p, bool all) {
   const std::vector<CouplingKind> told = laws_told(p.kind, all);
   fmt::print(
-      "\nat the tip: {:.3g} g if a hand leads it, {:.3g} g if it may give way sideways; {:.3g} N "
-      "s/m "
-      "of its own damping\n",
-      1e3 * tip.tip.led, 1e3 * tip.tip.mass, tip.tip.damping);
+      "\nat the tip: {:.3g} g, {:.3g} N s/m of its own damping; {:.3g} g if a hand leads it\n",
+      1e3 * tip.tip.mass, tip.tip.damping, 1e3 * tip.tip.led);
   for (const CouplingKind kind : told) {
     const TipWall& wall = tip.wall(kind);
     fmt::print("stiffest wall, {:<11} {:>6.0f} N/m  {}\n", name(kind), wall.stiffness, wall.bound);

@@ -312,12 +312,12 @@ void keep_apart(const char* option, const std::filesystem::path& out, const Inpu
 
 void keep_outputs_apart(const char* one, const std::filesystem::path& out, const char* two,
                         const std::filesystem::path& other) {
-  std::error_code none;
-  if (out.empty() || other.empty() ||
-      std::filesystem::weakly_canonical(out, none) !=
-          std::filesystem::weakly_canonical(other, none)) {
-    return;
-  }
+  if (out.empty() || other.empty()) return;
+  const auto whole = [](const std::filesystem::path& file) {
+    std::error_code none;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file), none);
+  };
+  if (whole(out) != whole(other)) return;
   throw UsageError(
       fmt::format("{} {}: {} writes this file; name another one", two, other.string(), one));
 }

@@ -310,18 +310,6 @@ TEST_F(Dialog, OfTheGalleryShowsTheScenesWithAPartOfAName) {
   const std::string shown = words();
   EXPECT_THAT(shown, HasSubstr("Seesaw"));
   EXPECT_THAT(shown, Not(HasSubstr("Dominoes")));
-  write("x");
-  frames(2);
-  EXPECT_THAT(words(), HasSubstr("no scene of this name"));
-  press(GLFW_KEY_ENTER);
-  EXPECT_EQ(desktop->dialog.name(), "gallery") << "nothing to open";
-  press(GLFW_KEY_ESCAPE);
-  frames(3);
-  run("scene.gallery");
-  frames(4);
-  EXPECT_THAT(words(), HasSubstr("Dominoes")) << "begins anew";
-  write("seesaw");
-  frames(2);
   press(GLFW_KEY_ENTER);
   EXPECT_EQ(desktop->dialog.name(), "");
   EXPECT_TRUE(until([&] { return said("Scene: Seesaw"); }));
