@@ -9,6 +9,11 @@ namespace limpid {
 
 namespace {
 
+// Response of the tip's velocity to an impulse at the tip, J M^-1 J' [1/kg].
+Mat3 mobility_of(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M) {
+  return J * M.llt().solve(J.transpose());
+}
+
 // n' A^-1 n, of the directions in which A is not zero.
 double along_inverse(const Mat3& A, const Vec3& n) {
   constexpr double kNone = 1e-12;  // part of the largest eigenvalue
@@ -26,7 +31,7 @@ double along_inverse(const Mat3& A, const Vec3& n) {
 TipAlong tip_along(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M, const Eigen::VectorXd& b_d,
                    const Vec3& n) {
   const Eigen::VectorXd lever = J.transpose() * n;
-  const Mat3 mobility = J * M.llt().solve(J.transpose());
+  const Mat3 mobility = mobility_of(J, M);
   return {1 / n.dot(mobility * n), 1 / lever.dot(lever.cwiseQuotient(b_d)), lever.squaredNorm(),
           along_inverse(mobility, n)};
 }
@@ -35,7 +40,7 @@ TipMoved easiest(const Eigen::MatrixXd& J, const Eigen::MatrixXd& M) {
   const auto largest = [](const Mat3& A) {
     return Eigen::SelfAdjointEigenSolver<Mat3>(A, Eigen::EigenvaluesOnly).eigenvalues()[2];
   };
-  return {1 / largest(J * M.llt().solve(J.transpose())), std::sqrt(largest(J * J.transpose()))};
+  return {1 / largest(mobility_of(J, M)), std::sqrt(largest(J * J.transpose()))};
 }
 
 double friction_at_tip(const Eigen::MatrixXd& J, const Eigen::VectorXd& friction) {

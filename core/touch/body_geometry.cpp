@@ -27,6 +27,9 @@ Vec3 middle(const btManifoldPoint& point) {
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
 }
 
+// The point of the other solid that is opposite.
+Vec3 on_other(const FacePoints::Point& point) { return point.at - point.distance * point.normal; }
+
 // Pose of the large box below a plane: for faces and edges Bullet finds all its points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
@@ -49,17 +52,6 @@ void put(std::vector<double>& into, const Vec3& v) {
 
 struct BodyGeometry::Inside {
   using Solid = CollisionSolid;
-  // Points that a pair has by its own geometry.
-  struct Own {
-    struct Point {
-      Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();  // [m]
-      Vec3 normal = Vec3::UnitZ();                    // out of b, unit
-      double distance = 0;                            // negative: inside [m]
-    };
-    std::array<Point, kPointsOfPair> points{};
-    std::size_t count = 0;
-    std::span<const Point> all() const { return std::span(points).first(count); }
-  };
   struct Pair {
     Solid *a, *b;
     btCollisionAlgorithm* algorithm = nullptr;
@@ -70,7 +62,7 @@ struct BodyGeometry::Inside {
     bool rolls = false;           // a round shape: points do not stay where they are on it
     std::array<bool, 3> meets{};  // whether it may meet so by its own geometry, by Meets
     int points = 0;               // points of its manifold
-    Own next{};                   // its points in the middle of the tick, if they are known
+    FacePoints next{};            // its points in the middle of the tick, if they are known
     double goes = 0;              // way of a point until then, at most [m]
   };
 
@@ -78,14 +70,13 @@ struct BodyGeometry::Inside {
   ~Inside();
   void add(const Scene& scene, std::size_t object, int body);
   void pair(Solid& a, Solid& b);
-  static void slide_along(const Pair& pair);
   static void keep_deepest(const Pair& pair);
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
-  static void find_lowest(const Pair& pair, PairPoints& result);
+  void find_lowest(const Pair& pair, PairPoints& result);
   enum class Meets : std::uint8_t { a_on_b, b_on_a, sides };
-  static std::optional<Own> own_points(const Pair& pair, Meets meets, const Pose& a, const Pose& b,
-                                       double near);
+  static std::optional<FacePoints> own_points(const Pair& pair, Meets meets, const Pose& a,
+                                              const Pose& b, double near);
   bool find_own(Pair& pair, PairPoints& result);
   Pose next_pose(const Solid& solid) const;
   static void follow(const Pair& pair, BodyContact& contact);
@@ -115,6 +106,7 @@ struct BodyGeometry::Inside {
   std::vector<BodyContact> pool;
   std::vector<BodyContact*> free_ones, points, last;  // last: the points of the search before
   int left_out = 0;
+  std::array<FacePoints::Point, kMostCorners> low_points;  // of find_lowest()
   std::span<const Pose> next;  // poses of bodies in the middle of the tick, during a search
 
   static btDefaultCollisionConstructionInfo sizes() {
@@ -212,15 +204,12 @@ void BodyGeometry::Inside::add(const Scene& scene, std::size_t object, int body)
 void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   Pair p{&a, &b};
   if (!allowed(p)) return;
-  const auto ball = [](const Solid& s) {
-    return s.shape->getShapeType() == SPHERE_SHAPE_PROXYTYPE;
-  };
   const bool convex = a.shape->isConvex() && b.shape->isConvex();
-  p.single = (ball(a) || ball(b)) && convex;
-  p.rolls = a.rolls() || b.rolls() || ((ball(a) || ball(b)) && !convex);
+  p.single = (a.ball() || b.ball()) && convex;
+  p.rolls = a.rolls() || b.rolls() || ((a.ball() || b.ball()) && !convex);
   p.lowest = b.model && (a.rolls() || (!a.corners.empty() && a.corners.size() <= kMostCorners));
   p.meets = {a.meets_faces_of(b), b.meets_faces_of(a), a.rolls() && b.rolls()};
-  p.refresh = !convex || (ball(a) && ball(b)) || p.lowest;
+  p.refresh = !convex || (a.ball() && b.ball()) || p.lowest;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
   configuration.setConvexConvexMultipointIterations(wanted, wanted);
@@ -249,22 +238,6 @@ bool BodyGeometry::Inside::allowed(const Pair& pair) const {
     return (two[0] == pair.a->body && two[1] == pair.b->body) ||
            (two[1] == pair.a->body && two[0] == pair.b->body);
   });
-}
-
-// Moves a point's end on a plane along below the body's: a plane is the same everywhere, so a body
-// may slide any distance in one contact.
-void BodyGeometry::Inside::slide_along(const Pair& p) {
-  if (!p.b->level) return;
-  const bool turned = p.manifold->getBody0() != &p.a->at;
-  for (int i = 0; i < p.manifold->getNumContacts(); ++i) {
-    btManifoldPoint& point = p.manifold->getContactPoint(i);
-    btVector3& on_body = turned ? point.m_localPointB : point.m_localPointA;
-    btVector3& on_plane = turned ? point.m_localPointA : point.m_localPointB;
-    const btVector3 at = p.a->at.getWorldTransform() * on_body;
-    const btVector3 there = p.b->at.getWorldTransform() * on_plane;
-    const btVector3 level = at - *p.b->level * p.b->level->dot(at - there);
-    on_plane = p.b->at.getWorldTransform().invXform(level);
-  }
 }
 
 // Keeps only the deepest point of a ball: older ones that Bullet keeps beside it would turn the
@@ -359,13 +332,12 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
   const btVector3 middle = at * to_bullet(p.a->middle);
   const btScalar near = p.manifold->getContactBreakingThreshold();
   const double within = std::max(near, 0.5 * p.a->least);
-  std::array<FacePoints::Point, kMostCorners> found;
   std::size_t count = 0;
   const auto try_at = [&](const btVector3& point) {
     btVector3 normal;
     btScalar distance = 0;
     if (!face_below(*p.b, point, middle, within, normal, distance)) return;
-    if (distance <= near) found[count++] = {from_bullet(point), from_bullet(normal), distance};
+    if (distance <= near) low_points[count++] = {from_bullet(point), from_bullet(normal), distance};
   };
   for (const Vec3& corner : p.a->corners) try_at(at * to_bullet(corner));
   if (p.a->rolls()) {
@@ -381,34 +353,28 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
         try_at(to_bullet(point));
     }
   }
-  for (const FacePoints::Point& point : widest_of(std::span(found).first(count)).all()) {
-    const Vec3 on_face = point.at - point.distance * point.normal;
-    result.add(to_bullet(point.normal), to_bullet(on_face), point.distance);
+  for (const FacePoints::Point& point : widest_of(std::span(low_points).first(count)).all()) {
+    result.add(to_bullet(point.normal), to_bullet(on_other(point)), point.distance);
   }
 }
 
-// Returns the points of a pair at these poses, if it meets in this way.
-std::optional<BodyGeometry::Inside::Own> BodyGeometry::Inside::own_points(
-    const Pair& p, Meets meets, const Pose& a, const Pose& b, double near) {
-  std::optional<FacePoints> found;
-  if (meets == Meets::sides) {
-    found = points_of_sides(p.a->rod(a), p.b->rod(b), near);
-  } else {
-    const bool first = meets == Meets::a_on_b;
-    const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
-    const auto solid = one.convex(first ? a : b);
-    const auto face = flat.face_towards(*solid, first ? b : a);
-    if (face) found = points_on_face(*solid, *face, near);
+// Returns the points of a pair at these poses, on its first and with normals out of its second, if
+// it meets in this way.
+std::optional<FacePoints> BodyGeometry::Inside::own_points(const Pair& p, Meets meets,
+                                                           const Pose& a, const Pose& b,
+                                                           double near) {
+  if (meets == Meets::sides) return points_of_sides(p.a->rod(a), p.b->rod(b), near);
+  const bool first = meets == Meets::a_on_b;
+  const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
+  const auto solid = one.convex(first ? a : b);
+  const auto face = flat.face_towards(*solid, first ? b : a);
+  auto found = face ? points_on_face(*solid, *face, near) : std::nullopt;
+  if (!found || first) return found;
+  for (FacePoints::Point& point : std::span(found->points).first(found->count)) {
+    point.at = on_other(point);
+    point.normal = -point.normal;
   }
-  if (!found) return std::nullopt;
-  Own own;
-  for (const FacePoints::Point& point : found->all()) {
-    const Vec3 other = point.at - point.distance * point.normal;
-    const bool on_a = meets != Meets::b_on_a;
-    own.points[own.count++] = {on_a ? point.at : other, on_a ? other : point.at,
-                               on_a ? point.normal : Vec3(-point.normal), point.distance};
-  }
-  return own;
+  return found;
 }
 
 // Finds the points where a pair meets by its own geometry, and where they are in the middle of the
@@ -424,11 +390,12 @@ bool BodyGeometry::Inside::find_own(Pair& p, PairPoints& result) {
     if (!own) continue;
     p.manifold->clearManifold();
     for (const auto& point : own->all())
-      result.add(to_bullet(point.normal), to_bullet(point.on_b), point.distance);
+      result.add(to_bullet(point.normal), to_bullet(on_other(point)), point.distance);
     // Corners go with their body; where round things meet depends on how they roll.
     if (own->count == 0 || next.empty() || !(p.a->round || p.b->round)) return true;
     const Pose next_a = next_pose(*p.a), next_b = next_pose(*p.b);
-    p.next = own_points(p, meets, next_a, next_b, near + CollisionSolid::kNear).value_or(Own{});
+    p.next =
+        own_points(p, meets, next_a, next_b, near + CollisionSolid::kNear).value_or(FacePoints{});
     // A point may go as far as rolling takes it; further off it is another one.
     const double turned =
         (next_a.linear() - a.linear()).norm() + (next_b.linear() - b.linear()).norm();
@@ -451,7 +418,7 @@ void BodyGeometry::Inside::follow(const Pair& p, BodyContact& c) {
   if (p.next.count == 0) return;
   double least = p.goes * p.goes;
   for (const auto& point : p.next.all()) {
-    const Vec3 there = 0.5 * (point.on_a + point.on_b);
+    const Vec3 there = 0.5 * (point.at + on_other(point));
     const double away = (there - c.point).squaredNorm();
     if (away > least) continue;
     least = away;
@@ -471,7 +438,6 @@ void BodyGeometry::Inside::find(Pair& p, PairPoints& result) {
 }
 
 void BodyGeometry::Inside::meet(Pair& p) {
-  if (!p.lowest && !p.rolls) slide_along(p);
   std::array<BodyContact*, kPointsOfPair> before{};
   std::size_t count = 0;
   for (int i = 0; i < p.manifold->getNumContacts(); ++i) {

@@ -11,6 +11,8 @@ constexpr double kStands = 0.7;  // rise of a cylinder's axis from which on it s
 constexpr double kLevel = 1e-9;  // slope of an end at which no point is the lowest [-]
 constexpr double kCrosses = 0.05;  // least sine of the angle at which a rod goes over an edge [-]
 constexpr double kInside = 1e-9;   // points so far beyond an edge are at it [m]
+// Cosine and sine of the lowest point of a rim, of the opposite one, and of those between.
+constexpr std::array<std::array<double, 2>, 4> kWays{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
 Vec2 across(const Face& face, const Vec3& way) {
   return {face.along[0].dot(way), face.along[1].dot(way)};
@@ -160,7 +162,7 @@ FacePoints widest(const ForEach& for_each) {
   return found;
 }
 
-// Rim of a cylinder's lower end.
+// Rim of a cylinder's end.
 struct Rim {
   Vec3 center, axis, down, across;  // down: to its lowest point
   double radius;
@@ -170,10 +172,9 @@ struct Rim {
   }
 };
 
-Rim lower_rim(const Rod& rod, const Face& face) {
-  const double rise = rod.axis.dot(face.normal);
-  const Vec3 center = rod.center - std::copysign(rod.half, rise) * rod.axis;
-  const Vec3 down = downwards(rod, face.normal);
+// `center`: the middle of the end [m].
+Rim rim_of(const Rod& rod, const Vec3& center, const Vec3& normal) {
+  const Vec3 down = downwards(rod, normal);
   return {center, rod.axis, down, rod.axis.cross(down), rod.radius};
 }
 
@@ -203,8 +204,8 @@ void crossings(const Rim& rim, const Face& face, const Visit& visit) {
 }
 
 std::optional<FacePoints> standing(const Rod& rod, const Face& face, double near) {
-  const Rim rim = lower_rim(rod, face);
-  constexpr std::array<std::array<double, 2>, 4> kWays{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  const double rise = rod.axis.dot(face.normal);
+  const Rim rim = rim_of(rod, rod.center - std::copysign(rod.half, rise) * rod.axis, face.normal);
   FacePoints all;
   std::array<FacePoints::Point, 16> found;
   std::size_t count = 0;
@@ -226,7 +227,6 @@ std::optional<FacePoints> standing(const Rod& rod, const Face& face, double near
   }
   if (whole) return all;
   crossings(rim, face, add);
-  const double rise = rim.axis.dot(face.normal);
   for (const auto& [cosine, sine] : kWays) {  // the face's corners below the end
     const Vec2 corner =
         face.bounds == Face::Bounds::rectangle
@@ -328,10 +328,12 @@ FacePoints widest_of(std::span<const FacePoints::Point> points) {
 }
 
 EndPoints end_points(const Rod& rod, const Vec3& end, const Vec3& normal) {
-  const Vec3 down = rod.radius * downwards(rod, normal);
-  if (!stands(rod, normal)) return {{end + down}, 1};
-  const Vec3 across = rod.axis.cross(down);
-  return {{end + down, end - down, end + across, end - across}, 4};
+  const Rim rim = rim_of(rod, end, normal);
+  if (!stands(rod, normal)) return {{rim.at(1, 0)}, 1};
+  EndPoints found{{}, kWays.size()};
+  std::ranges::transform(kWays, found.at.begin(),
+                         [&](const auto& way) { return rim.at(way[0], way[1]); });
+  return found;
 }
 
 double Rod::reach(const Vec3& way) const {

@@ -394,21 +394,15 @@ void read_own(const TiXmlElement& robot, UrdfPlaces& places, ArmDescription& arm
     warn_of_unknown(*own, {"tip", "gravity", "delay", "spring", "warmth", "readings"}, places);
     if (const auto gravity = element.gravity()) arm.gravity = *gravity;
     if (const auto delay = element.number("delay", 0, kLongestDelay, "s")) arm.delay = delay;
-    for (auto* spring = own->FirstChildElement("spring"); spring;
-         spring = spring->NextSiblingElement("spring")) {
-      warn_of_unknown(*spring, {"joint", "stiffness", "offset"}, places);
-      read_spring(*spring, places, arm);
-    }
-    for (auto* warmth = own->FirstChildElement("warmth"); warmth;
-         warmth = warmth->NextSiblingElement("warmth")) {
-      warn_of_unknown(*warmth, {"joint", "continuous", "time"}, places);
-      read_warmth(*warmth, places, arm);
-    }
-    for (auto* readings = own->FirstChildElement("readings"); readings;
-         readings = readings->NextSiblingElement("readings")) {
-      warn_of_unknown(*readings, {"joint", "step", "delay"}, places);
-      read_readings(*readings, places, arm);
-    }
+    const auto each = [&](const char* name, const std::vector<std::string>& known, auto read) {
+      for (auto* one = own->FirstChildElement(name); one; one = one->NextSiblingElement(name)) {
+        warn_of_unknown(*one, known, places);
+        read(*one, places, arm);
+      }
+    };
+    each("spring", {"joint", "stiffness", "offset"}, read_spring);
+    each("warmth", {"joint", "continuous", "time"}, read_warmth);
+    each("readings", {"joint", "step", "delay"}, read_readings);
   }
 }
 
