@@ -193,7 +193,7 @@ class Analyze(SystemTest):
         for eta, tick in ((1.0, 1e-3), (0.4, 5e-4)):
             with self.subTest(eta=eta, tick=tick):
                 tip = self.analyze("--set", f"coupling.eta={eta}", "--set", f"loop.tick={tick}")["tip"]
-                damping, mass = tip["damping"], tip["mass"]
+                damping, mass = tip["damping"], tip["led_mass"]  # what is felt is led by a hand
                 self.assert_close(tip["every_hand"], 2 * damping / tick)
                 lever2 = 0.012 / damping  # every joint of the built-in arm has 0.012 N m s/rad
                 b = (0.012 + 0.012 + 10 * tick / 2) / lever2 + 2
