@@ -134,7 +134,8 @@ int run_program(int argc, char** argv, const VideoMakers& videos) {
       "Without a command: the desktop app. `limpid COMMAND --help` says more about each.\n"
       "Exit status: 0 done; 1 the run failed, became unstable, or was stopped (Ctrl-C); 2 wrong "
       "usage "
-      "or bad input.\nA run that is whole and gave energy ends with 0, and with a warning that its "
+      "or bad input. `serve` is stopped with Ctrl-C, and ends with 0; `doctor` says its own.\nA "
+      "run that is whole and gave energy ends with 0, and with a warning that its "
       "recording keeps.");
   refuse_empty_values(app);
   for_each_command(app, [&](CLI::App& command) {

@@ -9,6 +9,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
+#include "app/cli/out_folder.h"
 #include "app/cli/outcome_text.h"
 #include "app/cli/progress.h"
 #include "app/live/device_look.h"
@@ -28,6 +29,7 @@ struct CharacterizeOptions {
   InputOptions input;                 // `device`: the arm's file
   std::optional<std::string> device;  // id of a real one
   std::string out;
+  bool force = false;
 };
 
 // Whether these options set a number, whatever it was before. `one`, `other`: two values of it.
@@ -241,7 +243,10 @@ int run_characterize(const CharacterizeOptions& options) {
   }
   refuse_what_is_fixed(options.input);
   const Characterized subject = subject_of(options);
-  prepare_out(options.out);
+  claim_out({options.out,
+             "limpid characterize " + subject.name,
+             {"report", kCharacterize},
+             options.force});
   catch_interrupts();
   keep_what_is_freed();
   TrialRunner::Options lab_options;
@@ -290,6 +295,7 @@ Command declare_characterize(CLI::App& app) {
   command->add_option("--out", options->out, "the folder for report.html and characterize.json")
       ->required()
       ->type_name("DIR");
+  add_force(*command, options->force);
   options->input.add_parameters(*command);
   command->footer(
       "For each law the report has the stiffest wall that feels as stiff as set and does not "

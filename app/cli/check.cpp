@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
@@ -103,11 +104,36 @@ void list_limits(const Parameters& p, CheckReport& report) {
 // A slide longer than this is meant to have no limits [m].
 constexpr double kFar = 100;
 
+constexpr double kLongestArm = 10;  // that a hand may lead [m]
+constexpr double kMostOfATurn =
+    4 * std::numbers::pi;  // range of a joint with limits; more are degrees [rad]
+
+// Warns of lengths in mm and of limits in degrees, which are the usual slips.
+void list_units(const ArmDescription& arm, double reach, CheckReport& report) {
+  const auto travel = [](const Joint& joint) { return joint.upper - joint.lower; };
+  double slides = 0;
+  for (const Joint& joint : arm.joints) {
+    if (joint.kind == Joint::Kind::prismatic) {
+      slides += kSlideUnit * travel(joint);
+    } else if (std::isfinite(travel(joint)) && travel(joint) > kMostOfATurn) {
+      report.warnings.push_back(fmt::format(
+          "joint '{}' turns {:.3g} times round, from {:.3g} to {:.3g} rad; are the "
+          "limits in degrees? <limit> takes rad",
+          joint.name, travel(joint) / (2 * std::numbers::pi), joint.lower, joint.upper));
+    }
+  }
+  if (reach > kLongestArm && !(slides > kLongestArm)) {
+    report.warnings.push_back(
+        fmt::format("the arm is {:.3g} m long; are the lengths in mm? URDF takes m", reach));
+  }
+}
+
 void list_reach(const ArmDescription& arm, double mass, CheckReport& report) {
   const double most = farthest_tip(arm).distance;
   report.facts.push_back(fmt::format(
       "reach        {:.3g} m from the origin of joint '{}' to '{}', {:.3g} kg in motion", most,
       arm.joints.front().name, arm.tip_link, mass));
+  list_units(arm, most, report);
   if (most < kFar) return;
   for (const Joint& joint : arm.joints) {
     if (joint.kind != Joint::Kind::prismatic) continue;

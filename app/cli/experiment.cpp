@@ -10,6 +10,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
+#include "app/cli/out_folder.h"
 #include "app/cli/outcome_text.h"
 #include "app/cli/progress.h"
 #include "app/experiments/live.h"
@@ -29,6 +30,7 @@ struct ExperimentOptions {
   std::string out;
   std::uint64_t seed = 0;
   unsigned threads = 0;
+  bool force = false;
   LiveOptions live;
   InputOptions input;  // for live experiments
 };
@@ -123,12 +125,23 @@ void keep_those_for(const ExperimentArm& on, std::vector<const Experiment*>& wan
   for (const std::string& why : refused) fmt::print(stderr, "limpid: left out: {}\n", why);
 }
 
+std::string name_of(const Experiment& experiment) { return experiment.name; }
+std::string name_of(const LiveExperiment& experiment) { return live_name(experiment); }
+
+// Names of the files that these experiments write.
+template <class E>
+std::vector<std::string> files_of(const std::vector<const E*>& wanted) {
+  std::vector<std::string> names{"report"};
+  for (const E* one : wanted) names.push_back(name_of(*one));
+  return names;
+}
+
 int run(const ExperimentOptions& options) {
   refuse_what_has_no_effect(options.input);
   auto wanted = chosen(experiments(), options.name, " is not an experiment");
   const ExperimentArm on = arm_under(options.input);
   keep_those_for(on, wanted);
-  prepare_out(options.out);
+  claim_out({options.out, "limpid experiment", files_of(wanted), options.force});
   catch_interrupts();
   keep_what_is_freed();
   std::vector<std::string> failed;  // checks
@@ -151,6 +164,24 @@ int run(const ExperimentOptions& options) {
     throw std::runtime_error(e.what());
   }
   return finish_report(options.out, failed);
+}
+
+// Refuses a folder with trials of an earlier person, which this person's would replace. Errors:
+// UsageError.
+void keep_trials(const std::vector<const LiveExperiment*>& wanted,
+                 const ExperimentOptions& options) {
+  if (options.force) return;
+  for (const LiveExperiment* one : wanted) {
+    const fs::path trials = fs::path(options.out) / live_name(*one);
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(trials, none)) {
+      if (entry.path().extension() != ".h5") continue;
+      throw UsageError(fmt::format(
+          "--out {}: {} is a trial of an earlier session; choose another folder, or replace the "
+          "trials with --force",
+          options.out, entry.path().string()));
+    }
+  }
 }
 
 // Functions that lead the hand through a trial of a live experiment, recorded in `folder`.
@@ -176,7 +207,8 @@ int run_on_device(const ExperimentOptions& options) {
     throw UsageError("--readings: not together with --live: a device has its own");
   }
   const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
-  prepare_out(options.out);
+  keep_trials(wanted, options);
+  claim_out({options.out, "limpid experiment --live", files_of(wanted), options.force});
   LiveBench bench(options.live, options.input);
   std::vector<std::string> failed;  // checks
   try {
@@ -224,6 +256,7 @@ Command declare_experiment(CLI::App& app) {
   command->add_option("--out", options->out, "the folder for the results")
       ->required()
       ->type_name("DIR");
+  add_force(*command, options->force);
   require_whole_number(
       command->add_option("--seed", options->seed, "the seed of all random numbers")
           ->type_name("N"));

@@ -13,6 +13,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/live_bench.h"
 #include "app/cli/options.h"
+#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 #include "app/device/device_hub.h"
 #include "app/experiments/identification.h"
@@ -122,7 +123,7 @@ struct IdentifyOptions {
   std::string out;
   std::string gravity = "0,0,-9.81";
   unsigned seed = 1;
-  bool yes = false, forget = false;
+  bool yes = false, forget = false, force = false;
   IdentifyRequest order;
 };
 
@@ -254,21 +255,32 @@ int identify_simulated(IdentifyOptions& options) {
   return write_arm(options, done, {}, rehearsal.dump());
 }
 
+OutFolder out_folder(const IdentifyOptions& options, const std::string& device) {
+  const auto name = [](const char* file) { return fs::path(file).stem().string(); };
+  return {options.out,
+          "limpid identify " + device,
+          {"report", "identified", name(kMotionFile), name(kLoadedMotionFile)},
+          options.force};
+}
+
 int identify_device(IdentifyOptions options) {
   if (options.forget) return forget(options);
   if (options.out.empty()) throw UsageError("--out is required");
-  prepare_out(options.out);
   IdentifyRequest& order = options.order;
   order.fit.gravity = gravity_of(options.gravity);
   SceneDocument scene;
   read_world(options.input, order.guess, scene);
-  if (options.device == kSimulated) return identify_simulated(options);
+  if (options.device == kSimulated) {
+    claim_out(out_folder(options, kSimulated));
+    return identify_simulated(options);
+  }
   if (options.yes && order.load > 0) {
     throw UsageError(
         "--yes: not together with --load: a person must be asked to fix the load to the tip");
   }
   DeviceHub hub(device_store_file(), {});
   const std::string in_use = hub.in_use();
+  claim_out(out_folder(options, options.device.empty() ? in_use : options.device));
   const std::unique_ptr<Device> device =
       open_device(options.device, hub,
                   fmt::format(", and \"{}\" tries the command without a device", kSimulated));
@@ -332,6 +344,7 @@ Command declare_identify(CLI::App& app) {
                  "the masses in the arm's file are right: Limpid finds the motors' true torque "
                  "from these masses")
       ->excludes(load);
+  add_force(*command, options->force);
   require_whole_number(
       command->add_option("--seed", options->seed, "the seed of the simulated device"));
   command->add_flag("--yes", options->yes, "begin without asking");

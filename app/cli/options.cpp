@@ -330,7 +330,9 @@ std::string allowed_values(const FieldInfo& info) {
 }
 
 std::string parameter_help() {
-  std::string text = "Keys for --set and --config:\n";
+  std::string text =
+      "Keys for --set and --config. For a joint that slides, 1 rad stands for 10 cm, and 1 N m for "
+      "10 N:\n";
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(Parameters{}, info);
     const char* open =

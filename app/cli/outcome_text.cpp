@@ -13,7 +13,13 @@ void print_outcome(const std::string& name, const Outcome& outcome) {
              !outcome.passed() ? "FAILED"
              : elsewhere       ? "measured"
                                : "passed");
+  const Check* before = nullptr;
   for (const Check& c : outcome.checks) {
+    // A value between two bounds has two checks; where no bound is told, one line tells the value.
+    const bool told = before != nullptr && !elsewhere && !c.unjudged.empty() &&
+                      c.what == before->what && c.value == before->value;
+    before = &c;
+    if (told) continue;
     const char* verdict = !c.unjudged.empty() ? "----" : c.passed ? "ok  " : "FAIL";
     fmt::print("  {}  {}: {:.4g}", verdict, c.what, c.value);
     if (c.unjudged.empty()) fmt::print(", {} {:.4g}", relation(c), c.bound);

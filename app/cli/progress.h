@@ -1,17 +1,12 @@
-// Commands at a terminal: a folder for results, questions, and a line of progress.
+// Commands at a terminal: questions, and a line of progress.
 #pragma once
 
 #include <atomic>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <thread>
 
 namespace limpid {
-
-// Makes the folder before any work, so that no result is lost to a place that cannot be written or
-// is full. Errors: UsageError.
-void prepare_out(const std::filesystem::path& dir);
 
 // Prints the prompt and waits for Enter, ignoring earlier input. Calls `meanwhile` until then,
 // which also paces the loop. False if `meanwhile` returns false. Errors: UsageError at the end of

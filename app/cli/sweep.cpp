@@ -9,6 +9,7 @@
 #include "app/base/interrupt.h"
 #include "app/cli/commands.h"
 #include "app/cli/options.h"
+#include "app/cli/out_folder.h"
 #include "app/cli/progress.h"
 #include "app/run/provenance.h"
 #include "app/sweep/record_point.h"
@@ -52,7 +53,7 @@ struct SweepOptions {
   std::string plan, out, shard;
   std::optional<unsigned> threads;
   std::optional<std::uint64_t> open;
-  bool gather = false, mpi = false, slurm = false, csv = false, xacro = false;
+  bool gather = false, mpi = false, slurm = false, csv = false, xacro = false, force = false;
   SlurmOptions array;
 };
 
@@ -193,6 +194,9 @@ int sweep(const SweepOptions& options) {
       read_sweep_plan(options.plan, options.xacro ? Xacro::expand : Xacro::refuse);
   if (options.open) check_point(plan, *options.open);
   if (!options.gather) prepare_out(options.out);
+  if (!is_sweep_folder(options.out)) {
+    refuse_foreign({options.out, "limpid sweep", {"table", "figure"}, options.force});
+  }
   catch_interrupts();
   if (options.open) return open_point(plan, *options.open, options.out);
   const SweepFolder folder(plan, options.out);
@@ -255,6 +259,7 @@ Command declare_sweep(CLI::App& app) {
                    "run this point again, record the run in DIR/points and play the recording")
       ->type_name("POINT");
   command->add_flag("--csv", options->csv, "write DIR/table.csv as well");
+  add_force(*command, options->force);
   command->add_flag("--allow-xacro", options->xacro,
                     "expand arms in xacro that the plan names: this runs code in them");
   command->footer(

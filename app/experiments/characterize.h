@@ -57,6 +57,9 @@ const FeltMotion* at_frequency(const std::vector<FeltMotion>& felt, double f);
 // "19066 or more" where the search ended at its end; "below 50" likewise [N/m].
 std::string wall_text(double wall);
 
+// Name of the files.
+inline constexpr const char* kCharacterize = "characterize";
+
 // Writes DIR/report.html, and DIR/characterize.json, .csv, .png and .svg. Errors: FileError,
 // std::runtime_error.
 void write_characterization(const Characterized& subject, const Characterization& found,

@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* kCharacterize = "characterize";
-
 std::string html_cell(const std::string& text, const char* kind) {
   return fmt::format("<td class=\"{}\">{}</td>", kind, escaped(typeset(text)));
 }

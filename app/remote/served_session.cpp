@@ -171,8 +171,10 @@ Answer ServedSession::open(const Keys& keys) {
   if (busy(opening_)) throw RemoteError("open: another file is being opened; try again");
   opening_ = std::make_shared<std::future<World>>(files_.run(
       [open = options_.open, asked, now = controls().parameters()] { return open(asked, now); }));
-  return Answer::Later([this, loading = opening_, waits,
-                        of_session = !asked.session.empty()]() -> std::optional<json> {
+  return Answer::Later([this, loading = opening_, waits, of_session = !asked.session.empty(),
+                        begun = false]() mutable -> std::optional<json> {
+    // Whoever is told that a world is open finds its first row there.
+    if (begun) return session_.ticked() ? std::optional(state()) : std::nullopt;
     if (!ready(*loading)) return std::nullopt;
     World world = loading->get();
     if (const double tick = world.plan.parameters.tick; of_session && tick < kLeastTick) {
@@ -185,7 +187,8 @@ Answer ServedSession::open(const Keys& keys) {
     }
     if (!loop().device_in_place()) {
       begin(std::move(world), waits);
-      return state();
+      begun = true;
+      return std::nullopt;
     }
     if (count_bodies(world.plan.document.scene) != loop().layout().bodies()) {
       throw RemoteError(

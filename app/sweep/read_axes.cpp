@@ -170,6 +170,17 @@ void check_name(const TomlTable& table, const std::string& name) {
   table.refuse("name", fmt::format("up to {} letters, digits, _, - and spaces", kLongestName));
 }
 
+// Refuses a value that is there twice: its points would be run twice, and drawn on each other.
+void refuse_doubles(const TomlTable& table, const char* key, const SweepAxis& axis) {
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool named = !axis.cases.empty();
+      if (named ? axis.words[i] != axis.words[j] : axis.values[i] != axis.values[j]) continue;
+      table.refuse(key, "each one once; `repeats` runs all points several times");
+    }
+  }
+}
+
 }  // namespace
 
 const FieldInfo* axis_field(const std::string& key) {
@@ -266,6 +277,8 @@ ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
     axis.values.push_back(static_cast<double>(axis.words.size()));
     axis.words.push_back(one.name);
   }
+  const char* list = table.find("cases") == nullptr ? "values" : "cases";
+  if (table.find(list) != nullptr) refuse_doubles(table, list, axis);
   return read;
 }
 

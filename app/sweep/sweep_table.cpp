@@ -282,7 +282,11 @@ void write_table(const SweepPlan& plan, const SweepTable& table,
 void write_table_csv(const SweepPlan& plan, const SweepTable& table,
                      const std::filesystem::path& file) {
   std::string text = "point";
-  for (const SweepAxis& axis : plan.axes) text += ',' + csv_header(axis.name, axis.unit);
+  for (const SweepAxis& axis : plan.axes) {
+    // An axis and a measure may share a name; columns may not.
+    const bool taken = std::ranges::count(table.columns, axis.name, &SweepColumn::name) > 0;
+    text += ',' + csv_header(taken && !axis.key.empty() ? axis.key : axis.name, axis.unit);
+  }
   text += ",repeat";
   for (const SweepColumn& c : table.columns) text += ',' + csv_header(c.name, c.unit);
   text += '\n';

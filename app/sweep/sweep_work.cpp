@@ -155,9 +155,14 @@ void SweepFolder::write(const SweepBlock& block, const std::vector<double>& rows
   image.write();
 }
 
-fs::path plan_behind(const fs::path& dir) {
+bool is_sweep_folder(const fs::path& dir) {
   std::error_code none;
-  if (fs::is_regular_file(dir / kNote, none)) {
+  return fs::is_regular_file(dir / kNote, none);
+}
+
+fs::path plan_behind(const fs::path& dir) {
+  if (is_sweep_folder(dir)) {
+    std::error_code none;
     const std::string said = read_text(dir / kNote, kLongestNote), word = "\nfrom ";
     const std::size_t at = said.find(word);
     fs::path plan = at == std::string::npos

@@ -41,6 +41,9 @@ class SweepFolder {
   std::size_t columns_;
 };
 
+// Whether a sweep began in that folder.
+bool is_sweep_folder(const std::filesystem::path& dir);
+
 // Path of the plan behind a sweep's folder, beside the files that the plan names. A path in the
 // folder itself if the original is unknown or gone. Errors: FileError.
 std::filesystem::path plan_behind(const std::filesystem::path& dir);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "core/touch/body_motion.h"
 #include "core/touch/collision_solid.h"
@@ -60,10 +61,11 @@ struct BodyGeometry::Inside {
     bool refresh = true;          // its search does not remove points that are gone
     bool lowest = false;          // on a model: the lowest points of a are tested
     bool rolls = false;           // a round shape: points do not stay where they are on it
-    std::array<bool, 3> meets{};  // whether it may meet so by its own geometry, by Meets
+    std::array<bool, 4> meets{};  // whether it may meet so by its own geometry, by Meets
     int points = 0;               // points of its manifold
     FacePoints next{};            // its points in the middle of the tick, if they are known
     double goes = 0;              // way of a point until then, at most [m]
+    double lost = 0;              // of its points that have just gone, as BodyContact has it [J]
   };
 
   explicit Inside(const Scene& scene);
@@ -74,9 +76,15 @@ struct BodyGeometry::Inside {
   static bool face_below(const Solid& model, const btVector3& corner, const btVector3& middle,
                          double within, btVector3& normal, btScalar& distance);
   void find_lowest(const Pair& pair, PairPoints& result);
-  enum class Meets : std::uint8_t { a_on_b, b_on_a, sides };
+  enum class Meets : std::uint8_t { a_on_b, b_on_a, flat, sides };
   static std::optional<FacePoints> own_points(const Pair& pair, Meets meets, const Pose& a,
                                               const Pose& b, double near);
+  struct Ways {
+    std::array<Meets, 4> all{};
+    std::size_t count = 0;
+  };
+  static Ways ways_to_meet(const Pair& pair, const Pose& a, const Pose& b, double near);
+  bool deepest_in(Pair& pair, const FacePoints& own, PairPoints& result);
   bool find_own(Pair& pair, PairPoints& result);
   Pose next_pose(const Solid& solid) const;
   static void follow(const Pair& pair, BodyContact& contact);
@@ -92,6 +100,7 @@ struct BodyGeometry::Inside {
   };
   void meet_on(const Way& way, Pair& pair, Solid& moving, Meeting& first);
   void take(Pair& pair);
+  static void share_lost(Pair& pair, std::span<BodyContact* const> contacts);
   BodyContact* fresh(const Pair& pair);
   bool allowed(const Pair& pair) const;
 
@@ -208,7 +217,9 @@ void BodyGeometry::Inside::pair(Solid& a, Solid& b) {
   p.single = (a.ball() || b.ball()) && convex;
   p.rolls = a.rolls() || b.rolls() || ((a.ball() || b.ball()) && !convex);
   p.lowest = b.model && (a.rolls() || (!a.corners.empty() && a.corners.size() <= kMostCorners));
-  p.meets = {a.meets_faces_of(b), b.meets_faces_of(a), a.rolls() && b.rolls()};
+  const bool flat = !a.faces.empty() && !b.faces.empty() && !b.level && !(a.boxy() && b.boxy());
+  p.meets = {!flat && a.meets_faces_of(b), !flat && b.meets_faces_of(a), flat,
+             a.rolls() && b.rolls()};
   p.refresh = !convex || (a.ball() && b.ball()) || p.lowest;
   // Extra iterations: Bullet turns the shapes slightly, to find more points than the deepest.
   const int wanted = p.single ? 0 : kPointsOfPair;
@@ -353,9 +364,7 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
         try_at(to_bullet(point));
     }
   }
-  for (const FacePoints::Point& point : widest_of(std::span(low_points).first(count)).all()) {
-    result.add(to_bullet(point.normal), to_bullet(on_other(point)), point.distance);
-  }
+  result.take(widest_of(std::span(low_points).first(count)));
 }
 
 // Returns the points of a pair at these poses, on its first and with normals out of its second, if
@@ -364,17 +373,53 @@ std::optional<FacePoints> BodyGeometry::Inside::own_points(const Pair& p, Meets 
                                                            const Pose& a, const Pose& b,
                                                            double near) {
   if (meets == Meets::sides) return points_of_sides(p.a->rod(a), p.b->rod(b), near);
+  if (meets == Meets::flat) return points_of_hulls(p.a->hull(a), p.b->hull(b), near);
   const bool first = meets == Meets::a_on_b;
   const Solid &one = first ? *p.a : *p.b, &flat = first ? *p.b : *p.a;
   const auto solid = one.convex(first ? a : b);
   const auto face = flat.face_towards(*solid, first ? b : a);
   auto found = face ? points_on_face(*solid, *face, near) : std::nullopt;
   if (!found || first) return found;
-  for (FacePoints::Point& point : std::span(found->points).first(found->count)) {
-    point.at = on_other(point);
-    point.normal = -point.normal;
-  }
+  turn_round(*found);
   return found;
+}
+
+// Returns the ways in which a pair may meet by its own geometry, the likeliest first: on the face
+// that the other solid is furthest from, or least deep in. A face that it is much deeper in is none
+// that it meets.
+BodyGeometry::Inside::Ways BodyGeometry::Inside::ways_to_meet(const Pair& p, const Pose& a,
+                                                              const Pose& b, double near) {
+  Ways ways;
+  const auto may = [&](Meets meets) { return p.meets[static_cast<std::size_t>(meets)]; };
+  const auto add = [&](Meets meets) { ways.all[ways.count++] = meets; };
+  if (may(Meets::a_on_b) && may(Meets::b_on_a)) {
+    const auto height = [](const Solid& one, const Pose& at, const Solid& flat, const Pose& on) {
+      const auto solid = one.convex(at);
+      const auto face = flat.face_towards(*solid, on);
+      return face ? height_above(*solid, *face) : -std::numeric_limits<double>::infinity();
+    };
+    const double on_b = height(*p.a, a, *p.b, b), on_a = height(*p.b, b, *p.a, a);
+    if (on_b >= on_a - near) add(Meets::a_on_b);
+    if (on_a >= on_b - near) add(Meets::b_on_a);
+    if (on_a > on_b && ways.count == 2) std::swap(ways.all[0], ways.all[1]);
+  } else if (may(Meets::a_on_b) || may(Meets::b_on_a)) {
+    add(may(Meets::a_on_b) ? Meets::a_on_b : Meets::b_on_a);
+  }
+  if (may(Meets::flat)) add(Meets::flat);
+  if (may(Meets::sides)) add(Meets::sides);
+  return ways;
+}
+
+// Whether a pair is nowhere deeper than in these points, as Bullet finds it.
+bool BodyGeometry::Inside::deepest_in(Pair& p, const FacePoints& own, PairPoints& result) {
+  constexpr double kAlike = 0.9;  // part of the depth that Bullet finds
+  p.manifold->clearManifold();
+  p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
+  double found = 0, known = 0;
+  for (int i = 0; i < p.manifold->getNumContacts(); ++i)
+    found = std::max(found, -p.manifold->getContactPoint(i).getDistance());
+  for (const FacePoints::Point& point : own.all()) known = std::max(known, -point.distance);
+  return known >= kAlike * found - 2 * kMargin;
 }
 
 // Finds the points where a pair meets by its own geometry, and where they are in the middle of the
@@ -384,13 +429,12 @@ bool BodyGeometry::Inside::find_own(Pair& p, PairPoints& result) {
   const Pose b = from_bullet(p.b->at.getWorldTransform());
   const double near = p.manifold->getContactBreakingThreshold();
   p.next.count = 0;
-  for (const Meets meets : {Meets::a_on_b, Meets::b_on_a, Meets::sides}) {
-    if (!p.meets[static_cast<std::size_t>(meets)]) continue;
+  const Ways ways = ways_to_meet(p, a, b, near);
+  for (const Meets meets : std::span(ways.all).first(ways.count)) {
     const auto own = own_points(p, meets, a, b, near);
     if (!own) continue;
-    p.manifold->clearManifold();
-    for (const auto& point : own->all())
-      result.add(to_bullet(point.normal), to_bullet(on_other(point)), point.distance);
+    if (!own->sure && !deepest_in(p, *own, result)) return true;
+    result.take(*own);
     // Corners go with their body; where round things meet depends on how they roll.
     if (own->count == 0 || next.empty() || !(p.a->round || p.b->round)) return true;
     const Pose next_a = next_pose(*p.a), next_b = next_pose(*p.b);
@@ -430,7 +474,7 @@ void BodyGeometry::Inside::follow(const Pair& p, BodyContact& c) {
 
 void BodyGeometry::Inside::find(Pair& p, PairPoints& result) {
   result.setPersistentManifold(p.manifold);
-  if ((p.meets[0] || p.meets[1] || p.meets[2]) && find_own(p, result)) return;
+  if (std::ranges::count(p.meets, true) > 0 && find_own(p, result)) return;
   p.next.count = 0;
   if (p.lowest) find_lowest(p, result);
   result.only_edges = p.lowest;
@@ -455,6 +499,12 @@ void BodyGeometry::Inside::meet(Pair& p) {
   if (p.single) keep_deepest(p);
   p.points = p.manifold->getNumContacts();
   go_on(p, {before.data(), count});
+  for (std::size_t i = 0; i < count; ++i) {
+    bool goes_on = false;
+    for (int k = 0; k < p.points; ++k)
+      goes_on = goes_on || p.manifold->getContactPoint(k).m_userPersistentData == before[i];
+    if (!goes_on) p.lost += before[i]->lost;
+  }
 }
 
 // The deepest point of a pair as it stands, in place of its points; null: the two do not touch.
@@ -525,7 +575,24 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   return c;
 }
 
+// What a pair lost in one point pays for the depth of all: bodies that turn as they hit each other
+// meet in one point and come to rest on others.
+void BodyGeometry::Inside::share_lost(Pair& p, std::span<BodyContact* const> contacts) {
+  const double gone = std::exchange(p.lost, 0);
+  if (contacts.empty()) return;
+  contacts.front()->lost += gone;
+  double lost = 0, deep = 0;
+  const auto not_pressed = [](const BodyContact& c) { return std::max(0.0, c.depth - c.pressed); };
+  for (const BodyContact* c : contacts) {
+    lost += c->lost;
+    deep += not_pressed(*c);
+  }
+  if (!(lost > 0 && deep > 0)) return;
+  for (BodyContact* c : contacts) c->lost = lost * not_pressed(*c) / deep;
+}
+
 void BodyGeometry::Inside::take(Pair& p) {
+  const std::size_t before = points.size();
   for (int i = 0; i < p.points; ++i) {
     btManifoldPoint& point = p.manifold->getContactPoint(i);
     auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
@@ -546,6 +613,7 @@ void BodyGeometry::Inside::take(Pair& p) {
     c->seen = true;
     points.push_back(c);  // its capacity covers the whole pool
   }
+  share_lost(p, std::span(points).subspan(before));
 }
 
 BodyGeometry::BodyGeometry(const Scene& scene) : in_(std::make_unique<Inside>(scene)) {}

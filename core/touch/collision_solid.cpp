@@ -1,5 +1,7 @@
 #include "core/touch/collision_solid.h"
 
+#include <LinearMath/btConvexHullComputer.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -14,6 +16,41 @@ std::vector<Vec3> corners_of(const Box& box) {
     corners.push_back(0.5 * side.cwiseProduct(box.size));
   }
   return corners;
+}
+
+constexpr std::size_t kMostFlat = 128;  // corners of a hull whose faces are looked at in each tick
+constexpr double kSame =
+    1e-5;  // corners so far from a plane are in it, in parts of the hull's size
+
+// Returns the flat sides of the hull of these corners, the large ones first.
+std::vector<HullFace> faces_of_hull(const std::vector<Vec3>& corners, double size) {
+  btConvexHullComputer hull;
+  hull.compute(corners.front().data(), static_cast<int>(sizeof(Vec3)),
+               static_cast<int>(corners.size()), 0, 0);
+  std::vector<Vec3> sides;  // twice the area of each, along its normal
+  for (int i = 0; i < hull.faces.size(); ++i) {
+    const auto* first = &hull.edges[hull.faces[i]];
+    const Vec3 from = from_bullet(hull.vertices[first->getSourceVertex()]);
+    Vec3 area = Vec3::Zero();
+    for (const auto* edge = first->getNextEdgeOfFace(); edge != first;
+         edge = edge->getNextEdgeOfFace()) {
+      area += (from_bullet(hull.vertices[edge->getSourceVertex()]) - from)
+                  .cross(from_bullet(hull.vertices[edge->getTargetVertex()]) - from);
+    }
+    sides.push_back(area);
+  }
+  std::ranges::sort(sides, std::ranges::greater(), [](const Vec3& each) { return each.norm(); });
+  std::vector<HullFace> faces;
+  for (const Vec3& side : sides) {
+    if (side.norm() < kSame * size * size) break;
+    HullFace face = hull_face(corners, side.normalized(), kSame * size);
+    const bool known = std::ranges::any_of(faces, [&](const HullFace& other) {
+      return face.normal.dot(other.normal) > 0.5 &&
+             (face.center - other.center).norm() < kSame * size;
+    });
+    if (!known && face.outline.size() > 2) faces.push_back(std::move(face));
+  }
+  return faces;
 }
 
 // Adds a model: its triangles if it stands still, else its convex hull.
@@ -55,6 +92,8 @@ void add_model(const Mesh& mesh, CollisionSolid& solid) {
   solid.shape->getAabb(btTransform::getIdentity(), low, high);
   const btVector3 size = high - low;
   solid.least = std::min({size.x(), size.y(), size.z()});
+  if (!solid.corners.empty() && solid.corners.size() <= kMostFlat)
+    solid.faces = faces_of_hull(solid.corners, size.length());
 }
 
 }  // namespace
@@ -74,7 +113,11 @@ bool CollisionSolid::overlaps(const btVector3& box_low, const btVector3& box_hig
 std::optional<Convex> CollisionSolid::convex(const Pose& pose) const {
   if (round) return rod(pose);
   if (corners.empty()) return std::nullopt;
-  return Hull{.pose = pose, .corners = corners, .center = pose * middle};
+  return hull(pose);
+}
+
+Hull CollisionSolid::hull(const Pose& pose) const {
+  return {.pose = pose, .corners = corners, .center = pose * middle, .faces = faces};
 }
 
 Rod CollisionSolid::rod(const Pose& pose) const {
@@ -92,17 +135,15 @@ std::optional<Face> CollisionSolid::face_towards(const Convex& other, const Pose
     plane.along[1] = plane.normal.cross(plane.along[0]);
     return plane;
   }
-  if (boxy()) {
-    const auto& box = static_cast<const btBoxShape&>(*shape);
-    return face_of_box(other, pose, from_bullet(box.getHalfExtentsWithMargin()));
-  }
+  if (!faces.empty()) return face_of_hull(other, hull(pose));
   const Rod own = rod(pose);
   return own.round_ends ? std::nullopt : end_of_cylinder(other, own);
 }
 
 bool CollisionSolid::meets_faces_of(const CollisionSolid& flat) const {
   if (!round && corners.empty()) return false;
-  if (flat.boxy()) return flat.level || !boxy();
+  if (flat.level) return true;
+  if (!flat.faces.empty()) return !boxy() || !flat.boxy();
   return flat.rolls() && flat.shape->getShapeType() == CYLINDER_SHAPE_PROXYTYPE;
 }
 
@@ -116,6 +157,7 @@ std::unique_ptr<CollisionSolid> collision_solid(const Shape& shape, const Pose& 
     solid->shape = std::make_unique<btBoxShape>(to_bullet(Vec3(box->size / 2)));
     solid->least = box->size.minCoeff();
     solid->corners = corners_of(*box);
+    solid->faces = faces_of_box(box->size / 2);
   } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     solid->shape = std::make_unique<btSphereShape>(sphere->radius);
     solid->least = 2 * sphere->radius;

@@ -32,6 +32,7 @@ struct CollisionSolid {
   double radius = 0, half = 0;  // of a round one; half of its length [m]
   std::vector<Vec3> corners;    // of a box or a hull that moves, in its own frame [m]
   Vec3 middle = Vec3::Zero();   // of these corners [m]
+  std::vector<HullFace> faces;  // of a box, and of a hull of few corners
 
   bool rolls() const { return round && !round->axis.isZero(0); }
   bool boxy() const { return shape->getShapeType() == BOX_SHAPE_PROXYTYPE; }
@@ -42,8 +43,10 @@ struct CollisionSolid {
   void bound();  // by its present place
   bool overlaps(const btVector3& box_low, const btVector3& box_high) const;
   bool overlaps(const CollisionSolid& other) const { return overlaps(other.low, other.high); }
-  // The next three are for the solid at a pose. rod() needs a solid that is round.
+  // The next four are for the solid at a pose. rod() needs a solid that is round, hull() one with
+  // corners.
   Rod rod(const Pose& pose) const;
+  Hull hull(const Pose& pose) const;
   // Returns what it may meet a face as; nothing: it is no hull and no rod.
   std::optional<Convex> convex(const Pose& pose) const;
   // Returns its flat face that is towards another solid; nothing if it has none there.

@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "core/touch/face_points.h"
 #include "core/touch/mesh_edges.h"
 #include "core/touch/triangle_mesh.h"
 
@@ -52,31 +53,46 @@ class PairPoints : public btManifoldResult {
       add(normal, on_b, distance);
     }
   }
+  // Takes a point in place of a near one.
   void add(const btVector3& normal, const btVector3& on_b, btScalar distance) {
     btPersistentManifold& all = *getPersistentManifold();
     if (distance > all.getContactBreakingThreshold()) return;
-    const btVector3 on_a = on_b + normal * distance;
-    const bool turned = all.getBody0() != m_body0Wrap->getCollisionObject();
-    const auto* first = turned ? m_body1Wrap : m_body0Wrap;
-    const auto* second = turned ? m_body0Wrap : m_body1Wrap;
-    const btVector3 own = first->getCollisionObject()->getWorldTransform().invXform(on_a);
-    const btVector3 other = second->getCollisionObject()->getWorldTransform().invXform(on_b);
-    if (btManifoldPoint* known = near(all, own)) {
-      known->m_localPointA = own;
-      known->m_localPointB = other;
+    const btManifoldPoint point = point_at(normal, on_b, distance);
+    if (btManifoldPoint* known = near(all, point.m_localPointA)) {
+      known->m_localPointA = point.m_localPointA;
+      known->m_localPointB = point.m_localPointB;
       known->m_normalWorldOnB = normal;
       known->m_distance1 = distance;
-      known->m_positionWorldOnA = on_a;
+      known->m_positionWorldOnA = point.m_positionWorldOnA;
       known->m_positionWorldOnB = on_b;
       return;
     }
-    btManifoldPoint point(own, other, normal, distance);
-    point.m_positionWorldOnA = on_a;
-    point.m_positionWorldOnB = on_b;
     all.addManifoldPoint(point);
+  }
+  // Takes these points, however near each other they are, and no others.
+  void take(const FacePoints& points) {
+    btPersistentManifold& all = *getPersistentManifold();
+    all.clearManifold();
+    for (const FacePoints::Point& each : points.all()) {
+      const Vec3 on_b = each.at - each.distance * each.normal;
+      all.addManifoldPoint(point_at(to_bullet(each.normal), to_bullet(on_b), each.distance));
+    }
   }
 
  private:
+  btManifoldPoint point_at(const btVector3& normal, const btVector3& on_b,
+                           btScalar distance) const {
+    const btVector3 on_a = on_b + normal * distance;
+    const bool turned = getPersistentManifold()->getBody0() != m_body0Wrap->getCollisionObject();
+    const auto* first = turned ? m_body1Wrap : m_body0Wrap;
+    const auto* second = turned ? m_body0Wrap : m_body1Wrap;
+    btManifoldPoint point(first->getCollisionObject()->getWorldTransform().invXform(on_a),
+                          second->getCollisionObject()->getWorldTransform().invXform(on_b), normal,
+                          distance);
+    point.m_positionWorldOnA = on_a;
+    point.m_positionWorldOnB = on_b;
+    return point;
+  }
   // False if one of the two is a triangle of a model that cannot be touched there in this
   // direction.
   bool touchable(const btCollisionObjectWrapper& wrap, int triangle, const btVector3& place,

@@ -11,6 +11,9 @@ constexpr double kStands = 0.7;  // rise of a cylinder's axis from which on it s
 constexpr double kLevel = 1e-9;  // slope of an end at which no point is the lowest [-]
 constexpr double kCrosses = 0.05;  // least sine of the angle at which a rod goes over an edge [-]
 constexpr double kInside = 1e-9;   // points so far beyond an edge are at it [m]
+constexpr double kLies = 0.8;    // least cosine between the normals of faces that lie on each other
+constexpr double kShort = 1e-9;  // edges up to this length are none [m]
+constexpr std::size_t kMost = 64;  // points of two solids before the widest are chosen
 // Cosine and sine of the lowest point of a rim, of the opposite one, and of those between.
 constexpr std::array<std::array<double, 2>, 4> kWays{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
@@ -21,9 +24,31 @@ Vec3 in_space(const Face& face, const Vec2& way) {
   return way.x() * face.along[0] + way.y() * face.along[1];
 }
 
-double height_above(const Convex& solid, const Face& face) {
-  return std::visit([&](const auto& s) { return face.above(s.center) - s.reach(-face.normal); },
-                    solid);
+Face placed(const HullFace& face, const Pose& pose) {
+  return {.center = pose * face.center,
+          .normal = pose.linear() * face.normal,
+          .bounds = Face::Bounds::polygon,
+          .along = {pose.linear() * face.along[0], pose.linear() * face.along[1]},
+          .outline = face.outline};
+}
+
+// An edge of a polygon: where it begins, its direction, and the one out of the polygon.
+struct Edge {
+  Vec2 from, along, out;
+  double length;
+};
+
+// Calls visit(edge) for each edge of a face that is a polygon.
+template <class Visit>
+void for_each_edge(const Face& face, const Visit& visit) {
+  for (std::size_t i = 0; i < face.outline.size(); ++i) {
+    const Vec2& from = face.outline[i];
+    const Vec2 way = face.outline[(i + 1) % face.outline.size()] - from;
+    const double length = way.norm();
+    if (length <= kShort) continue;
+    const Vec2 along = way / length;
+    visit(Edge{from, along, {along.y(), -along.x()}, length});
+  }
 }
 
 // A place on the border of a face, and the border's direction there.
@@ -50,20 +75,17 @@ std::optional<Line> line_over(const Rod& rod, const Face& face, const Vec3& down
     if (last ? at >= end.at : at <= end.at) return;
     end = {at, Border{face.center + in_space(face, border), in_space(face, along)}};
   };
-  if (face.bounds == Face::Bounds::rectangle) {
-    for (int i = 0; i < 2; ++i) {
-      const double half = face.half[static_cast<std::size_t>(i)];
-      const double most = std::abs(slope[i]) * rod.half;
-      if (std::abs(start[i]) > half + kInside + most) return std::nullopt;
-      if (std::abs(start[i]) + most <= half + kInside) continue;
-      for (const double side : {-1.0, 1.0}) {
-        if (half - side * start[i] >= most) continue;
-        const double at = (side * half - start[i]) / slope[i];
-        cut(at, side * slope[i] > 0, side * half * Vec2::Unit(i), Vec2::Unit(1 - i));
-      }
-    }
+  if (face.bounds == Face::Bounds::polygon) {
+    bool beside = false;
+    for_each_edge(face, [&](const Edge& edge) {
+      const double out = edge.out.dot(start - edge.from), rise = edge.out.dot(slope);
+      const double most = std::abs(rise) * rod.half;
+      beside = beside || out > kInside + most;
+      if (!beside && out + most > kInside) cut(-out / rise, rise > 0, edge.from, edge.along);
+    });
+    if (beside) return std::nullopt;
   } else if (face.bounds == Face::Bounds::circle) {
-    const double out = start.squaredNorm() - face.half[0] * face.half[0];
+    const double out = start.squaredNorm() - face.radius * face.radius;
     const double a = slope.squaredNorm(), b = start.dot(slope);
     if (out > 0 && (a == 0 || b * b < a * out)) return std::nullopt;
     if (a > 0) {
@@ -91,7 +113,7 @@ bool add_crossing(const Rod& rod, const Face& face, const Border& border, double
   const double at = (cosine * way.dot(border.along) - way.dot(rod.axis)) / (sine * sine);
   if (std::abs(at) > rod.half) return false;
   const Vec3 nearest = rod.center + at * rod.axis;
-  if (face.bounds == Face::Bounds::rectangle && !face.over(nearest - normal.dot(way) * normal))
+  if (face.bounds == Face::Bounds::polygon && !face.over(nearest - normal.dot(way) * normal))
     return false;
   const double distance = normal.dot(way) - rod.radius;
   if (distance <= near) found.add(nearest - rod.radius * normal, normal, distance);
@@ -131,10 +153,13 @@ std::optional<FacePoints> lying(const Rod& rod, const Face& face, double near) {
 // widest_of() the points p for which for_each calls visit(p).
 template <class ForEach>
 FacePoints widest(const ForEach& for_each) {
-  constexpr double kApart = 1e-12;  // areas of less are none [m^2]
+  constexpr double kAlike = 5e-5;    // depths that differ less are alike [m]
+  constexpr double kTie = 1e-6;      // worths that differ by this part are alike [-]
+  constexpr double kApart = 1e-12;   // areas of less are none [m^2]
+  constexpr double kFurther = 1e-3;  // weight of the distance beside that of the area [-]
   FacePoints found;
   // Chooses the point of the largest worth, if that is positive: one inside before one that is
-  // apart.
+  // apart, the first of those that are alike. So the choice for a body that lies still stays.
   const auto choose = [&](auto&& worth_of) {
     double most = 0;
     bool inside = false;
@@ -142,7 +167,7 @@ FacePoints widest(const ForEach& for_each) {
     for_each([&](const FacePoints::Point& p) {
       const double worth = worth_of(p);
       const bool in = p.distance < 0;
-      if (!(worth > 0) || in < inside || (in == inside && worth <= most)) return;
+      if (!(worth > 0) || in < inside || (in == inside && worth <= (1 + kTie) * most)) return;
       most = worth;
       inside = in;
       best = p;
@@ -153,12 +178,30 @@ FacePoints widest(const ForEach& for_each) {
   double deepest = std::numeric_limits<double>::infinity();
   for_each([&](const FacePoints::Point& p) { deepest = std::min(deepest, p.distance); });
   using P = FacePoints::Point;
-  if (!choose([&](const P& p) { return 1 + deepest - p.distance; })) return found;
+  if (!choose([&](const P& p) { return p.distance <= deepest + kAlike ? 1 : 0; })) return found;
   const Vec3 first = found.points[0].at;
   if (!choose([&](const P& p) { return (p.at - first).squaredNorm(); })) return found;
-  const Vec3 way = found.points[0].normal.cross(found.points[1].at - first);
-  for (const double side : {-1.0, 1.0})
-    choose([&](const P& p) { return side * way.dot(p.at - first) - kApart; });
+  // Twice the area of a triangle that turns as the points do.
+  const Vec3 normal = found.points[0].normal;
+  const auto area = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return normal.dot((b - a).cross(c - a));
+  };
+  const Vec3 second = found.points[1].at;
+  const auto makes = [&](const P& p) {
+    const double size = std::abs(area(first, second, p.at));
+    // Of those on a line with the same triangle, the furthest.
+    return size <= kApart ? 0 : size + kFurther * (p.at - first).norm() * (second - first).norm();
+  };
+  if (!choose(makes)) return found;
+  const bool left = area(first, second, found.points[2].at) > 0;
+  const std::array<Vec3, 3> corners{first, left ? second : found.points[2].at,
+                                    left ? found.points[2].at : second};
+  choose([&](const P& p) {
+    double beyond = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      beyond = std::max(beyond, -area(corners[i], corners[(i + 1) % 3], p.at));
+    return beyond - kApart;
+  });
   return found;
 }
 
@@ -192,13 +235,12 @@ void crossings(const Rim& rim, const Face& face, const Visit& visit) {
   };
   const Vec2 middle = across(face, rim.center - face.center);
   const Vec2 one = rim.radius * across(face, rim.down), two = rim.radius * across(face, rim.across);
-  if (face.bounds == Face::Bounds::rectangle) {
-    for (int i = 0; i < 2; ++i) {
-      for (const double side : {-1.0, 1.0})
-        solve(one[i], two[i], side * face.half[static_cast<std::size_t>(i)] - middle[i]);
-    }
+  if (face.bounds == Face::Bounds::polygon) {
+    for_each_edge(face, [&](const Edge& edge) {
+      solve(edge.out.dot(one), edge.out.dot(two), edge.out.dot(edge.from - middle));
+    });
   } else if (face.bounds == Face::Bounds::circle) {
-    const double out = face.half[0] * face.half[0] - middle.squaredNorm();
+    const double out = face.radius * face.radius - middle.squaredNorm();
     solve(2 * middle.dot(one), 2 * middle.dot(two), out - rim.radius * rim.radius);
   }
 }
@@ -207,7 +249,7 @@ std::optional<FacePoints> standing(const Rod& rod, const Face& face, double near
   const double rise = rod.axis.dot(face.normal);
   const Rim rim = rim_of(rod, rod.center - std::copysign(rod.half, rise) * rod.axis, face.normal);
   FacePoints all;
-  std::array<FacePoints::Point, 16> found;
+  std::array<FacePoints::Point, kMost> found;
   std::size_t count = 0;
   const auto add = [&](const Vec3& at) {
     const double distance = face.above(at);
@@ -227,14 +269,16 @@ std::optional<FacePoints> standing(const Rod& rod, const Face& face, double near
   }
   if (whole) return all;
   crossings(rim, face, add);
-  for (const auto& [cosine, sine] : kWays) {  // the face's corners below the end
-    const Vec2 corner =
-        face.bounds == Face::Bounds::rectangle
-            ? Vec2((cosine + sine) * face.half[0], (cosine - sine) * face.half[1])
-            : Vec2(across(face, cosine * rim.down + sine * rim.across).normalized() * face.half[0]);
-    const Vec3 below = face.center + in_space(face, corner);
-    const Vec3 at = below + rim.axis.dot(rim.center - below) / rise * face.normal;
+  const auto add_below = [&](const Vec3& border) {  // of the face, below the end
+    const Vec3 at = border + rim.axis.dot(rim.center - border) / rise * face.normal;
     if ((at - rim.center).norm() <= rim.radius) add(at);
+  };
+  for (std::size_t i = 0; i < face.outline.size(); ++i) add_below(face.corner(i));
+  if (face.bounds == Face::Bounds::circle) {
+    for (const auto& [cosine, sine] : kWays) {
+      const Vec2 way = across(face, cosine * rim.down + sine * rim.across).normalized();
+      add_below(face.center + in_space(face, face.radius * way));
+    }
   }
   const FacePoints points = widest_of(std::span(found).first(count));
   return points.count > 0 ? std::optional(points) : std::nullopt;
@@ -259,6 +303,36 @@ bool add_side(const Rod& one, double at, const Vec3& way, double other_radius, d
   if (distance <= near)
     found.add(one.center + at * one.axis - one.radius * normal, normal, distance);
   return true;
+}
+
+// An edge in space.
+struct Ridge {
+  Vec3 from, along;
+  double length;
+};
+
+// Calls add(at, normal, distance) for the place on `one` where it crosses `two`, whose side is
+// towards `up`; nothing if the two are beside each other, or parallel.
+template <class Add>
+void add_edges(const Ridge& one, const Ridge& two, const Vec3& up, const Add& add) {
+  Vec3 normal = one.along.cross(two.along);
+  const double sine = normal.norm();
+  if (sine < kCrosses) return;
+  normal *= (normal.dot(up) < 0 ? -1 : 1) / sine;
+  const Vec3 way = two.from - one.from;
+  const double cosine = one.along.dot(two.along), sine2 = sine * sine;
+  const double a = way.dot(one.along), b = way.dot(two.along);
+  const double at = (a - cosine * b) / sine2, there = (cosine * a - b) / sine2;
+  if (at < 0 || at > one.length || there < 0 || there > two.length) return;
+  add(one.from + at * one.along, normal, -normal.dot(way));
+}
+
+// Returns the face of a hull that is turned most against a face.
+Face opposite(const Hull& hull, const Face& face) {
+  const Vec3 way = hull.pose.linear().transpose() * face.normal;
+  const HullFace& own = *std::ranges::min_element(
+      hull.faces, {}, [&](const HullFace& each) { return each.normal.dot(way); });
+  return placed(own, hull.pose);
 }
 
 std::optional<FacePoints> on_face(const Rod& rod, const Face& face, double near) {
@@ -287,6 +361,11 @@ std::optional<FacePoints> on_face(const Hull& hull, const Face& face, double nea
 }
 
 }  // namespace
+
+double height_above(const Convex& solid, const Face& face) {
+  return std::visit([&](const auto& s) { return face.above(s.center) - s.reach(-face.normal); },
+                    solid);
+}
 
 std::optional<FacePoints> points_of_sides(const Rod& one, const Rod& two, double near) {
   const Vec3 between = one.center - two.center;
@@ -323,6 +402,13 @@ std::optional<FacePoints> points_of_sides(const Rod& one, const Rod& two, double
   return found;
 }
 
+void turn_round(FacePoints& points) {
+  for (FacePoints::Point& point : std::span(points.points).first(points.count)) {
+    point.at -= point.distance * point.normal;
+    point.normal = -point.normal;
+  }
+}
+
 FacePoints widest_of(std::span<const FacePoints::Point> points) {
   return widest([&](auto&& visit) { std::ranges::for_each(points, visit); });
 }
@@ -348,36 +434,117 @@ double Hull::reach(const Vec3& way) const {
   return most + way.dot(pose.translation() - center);
 }
 
+Vec3 Face::corner(std::size_t number) const { return center + in_space(*this, outline[number]); }
+
 bool Face::over(const Vec3& point) const {
   const Vec2 way = across(*this, point - center);
-  switch (bounds) {
-    case Bounds::rectangle:
-      return std::abs(way.x()) <= half[0] + kInside && std::abs(way.y()) <= half[1] + kInside;
-    case Bounds::circle: return way.norm() <= half[0] + kInside;
-    case Bounds::none: break;
-  }
-  return true;
+  if (bounds == Bounds::circle) return way.norm() <= radius + kInside;
+  bool inside = true;
+  for_each_edge(*this, [&](const Edge& edge) {
+    inside = inside && edge.out.dot(way - edge.from) <= kInside;
+  });
+  return inside;
 }
 
-Face face_of_box(const Convex& solid, const Pose& box, const Vec3& half) {
-  Face furthest;
+HullFace hull_face(std::span<const Vec3> corners, const Vec3& normal, double same) {
+  HullFace face{.normal = normal};
+  face.along[0] = normal.unitOrthogonal();
+  face.along[1] = normal.cross(face.along[0]);
   double most = -std::numeric_limits<double>::infinity();
+  for (const Vec3& corner : corners) most = std::max(most, normal.dot(corner));
+  std::vector<Vec2> all;
+  for (const Vec3& corner : corners) {
+    if (normal.dot(corner) < most - same) continue;
+    all.emplace_back(face.along[0].dot(corner), face.along[1].dot(corner));
+  }
+  Vec2 middle = Vec2::Zero();
+  for (const Vec2& each : all) middle += each / static_cast<double>(all.size());
+  face.center = most * normal + middle.x() * face.along[0] + middle.y() * face.along[1];
+  // Round about: each corner is the one to the right of which no other one is.
+  Vec2 at = *std::ranges::max_element(
+      all, {}, [&](const Vec2& each) { return (each - middle).squaredNorm(); });
+  const auto turned = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
+  do {
+    face.outline.push_back(at - middle);
+    Vec2 next = at;
+    for (const Vec2& each : all) {
+      const double side = turned(next - at, each - at);
+      const bool further = (each - at).squaredNorm() > (next - at).squaredNorm();
+      if (next == at || side < -same * (next - at).norm() ||
+          (side <= same * (next - at).norm() && further))
+        next = each;
+    }
+    at = next;
+  } while (at - middle != face.outline.front() && face.outline.size() < all.size());
+  return face;
+}
+
+std::vector<HullFace> faces_of_box(const Vec3& half) {
+  std::vector<HullFace> faces;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     for (const double side : {-1.0, 1.0}) {
-      const Vec3 normal = side * box.linear().col(i);
-      const Face face{.center = box.translation() + half[i] * normal,
-                      .normal = normal,
-                      .bounds = Face::Bounds::rectangle,
-                      .along = {box.linear().col(j), box.linear().col(k)},
-                      .half = {half[j], half[k]}};
-      const double height = height_above(solid, face);
-      if (height <= most) continue;
-      most = height;
-      furthest = face;
+      faces.push_back({.center = side * half[i] * Vec3::Unit(i),
+                       .normal = side * Vec3::Unit(i),
+                       .along = {Vec3::Unit(j), side * Vec3::Unit(k)},
+                       .outline = {{half[j], half[k]},
+                                   {-half[j], half[k]},
+                                   {-half[j], -half[k]},
+                                   {half[j], -half[k]}}});
     }
   }
+  return faces;
+}
+
+Face face_of_hull(const Convex& solid, const Hull& hull) {
+  Face furthest;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const HullFace& own : hull.faces) {
+    const Face plane{.center = hull.pose * own.center, .normal = hull.pose.linear() * own.normal};
+    const double height = height_above(solid, plane);
+    if (height <= most) continue;
+    most = height;
+    furthest = placed(own, hull.pose);
+  }
   return furthest;
+}
+
+std::optional<FacePoints> points_of_hulls(const Hull& one, const Hull& two, double near) {
+  Face low = face_of_hull(one, two), high = face_of_hull(two, one);
+  const double above = height_above(one, low), below = height_above(two, high);
+  if (std::max(above, below) > near) return FacePoints{};
+  if (auto corners = above >= below ? on_face(one, low, near) : on_face(two, high, near)) {
+    if (above < below) turn_round(*corners);
+    return corners;
+  }
+  (above >= below ? high : low) = above >= below ? opposite(one, low) : opposite(two, high);
+  if (-low.normal.dot(high.normal) < kLies) return std::nullopt;
+  std::array<FacePoints::Point, kMost> found;
+  std::size_t count = 0;
+  const auto add = [&](const Vec3& at, const Vec3& normal, double distance) {
+    if (distance <= near && count < kMost) found[count++] = {at, normal, distance};
+  };
+  for (std::size_t i = 0; i < high.outline.size(); ++i) {
+    const Vec3 corner = high.corner(i);
+    if (low.over(corner)) add(corner, low.normal, low.above(corner));
+  }
+  for (std::size_t i = 0; i < low.outline.size(); ++i) {
+    const Vec3 corner = low.corner(i);
+    const double distance = high.above(corner);
+    if (high.over(corner)) add(corner - distance * high.normal, -high.normal, distance);
+  }
+  for_each_edge(high, [&](const Edge& edge) {
+    const Vec3 from = high.center + in_space(high, edge.from), along = in_space(high, edge.along);
+    for_each_edge(low, [&](const Edge& border) {
+      add_edges(
+          {from, along, edge.length},
+          {low.center + in_space(low, border.from), in_space(low, border.along), border.length},
+          low.normal, add);
+    });
+  });
+  FacePoints points = widest_of(std::span(found).first(count));
+  points.sure = false;
+  return points.count > 0 ? std::optional(points) : std::nullopt;
 }
 
 std::optional<Face> end_of_cylinder(const Convex& solid, const Rod& cylinder) {
@@ -387,7 +554,7 @@ std::optional<Face> end_of_cylinder(const Convex& solid, const Rod& cylinder) {
   Face end{.center = cylinder.center + cylinder.half * normal,
            .normal = normal,
            .bounds = Face::Bounds::circle,
-           .half = {cylinder.radius, 0}};
+           .radius = cylinder.radius};
   end.along[0] = normal.unitOrthogonal();
   end.along[1] = normal.cross(end.along[0]);
   const Vec3 beside = way - way.dot(normal) * normal;

@@ -333,8 +333,9 @@ void complete_inertias(ArmDescription& arm, UrdfPlaces& places) {
   if (guessed.empty()) return;
   std::ranges::reverse(guessed);
   places.warn(
-      fmt::format("links without inertia: {}; taken as a thousandth of the inertia that hangs on "
-                  "each link [kg m^2]; write the true inertia as <inertial>",
+      fmt::format("links without inertia, or with hardly any: {}; taken as a thousandth of the "
+                  "inertia that hangs on each link [kg m^2]; write the true inertia, in kg and "
+                  "kg m^2, as <inertial>",
                   list(guessed)));
 }
 

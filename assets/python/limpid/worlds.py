@@ -51,9 +51,11 @@ class Scene:
         return scene
 
     def add(self, kind: str, name: str = "", **keys: Any) -> Dict[str, Any]:
-        """Adds an object with the keys that its table in a file has; returns it."""
+        """Adds an object with the keys that its table in a file has; returns it. A name is taken once."""
         if kind not in KINDS:
             raise ArgumentError(f"{kind} is no kind of object; there are {', '.join(KINDS)}")
+        if name and any(each.get("name") == name for each in self.objects):
+            raise ArgumentError(f"the scene has an object {name} already: change scene[{name!r}], or delete it first")
         self.objects.append({"kind": kind, **({"name": name} if name else {}), **keys})
         return self.objects[-1]
 

@@ -557,6 +557,23 @@ TEST_F(Commands, CheckOfAnArmDoubtsWhatNoBodyHas) {
               HasSubstr("joint 'slide' slides over 1e+03 m; write the joint's real travel"));
 }
 
+TEST_F(Commands, CheckOfAnArmDoubtsDegreesAndMillimetres) {
+  const auto check = [&](const std::string& from, const std::string& to) {
+    std::string arm = arm_text("lower=\"0\" upper=\"0.04\"", "0.3", kPlate);
+    for (std::size_t at = 0; (at = arm.find(from, at)) != std::string::npos; at += to.size()) {
+      arm.replace(at, from.size(), to);
+    }
+    write("arm.urdf", arm);
+    return run({"check", "arm.urdf"}).out;
+  };
+  EXPECT_THAT(check("lower=\"-1.5\" upper=\"1.25\"", "lower=\"-90\" upper=\"90\""),
+              HasSubstr("joint 'hinge' turns 28.6 times round, from -90 to 90 rad; are the limits "
+                        "in degrees?"));
+  EXPECT_THAT(check("0.15 0 0", "150 0 0"),
+              HasSubstr("the arm is 150 m long; are the lengths in mm?"));
+  EXPECT_THAT(check("none", "none"), Not(HasSubstr("are the")));
+}
+
 TEST_F(Commands, CheckRefusesWhatItDoesNotKnow) {
   write("a.txt", "words");
   EXPECT_THAT(refused({"check", "a.txt"}),

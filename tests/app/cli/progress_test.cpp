@@ -1,4 +1,4 @@
-// The line of progress, and the folder for results.
+// The line of progress.
 #include "app/cli/progress.h"
 
 #include <fcntl.h>
@@ -8,16 +8,11 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
 #include <thread>
-
-#include "app/cli/options.h"
-#include "tests/support/temp_dir.h"
 
 namespace limpid {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
@@ -95,29 +90,6 @@ TEST(ALineOfProgress, IsShownOnATerminalAndGoesAtTheEnd) {
   EXPECT_LE(shown.substr(shown.rfind("\rrun")).size(), 40u) << "cut off where the terminal ends";
   EXPECT_EQ(late.find_first_not_of("\r "), std::string::npos) << "wiped off: " << late;
   EXPECT_TRUE(late.ends_with("\r"));
-}
-
-TEST(TheFolderForResults, IsMadeAndTried) {
-  const test::TempDir dir;
-  prepare_out(dir / "a/b");
-  EXPECT_TRUE(fs::is_directory(dir / "a/b"));
-  EXPECT_TRUE(fs::is_empty(dir / "a/b")) << "what it was tried with is gone";
-  EXPECT_NO_THROW(prepare_out(dir / "a/b")) << "it is there already";
-}
-
-TEST(TheFolderForResults, IsRefusedWhereItCannotBeWritten) {
-  const test::TempDir dir;
-  std::ofstream(dir / "file") << "x";
-  for (const fs::path& at :
-       {fs::path(dir / "file"), fs::path(dir / "file/below"), fs::path("/proc/limpid-out")}) {
-    try {
-      prepare_out(at);
-      ADD_FAILURE() << at << " was taken";
-    } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith("--out " + at.string() + ": "));
-    }
-  }
-  EXPECT_FALSE(fs::exists("/proc/limpid-out"));
 }
 
 }  // namespace

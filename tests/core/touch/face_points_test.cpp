@@ -50,14 +50,13 @@ struct Springs {
   double energy = 0;
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
-std::optional<Springs> springs_of(const Rod& rod, const Face& face) {
-  const auto found = points_on_face(rod, face, 0);
+std::optional<Springs> springs_of(const std::optional<FacePoints>& found, const Vec3& center) {
   if (!found) return std::nullopt;
   Springs all;
   for (const FacePoints::Point& p : found->all()) {
     all.energy += 0.5 * p.distance * p.distance;
     all.force -= p.distance * p.normal;
-    all.torque -= p.distance * (p.at - rod.center).cross(p.normal);
+    all.torque -= p.distance * (p.at - center).cross(p.normal);
   }
   return all;
 }
@@ -102,6 +101,28 @@ TEST(FacePoints, OfAStandingCylinderAreOnItsRimWithTheLowestFirst) {
   }
 }
 
+std::optional<Springs> springs_of(const Rod& rod, const Face& face) {
+  return springs_of(points_on_face(rod, face, 0), rod.center);
+}
+
+std::vector<Vec2> rectangle(double x, double y) { return {{x, y}, {-x, y}, {-x, -y}, {x, -y}}; }
+
+// A box as a hull.
+struct BoxHull {
+  explicit BoxHull(const Vec3& half) : faces(faces_of_box(half)) {
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+      corners.push_back(half.cwiseProduct(side));
+    }
+  }
+  Hull at(const Pose& pose) const {
+    return {.pose = pose, .corners = corners, .center = pose.translation(), .faces = faces};
+  }
+
+  std::vector<Vec3> corners;
+  std::vector<HullFace> faces;
+};
+
 // Springs at the points push as their energy falls, wherever the rod goes or turns: nothing is
 // gained on the way round.
 TEST(FacePoints, HoldSpringsWhoseForceIsTheSlopeOfTheirEnergy) {
@@ -110,9 +131,12 @@ TEST(FacePoints, HoldSpringsWhoseForceIsTheSlopeOfTheirEnergy) {
   int edges = 0;
   for (int i = 0; i < 200; ++i) {
     Face face = plane_of(any_way(random), any_way(random));
+    std::vector<Vec2> outline;
     if (i % 2 == 1) {
-      face.bounds = i % 4 == 1 ? Face::Bounds::rectangle : Face::Bounds::circle;
-      face.half = {random.between(0.01, 0.05), 0.05};
+      outline = rectangle(random.between(0.01, 0.05), 0.05);
+      face.bounds = i % 4 == 1 ? Face::Bounds::polygon : Face::Bounds::circle;
+      if (i % 4 == 1) face.outline = outline;
+      face.radius = outline[0].x();
     }
     const bool stands = i % 5 == 0 && i % 2 == 0;
     Rod rod =
@@ -158,7 +182,8 @@ TEST(FacePoints, OfARodAcrossAnEdgeAreWhereBothLinesAreNearest) {
         .axis = box.linear() * axis,
         .radius = r,
         .half = 0.03};
-    const Face face = face_of_box(rod, box, half);
+    const BoxHull hull(half);
+    const Face face = face_of_hull(rod, hull.at(box));
     EXPECT_NEAR(face.normal.dot(box.linear().col(2)), 1, 1e-12);
     const auto found = points_on_face(rod, face, 1e-3);
     ASSERT_TRUE(found) << i;
@@ -174,13 +199,13 @@ TEST(FacePoints, OfARodAcrossAnEdgeAreWhereBothLinesAreNearest) {
 }
 
 TEST(FacePoints, AreNoneBesideAFaceWhichSomethingElseFinds) {
-  const Vec3 half(0.05, 0.03, 0.02);
+  const BoxHull half(Vec3(0.05, 0.03, 0.02));
   const Rod beside{
       .center = {0.06, 0.001, 0.0201}, .axis = Vec3::UnitY(), .radius = 0.015, .half = 0.01};
-  const Face face = face_of_box(beside, Pose::Identity(), half);
+  const Face face = face_of_hull(beside, half.at(Pose::Identity()));
   EXPECT_FALSE(points_on_face(beside, face, 1e-3)) << "its lowest line is beside the top";
   const Rod above{.center = {0, 0, 0.1}, .axis = Vec3::UnitY(), .radius = 0.015, .half = 0.01};
-  const auto none = points_on_face(above, face_of_box(above, Pose::Identity(), half), 1e-3);
+  const auto none = points_on_face(above, face_of_hull(above, half.at(Pose::Identity())), 1e-3);
   ASSERT_TRUE(none);
   EXPECT_EQ(none->count, 0u);
 }
@@ -190,8 +215,11 @@ TEST(FacePoints, OfADiscOverACornerAreWithinBoth) {
   for (int i = 0; i < 100; ++i) {
     const bool circle = i % 2 == 0;
     Face face = plane_of(Vec3::Zero(), Vec3::UnitZ());
-    face.bounds = circle ? Face::Bounds::circle : Face::Bounds::rectangle;
-    face.half = {random.between(0.01, 0.04), random.between(0.01, 0.04)};
+    const std::vector<Vec2> outline =
+        rectangle(random.between(0.01, 0.04), random.between(0.01, 0.04));
+    face.bounds = circle ? Face::Bounds::circle : Face::Bounds::polygon;
+    if (!circle) face.outline = outline;
+    face.radius = outline[0].x();
     const Rod disc{
         .center = Vec3(random.between(-0.03, 0.03), random.between(-0.03, 0.03), 0.009999),
         .axis = Vec3::UnitZ(),
@@ -215,14 +243,101 @@ TEST(FacePoints, OfAPrismAreCornersThatAreWideApart) {
     for (const double z : {-0.02, 0.02})
       corners.emplace_back(0.03 * std::cos(turn), 0.03 * std::sin(turn), z);
   }
-  const Hull prism{
-      .pose = pose_at({0.1, 0.2, 0.02}), .corners = corners, .center = {0.1, 0.2, 0.02}};
+  const Hull prism{.pose = pose_at({0.1, 0.2, 0.02}),
+                   .corners = corners,
+                   .center = {0.1, 0.2, 0.02},
+                   .faces = {}};
   const auto found = points_on_face(prism, plane_of(Vec3::Zero(), Vec3::UnitZ()), 1e-3);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->count, 4u);
   Vec3 middle = Vec3::Zero();
   for (const FacePoints::Point& p : found->all()) middle += p.at / 4;
   EXPECT_LT((middle - Vec3(0.1, 0.2, 0)).norm(), 1e-12) << "they make a square around the middle";
+}
+
+// Two beams that lie across each other bear in the corners of the square they share.
+TEST(FacePoints, OfBeamsAcrossEachOtherAreWhereTheirEdgesCross) {
+  Random random(407);
+  const BoxHull beam(Vec3(0.1, 0.008, 0.005)), other(Vec3(0.1, 0.012, 0.005));
+  for (int i = 0; i < 40; ++i) {
+    const Pose world(Eigen::AngleAxisd(random.between(-3, 3), any_way(random)));
+    const double askew = random.between(0.8, 1.5), depth = random.between(-5e-4, 5e-4);
+    Pose above = pose_at({random.between(-0.02, 0.02), random.between(-0.02, 0.02), 0.01 - depth});
+    above.linear() = Eigen::AngleAxisd(askew, Vec3::UnitZ()).matrix();
+    const auto found = points_of_hulls(beam.at(world * above), other.at(world), 1e-3);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->count, 4u);
+    for (const FacePoints::Point& p : found->all()) {
+      EXPECT_NEAR(p.distance, -depth, 1e-12);
+      EXPECT_NEAR(p.normal.dot(world.linear().col(2)), 1, 1e-12);
+      const Vec3 on_beam = above.inverse() * (world.inverse() * p.at);
+      const Vec3 on_other = world.inverse() * (p.at - p.distance * p.normal);
+      EXPECT_NEAR(std::abs(on_beam.y()), 0.008, 1e-12);
+      EXPECT_NEAR(std::abs(on_other.y()), 0.012, 1e-12);
+      EXPECT_NEAR(on_other.z(), 0.005, 1e-12);
+    }
+  }
+}
+
+TEST(FacePoints, OfHullsHoldSpringsWhoseForceIsTheSlopeOfTheirEnergy) {
+  Random random(408);
+  constexpr double kStep = 1e-7;
+  int pressed = 0, crossed = 0;
+  for (int i = 0; i < 200; ++i) {
+    const BoxHull below(Vec3(random.between(0.01, 0.06), random.between(0.01, 0.06), 0.01));
+    const BoxHull above(Vec3(random.between(0.01, 0.06), random.between(0.01, 0.06), 0.01));
+    const Pose world(Eigen::AngleAxisd(random.between(-3, 3), any_way(random)));
+    Pose at = pose_at({random.between(-0.04, 0.04), random.between(-0.04, 0.04), 0.0195});
+    at.linear() = (Eigen::AngleAxisd(random.between(-3, 3), Vec3::UnitZ()) *
+                   Eigen::AngleAxisd(random.between(0, 0.02), any_way(random)))
+                      .matrix();
+    const Pose here = world * at;
+    const auto springs = [&](const Vec3& way, const Vec3& turn) {
+      Pose there = here;
+      there.translation() += way;
+      if (turn.norm() > 0)
+        there.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * here.linear();
+      return springs_of(points_of_hulls(above.at(there), below.at(world), 0), here.translation());
+    };
+    const auto now = springs(Vec3::Zero(), Vec3::Zero());
+    if (!now || now->energy == 0) continue;
+    ++pressed;
+    for (const auto& p : points_of_hulls(above.at(here), below.at(world), 0)->all())
+      crossed += std::abs(p.normal.dot(world.linear().col(2))) < 1 - 1e-12 ? 1 : 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 step = kStep * Vec3::Unit(k);
+      const auto slope = [&](const Vec3& way, const Vec3& turn) {
+        const auto there = springs(way, turn), back = springs(-way, -turn);
+        EXPECT_TRUE(there && back) << i;
+        return there && back ? (there->energy - back->energy) / (2 * kStep) : 0;
+      };
+      EXPECT_NEAR(slope(step, Vec3::Zero()), -now->force[k], 1e-4 * now->force.norm()) << i;
+      EXPECT_NEAR(slope(Vec3::Zero(), step), -now->torque[k], 4e-6 * now->force.norm()) << i;
+    }
+  }
+  EXPECT_GT(pressed, 100);
+  EXPECT_GT(crossed, 50);
+}
+
+TEST(FacePoints, OfAFaceOfAHullHaveItsCornersInTheirOrder) {
+  std::vector<Vec3> corners;
+  for (const double z : {-0.02, 0.02}) {
+    for (const int i : {3, 0, 5, 1, 4, 2}) {
+      const double turn = 2 * M_PI * i / 6;
+      corners.emplace_back(0.03 * std::cos(turn), 0.02 * std::sin(turn), z);
+    }
+  }
+  corners.emplace_back(0, 0, 0.02);
+  corners.push_back(0.5 * (corners[6] + corners[7]));
+  const HullFace top = hull_face(corners, Vec3::UnitZ(), 1e-9);
+  EXPECT_NEAR(top.center.z(), 0.02, 1e-15);
+  ASSERT_EQ(top.outline.size(), 6u) << "without what lies within, or on an edge";
+  double area = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Vec2 &a = top.outline[i], &b = top.outline[(i + 1) % 6];
+    area += 0.5 * (a.x() * b.y() - a.y() * b.x());
+  }
+  EXPECT_NEAR(area, 0.03 * 0.02 * 6 * std::sin(M_PI / 3) / 2, 1e-12);
 }
 
 TEST(FacePoints, OfAnEndAreForWhatIsAboveItNotBeside) {

@@ -2,8 +2,13 @@
 // and bounce as closed forms say.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "tests/support/body_worlds.h"
 #include "tests/support/meshes.h"
@@ -48,6 +53,14 @@ Triangles prism(int sides, double radius, double half) {
     all.indices.insert(all.indices.end(), {a, b, a + 1, a + 1, b, b + 1});
     if (i > 0 && i + 1 < n) all.indices.insert(all.indices.end(), {0, b, a, 1, a + 1, b + 1});
   }
+  return all;
+}
+
+Triangles slab(const Vec3& size) {
+  Triangles all = prism(4, std::sqrt(0.5), 0.5);
+  const Mat3 eighth = turned(std::numbers::pi / 4, Vec3::UnitZ());
+  for (Eigen::Vector3f& v : all.vertices)
+    v = size.cwiseProduct(Vec3(eighth * v.cast<double>())).cast<float>();
   return all;
 }
 
@@ -248,6 +261,173 @@ TEST(FlatContacts, LetAPlankRockOnARoundSupportAsItsInertiaSays) {
     EXPECT_NEAR((level[40] - level[0]) / 20, period, 0.005 * period);
     EXPECT_LT(world.center(0).z(), 0.2 + R + h + 1e-3);
     EXPECT_GT(world.center(0).z(), 0.2 + R + h - 1e-4) << "it does not sink";
+  }
+}
+
+// A hull stands on its lowest corner, also where another one is as near as points of one place are.
+TEST(FlatContacts, BearAHullByTheLowerOfTwoCornersBesideEachOther) {
+  const Triangles hull{{{0.02f, 0.013f, 0},
+                        {-0.02f, 0.011f, 0},
+                        {0.001f, -0.022f, -0.0008f},
+                        {0.0012f, -0.0221f, -0.0002f},
+                        {0.003f, 0.002f, 0.03f}},
+                       {0, 1, 2, 0, 4, 1, 1, 4, 2, 2, 4, 3, 2, 3, 0, 3, 4, 0}};
+  for (const auto& [on, floor] : floors()) {
+    SCOPED_TRACE(on);
+    Scene scene;
+    scene.add(floor);
+    scene.add(body("hull", mesh_of(obstacle(hull)), 0.05, {0.0137, 0.0123, 0.003}, 0.6));
+    BodyWorld world(scene);
+    run(world, 3000);
+    double lowest = 1;
+    for (const Eigen::Vector3f& v : hull.vertices)
+      lowest = std::min(lowest, (world.pose(0) * Vec3(v.cast<double>())).z());
+    EXPECT_GT(lowest, -kWeight / kStiff - 1e-5);
+    EXPECT_LT(lowest, 0);
+  }
+}
+
+// A prism has more corners than a pair has points; the choice among them stays while it lies still.
+TEST(FlatContacts, BearALoadOnAPrismWithoutTrembling) {
+  for (const int sides : {6, 8, 9, 10, 12}) {
+    SCOPED_TRACE(sides);
+    Scene scene;
+    scene.add(floor_at(0));
+    scene.add(body("prism", mesh_of(obstacle(prism(sides, 0.02, 0.025))), 0.05, {0, 0, 0.026}));
+    scene.add(body("load", Box{Vec3(0.03, 0.03, 0.02)}, 1, {0, 0, 0.063}));
+    BodyWorld world(scene);
+    run(world, 1500);
+    const Vec3 before = world.center(0);
+    EXPECT_LT(run(world, 2000), 1e-12);
+    EXPECT_LT((world.center(0) - before).norm(), 2e-5);
+    EXPECT_GT(world.center(0).z(), 0.025 - 1.5 * 1.05 * 9.81 / (4 * kStiff));
+  }
+}
+
+// Corners of a shape: all others are within them.
+std::vector<Vec3> corners_of(const Shape& shape) {
+  std::vector<Vec3> corners;
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 side((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+      corners.push_back(0.5 * box->size.cwiseProduct(side));
+    }
+  } else if (const auto* can = std::get_if<Cylinder>(&shape)) {
+    for (int i = 0; i < 720; ++i) {
+      const double turn = std::numbers::pi * i / 360;
+      for (const double end : {-0.5, 0.5})
+        corners.emplace_back(can->radius * std::cos(turn), can->radius * std::sin(turn),
+                             end * can->length);
+    }
+  } else {
+    const TriangleMesh& mesh = *std::get<Mesh>(shape).triangles;
+    for (std::size_t t = 0; t < mesh.triangles(); ++t) {
+      for (const Vec3& corner : mesh.corners(t)) corners.push_back(corner + mesh.middle());
+    }
+  }
+  return corners;
+}
+
+// How deep two shapes are in each other: the shortest way that parts them, searched for downhill
+// from the best of many directions.
+double overlap(const Shape& one, const Pose& at, const Shape& two, const Pose& there) {
+  std::vector<Vec3> a = corners_of(one), b = corners_of(two);
+  for (Vec3& corner : a) corner = at * corner;
+  for (Vec3& corner : b) corner = there * corner;
+  const auto along = [&](const Vec3& way) {
+    double most = -1, least = 1;
+    for (const Vec3& corner : a) most = std::max(most, way.dot(corner));
+    for (const Vec3& corner : b) least = std::min(least, way.dot(corner));
+    return most - least;
+  };
+  std::vector<std::pair<double, Vec3>> ways;
+  for (int i = 0; i < 600; ++i) {
+    const double z = 1 - (2 * i + 1) / 600.0, turn = 2.399963 * i, out = std::sqrt(1 - z * z);
+    const Vec3 way(out * std::cos(turn), out * std::sin(turn), z);
+    ways.emplace_back(along(way), way);
+  }
+  std::ranges::sort(ways, {}, &std::pair<double, Vec3>::first);
+  double least = 1;
+  for (std::size_t i = 0; i < 20; ++i) {
+    auto [depth, way] = ways[i];
+    for (double step = 0.1; step > 1e-7;) {
+      bool less = false;
+      for (int k = 0; k < 12; ++k) {
+        const Vec3 u = way.unitOrthogonal();
+        const double turn = std::numbers::pi * k / 6 + static_cast<double>(i);
+        const Vec3 other =
+            (way + step * (std::cos(turn) * u + std::sin(turn) * way.cross(u))).normalized();
+        if (const double now = along(other); now < depth - 1e-12) {
+          depth = now;
+          way = other;
+          less = true;
+        }
+      }
+      if (!less) step /= 2;
+    }
+    least = std::min(least, depth);
+  }
+  return least;
+}
+
+// One thing falls on another one that lies on the floor. At rest they are no deeper in each other
+// than weights press.
+TEST(FlatContacts, HoldThingsThatFallOnEachOther) {
+  Random random(3141);
+  const auto any_shape = [&](int kind, double size) -> Shape {
+    const double width = size * random.between(0.3, 1), height = size * random.between(0.3, 1);
+    if (kind == 0) return Box{2 * Vec3(width, random.between(0.3, 1) * size, height)};
+    if (kind == 1) return Cylinder{width, height};
+    return mesh_of(obstacle(prism(static_cast<int>(random.between(3, 13)), width, height / 2)));
+  };
+  const auto any_turn = [&] {
+    return turned(random.between(-3, 3), Vec3(random.between(-1, 1), random.between(-1, 1), 0.3));
+  };
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE(i);
+    Scene scene;
+    scene.add(floor_at(0));
+    const Shape below = any_shape(i % 3, 0.05), above = any_shape(i / 3 % 3, i % 2 ? 0.025 : 0.08);
+    scene.add(body("below", below, random.between(0.05, 0.3), {0, 0, 0.12}));
+    scene.add(body("above", above, random.between(0.02, 0.2), {0.004, -0.003, 0.4}));
+    for (Object& object : std::span(scene.objects).subspan(1)) object.pose.linear() = any_turn();
+    BodyWorld world(scene);
+    EXPECT_LT(run(world, 4000), 1e-9);
+    const double weight = 9.81 * (scene.objects[1].body->mass + scene.objects[2].body->mass);
+    EXPECT_LT(overlap(below, world.pose(0), above, world.pose(1)), 2 * weight / kStiff + 2e-5);
+  }
+}
+
+// A model that lies across what is narrower than itself stays on it: its own corners are beyond.
+TEST(FlatContacts, HoldAModelAcrossANarrowSupport) {
+  const Object plank = obstacle(slab(Vec3(0.12, 0.03, 0.008)));
+  Object support;
+  support.name = "support";
+  support.material = {2000, 0, 0.6, 0.6};
+  support.pose = pose_at({0.01, 0.02, 0});
+  const auto with = [&](const Shape& shape, const Mat3& turn) {
+    Object one = support;
+    one.shape = shape;
+    one.pose.linear() = turn;
+    return one;
+  };
+  const Mat3 lying = turned(std::numbers::pi / 2, Vec3::UnitX());
+  const std::array<std::tuple<const char*, Object, double, int>, 4> all{{
+      {"narrow box", with(Box{Vec3(0.02, 0.2, 0.1)}, Mat3::Identity()), 0.05, 4},
+      {"box, askew", with(Box{Vec3(0.02, 0.2, 0.1)}, turned(0.5, Vec3::UnitZ())), 0.05, 4},
+      {"cylinder's side", with(Cylinder{0.02, 0.2}, lying), 0.02, 2},
+      {"cylinder's end", with(Cylinder{0.012, 0.1}, Mat3::Identity()), 0.05, 4},
+  }};
+  for (const auto& [name, below, height, points] : all) {
+    SCOPED_TRACE(name);
+    Scene scene;
+    scene.add(below);
+    scene.add(body("plank", mesh_of(plank), 0.05, {0.01, 0.02, height + 0.006}, 0.6));
+    BodyWorld world(scene);
+    EXPECT_LT(run(world, 4000), 1e-9);
+    EXPECT_NEAR(world.center(0).z(), height + 0.004 - kWeight / (points * kStiff), 3e-6);
+    EXPECT_LT((world.center(0) - Vec3(0.01, 0.02, world.center(0).z())).norm(), 2e-4);
+    EXPECT_LT(std::abs(world.pose(0).linear()(2, 0)), 2e-3);
   }
 }
 
