@@ -259,7 +259,7 @@ int run_characterize(const CharacterizeOptions& options) {
     TrialRunner lab("characterize", lab_options);
     found = characterize(lab, subject);
   } catch (const Cancelled&) {
-    fmt::print(stderr, "limpid: stopped; nothing was written\n");
+    fmt::print(stderr, "limpid: stopped; no results were written\n");
     return 1;
   }
   found.outcome.figure.made_by = provenance(settings_digest(subject.at.parameters), std::nullopt);

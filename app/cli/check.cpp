@@ -122,7 +122,7 @@ void list_units(const ArmDescription& arm, double reach, CheckReport& report) {
           joint.name, travel(joint) / (2 * std::numbers::pi), joint.lower, joint.upper));
     }
   }
-  if (reach > kLongestArm && !(slides > kLongestArm)) {
+  if (reach > kLongestArm && slides <= kLongestArm) {
     report.warnings.push_back(
         fmt::format("the arm is {:.3g} m long; are the lengths in mm? URDF takes m", reach));
   }

@@ -208,7 +208,7 @@ int run_on_device(const ExperimentOptions& options) {
   }
   const auto wanted = chosen(live_experiments(), options.name, ": not together with --live");
   keep_trials(wanted, options);
-  claim_out({options.out, "limpid experiment --live", files_of(wanted), options.force});
+  claim_out({options.out, "limpid experiment", files_of(wanted), options.force});
   LiveBench bench(options.live, options.input);
   std::vector<std::string> failed;  // checks
   try {

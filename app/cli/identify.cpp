@@ -280,10 +280,10 @@ int identify_device(IdentifyOptions options) {
   }
   DeviceHub hub(device_store_file(), {});
   const std::string in_use = hub.in_use();
-  claim_out(out_folder(options, options.device.empty() ? in_use : options.device));
   const std::unique_ptr<Device> device =
       open_device(options.device, hub,
                   fmt::format(", and \"{}\" tries the command without a device", kSimulated));
+  claim_out(out_folder(options, hub.in_use()));
   order.plan = within(order.plan, hub.notes(hub.in_use()).limits);
   // A named arm wins over the one identified before.
   order.guess = options.input.device.empty() ? arm_of_device(device->traits(), hub, options.input)

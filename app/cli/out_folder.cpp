@@ -6,18 +6,19 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "app/cli/options.h"
 #include "devices/files/atomic_file.h"
-#include "devices/files/text_file.h"
 
 namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestNote = 4096;  // [bytes]
+constexpr std::size_t kLongestNote = 4096;  // [lines]
 
 // Tries to write a file in `dir`; returns 0 or errno.
 int try_to_write(const fs::path& dir) {
@@ -34,30 +35,43 @@ int try_to_write(const fs::path& dir) {
   return code;
 }
 
-bool made_before(const OutFolder& folder) {
+constexpr const char* kOurs = "limpid ";  // begins each note
+
+// Returns the lines of a folder's note; none if it has none. Errors: UsageError for a file of a
+// person's.
+std::vector<std::string> lines_of_note(const OutFolder& folder) {
   std::error_code none;
   const fs::path note = folder.path / kOutNote;
-  if (!fs::is_regular_file(note, none)) return false;
-  try {
-    return read_text(note, kLongestNote).starts_with(folder.made_by + "\n");
-  } catch (const FileError&) {
-    return false;
-  }
+  if (!fs::exists(note, none)) return {};
+  std::vector<std::string> lines;
+  std::ifstream in(note);
+  for (std::string line; lines.size() < kLongestNote && std::getline(in, line);)
+    lines.push_back(line);
+  if (!lines.empty() && lines.front().starts_with(kOurs)) return lines;
+  throw UsageError(
+      fmt::format("--out {}: {} is not Limpid's, which keeps a note there; choose "
+                  "another folder, or move the file",
+                  folder.path.string(), kOutNote));
 }
 
 }  // namespace
 
 void refuse_foreign(const OutFolder& folder) {
   if (folder.force) return;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path, none)) {
-    if (!std::ranges::count(folder.names, entry.path().stem().string())) continue;
-    if (entry.is_directory(none)) continue;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path, error)) {
+    const fs::path file = entry.path().filename();
+    std::error_code none;
+    if (!std::ranges::count(folder.names, file.stem().string()) ||
+        (entry.is_directory(none) && !file.has_extension())) {
+      continue;
+    }
     throw UsageError(fmt::format(
-        "--out {}: {} was not written by {}; choose another folder, or replace the file with "
-        "--force",
-        folder.path.string(), entry.path().filename().string(), folder.made_by));
+        "--out {}: nothing says that {} was written by {}; choose another folder, or replace the "
+        "file with --force",
+        folder.path.string(), file.string(), folder.made_by));
   }
+  if (error) throw UsageError(fmt::format("--out {}: {}", folder.path.string(), error.message()));
 }
 
 void prepare_out(const fs::path& dir) {
@@ -73,11 +87,18 @@ void prepare_out(const fs::path& dir) {
 
 void claim_out(const OutFolder& folder) {
   prepare_out(folder.path);
-  if (made_before(folder)) return;
-  refuse_foreign(folder);
-  const std::string note =
-      folder.made_by + "\nThis command may replace its own results in this folder.\n";
-  const std::string wrong = try_write_atomically(folder.path / kOutNote, note);
+  std::vector<std::string> known = lines_of_note(folder);
+  if (!known.empty() && known.front() != folder.made_by) known.clear();
+  const auto is_known = [&](const std::string& name) {
+    return std::ranges::count(known, name) > 0;
+  };
+  OutFolder unknown = folder;
+  std::erase_if(unknown.names, is_known);
+  refuse_foreign(unknown);
+  if (known.empty()) known.push_back(folder.made_by);
+  std::ranges::copy(unknown.names, std::back_inserter(known));
+  const std::string wrong =
+      try_write_atomically(folder.path / kOutNote, fmt::format("{}\n", fmt::join(known, "\n")));
   if (!wrong.empty()) throw UsageError("--out " + wrong);
 }
 

@@ -194,7 +194,7 @@ int sweep(const SweepOptions& options) {
       read_sweep_plan(options.plan, options.xacro ? Xacro::expand : Xacro::refuse);
   if (options.open) check_point(plan, *options.open);
   if (!options.gather) prepare_out(options.out);
-  if (!is_sweep_folder(options.out)) {
+  if (!options.open && !is_sweep_folder(options.out)) {
     refuse_foreign({options.out, "limpid sweep", {"table", "figure"}, options.force});
   }
   catch_interrupts();

@@ -172,13 +172,13 @@ void check_name(const TomlTable& table, const std::string& name) {
 
 // Refuses a value that is there twice: its points would be run twice, and drawn on each other.
 void refuse_doubles(const TomlTable& table, const char* key, const SweepAxis& axis) {
-  for (std::size_t i = 0; i < axis.values.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const bool named = !axis.cases.empty();
-      if (named ? axis.words[i] != axis.words[j] : axis.values[i] != axis.values[j]) continue;
-      table.refuse(key, "each one once; `repeats` runs all points several times");
-    }
-  }
+  const auto twice = [](auto all) {
+    std::ranges::sort(all);
+    return std::ranges::adjacent_find(all) != all.end();
+  };
+  const bool files = !axis.cases.empty() && table.find("cases") == nullptr;
+  if (files ? twice(table.texts(key)) : axis.cases.empty() ? twice(axis.values) : twice(axis.words))
+    table.refuse(key, "each one once; `repeats` runs all points several times");
 }
 
 }  // namespace

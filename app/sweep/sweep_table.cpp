@@ -285,7 +285,8 @@ void write_table_csv(const SweepPlan& plan, const SweepTable& table,
   for (const SweepAxis& axis : plan.axes) {
     // An axis and a measure may share a name; columns may not.
     const bool taken = std::ranges::count(table.columns, axis.name, &SweepColumn::name) > 0;
-    text += ',' + csv_header(taken && !axis.key.empty() ? axis.key : axis.name, axis.unit);
+    const std::string other = axis.key.empty() ? "axis " + axis.name : axis.key;
+    text += ',' + csv_header(taken ? other : axis.name, axis.unit);
   }
   text += ",repeat";
   for (const SweepColumn& c : table.columns) text += ',' + csv_header(c.name, c.unit);

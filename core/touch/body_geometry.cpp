@@ -575,8 +575,8 @@ BodyContact* BodyGeometry::Inside::fresh(const Pair& p) {
   return c;
 }
 
-// What a pair lost in one point pays for the depth of all: bodies that turn as they hit each other
-// meet in one point and come to rest on others.
+// The energy that a pair lost in one point pays for the depth of all: bodies that turn as they hit
+// each other meet in one point and come to rest on others.
 void BodyGeometry::Inside::share_lost(Pair& p, std::span<BodyContact* const> contacts) {
   const double gone = std::exchange(p.lost, 0);
   if (contacts.empty()) return;
@@ -592,7 +592,6 @@ void BodyGeometry::Inside::share_lost(Pair& p, std::span<BodyContact* const> con
 }
 
 void BodyGeometry::Inside::take(Pair& p) {
-  const std::size_t before = points.size();
   for (int i = 0; i < p.points; ++i) {
     btManifoldPoint& point = p.manifold->getContactPoint(i);
     auto* c = static_cast<BodyContact*>(point.m_userPersistentData);
@@ -613,7 +612,6 @@ void BodyGeometry::Inside::take(Pair& p) {
     c->seen = true;
     points.push_back(c);  // its capacity covers the whole pool
   }
-  share_lost(p, std::span(points).subspan(before));
 }
 
 BodyGeometry::BodyGeometry(const Scene& scene) : in_(std::make_unique<Inside>(scene)) {}
@@ -639,7 +637,8 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake, std::span<const P
     return s.body != BodyContact::kStill && awake[static_cast<std::size_t>(s.body)] != 0;
   };
   for (Inside::Pair& p : in.pairs) {
-    if (moves(*p.a) || moves(*p.b)) {
+    const bool anew = moves(*p.a) || moves(*p.b);
+    if (anew) {
       if (p.a->overlaps(*p.b)) {
         in.meet(p);
       } else if (p.points > 0) {
@@ -647,7 +646,13 @@ void BodyGeometry::search(std::span<const std::uint8_t> awake, std::span<const P
         p.points = 0;
       }
     }
-    if (p.points > 0) in.take(p);
+    if (p.points == 0) {
+      p.lost = 0;
+      continue;
+    }
+    const std::size_t before = in.points.size();
+    in.take(p);
+    if (anew) in.share_lost(p, std::span(in.points).subspan(before));
   }
   for (BodyContact* c : in.last) {
     if (c->seen) continue;

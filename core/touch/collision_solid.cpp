@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace limpid {
@@ -18,39 +20,65 @@ std::vector<Vec3> corners_of(const Box& box) {
   return corners;
 }
 
-constexpr std::size_t kMostFlat = 128;  // corners of a hull whose faces are looked at in each tick
-constexpr double kSame =
-    1e-5;  // corners so far from a plane are in it, in parts of the hull's size
+constexpr std::size_t kMostFlat = 64;  // corners of a hull whose faces are looked at in each tick
+// Corners that are so far from a plane, in parts of the hull's size, are in it.
+constexpr double kSame = 1e-5;
+constexpr double kHole = 1e-3;  // part of a hull's surface that its faces may leave out
 
-// Returns the flat sides of the hull of these corners, the large ones first.
-std::vector<HullFace> faces_of_hull(const std::vector<Vec3>& corners, double size) {
+// Takes the corners of the hull around points, as they are: Bullet's own shape rounds them to a
+// ten-thousandth of the hull's size. Then its flat sides, the large ones first, if its corners are
+// few.
+void take_corners(const std::vector<btVector3>& points, CollisionSolid& solid) {
   btConvexHullComputer hull;
-  hull.compute(corners.front().data(), static_cast<int>(sizeof(Vec3)),
-               static_cast<int>(corners.size()), 0, 0);
-  std::vector<Vec3> sides;  // twice the area of each, along its normal
+  hull.compute(points.front().m_floats, static_cast<int>(sizeof(btVector3)),
+               static_cast<int>(points.size()), 0, 0);
+  Vec3 low = from_bullet(points.front()), high = low;
+  for (int i = 0; i < hull.vertices.size(); ++i) {
+    const auto number = static_cast<std::size_t>(hull.original_vertex_index[i]);
+    solid.corners.push_back(from_bullet(points[number]));
+    low = low.cwiseMin(solid.corners.back());
+    high = high.cwiseMax(solid.corners.back());
+  }
+  for (const Vec3& corner : solid.corners)
+    solid.middle += corner / static_cast<double>(solid.corners.size());
+  if (solid.corners.size() > kMostFlat) return;
+  struct Side {
+    Vec3 area = Vec3::Zero();  // along its normal [m^2]
+    double longest = 0;        // of its edges [m]
+  };
+  std::vector<Side> sides;
   for (int i = 0; i < hull.faces.size(); ++i) {
     const auto* first = &hull.edges[hull.faces[i]];
-    const Vec3 from = from_bullet(hull.vertices[first->getSourceVertex()]);
-    Vec3 area = Vec3::Zero();
-    for (const auto* edge = first->getNextEdgeOfFace(); edge != first;
-         edge = edge->getNextEdgeOfFace()) {
-      area += (from_bullet(hull.vertices[edge->getSourceVertex()]) - from)
-                  .cross(from_bullet(hull.vertices[edge->getTargetVertex()]) - from);
-    }
-    sides.push_back(area);
+    const auto corner = [&](int vertex) { return solid.corners[static_cast<std::size_t>(vertex)]; };
+    const Vec3 from = corner(first->getSourceVertex());
+    Side& side = sides.emplace_back();
+    const auto* edge = first;
+    do {
+      const Vec3 one = corner(edge->getSourceVertex()), two = corner(edge->getTargetVertex());
+      side.area += 0.5 * (one - from).cross(two - from);
+      side.longest = std::max(side.longest, (two - one).norm());
+      edge = edge->getNextEdgeOfFace();
+    } while (edge != first);
   }
-  std::ranges::sort(sides, std::ranges::greater(), [](const Vec3& each) { return each.norm(); });
-  std::vector<HullFace> faces;
-  for (const Vec3& side : sides) {
-    if (side.norm() < kSame * size * size) break;
-    HullFace face = hull_face(corners, side.normalized(), kSame * size);
-    const bool known = std::ranges::any_of(faces, [&](const HullFace& other) {
-      return face.normal.dot(other.normal) > 0.5 &&
-             (face.center - other.center).norm() < kSame * size;
+  std::ranges::sort(sides, std::ranges::greater(), [](const Side& one) { return one.area.norm(); });
+  const double same = kSame * (high - low).norm();
+  double all = 0, flat = 0;  // areas of the sides, and of the faces [m^2]
+  for (const auto& [area, longest] : sides) {
+    all += area.norm();
+    if (area.norm() <= same * longest) continue;  // what is so narrow has no normal
+    HullFace face = hull_face(solid.corners, area.normalized(), same);
+    const bool known = std::ranges::any_of(solid.faces, [&](const HullFace& other) {
+      return face.normal.dot(other.normal) > 0 && (face.center - other.center).norm() < same;
     });
-    if (!known && face.outline.size() > 2) faces.push_back(std::move(face));
+    if (known || face.outline.size() < 3) continue;
+    for (std::size_t k = 0; k < face.outline.size(); ++k) {
+      const Vec2 &one = face.outline[k], &two = face.outline[(k + 1) % face.outline.size()];
+      flat += 0.5 * (one.x() * two.y() - one.y() * two.x());
+    }
+    solid.faces.push_back(std::move(face));
   }
-  return faces;
+  // A solid with a hole in its faces would be met inside of itself.
+  if (std::abs(flat - all) > kHole * all) solid.faces.clear();
 }
 
 // Adds a model: its triangles if it stands still, else its convex hull.
@@ -75,16 +103,14 @@ void add_model(const Mesh& mesh, CollisionSolid& solid) {
         TouchedModel{mesh.triangles, MeshEdges(mesh.triangles), mesh.size()});
     solid.at.setUserPointer(solid.model.get());
   } else {
-    auto hull = std::make_unique<btConvexHullShape>();
+    std::vector<btVector3> points;
     for (std::size_t t = 0; t < triangles.triangles(); ++t) {
-      for (const btVector3& corner : corners(t)) hull->addPoint(corner, false);
+      std::ranges::copy(corners(t), std::back_inserter(points));
     }
-    hull->optimizeConvexHull();
+    take_corners(points, solid);
+    auto hull = std::make_unique<btConvexHullShape>();
+    for (const Vec3& corner : solid.corners) hull->addPoint(to_bullet(corner), false);
     hull->recalcLocalAabb();
-    for (int i = 0; i < hull->getNumPoints(); ++i) {
-      solid.corners.push_back(from_bullet(hull->getUnscaledPoints()[i]));
-      solid.middle += solid.corners.back() / hull->getNumPoints();
-    }
     solid.shape = std::move(hull);
   }
   solid.shape->setMargin(kMargin);
@@ -92,8 +118,6 @@ void add_model(const Mesh& mesh, CollisionSolid& solid) {
   solid.shape->getAabb(btTransform::getIdentity(), low, high);
   const btVector3 size = high - low;
   solid.least = std::min({size.x(), size.y(), size.z()});
-  if (!solid.corners.empty() && solid.corners.size() <= kMostFlat)
-    solid.faces = faces_of_hull(solid.corners, size.length());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr double kCrosses = 0.05;  // least sine of the angle at which a rod goe
 constexpr double kInside = 1e-9;   // points so far beyond an edge are at it [m]
 constexpr double kLies = 0.8;    // least cosine between the normals of faces that lie on each other
 constexpr double kShort = 1e-9;  // edges up to this length are none [m]
-constexpr std::size_t kMost = 64;  // points of two solids before the widest are chosen
+constexpr std::size_t kMost = 128;  // points of two faces before the widest are chosen
 // Cosine and sine of the lowest point of a rim, of the opposite one, and of those between.
 constexpr std::array<std::array<double, 2>, 4> kWays{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
@@ -22,6 +22,21 @@ Vec2 across(const Face& face, const Vec3& way) {
 }
 Vec3 in_space(const Face& face, const Vec2& way) {
   return way.x() * face.along[0] + way.y() * face.along[1];
+}
+
+// height_above(), or any height up to `least` if it is at most that.
+double height_of(const Rod& rod, const Face& face, double) {
+  return face.above(rod.center) - rod.reach(face.normal);
+}
+double height_of(const Hull& hull, const Face& face, double least) {
+  const Vec3 normal = hull.pose.linear().transpose() * face.normal;
+  const double base = face.above(hull.pose.translation());
+  double height = std::numeric_limits<double>::infinity();
+  for (const Vec3& corner : hull.corners) {
+    height = std::min(height, base + normal.dot(corner));
+    if (height <= least) break;
+  }
+  return height;
 }
 
 Face placed(const HullFace& face, const Pose& pose) {
@@ -189,7 +204,7 @@ FacePoints widest(const ForEach& for_each) {
   const Vec3 second = found.points[1].at;
   const auto makes = [&](const P& p) {
     const double size = std::abs(area(first, second, p.at));
-    // Of those on a line with the same triangle, the furthest.
+    // The furthest wins of those on a line, which make the same triangle.
     return size <= kApart ? 0 : size + kFurther * (p.at - first).norm() * (second - first).norm();
   };
   if (!choose(makes)) return found;
@@ -311,14 +326,15 @@ struct Ridge {
   double length;
 };
 
-// Calls add(at, normal, distance) for the place on `one` where it crosses `two`, whose side is
-// towards `up`; nothing if the two are beside each other, or parallel.
+// Calls add(at, normal, distance) for the place on `one` where it crosses `two`, above it if `up`
+// is up; nothing if the two are parallel, or meet beside each other rather than on each other.
 template <class Add>
 void add_edges(const Ridge& one, const Ridge& two, const Vec3& up, const Add& add) {
   Vec3 normal = one.along.cross(two.along);
   const double sine = normal.norm();
   if (sine < kCrosses) return;
   normal *= (normal.dot(up) < 0 ? -1 : 1) / sine;
+  if (normal.dot(up) < kLies) return;
   const Vec3 way = two.from - one.from;
   const double cosine = one.along.dot(two.along), sine2 = sine * sine;
   const double a = way.dot(one.along), b = way.dot(two.along);
@@ -327,12 +343,62 @@ void add_edges(const Ridge& one, const Ridge& two, const Vec3& up, const Add& ad
   add(one.from + at * one.along, normal, -normal.dot(way));
 }
 
+// The face of a hull that a solid is furthest from, and how far it is above it [m].
+struct Furthest {
+  const HullFace* face;
+  double height;
+};
+Furthest furthest_face(const Convex& solid, const Hull& hull) {
+  Furthest found{hull.faces.data(), -std::numeric_limits<double>::infinity()};
+  for (const HullFace& own : hull.faces) {
+    const Face plane{.center = hull.pose * own.center, .normal = hull.pose.linear() * own.normal};
+    const double height =
+        std::visit([&](const auto& s) { return height_of(s, plane, found.height); }, solid);
+    if (height > found.height) found = {&own, height};
+  }
+  return found;
+}
+
 // Returns the face of a hull that is turned most against a face.
 Face opposite(const Hull& hull, const Face& face) {
   const Vec3 way = hull.pose.linear().transpose() * face.normal;
   const HullFace& own = *std::ranges::min_element(
       hull.faces, {}, [&](const HullFace& each) { return each.normal.dot(way); });
   return placed(own, hull.pose);
+}
+
+// Finds where faces that lie on each other meet: the upper one of a hull that is `height` above the
+// lower one's, or the other way round. Nothing is deeper than the hull as a whole.
+FacePoints points_of_faces(const Face& upper, const Face& lower, double height, double near) {
+  std::array<FacePoints::Point, kMost> found;
+  std::size_t count = 0;
+  const auto add = [&](const Vec3& at, const Vec3& normal, double distance) {
+    if (distance > near || distance < height / kLies - near || count == kMost) return;
+    found[count++] = {at, normal, distance};
+  };
+  for (std::size_t i = 0; i < upper.outline.size(); ++i) {
+    const Vec3 corner = upper.corner(i);
+    if (lower.over(corner)) add(corner, lower.normal, lower.above(corner));
+  }
+  for (std::size_t i = 0; i < lower.outline.size(); ++i) {
+    const Vec3 corner = lower.corner(i);
+    const double distance = upper.above(corner);
+    if (upper.over(corner)) add(corner - distance * upper.normal, -upper.normal, distance);
+  }
+  const auto ridge = [](const Face& face, const Edge& edge) {
+    return Ridge{face.center + in_space(face, edge.from), in_space(face, edge.along), edge.length};
+  };
+  for_each_edge(upper, [&](const Edge& edge) {
+    const Ridge above = ridge(upper, edge);
+    const Vec2 from = across(lower, above.from - lower.center),
+               to = from + edge.length * across(lower, above.along);
+    for_each_edge(lower, [&](const Edge& border) {
+      const bool goes_out = border.out.dot(from - border.from) > 0;
+      if (goes_out == (border.out.dot(to - border.from) > 0)) return;  // it stays on one side
+      add_edges(above, ridge(lower, border), lower.normal, add);
+    });
+  });
+  return widest_of(std::span(found).first(count));
 }
 
 std::optional<FacePoints> on_face(const Rod& rod, const Face& face, double near) {
@@ -363,8 +429,8 @@ std::optional<FacePoints> on_face(const Hull& hull, const Face& face, double nea
 }  // namespace
 
 double height_above(const Convex& solid, const Face& face) {
-  return std::visit([&](const auto& s) { return face.above(s.center) - s.reach(-face.normal); },
-                    solid);
+  constexpr double kLeast = -std::numeric_limits<double>::infinity();
+  return std::visit([&](const auto& s) { return height_of(s, face, kLeast); }, solid);
 }
 
 std::optional<FacePoints> points_of_sides(const Rod& one, const Rod& two, double near) {
@@ -425,13 +491,6 @@ EndPoints end_points(const Rod& rod, const Vec3& end, const Vec3& normal) {
 double Rod::reach(const Vec3& way) const {
   const double rise = std::min(1.0, std::abs(axis.dot(way)));
   return rise * half + (round_ends ? 1 : std::sqrt(1 - rise * rise)) * radius;
-}
-
-double Hull::reach(const Vec3& way) const {
-  const Vec3 own = pose.linear().transpose() * way;
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Vec3& corner : corners) most = std::max(most, own.dot(corner));
-  return most + way.dot(pose.translation() - center);
 }
 
 Vec3 Face::corner(std::size_t number) const { return center + in_space(*this, outline[number]); }
@@ -497,52 +556,22 @@ std::vector<HullFace> faces_of_box(const Vec3& half) {
 }
 
 Face face_of_hull(const Convex& solid, const Hull& hull) {
-  Face furthest;
-  double most = -std::numeric_limits<double>::infinity();
-  for (const HullFace& own : hull.faces) {
-    const Face plane{.center = hull.pose * own.center, .normal = hull.pose.linear() * own.normal};
-    const double height = height_above(solid, plane);
-    if (height <= most) continue;
-    most = height;
-    furthest = placed(own, hull.pose);
-  }
-  return furthest;
+  return placed(*furthest_face(solid, hull).face, hull.pose);
 }
 
 std::optional<FacePoints> points_of_hulls(const Hull& one, const Hull& two, double near) {
-  Face low = face_of_hull(one, two), high = face_of_hull(two, one);
-  const double above = height_above(one, low), below = height_above(two, high);
-  if (std::max(above, below) > near) return FacePoints{};
-  if (auto corners = above >= below ? on_face(one, low, near) : on_face(two, high, near)) {
-    if (above < below) turn_round(*corners);
+  const Furthest on_two = furthest_face(one, two), on_one = furthest_face(two, one);
+  const double height = std::max(on_two.height, on_one.height);
+  if (height > near) return FacePoints{};
+  const bool lies = on_two.height >= on_one.height;  // the first on the second's face
+  const Face flat = lies ? placed(*on_two.face, two.pose) : placed(*on_one.face, one.pose);
+  if (auto corners = on_face(lies ? one : two, flat, near)) {
+    if (!lies) turn_round(*corners);
     return corners;
   }
-  (above >= below ? high : low) = above >= below ? opposite(one, low) : opposite(two, high);
-  if (-low.normal.dot(high.normal) < kLies) return std::nullopt;
-  std::array<FacePoints::Point, kMost> found;
-  std::size_t count = 0;
-  const auto add = [&](const Vec3& at, const Vec3& normal, double distance) {
-    if (distance <= near && count < kMost) found[count++] = {at, normal, distance};
-  };
-  for (std::size_t i = 0; i < high.outline.size(); ++i) {
-    const Vec3 corner = high.corner(i);
-    if (low.over(corner)) add(corner, low.normal, low.above(corner));
-  }
-  for (std::size_t i = 0; i < low.outline.size(); ++i) {
-    const Vec3 corner = low.corner(i);
-    const double distance = high.above(corner);
-    if (high.over(corner)) add(corner - distance * high.normal, -high.normal, distance);
-  }
-  for_each_edge(high, [&](const Edge& edge) {
-    const Vec3 from = high.center + in_space(high, edge.from), along = in_space(high, edge.along);
-    for_each_edge(low, [&](const Edge& border) {
-      add_edges(
-          {from, along, edge.length},
-          {low.center + in_space(low, border.from), in_space(low, border.along), border.length},
-          low.normal, add);
-    });
-  });
-  FacePoints points = widest_of(std::span(found).first(count));
+  const Face other = opposite(lies ? one : two, flat);
+  if (-flat.normal.dot(other.normal) < kLies) return std::nullopt;
+  auto points = points_of_faces(lies ? other : flat, lies ? flat : other, height, near);
   points.sure = false;
   return points.count > 0 ? std::optional(points) : std::nullopt;
 }

@@ -38,8 +38,6 @@ struct Hull {
   std::span<const Vec3> corners;         // in its frame [m]
   Vec3 center = Vec3::Zero();            // any point inside [m]
   std::span<const HullFace> faces = {};  // empty: they are not known
-
-  double reach(const Vec3& way) const;
 };
 
 using Convex = std::variant<Rod, Hull>;
@@ -61,8 +59,8 @@ struct Face {
   Vec3 corner(std::size_t number) const;
 };
 
-// Returns the face through corners of a hull: those that `normal` is furthest out at, and all that
-// are as far within `same` [m].
+// Returns the face of a hull across `normal`: through the corners that are furthest along it, and
+// all that are so within `same` [m]. Corners that are so near an edge of the face are none of it.
 HullFace hull_face(std::span<const Vec3> corners, const Vec3& normal, double same);
 // Returns the six faces of a box. `half`: of its edges [m].
 std::vector<HullFace> faces_of_box(const Vec3& half);

@@ -66,14 +66,8 @@ void JointLink::prepare(Bodies& bodies) {
 
 void JointLink::turn(Bodies& bodies) {
   if (rail_axis) return;
-  BodyEnd to_a = force.end_a, to_b = force.end_b;
-  if (bodies.moves(a)) to_a.lever = bodies[a].middle(bodies.place(a, on_a), bodies.T);
-  if (bodies.moves(b)) to_b.lever = bodies[b].middle(bodies.place(b, on_b), bodies.T);
-  bodies.apply(force.end_a, force.end_b, -force.on_a);
-  force.end_a = to_a;
-  force.end_b = to_b;
+  force.turn(bodies, bodies.place(a, on_a), bodies.place(b, on_b));
   point.yield(bodies.T, force.answer(bodies));
-  force.apply(bodies);
 }
 
 // Holds the present place, by the point of the other body that is there now.

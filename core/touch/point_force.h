@@ -26,6 +26,17 @@ struct PointForce {
     on_a += more;
     bodies.apply(end_a, end_b, more);
   }
+  // Moves both ends to where these points of the bodies are in the middle of the tick [m].
+  void turn(Bodies& bodies, const Vec3& at_a, const Vec3& at_b) {
+    const auto lever = [&](const BodyEnd& end, const Vec3& at) {
+      return bodies.moves(end.body) ? bodies[end.body].middle(at, bodies.T) : end.lever;
+    };
+    const BodyMotion::Lever to_a = lever(end_a, at_a), to_b = lever(end_b, at_b);
+    bodies.apply(end_a, end_b, -on_a);
+    end_a.lever = to_a;
+    end_b.lever = to_b;
+    apply(bodies);
+  }
 };
 
 // A spring K and damper B that hold a point of one body at a point of the other, found with their

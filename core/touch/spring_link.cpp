@@ -37,15 +37,9 @@ double SpringLink::solve(Bodies& bodies) {
 }
 
 double SpringLink::turn(Bodies& bodies) {
-  BodyEnd to_a = force.end_a, to_b = force.end_b;
-  if (bodies.moves(a)) to_a.lever = bodies[a].middle(bodies.place(a, on_a), bodies.T);
-  if (bodies.moves(b)) to_b.lever = bodies[b].middle(bodies.place(b, on_b), bodies.T);
   const Vec3 before = force.speed(bodies);
-  bodies.apply(force.end_a, force.end_b, -force.on_a);
-  force.end_a = to_a;
-  force.end_b = to_b;
+  force.turn(bodies, bodies.place(a, on_a), bodies.place(b, on_b));
   W = force.answer(bodies);
-  force.apply(bodies);
   return bodies.T * (force.speed(bodies) - before).norm();
 }
 

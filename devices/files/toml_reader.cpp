@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -11,6 +12,10 @@
 namespace limpid {
 
 namespace {
+
+// Keys that tables of different kinds have for the same thing.
+constexpr std::array<std::array<std::string_view, 2>, 4> kSameThing{
+    {{"position", "center"}, {"center", "position"}, {"rotation", "rpy"}, {"rpy", "rotation"}}};
 
 std::string allowed_text(const Range& range) {
   const std::string unit = range.has_unit() ? fmt::format(" {}", range.unit) : "";
@@ -100,12 +105,16 @@ std::string TomlTable::full(std::string_view key) const {
 }
 
 void TomlTable::allow_only(const std::vector<const char*>& keys) const {
+  const std::vector<std::string> known(keys.begin(), keys.end());
   for (const auto& [key, node] : table_) {
-    const auto same = [&, name = key.str()](const char* allowed) { return name == allowed; };
-    if (std::any_of(keys.begin(), keys.end(), same)) continue;
-    const auto meant = nearest(std::string(key.str()), {keys.begin(), keys.end()});
+    const std::string word(key.str());
+    if (std::ranges::count(known, word) > 0) continue;
+    auto meant = nearest(word, known);
+    for (const auto& [one, other] : kSameThing) {
+      if (word == one && std::ranges::count(known, other) > 0) meant = other;
+    }
     throw FileError(fmt::format(
-        "{}:{}: {}: no such key{} allowed: {}", where_, key.source().begin.line, full(key.str()),
+        "{}:{}: {}: no such key{} allowed: {}", where_, key.source().begin.line, full(word),
         meant ? fmt::format("; did you mean {}?", *meant) : ";", fmt::join(keys, ", ")));
   }
 }

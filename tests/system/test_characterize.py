@@ -121,8 +121,8 @@ class Characterize(SystemTest):
         time.sleep(0.1)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
-        self.assertEqual((process.returncode, said), (1, "limpid: stopped; nothing was written\n"))
-        self.assertEqual(list(out.iterdir()), [])
+        self.assertEqual((process.returncode, said), (1, "limpid: stopped; no results were written\n"))
+        self.assertEqual([file.name for file in out.iterdir()], ["limpid.txt"])
 
 
 if __name__ == "__main__":

@@ -212,7 +212,8 @@ hand = [(0, 0.19, 0, 0.02), (0.2, 0.19, 0, 0.01)]
 here = limpid.Loop(arm=ideal, scene=cup).run(hand)
 there = limpid.run(arm=ideal, scene=cup, hand=hand)
 assert (here["device/position"] == there["device/position"]).all()
-for wrong in (lambda: scene["floor"], lambda: scene.add("wal"), lambda: arm.set("elbow", damping=1),
+for wrong in (lambda: scene["floor"], lambda: scene.add("wal"),
+              lambda: scene.add("plane", "wall"), lambda: arm.set("elbow", damping=1),
               lambda: arm.set("slide", mass=1), lambda: limpid.Arm(joints=[dict(nam="a")]),
               lambda: limpid.Loop(scene=limpid.Scene(gravty=1)), lambda: limpid.Scene.read("no.toml")):
     try:

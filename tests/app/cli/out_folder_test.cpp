@@ -52,8 +52,8 @@ TEST_F(Results, OfAnExperimentReplaceNoForeignFile) {
   const std::vector<std::string> words{"experiment", "inertia", "--out", "o"};
   for (const std::string file : {"o/inertia.csv", "o/report.html"}) {
     EXPECT_THAT(refused_for(file, words),
-                AllOf(HasSubstr("--out o: " + fs::path(file).filename().string()),
-                      HasSubstr("not written by limpid experiment"), HasSubstr("--force")));
+                AllOf(HasSubstr("--out o: nothing says that " + fs::path(file).filename().string()),
+                      HasSubstr("was written by limpid experiment; "), HasSubstr("--force")));
     fs::remove(file);
   }
   write("o/notes.txt", "mine");
@@ -61,6 +61,11 @@ TEST_F(Results, OfAnExperimentReplaceNoForeignFile) {
   EXPECT_THAT(text_of("o/limpid.txt"), testing::StartsWith("limpid experiment\n"));
   EXPECT_THAT(done(words), HasSubstr("inertia: passed")) << "its own results it may replace";
   EXPECT_EQ(text_of("o/notes.txt"), "mine");
+  EXPECT_THAT(refused_for("o/passivity.csv", {"experiment", "passivity", "--out", "o"}),
+              HasSubstr("passivity.csv"))
+      << "another experiment of the same folder";
+  EXPECT_THAT(refused_for("q/limpid.txt", {"experiment", "inertia", "--out", "q"}),
+              HasSubstr("limpid.txt is not Limpid's"));
   fs::create_directory("p");
   write("p/inertia.csv", "mine");
   done({"experiment", "inertia", "--out", "p", "--force"});
@@ -70,9 +75,9 @@ TEST_F(Results, OfAnExperimentReplaceNoForeignFile) {
 TEST_F(Results, OfOneCommandAreForeignToAnother) {
   done({"experiment", "inertia", "--out", "o"});
   EXPECT_THAT(refused({"characterize", "omni.urdf", "--out", "o"}),
-              HasSubstr("not written by limpid characterize omni"));
+              HasSubstr("was written by limpid characterize omni; "));
   EXPECT_THAT(refused({"identify", "simulated", "--out", "o"}),
-              HasSubstr("not written by limpid identify simulated"));
+              HasSubstr("was written by limpid identify simulated; "));
 }
 
 TEST_F(Results, OfAPersonsTrialsAreKept) {
@@ -93,7 +98,7 @@ values = [0.5, 1]
 )");
   const std::vector<std::string> words{"sweep", "plan.toml", "--out", "o", "--csv"};
   for (const std::string file : {"o/table.csv", "o/figure.png"}) {
-    EXPECT_THAT(refused_for(file, words), HasSubstr("not written by limpid sweep"));
+    EXPECT_THAT(refused_for(file, words), HasSubstr("was written by limpid sweep; "));
     fs::remove(file);
   }
   done(words);

@@ -171,6 +171,7 @@ TEST_F(Served, OpensWhatIsAskedForAndGoesOnWhereThatFails) {
   EXPECT_EQ(heard.arm, "y.urdf");
   EXPECT_EQ(heard.tip, "z");
   EXPECT_EQ(opened["objects"], 0);
+  EXPECT_EQ(value("coupling/eta"), 0.6) << "its first row is there";
   const json set =
       ask({{"do", "get"}, {"keys", {"coupling.eta", "device.torque_limit"}}})["values"];
   EXPECT_EQ(set["coupling.eta"], 0.6);
