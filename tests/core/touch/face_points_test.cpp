@@ -279,6 +279,27 @@ TEST(FacePoints, OfBeamsAcrossEachOtherAreWhereTheirEdgesCross) {
   }
 }
 
+// An edge of a tilted plank that is parallel, from above, to an edge of the box below it lies
+// beside that edge and not on it.
+TEST(FacePoints, OfATiltedPlankAreNotBesideEdgesOfTheBox) {
+  const BoxHull box(Vec3(0.05, 0.05, 0.01)), plank(Vec3(0.03, 0.01, 0.005));
+  for (const double yaw : {0.0, 1e-3, -1e-3, 0.02, -0.02}) {
+    Pose at = pose_at({0, 0.05, 0});
+    at.linear() =
+        (Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(0.35, Vec3::UnitY())).matrix();
+    double low = 1;
+    for (const Vec3& corner : plank.corners) low = std::min(low, (at * corner).z());
+    at.translation().z() = -low - 0.0005;
+    const auto found = points_of_hulls(plank.at(at), box.at(pose_at({0, 0, -0.01})), 1e-3);
+    ASSERT_TRUE(found) << yaw;
+    ASSERT_GT(found->count, 0u) << yaw;
+    for (const FacePoints::Point& p : found->all()) {
+      EXPECT_GT(p.distance, -6e-4) << yaw;
+      EXPECT_GT(p.normal.z(), 0.8) << yaw;
+    }
+  }
+}
+
 TEST(FacePoints, OfHullsHoldSpringsWhoseForceIsTheSlopeOfTheirEnergy) {
   Random random(408);
   constexpr double kStep = 1e-7;
