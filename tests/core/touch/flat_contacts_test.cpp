@@ -400,7 +400,7 @@ TEST(FlatContacts, HoldThingsThatFallOnEachOther) {
 
 // A model that lies across what is narrower than itself stays on it: its own corners are beyond.
 TEST(FlatContacts, HoldAModelAcrossANarrowSupport) {
-  // Its faces are across no axis of its file.
+  // No face is across an axis of the file.
   Triangles triangles = slab(Vec3(0.12, 0.03, 0.008));
   const Mat3 askew = turned(0.83, Vec3(0.3, -0.5, 0.7));
   for (Eigen::Vector3f& v : triangles.vertices) v = (askew * v.cast<double>()).cast<float>();
