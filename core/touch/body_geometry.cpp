@@ -410,16 +410,22 @@ BodyGeometry::Inside::Ways BodyGeometry::Inside::ways_to_meet(const Pair& p, con
   return ways;
 }
 
-// Whether a pair is nowhere deeper than in these points, as Bullet finds it.
+// Whether a pair is nowhere much deeper than in these points, as Bullet finds it; else it takes
+// Bullet's points.
 bool BodyGeometry::Inside::deepest_in(Pair& p, const FacePoints& own, PairPoints& result) {
   constexpr double kAlike = 0.9;  // part of the depth that Bullet finds
+  double known = 2 * kMargin;
+  for (const FacePoints::Point& point : own.all())
+    known = std::max(known, 2 * kMargin - point.distance);
+  // Beside the points that are there Bullet looks for the deepest alone.
+  const auto search = [&] {
+    p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
+  };
+  search();
+  if (known >= -kAlike * result.deepest) return true;
   p.manifold->clearManifold();
-  p.algorithm->processCollision(result.getBody0Wrap(), result.getBody1Wrap(), info, &result);
-  double found = 0, known = 0;
-  for (int i = 0; i < p.manifold->getNumContacts(); ++i)
-    found = std::max(found, -p.manifold->getContactPoint(i).getDistance());
-  for (const FacePoints::Point& point : own.all()) known = std::max(known, -point.distance);
-  return known >= kAlike * found - 2 * kMargin;
+  search();
+  return false;
 }
 
 // Finds the points where a pair meets by its own geometry, and where they are in the middle of the

@@ -4,6 +4,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <btBulletCollisionCommon.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "core/touch/face_points.h"
@@ -45,6 +46,7 @@ class PairPoints : public btManifoldResult {
   using btManifoldResult::btManifoldResult;
 
   bool only_edges = false;  // takes no points on faces of models
+  btScalar deepest = 0;     // least distance of a point that Bullet found, if that is negative [m]
 
   void addContactPoint(const btVector3& normal, const btVector3& on_b, btScalar distance) override {
     const btVector3 on_a = on_b + normal * distance;
@@ -57,6 +59,7 @@ class PairPoints : public btManifoldResult {
   void add(const btVector3& normal, const btVector3& on_b, btScalar distance) {
     btPersistentManifold& all = *getPersistentManifold();
     if (distance > all.getContactBreakingThreshold()) return;
+    deepest = std::min(deepest, distance);
     const btManifoldPoint point = point_at(normal, on_b, distance);
     if (btManifoldPoint* known = near(all, point.m_localPointA)) {
       known->m_localPointA = point.m_localPointA;

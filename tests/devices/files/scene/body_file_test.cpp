@@ -210,7 +210,7 @@ TEST(BodyFile, RefusesWhatABodyCannotBe) {
       {body("colour = 1\n"),
        {"x.toml:6: body.colour", "no such key; did you mean color?", "contact_stiffness"}},
       {body("scale = 2\n"), {"x.toml:6: body.scale", "no such key"}},
-      {body("center = [0, 0, 0]\n"), {"no such key; did you mean position?"}},
+      {body("rpy = [0, 0, 0]\n"), {"no such key; did you mean rotation?"}},
       {start + "mass = 1\n", {"x.toml:1: body.shape", "missing", "box, sphere"}},
       {start + "mass = 1\nbox = [1, 1, 1]\nsphere = 1\n",
        {"x.toml:6: body.sphere", "sphere beside box", "one of"}},
