@@ -360,8 +360,8 @@ void BodyGeometry::Inside::find_lowest(const Pair& p, PairPoints& result) {
       if (!face_below(*p.b, to_bullet(end), middle, one.radius + CollisionSolid::kNear, normal,
                       distance))
         continue;
-      for (const Vec3& point : end_points(one, end, from_bullet(normal)).all())
-        try_at(to_bullet(point));
+      const EndPoints ends = end_points(one, end, from_bullet(normal));
+      for (const Vec3& point : ends.all()) try_at(to_bullet(point));
     }
   }
   result.take(widest_of(std::span(low_points).first(count)));

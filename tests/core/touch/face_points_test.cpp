@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/touch/scene.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid::test {
@@ -323,7 +324,8 @@ TEST(FacePoints, OfHullsHoldSpringsWhoseForceIsTheSlopeOfTheirEnergy) {
     const auto now = springs(Vec3::Zero(), Vec3::Zero());
     if (!now || now->energy == 0) continue;
     ++pressed;
-    for (const auto& p : points_of_hulls(above.at(here), below.at(world), 0)->all())
+    const auto points = points_of_hulls(above.at(here), below.at(world), 0);
+    for (const FacePoints::Point& p : points->all())
       crossed += std::abs(p.normal.dot(world.linear().col(2))) < 1 - 1e-12 ? 1 : 0;
     for (int k = 0; k < 3; ++k) {
       const Vec3 step = kStep * Vec3::Unit(k);
