@@ -151,7 +151,7 @@ void list_inertias(const ArmDescription& arm, CheckReport& report) {
   const double reach = farthest_tip(arm).distance;
   for (const Link& link : arm.links) {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(link.inertia, Eigen::EigenvaluesOnly);
-    const Vec3 moments = solver.eigenvalues();
+    const Vec3& moments = solver.eigenvalues();
     if (2 * moments.z() > kRounded * moments.sum()) {
       report.warnings.push_back(
           fmt::format("link '{}': principal moments of {:.3g}, {:.3g} and {:.3g} kg m^2 are "
