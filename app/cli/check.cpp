@@ -105,8 +105,8 @@ void list_limits(const Parameters& p, CheckReport& report) {
 constexpr double kFar = 100;
 
 constexpr double kLongestArm = 10;  // that a hand may lead [m]
-constexpr double kMostOfATurn =
-    4 * std::numbers::pi;  // range of a joint with limits; more are degrees [rad]
+// A joint with limits that turns further has them in degrees [rad].
+constexpr double kMostTurned = 4 * std::numbers::pi;
 
 // Warns of lengths in mm and of limits in degrees, which are the usual slips.
 void list_units(const ArmDescription& arm, double reach, CheckReport& report) {
@@ -115,7 +115,7 @@ void list_units(const ArmDescription& arm, double reach, CheckReport& report) {
   for (const Joint& joint : arm.joints) {
     if (joint.kind == Joint::Kind::prismatic) {
       slides += kSlideUnit * travel(joint);
-    } else if (std::isfinite(travel(joint)) && travel(joint) > kMostOfATurn) {
+    } else if (std::isfinite(travel(joint)) && travel(joint) > kMostTurned) {
       report.warnings.push_back(fmt::format(
           "joint '{}' turns {:.3g} times round, from {:.3g} to {:.3g} rad; are the "
           "limits in degrees? <limit> takes rad",

@@ -171,14 +171,20 @@ void check_name(const TomlTable& table, const std::string& name) {
 }
 
 // Refuses a value that is there twice: its points would be run twice, and drawn on each other.
-void refuse_doubles(const TomlTable& table, const char* key, const SweepAxis& axis) {
+void refuse_doubles(const TomlTable& table, const SweepAxis& axis) {
   const auto twice = [](auto all) {
     std::ranges::sort(all);
     return std::ranges::adjacent_find(all) != all.end();
   };
-  const bool files = !axis.cases.empty() && table.find("cases") == nullptr;
-  if (files ? twice(table.texts(key)) : axis.cases.empty() ? twice(axis.values) : twice(axis.words))
+  const auto refuse = [&](const char* key) {
     table.refuse(key, "each one once; `repeats` runs all points several times");
+  };
+  if (table.find("cases") != nullptr) {
+    if (twice(axis.words)) refuse("cases");
+  } else if (table.find("values") != nullptr) {
+    // Files of one name may be in several folders.
+    if (axis.cases.empty() ? twice(axis.values) : twice(table.texts("values"))) refuse("values");
+  }
 }
 
 }  // namespace
@@ -277,8 +283,7 @@ ReadAxis read_axis(const TomlTable& table, const Parameters& base) {
     axis.values.push_back(static_cast<double>(axis.words.size()));
     axis.words.push_back(one.name);
   }
-  const char* list = table.find("cases") == nullptr ? "values" : "cases";
-  if (table.find(list) != nullptr) refuse_doubles(table, list, axis);
+  refuse_doubles(table, axis);
   return read;
 }
 

@@ -28,9 +28,6 @@ Vec3 middle(const btManifoldPoint& point) {
          (from_bullet(point.getPositionWorldOnA()) + from_bullet(point.getPositionWorldOnB()));
 }
 
-// The point of the other solid that is opposite.
-Vec3 on_other(const FacePoints::Point& point) { return point.at - point.distance * point.normal; }
-
 // Pose of the large box below a plane: for faces and edges Bullet finds all its points at once.
 Pose block_below(const Plane& plane, const Pose& pose) {
   Pose block = Pose::Identity();
@@ -88,7 +85,7 @@ struct BodyGeometry::Inside {
   bool find_own(Pair& pair, PairPoints& result);
   Pose next_pose(const Solid& solid) const;
   static void follow(const Pair& pair, BodyContact& contact);
-  static void go_on(const Pair& pair, std::span<BodyContact* const> before);
+  static void go_on(Pair& pair, std::span<BodyContact* const> before);
   void find(Pair& pair, PairPoints& result);
   void meet(Pair& pair);
   const btManifoldPoint* deepest(Pair& pair);
@@ -264,7 +261,7 @@ void BodyGeometry::Inside::keep_deepest(const Pair& p) {
 // Treats a new point of a pair as one that has just gone, moved, and keeps its state: the nearest
 // of them first. Otherwise bodies on points that come and go would sink; of two balls Bullet makes
 // a new point every time.
-void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> before) {
+void BodyGeometry::Inside::go_on(Pair& p, std::span<BodyContact* const> before) {
   constexpr double kSame = 1e-5;  // a point in the same order that moved less is the same [m]
   btPersistentManifold& m = *p.manifold;
   bool all = before.size() == static_cast<std::size_t>(m.getNumContacts());
@@ -311,6 +308,7 @@ void BodyGeometry::Inside::go_on(const Pair& p, std::span<BodyContact* const> be
     std::swap(fresh[point], fresh[points - 1]);
     std::swap(gone[contact], gone[contacts - 1]);
   }
+  for (std::size_t i = 0; i < contacts; ++i) p.lost += gone[i]->lost;
 }
 
 // Finds the face of a model below a corner of a box that is nearest to it; false if there is none.
@@ -468,7 +466,7 @@ void BodyGeometry::Inside::follow(const Pair& p, BodyContact& c) {
   if (p.next.count == 0) return;
   double least = p.goes * p.goes;
   for (const auto& point : p.next.all()) {
-    const Vec3 there = 0.5 * (point.at + on_other(point));
+    const Vec3 there = 0.5 * (point.at + point.on_other());
     const double away = (there - c.point).squaredNorm();
     if (away > least) continue;
     least = away;
@@ -505,12 +503,6 @@ void BodyGeometry::Inside::meet(Pair& p) {
   if (p.single) keep_deepest(p);
   p.points = p.manifold->getNumContacts();
   go_on(p, {before.data(), count});
-  for (std::size_t i = 0; i < count; ++i) {
-    bool goes_on = false;
-    for (int k = 0; k < p.points; ++k)
-      goes_on = goes_on || p.manifold->getContactPoint(k).m_userPersistentData == before[i];
-    if (!goes_on) p.lost += before[i]->lost;
-  }
 }
 
 // The deepest point of a pair as it stands, in place of its points; null: the two do not touch.

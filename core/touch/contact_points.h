@@ -77,8 +77,8 @@ class PairPoints : public btManifoldResult {
     btPersistentManifold& all = *getPersistentManifold();
     all.clearManifold();
     for (const FacePoints::Point& each : points.all()) {
-      const Vec3 on_b = each.at - each.distance * each.normal;
-      all.addManifoldPoint(point_at(to_bullet(each.normal), to_bullet(on_b), each.distance));
+      all.addManifoldPoint(
+          point_at(to_bullet(each.normal), to_bullet(each.on_other()), each.distance));
     }
   }
 

@@ -470,7 +470,7 @@ std::optional<FacePoints> points_of_sides(const Rod& one, const Rod& two, double
 
 void turn_round(FacePoints& points) {
   for (FacePoints::Point& point : std::span(points.points).first(points.count)) {
-    point.at -= point.distance * point.normal;
+    point.at = point.on_other();
     point.normal = -point.normal;
   }
 }

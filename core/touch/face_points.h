@@ -77,6 +77,8 @@ struct FacePoints {
     Vec3 at = Vec3::Zero();       // on the solid [m]
     Vec3 normal = Vec3::UnitZ();  // out of the face's solid, unit
     double distance = 0;          // negative: inside [m]
+
+    Vec3 on_other() const { return at - distance * normal; }  // the opposite point [m]
   };
   std::array<Point, 4> points{};
   std::size_t count = 0;
