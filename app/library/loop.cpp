@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include "app/run/run_watch.h"
 #include "core/tick/as_taken.h"
 #include "core/tick/force_asked.h"
+#include "devices/files/session/derived_columns.h"
 #include "devices/files/session/session_units.h"
 #include "devices/simulated/rig.h"
 
@@ -116,7 +118,8 @@ struct Loop::State {
   bool real = false;  // motors of a device with a person's hand on it
   RowLayout layout;
   SessionUnits units;
-  std::vector<RowColumn> columns;
+  DerivedColumns derived;
+  std::vector<RowColumn> columns, derived_columns;
   std::vector<double> row;     // as the rig has it
   std::vector<double> row_si;  // as everybody has it
   RigStart scratch;            // with room for all that the rig has
@@ -135,6 +138,7 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
       real(options.motors == Motors::real),
       layout(plan.layout()),
       units(layout, slides_of(plan.arm)),
+      derived(plan.arm),
       row(static_cast<std::size_t>(layout.stride()), 0.0),
       row_si(row) {
   plan.hand.source = "library";
@@ -143,6 +147,9 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
     columns.push_back({each.path, said(units.units(each)), each.what,
                        static_cast<std::size_t>(layout.offset(each.column)),
                        static_cast<std::size_t>(layout.width(each.column))});
+  }
+  for (const DerivedInfo& each : kDerivedInfo) {
+    derived_columns.push_back({each.path, each.unit, each.what, 3 * derived_columns.size(), 3});
   }
 }
 
@@ -217,6 +224,37 @@ std::span<const double> Loop::row(std::string_view path) const {
   std::vector<std::string> paths;
   for (const RowColumn& each : state_->columns) paths.push_back(each.path);
   throw LoopError(fmt::format("{}: no such column; {}", path, meant_or(path, paths, "columns()")));
+}
+
+const std::vector<RowColumn>& Loop::derived_columns() const { return state_->derived_columns; }
+
+std::array<double, 15> Loop::derived(std::span<const double> row) const noexcept {
+  const RowLayout& layout = state_->layout;
+  if (row.size() != static_cast<std::size_t>(layout.stride())) {
+    std::array<double, 15> unknown;
+    unknown.fill(kGuessed);
+    return unknown;
+  }
+  // Slides count as in the rig.
+  std::array<double, std::size_t{4} * kMaxDof> joints;
+  std::array<std::span<const double>, 4> of_rig;
+  constexpr std::array from{Column::device_position, Column::device_velocity,
+                            Column::proxy_position, Column::proxy_velocity};
+  const ArmDescription& arm = state_->plan.arm;
+  const std::size_t n = arm.joints.size();
+  for (std::size_t column = 0; column < from.size(); ++column) {
+    const auto x = layout.in(row, from[column]);
+    const auto into = std::span(joints).subspan(column * n, n);
+    for (std::size_t i = 0; i < n; ++i) into[i] = x[i] / (arm.slides(i) ? kSlideUnit : 1);
+    of_rig[column] = into;
+  }
+  std::array<double, 15> all;
+  auto to = all.begin();
+  for (const Vec3& each : state_->derived.of(
+           {of_rig[0], of_rig[1], of_rig[2], of_rig[3], layout.in(row, Column::contact_force)})) {
+    to = std::ranges::copy(each, to).out;
+  }
+  return all;
 }
 
 double Loop::time() const noexcept {

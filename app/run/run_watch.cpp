@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "app/run/analysis.h"
 #include "app/run/replay.h"
 #include "core/dynamics/arm.h"
+#include "core/dynamics/inverse_kinematics.h"
 
 namespace limpid {
 namespace {
@@ -24,6 +26,19 @@ double promised(const Parameters& p) {
   }
 }
 
+// Returns a bound of the distance from any joint that turns to the tip [m]: infinite with a slide
+// that has no end.
+double longest_lever(const ArmDescription& arm) {
+  for (const Joint& joint : arm.joints) {
+    const bool ends = std::isfinite(joint.lower) && std::isfinite(joint.upper);
+    if (joint.kind == Joint::Kind::prismatic && !ends) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+  constexpr double kPushedIn = 1.5;  // slides give at their ends
+  return kPushedIn * reach(arm);
+}
+
 std::string joules_text(double joules) {
   return std::abs(joules) < 0.1 ? fmt::format("{:.3g} mJ", 1e3 * joules)
                                 : fmt::format("{:.3g} J", joules);
@@ -32,7 +47,7 @@ std::string joules_text(double joules) {
 }  // namespace
 
 RunWatch::RunWatch(const ArmDescription& arm, const RowLayout& layout, const Parameters& p)
-    : arm_(arm), layout_(layout), tips_(arm), diverged_(layout) {
+    : arm_(arm), layout_(layout), tips_(arm), reach_(longest_lever(arm)), diverged_(layout) {
   hold(p);
 }
 
@@ -73,8 +88,18 @@ void RunWatch::add(std::span<const double> row) {
                any_at_limit(layout_, row, limits_));
   energy_.take(time, at_fault_ ? shares_.without_limits() : shares_.own(), promised_ + kGivenEnergy,
                settings_);
+  if (tip_speed_bound(row) <= kFastestTip) return;
   const auto tips = tips_.of(DerivedColumns::from(layout_, row));
   speed_.take(time, tips[kTipVelocity].norm(), kFastestTip, settings_);
+}
+
+double RunWatch::tip_speed_bound(std::span<const double> row) const {
+  const auto v = layout_.in(row, Column::device_velocity);
+  double bound = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    bound += std::abs(v[i]) * (arm_.slides(i) ? kSlideUnit : reach_);
+  }
+  return bound;
 }
 
 std::vector<std::string> RunWatch::warnings() const {

@@ -50,10 +50,13 @@ class RunWatch {
   };
 
   void hold(const Parameters& p);  // from the next row on
+  // Returns a bound of the speed of the device's tip [m/s], far cheaper than the speed.
+  double tip_speed_bound(std::span<const double> row) const;
 
   ArmDescription arm_;
   RowLayout layout_;
   DerivedColumns tips_;
+  double reach_;  // bound of a lever of the tip [m]
   DivergenceWatch diverged_;
   EnergyShares shares_;
   WithheldEnergy withheld_;

@@ -12,9 +12,12 @@ import numpy as np
 
 if len(sys.argv) != 2:
     sys.exit("which recording? read_session.py SESSION.h5")
-with h5py.File(sys.argv[1]) as session:
-    apart = session["device/tip"][:] - session["proxy/tip"][:]
-    force = np.linalg.norm(session["contact/total_force"][:], axis=1)
+try:
+    with h5py.File(sys.argv[1]) as session:
+        apart = session["device/tip"][:] - session["proxy/tip"][:]
+        force = np.linalg.norm(session["contact/total_force"][:], axis=1)
+except (OSError, KeyError) as error:
+    sys.exit(f"{sys.argv[1]}: no recorded session: {error}")
 table = np.column_stack([1e3 * np.linalg.norm(apart, axis=1), force])
 out = sys.argv[1].removesuffix(".h5") + ".force"
 np.savetxt(out + ".csv", table, delimiter=",", header="penetration_mm,force_N", comments="")

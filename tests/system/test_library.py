@@ -44,7 +44,7 @@ class Installed(SystemTest):
         return {**others, "PYTHONPATH": str(self.modules()), "PYTHONDONTWRITEBYTECODE": "1"}
 
     def python(self, text: str) -> str:
-        return must(PYTHON, "-c", text, env=self.environment())
+        return must(PYTHON, "-c", text, env=self.environment(), cwd=self.directory)
 
     def test_examples_are_built_by_cmake_and_run(self) -> None:
         examples = self.prefix / "share/doc/limpid/examples/library"
@@ -101,8 +101,25 @@ for law in ("standard", "predictive", "proposed"):
     few = limpid.Loop(scene="table.toml", coupling=law, eta=0.7).run(hand, channels=["/proxy/position", "hand/grip"])
     assert list(few) == ["time", "proxy/position", "hand/grip"]
     assert numpy.array_equal(few["proxy/position"], run["proxy/position"])
+    assert set(session.channels) == set(run), (law, set(session.channels) ^ set(run))
 print("the same")
 """), "the same\n")
+
+    def test_python_derives_the_tips_of_arms_that_slide(self) -> None:
+        self.assertEqual(self.python('''
+import limpid, numpy
+arm = limpid.Arm("gantry", [dict(name=n, slides=True, axis=a, lower=-0.2, upper=0.2, mass=0.3, damping=2, effort=20)
+                            for n, a in (("x", (1, 0, 0)), ("y", (0, 1, 0)), ("z", (0, 0, 1)))], tip=(0.01, 0.02, 0.03))
+loop = limpid.Loop(arm=arm, scene_text="gravity = [0, 0, 0]")
+for k in range(400):
+    row = loop.step((0.05, 0.02, -0.04))
+assert numpy.allclose(row["device/tip"], row["device/position"] + (0.01, 0.02, 0.03), atol=1e-12)
+assert numpy.linalg.norm(row["device/tip"]) > 0.02
+assert numpy.allclose(row["proxy/tip_velocity"], row["proxy/velocity"], atol=1e-12)
+run = loop.run([(0, 0, 0, 0), (0.5, 0.05, 0.02, -0.04)], channels=["device/tip"])
+assert run["device/tip"].shape == (500, 3) and list(run) == ["time", "device/tip"]
+print("derived")
+'''), "derived\n")
 
     def test_python_says_the_programs_version(self) -> None:
         said = self.python("import limpid; print(limpid.__version__)").strip()
@@ -246,6 +263,14 @@ try:
     assert frame.attrs["units"] == {"device/position[0]": "rad", "device/position[1]": "rad",
                                     "device/position[2]": "rad", "hand/grip": session.unit("hand/grip")}
     assert (data["device/position"].sel(time=0.05, method="nearest").values == session["device/position"][50]).all()
+    try:
+        import netCDF4
+    except ImportError:
+        netCDF4 = None
+    if netCDF4:
+        data.rename({name: name.replace("/", "_") for name in data}).to_netcdf("saved.nc")
+        with netCDF4.Dataset("saved.nc") as saved:
+            assert (saved["device_position"][50] == session["device/position"][50]).all()
     print("tables")
 except limpid.LimpidError as error:
     print(error)

@@ -217,6 +217,11 @@ class LIMPID_API Loop {
   const std::vector<RowColumn>& columns() const;
   std::span<const double> row() const noexcept;
   std::span<const double> row(std::string_view path) const;  // Errors: no such column.
+  // Columns that recordings have besides: where the tips are and how fast they move, and the total
+  // force of the contacts. derived() computes them from a row of this loop; their offsets are in
+  // what it returns.
+  const std::vector<RowColumn>& derived_columns() const;
+  std::array<double, 15> derived(std::span<const double> row) const noexcept;
   double time() const noexcept;                              // t_k [s]
   Point3 tip() const noexcept;                               // of the device [m]
   Point3 proxy_tip() const noexcept;  // of the proxy, and of the device before the first tick [m]

@@ -23,6 +23,20 @@ Array copied(std::span<const double> values) {
   return Array(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
+// Returns the row and its derived columns behind it.
+Array whole_row(const Loop& loop) {
+  const std::span<const double> row = loop.row();
+  const auto derived = loop.derived(row);
+  Array whole(static_cast<py::ssize_t>(row.size() + derived.size()));
+  std::ranges::copy(derived, std::ranges::copy(row, whole.mutable_data()).out);
+  return whole;
+}
+
+py::tuple described(const RowColumn& column, std::size_t behind) {
+  return py::make_tuple(column.path, column.unit, column.what, behind + column.offset,
+                        column.width);
+}
+
 // Takes the rows of a run as one array of rows x columns, without another copy.
 Array as_rows(std::vector<double>&& all, std::size_t stride) {
   auto* kept = new std::vector<double>(std::move(all));
@@ -31,18 +45,23 @@ Array as_rows(std::vector<double>&& all, std::size_t stride) {
   return Array({rows, static_cast<py::ssize_t>(stride)}, kept->data(), owner);
 }
 
-// Keeps these numbers of each row, by their offsets.
+// Keeps these numbers of each row, by their offsets; those beyond the row are of its derived columns.
 py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
               const std::vector<std::size_t>& kept) {
   const std::vector<double> rows(path.data(), path.data() + path.size());
   std::vector<double> all;
   const double seconds = duration > 0 || rows.size() < 4 ? duration : rows[rows.size() - 4];
+  const std::size_t width = loop.row().size();
+  const bool derives = std::ranges::any_of(kept, [&](std::size_t each) { return each >= width; });
   all.reserve(kept.size() * static_cast<std::size_t>(std::max(0.0, seconds / loop.period()) + 2));
   SimulatedLoop::RunEnd end;
   {
     const py::gil_scoped_release others_go_on;
     end = loop.run(rows, duration, [&](std::span<const double> row) {
-      for (const std::size_t each : kept) all.push_back(row[each]);
+      const auto derived = derives ? loop.derived(row) : std::array<double, 15>{};
+      for (const std::size_t each : kept) {
+        all.push_back(each < width ? row[each] : derived[each - width]);
+      }
       return true;
     });
   }
@@ -60,7 +79,7 @@ Array step(SimulatedLoop& loop, const Array& target, double grip, bool magnet,
     const py::gil_scoped_release others_go_on;
     loop.step(hand);
   }
-  return copied(loop.row());
+  return whole_row(loop);
 }
 
 Array tick(DeviceLoop& loop, const Array& position, bool fresh, bool hand, bool fault,
@@ -115,12 +134,13 @@ void declare_loops(py::module_& module) {
       .def_property_readonly("proxy_tip", &Loop::proxy_tip)
       .def("set", py::overload_cast<const std::string&>(&Loop::set))
       .def("get", &Loop::get)
-      .def("row", [](const Loop& loop) { return copied(loop.row()); })
+      .def("row", &whole_row)
       .def("columns",
            [](const Loop& loop) {
              py::list all;
-             for (const RowColumn& each : loop.columns()) {
-               all.append(py::make_tuple(each.path, each.unit, each.what, each.offset, each.width));
+             for (const RowColumn& each : loop.columns()) all.append(described(each, 0));
+             for (const RowColumn& each : loop.derived_columns()) {
+               all.append(described(each, loop.row().size()));
              }
              return all;
            })

@@ -21,7 +21,7 @@ from typing import IO, Any, Deque, Dict, List, Mapping, NamedTuple, Optional, Se
 from limpid.errors import ArgumentError, LimpidError, ProgramError, RecordingError, RequestError
 from limpid.program import find_program, setting_words
 from limpid.runs import hand_file
-from limpid.values import Hand, PathLike, names_of, path_of, plain, settings_of
+from limpid.values import Hand, PathLike, names_of, number, path_of, plain, settings_of
 
 PROTOCOL = 1
 KEPT_MESSAGES = 10_000  # of rows that nobody has fetched; older ones are dropped and counted
@@ -175,6 +175,8 @@ class Client:
 
     def rows(self, seconds: float = 0.0) -> Rows:
         """The rows that have come, and those that come within so long [s]."""
+        if number("seconds", seconds) < 0:
+            raise ArgumentError(f"seconds: {seconds:g} is not allowed; allowed: from 0 on")
         end = time.monotonic() + seconds
         while self._receive(max(0.0, end - time.monotonic())):
             pass

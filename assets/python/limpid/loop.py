@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Mapping, 
 
 from limpid.errors import ArgumentError, LimpidError, ProgramError, RunWarning
 from limpid.program import find_program
-from limpid.values import PathLike, Value, hand_rows, is_path, names_of, no_channel, number, path_of, settings_of, text_of
+from limpid.values import PathLike, Value, hand_array, is_path, names_of, no_channel, number, path_of, settings_of, text_of
 from limpid.worlds import Arm, Scene
 
 if TYPE_CHECKING:
@@ -228,7 +228,7 @@ class Loop(_AnyLoop):
                 offset, width = self._places[name]
                 places[name] = (len(kept), width)
                 kept += range(offset, offset + width)
-        values, _, why, said = self._loop.run(hand_rows(hand), seconds, kept)
+        values, _, why, said = self._loop.run(hand_array(hand), seconds, kept)
         for warning in [why] * bool(why) + said:
             warnings.warn(warning, RunWarning, stacklevel=2)
         return Run(values, places, why, said)

@@ -68,7 +68,7 @@ class _Recording:
             rows = hasattr(item, "shape") and bare.split("/")[0] not in BESIDE_ROWS and bare != ONE_STATE
             if rows and item.ndim > 0 and item.attrs.get("unit") is not None:
                 self.units[name] = _words(item.attrs["unit"])
-                self.axes[name] = [_dimension(item.dims[i], f"{bare} {i}") for i in range(1, item.ndim)]
+                self.axes[name] = [_dimension(item.dims[i], f"{bare.replace('/', '_')}_{i}") for i in range(1, item.ndim)]
                 self.about[name] = str(item.attrs.get("what", ""))
                 lengths.append(len(item))
 
@@ -340,7 +340,8 @@ class Session:
     def dataset(self, channels: Optional[Sequence[str]] = None) -> "xarray.Dataset":
         """The channels as a dataset of xarray, over the time and the dimensions of the file (joint, axis
         and others), so that channels of one kind can be subtracted. Units and words are attributes.
-        Needs xarray (Debian: python3-xarray)."""
+        netCDF takes no / in a name: dataset.rename({name: name.replace("/", "_") for name in dataset})
+        can be saved with to_netcdf(). Needs xarray (Debian: python3-xarray)."""
         try:
             import xarray
         except ImportError as error:

@@ -10,9 +10,12 @@ import difflib
 import math
 import numbers
 import os
-from typing import Any, Dict, Iterable, List, Mapping, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Sequence, Union
 
 from limpid.errors import ArgumentError
+
+if TYPE_CHECKING:
+    import numpy
 
 PathLike = Union[str, "os.PathLike[str]"]
 Hand = Union[PathLike, Iterable[Sequence[float]]]
@@ -142,6 +145,16 @@ def hand_rows(hand: Any) -> List[List[float]]:
     if len(rows) < FEWEST_ROWS:
         raise ArgumentError(f"hand: has {len(rows)} row{'s' * (len(rows) != 1)}; {needed}")
     return rows
+
+
+def hand_array(hand: Any) -> "numpy.ndarray":
+    """The same as an array of N x 4; one that is right is taken as it is."""
+    import numpy
+
+    whole = isinstance(hand, numpy.ndarray) and hand.dtype == float and hand.ndim == 2 and hand.shape[1] == 4
+    if whole and len(hand) >= FEWEST_ROWS and numpy.isfinite(hand).all() and (numpy.diff(hand[:, 0]) > 0).all():
+        return hand
+    return numpy.array(hand_rows(hand))
 
 
 def _in_order(table: Any) -> Any:

@@ -183,6 +183,33 @@ LoopOptions slide() {
   return options;
 }
 
+TEST(SimulatedLoop, DerivesTipsAndTheTotalForceFromARow) {
+  SimulatedLoop turns(table("predictive", 0.5)), slides(slide());
+  for (SimulatedLoop* const loop : {&turns, &slides}) {
+    const bool slide = loop == &slides;
+    SimulatedLoop::Hand hand;
+    hand.target = loop->tip();
+    std::array<double, 15> before{};
+    double pressed = 0;  // [N]
+    for (int k = 0; k < 600; ++k) {
+      hand.target[slide ? 0 : 2] += slide ? 1e-4 : -1e-4;
+      const auto derived = loop->derived(loop->step(hand));
+      const auto force = loop->row("/contact/force");
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(derived[6 + i], loop->proxy_tip()[i], 1e-15);
+        const double mean = 0.5 * (derived[3 + i] + before[3 + i]);
+        EXPECT_NEAR(mean, (derived[i] - before[i]) / 1e-3, k > 0 ? 2e-3 : 1e9) << k;
+        EXPECT_NEAR(derived[12 + i], force[i] + force[3 + i] + force[6 + i] + force[9 + i], 1e-12);
+      }
+      before = derived;
+      pressed = std::abs(derived[slide ? 12 : 14]);
+    }
+    EXPECT_GT(pressed, 0.1);
+  }
+  EXPECT_EQ(slides.derived_columns().at(1).path, "/device/tip_velocity");
+  EXPECT_TRUE(std::isnan(turns.derived({})[0]));
+}
+
 TEST(SimulatedLoop, HasTheUnitsOfJointsThatSlide) {
   const SimulatedLoop loop(slide());
   std::map<std::string, std::string> units;

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <random>
 
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "devices/files/session/hdf5_reading.h"
+#include "tests/support/random_arm.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_session.h"
 
@@ -132,6 +134,35 @@ TEST(RunWatch, SaysThatTheTipIsFasterThanAnyHand) {
   };
   EXPECT_THAT(run_at(9.9), IsEmpty());
   EXPECT_THAT(run_at(17), ElementsAre(HasSubstr("the tip reached 17 m/s")));
+}
+
+// Only rows in which joints are fast enough for it are looked at closely.
+TEST(RunWatch, MissesNoFastTipOfAnyArm) {
+  std::mt19937 random(3);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+  };
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const auto slides = static_cast<Slides>(seed % 3);
+    const ArmDescription arm = test::random_arm(1 + static_cast<int>(seed % 7), seed, slides);
+    const RowLayout layout(arm.dof());
+    const DerivedColumns tips(arm);
+    for (const double speed : {9.99, 10.01}) {
+      std::vector<double> row(static_cast<std::size_t>(layout.stride()), 0.0);
+      const auto x = layout.in(std::span(row), Column::device_position);
+      const auto v = layout.in(std::span(row), Column::device_velocity);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const Joint& joint = arm.joints[i];
+        x[i] = between(joint.lower, joint.upper);
+        v[i] = between(-1, 1);
+      }
+      const double before = tips.of(DerivedColumns::from(layout, row))[1].norm();
+      for (double& each : v) each *= speed / before;
+      RunWatch watch(arm, layout, {});
+      watch.add(row);
+      EXPECT_EQ(watch.cautions().size(), speed > RunWatch::kFastestTip ? 1u : 0u) << seed;
+    }
+  }
 }
 
 std::vector<std::string> warnings_of_run(const RunPlan& plan) {
