@@ -16,13 +16,17 @@
 #include "app/run/fitted_gains.h"
 #include "app/run/model_report.h"
 #include "app/run/provenance.h"
+#include "app/run/reach_check.h"
 #include "app/run/scene_flaws.h"
 #include "app/stage/load_files.h"
+#include "app/story/story.h"
+#include "app/sweep/sweep_plan.h"
 #include "core/base/model_kinds.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/farthest_tip.h"
 #include "core/tick/safety_limits.h"
 #include "devices/files/scene/scene_document.h"
+#include "devices/files/session/hand_file.h"
 #include "devices/files/text_file.h"
 
 namespace limpid {
@@ -249,6 +253,50 @@ CheckReport on_model(const std::string& file) {
   return {std::move(report.facts), std::move(report.warnings)};
 }
 
+CheckReport on_hand(const std::string& file, const InputOptions& input) {
+  RunPlan plan;
+  plan.arm = arm_of(input);
+  plan.hand = read_hand(file);
+  Bounds box;
+  for (const Vec3& each : plan.hand.position) box.extend(each);
+  const Vec3 spans = 1e3 * box.sizes();
+  CheckReport report;
+  report.facts.push_back(fmt::format(
+      "hand         {} samples, {:.3g} s, over {:.0f} x {:.0f} x {:.0f} mm",
+      plan.hand.position.size(), plan.hand.duration(), spans.x(), spans.y(), spans.z()));
+  if (std::string far = out_of_reach(plan); !far.empty()) {
+    report.warnings.push_back(std::move(far));
+  }
+  return report;
+}
+
+CheckReport on_story(const std::string& file) {
+  const Story story = read_story(file);
+  return {{fmt::format("story        {}: {} steps, {:.3g} s, {} runs on one hand", story.title,
+                       story.steps.size(), story.seconds(), story.plan.lanes())},
+          {}};
+}
+
+CheckReport on_sweep(const std::string& file) {
+  const SweepPlan plan = read_sweep_plan(file);
+  CheckReport report;
+  report.facts.push_back(fmt::format("sweep        {}: {} points", plan.title, plan.points()));
+  for (const SweepAxis& axis : plan.axes) {
+    report.facts.push_back(fmt::format("             {}, {} values", axis.name,
+                                       std::max(axis.values.size(), axis.cases.size())));
+  }
+  return report;
+}
+
+constexpr std::size_t kLongestToml = 10'000'000;  // [bytes]
+
+CheckReport on_toml(const CheckOptions& options) {
+  const std::string text = "\n" + read_text(options.file, kLongestToml);
+  if (text.find("\n[[step]]") != text.npos) return on_story(options.file);
+  if (text.find("\n[[axis]]") != text.npos) return on_sweep(options.file);
+  return on_scene(options.file, options.input);
+}
+
 CheckReport on(const CheckOptions& options) {
   const fs::path file = options.file;
   if (const std::string why = why_not_found(file, "no such file"); !why.empty()) {
@@ -256,7 +304,8 @@ CheckReport on(const CheckOptions& options) {
   }
   const std::string suffix = small_suffix(file);
   if (suffix == ".urdf" || suffix == ".xacro") return on_arm(options.file, options.input);
-  if (suffix == ".toml") return on_scene(options.file, options.input);
+  if (suffix == ".toml") return on_toml(options);
+  if (suffix == ".csv") return on_hand(options.file, options.input);
   if (model_kind(file) != nullptr) return on_model(options.file);
   if (suffix == ".h5") {
     throw FileError(
@@ -264,8 +313,8 @@ CheckReport on(const CheckOptions& options) {
                     options.file));
   }
   throw FileError(
-      fmt::format("{}: this kind of file is not known; needed: an arm (.urdf, .xacro), a scene "
-                  "(.toml) or a model ({})",
+      fmt::format("{}: this kind of file is not known; needed: an arm (.urdf, .xacro), a scene, a "
+                  "story or a sweep (.toml), a hand (.csv) or a model ({})",
                   options.file, model_suffixes()));
 }
 
@@ -302,12 +351,13 @@ int check(const CheckOptions& options) {
 }  // namespace
 
 Command declare_check(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("check", "describes an arm, a scene or a model, and lists the flaws");
+  auto* command = app.add_subcommand(
+      "check",
+      "describes an arm, a scene, a model, a hand, a story or a sweep, and lists the flaws");
   auto options = std::make_shared<CheckOptions>();
-  command->add_option("FILE", options->file, "an arm, a scene or a model")
-      ->transform(or_shipped({"scenes", "devices"}), "", "")
-      ->type_name("ARM.urdf|SCENE.toml|MODEL")
+  command->add_option("FILE", options->file, "an arm, a scene, a model, a hand, a story or a sweep")
+      ->transform(or_shipped({"scenes", "devices", "hands", "stories", "sweeps"}), "", "")
+      ->type_name("ARM.urdf|SCENE.toml|MODEL|HAND.csv")
       ->required();
   options->input.add_world(*command);
   options->input.add_readings(*command);
@@ -315,7 +365,8 @@ Command declare_check(CLI::App& app) {
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
       "The report on an arm has chain, masses, reach and fitting gains. --tip LINK says where the "
-      "chain\nends; --device is the arm that a scene is for. Exit status: 0 fine, 1 works, with "
+      "chain\nends; --device is the arm that a scene or a hand is for. Exit status: 0 fine, 1 "
+      "works, with "
       "warnings,\n2 does not work; the report says why.");
   return [options] { return check(*options); };
 }

@@ -254,6 +254,9 @@ ArmDescription arm_of(const InputOptions& options) {
   std::string file = options.device;
   if (file.empty()) file = default_device().string();
   if (!device_named(file).empty()) file = DeviceHub::arm_file_of(file).string();
+  if (!std::filesystem::exists(file)) {
+    throw FileError(file + ": no such file" + shipped_hint(file, {"devices"}));
+  }
   return read_urdf(file, options.tip, Xacro::expand);
 }
 

@@ -58,6 +58,13 @@ MeasuredHand measured(const RunPlan& plan, const GripRecord& record) {
       fmt::format("--measure-grip: needs {:.4g} s; give --duration", grip_run_duration()));
 }
 
+// Takes a hand that holds the tip at the path's beginning, as long as measuring its grip takes.
+void hold_still(RunPlan& plan, const InputOptions& input) {
+  plan.hand = hand_through({0}, {plan.hand.position.front()}, "hand that holds still");
+  const double seconds = input.duration.value_or(grip_run_duration());
+  plan.rows = ticks_in(seconds, plan.parameters.tick);
+}
+
 int run_live(const LiveRunOptions& options) {
   LiveBench bench(options.live, options.input);
   const RunPlan& plan = bench.plan();
@@ -339,6 +346,7 @@ void print_json(const RunOptions& options, const RunPlan& plan, const RunLog& lo
 int run(const RunOptions& options) {
   if (options.live.device) return live(options);
   RunPlan plan = make_plan(options.input);
+  if (options.measure_grip && options.input.hand.empty()) hold_still(plan, options.input);
   if (options.measure_grip && !measure_grip(plan)) refuse_short_grip();
   say_about(plan);
   if (options.input.seed && options.input.variation.value_or(0) == 0) {

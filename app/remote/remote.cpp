@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "app/base/version.h"
@@ -12,6 +13,8 @@
 #include "app/remote/live_channels.h"
 #include "app/remote/remote_settings.h"
 #include "app/run/fitted_gains.h"
+#include "devices/files/session/derived_columns.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
@@ -35,6 +38,18 @@ bool runs(LaneRows rows, std::size_t lane) {
   return lane < rows.size() && !rows[lane].empty() && !std::isnan(rows[lane][0]);
 }
 
+// Returns which channel was meant, or where all of them are listed.
+std::string channel_hint(const TraceChannels& channels, const std::string& name) {
+  std::vector<std::string> known;
+  for (const ColumnInfo& each : kColumnInfo)
+    known.emplace_back(std::string_view(each.path).substr(1));
+  for (const DerivedInfo& each : kDerivedInfo)
+    known.emplace_back(std::string_view(each.path).substr(1));
+  for (const auto& each : channels.infos()) known.push_back(each.key);
+  if (const auto meant = nearest(name, known)) return fmt::format("did you mean {}?", *meant);
+  return "allowed: those of sessions, as hand/torque, and those that `row` without channels lists";
+}
+
 }  // namespace
 
 std::size_t asked_lane(const Keys& keys, std::size_t usual) {
@@ -52,10 +67,10 @@ void check_beside(const Keys& keys, std::size_t lane, std::size_t lanes) {
 }
 
 std::string noted(const Keys& keys) {
-  std::string text = keys.text("text");
-  if (text.size() <= kMarkLength) return text;
-  throw RemoteError(
-      fmt::format("mark: text: {} bytes; allowed: 1 to {}", text.size(), kMarkLength));
+  const json& text = keys.of("text");
+  const std::size_t bytes = text.is_string() ? text.get_ref<const std::string&>().size() : 1;
+  if (bytes >= 1 && bytes <= kMarkLength) return keys.text("text");
+  throw keys.error("text", fmt::format("{} bytes in UTF-8; allowed: 1 to {}", bytes, kMarkLength));
 }
 
 Parameters usual_settings(const Parameters& now, const Parameters& chosen,
@@ -251,10 +266,8 @@ std::vector<Remote::Wanted> Remote::find(const std::vector<std::string>& names,
     const std::size_t lane = lane_in(of_lane);
     const auto channel = LiveChannel::find(channels, of_lane);
     if (!channel) {
-      throw RemoteError(fmt::format(
-          "{}: channels: {} is no channel of this arm and scene; allowed: those of sessions, as "
-          "hand/torque, and those that `row` without channels lists",
-          verb, shown(name)));
+      throw RemoteError(fmt::format("{}: channels: {} is no channel of this arm and scene; {}",
+                                    verb, shown(name), channel_hint(channels, name)));
     }
     found.push_back({*channel, lane});
   }
@@ -293,7 +306,7 @@ json Remote::newest(const Keys& keys) const {
 json Remote::follow(const Keys& keys, Client client) {
   const double tick = host_.parameters(kMainLane).tick;
   const auto names = keys.texts_if("channels", kMostChannels);
-  const double rate = keys.number_or("rate", std::min(kUsualRate, 1 / tick), 0.1, 1 / tick + 1e-6);
+  const double rate = keys.number_or("rate", std::min(kUsualRate, 1 / tick), 0.1, 1 / tick);
   if (!names || names->empty()) {
     followers_.erase(client);
     return {{"channels", json::array()}};

@@ -266,7 +266,7 @@ class Analyze(SystemTest):
         out = self.out()
         hand = {"stiffness": 700.0, "damping": 2.5, "mass": 0.1}
         words = [word for key, value in hand.items() for word in ("--set", f"hand.{key}={value}")]
-        run = limpid("run", "--measure-grip", "--duration", "10", *words, "--record", out, "--json")
+        run = limpid("run", "--measure-grip", *words, "--record", out, "--json")
         self.assertEqual(run.status, 0, run.err)
         found = self.analyze("--grip-of", out)
         measured = found["measured_grip"]

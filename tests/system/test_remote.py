@@ -70,7 +70,9 @@ class TestServe(RemoteTest):
             ('{"do": "set", "values": 3}', "set: values: 3 is not allowed"),
             ('{"do": "set", "values": {"coupling.eta": [1]}}', "coupling.eta: [1] is not allowed"),
             ('{"do": "follow", "channels": ["no"]}', 'channels: "no" is no channel'),
-            ('{"do": "follow", "channels": ["coupling/eta"], "rate": 1e9}', "rate: 1000000000.0"),
+            ('{"do": "follow", "channels": ["hand/torqe"]}', "did you mean hand/torque?"),
+            ('{"do": "follow", "channels": ["coupling/eta"], "rate": 1e9}', "allowed: 0.1 to 1000"),
+            ('{"do": "mark", "text": ""}', "mark: text: 0 bytes in UTF-8; allowed: 1 to 200"),
             ('{"do": "open"}', "nothing to open; allowed: scene, arm, session, hand"),
             ('{"do": "open", "scene": "nowhere.toml"}', "allowed: a path that begins with /, or one of"),
             ('{"do": "record", "file": "here.h5"}', "allowed: a path from / on, ending in .h5"),
@@ -107,7 +109,7 @@ class TestServe(RemoteTest):
         loop.mark("first \u03b7")
         time.sleep(0.2)
         loop.mark("second")
-        with self.assertRaisesRegex(limpid.RequestError, "mark: text: 201 bytes; allowed: 1 to 200"):
+        with self.assertRaisesRegex(limpid.RequestError, "mark: text: 201 bytes in UTF-8; allowed: 1 to 200"):
             loop.mark("x" * 201)
         loop.stop()
         session = limpid.session(file)

@@ -94,6 +94,8 @@ void keep_importer(Assimp::Importer& importer, const ModelKind& kind) {
 std::string in_words(const std::string& why) {
   for (const char* said : {"No meshes remaining", "invalid primitive type", "no facets"})
     if (why.find(said) != why.npos) return kNoTriangles;
+  if (why.find("STL storage representation") != why.npos)
+    return "is no STL: its length does not fit its number of triangles, and it is no text either";
   constexpr std::string_view kNoNumber = "Cannot parse string \"";
   if (const std::size_t at = why.find(kNoNumber); at != why.npos) {
     const std::string found = why.substr(at + kNoNumber.size());
@@ -162,7 +164,8 @@ void Builder::add_vertices(const aiMesh& mesh, bool normals, const Eigen::Affine
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     Vertex& v = model_.vertices[first + place[i]];
     v.position = (to_model * vec(mesh.mVertices[i]).cast<double>()).cast<float>();
-    if (!(v.position.cwiseAbs().maxCoeff() < kFarthest))
+    if (!v.position.allFinite()) refuse("a vertex is not a finite number");
+    if (v.position.cwiseAbs().maxCoeff() >= kFarthest)
       refuse("a vertex is farther than a million from the origin");
     v.normal.setZero();
     if (normals) {

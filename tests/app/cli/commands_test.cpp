@@ -574,6 +574,20 @@ TEST_F(Commands, CheckOfAnArmDoubtsDegreesAndMillimetres) {
   EXPECT_THAT(check("none", "none"), Not(HasSubstr("are the")));
 }
 
+TEST_F(Commands, CheckSaysWhatHandsStoriesAndSweepsHold) {
+  write("hand.csv", "time_s,x_m,y_m,z_m\n0,0.19,0,0\n1.5,0.19,0.02,-0.03\n");
+  EXPECT_THAT(run({"check", "hand.csv"}).out, HasSubstr("2 samples, 1.5 s, over 0 x 20 x 30 mm"));
+  write("far.csv", "time_s,x_m,y_m,z_m\n0,0.19,0,0\n1,3,0,0\n");
+  const Said far = run({"check", "far.csv"});
+  EXPECT_EQ(far.status, 1);
+  EXPECT_THAT(far.out, HasSubstr("far.csv: the point at 1.000 s is 3.0000 m from the first joint"));
+  EXPECT_THAT(run({"check", "touch.csv"}).out, HasSubstr("1001 samples, 10 s"));
+  EXPECT_THAT(run({"check", "first.toml"}).out, HasSubstr("6 steps, 47 s, 2 runs on one hand"));
+  EXPECT_THAT(run({"check", "arms.toml"}).out, HasSubstr("468 points"));
+  write("plan.toml", "measure = ['human_rms']\n[[axis]]\nkey = 'coupling.etta'\nvalues = [1]\n");
+  EXPECT_THAT(refused({"check", "plan.toml"}), HasSubstr("did you mean"));
+}
+
 TEST_F(Commands, CheckRefusesWhatItDoesNotKnow) {
   write("a.txt", "words");
   EXPECT_THAT(refused({"check", "a.txt"}),

@@ -294,6 +294,10 @@ TEST(ModelFile, SaysWhatCannotBeRead) {
                                 "endfacet\nendsolid\n"),
                        "a.stl"),
             "a.stl: a number is expected, and there is \"a b c\"");
+  Bytes cut = binary_stl();
+  cut.resize(cut.size() - 10);
+  EXPECT_NE(refusal_of(cut, "a.stl").find("its length does not fit its number of triangles"),
+            std::string::npos);
   EXPECT_NE(refusal_of(bytes_of("v 0 0 0\nv 1 0 0\nl 1 2\n"), "a.obj").find("no triangles"),
             std::string::npos);
 }
