@@ -67,11 +67,13 @@ class Predictive final : public Law<N> {
 
  private:
   struct Solve;
-  double held(double k_vc, const Vec<N>& apart);
+  double held(double k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
+              const TorqueLimits<N>& motors);
   void solve_together(LimitedSolve<N>& both, const ContactAnswer<N>& answer, const Motion<N>& right,
                       double T, bool resumed, Motion<N>& motion);
   bool solve_with_bodies(LimitedSolve<N>& both, double T, Motion<N>& found);
-  void balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy, double surprise);
+  void balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
+               const TorqueLimits<N>& motors, double surprise);
 
   Predictor<N> predictor_;
   InertiaNetwork<N> network_;
@@ -81,7 +83,7 @@ class Predictive final : public Law<N> {
   Vec<N> tau1_;           // torque wanted for this tick [N m]
   Vec<N> cut_;            // part of tE + tL of that tick that the motors' limit cuts off [N m]
   Vec<N> wanted_;         // tE of the last tick, before any limit [N m]
-  Vec<N> limit_;          // limits of the joints in that tick, reduced by the tip's limit [N m]
+  Vec<N> exchanged_;      // torque between device and proxy in that tick, within the limits [N m]
   double elapsed_ = 0;    // since the previous reading; 0 at the first [s]
   bool both_ = true;      // both predictors run
   Vec<N> b_d_;            // the damping for which quick_ is known
@@ -89,7 +91,9 @@ class Predictive final : public Law<N> {
   bool limited_ = false;  // the last tick had motors at their limit
   bool goes_on_ = false;  // the next tick counts as limited in any case
   LawReport report_;
-  Motion<N> last_;  // motion of the last tick solved together
+  Motion<N> last_;   // motion of the last tick solved together
+  Vec<N> before_;    // where the proxy was a tick ago [rad]
+  double held_ = 0;  // see held() [J]
   // State of the spring in the last tick without motors at their limit, see held().
   Vec<N> apart_;       // [rad]
   double spring_ = 0;  // [J]
@@ -206,9 +210,9 @@ void Predictive<N>::start(const LawStart<N>& at) {
   network_.start(at.x1.size());
   report_ = {};
   y_ = at.x1;
-  slip_ = tau1_ = cut_ = wanted_ = apart_ = zero;
-  limit_ = Vec<N>::Constant(zero.size(), std::numeric_limits<double>::infinity());
-  spring_ = 0;
+  slip_ = tau1_ = cut_ = wanted_ = exchanged_ = apart_ = zero;
+  before_ = at.x1;
+  spring_ = held_ = 0;
   limited_ = goes_on_ = false;
   elapsed_ = 0;
   b_d_ = zero;
@@ -232,9 +236,8 @@ DeviceEstimate<N> Predictive<N>::locate(const LawSettings& p, const LawReading<N
 // Closes the books of the tick just ended, and sets the shares for the one that begins.
 template <int N>
 void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const Proxy<N>& proxy,
-                            double surprise) {
+                            const TorqueLimits<N>& motors, double surprise) {
   Ledger<N>& ledger = *in.ledger;
-  if (!limited_) limit_ = in.limit;
   ledger.expect(p.delay, in.delay_most);
   if (elapsed_ > 0) {
     const auto sent = [&](int d) -> const Vec<N>& { return predictor_.sent(d); };
@@ -244,7 +247,7 @@ void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const P
     network_.lose(-cut_.dot(ledger.dx()));
   }
   ledger.settle(p.energy,
-                held(p.k_vc, y_ - proxy.x()) + network_.storage() + proxy.kinetic_energy() +
+                held(p.k_vc, ledger, proxy, motors) + network_.storage() + proxy.kinetic_energy() +
                     proxy.contact_potential(),
                 in.authority == 0);
   if (in.armed_anew) ledger.refill();
@@ -257,18 +260,27 @@ void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const P
   report_.torque_governor = ledger.torque();
 }
 
-// Energy stored by spring and motors. While motors are at their limit, from the point where they
-// reached it, they return energy as a constant torque does.
+// Energy stored between device and proxy, which the motors may return to the hand. While joints are
+// at their limits, they return it as constant torques do. The direction of a force that the tip's
+// limit bounds changes as the proxy slides along walls, so no function of the place tells what it
+// returns: all that was put in.
 template <int N>
-double Predictive<N>::held(double k_vc, const Vec<N>& apart) {
-  const double spring = spring_energy<N>(k_vc, apart, limit_);
-  if (limited_) {
-    const double since = spring_ - limit_energy<N>(apart_, limit_);
-    return std::max(spring, limit_energy<N>(apart, limit_) + since);
+double Predictive<N>::held(double k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
+                           const TorqueLimits<N>& motors) {
+  const Vec<N> apart = y_ - proxy.x(), moved = proxy.x() - before_;
+  before_ = proxy.x();
+  const double spring = spring_energy<N>(k_vc, apart, motors.reached(k_vc * apart));
+  if (!limited_) {
+    apart_ = apart;
+    spring_ = held_ = spring;
+  } else if (motors.J == nullptr) {
+    const double since = spring_ - limit_energy<N>(apart_, motors.joints);
+    held_ = std::max(spring, limit_energy<N>(apart, motors.joints) + since);
+  } else {
+    const double put_in = exchanged_.dot(moved - ledger.torque() * ledger.dx());
+    held_ = std::max(spring, held_ + put_in);
   }
-  apart_ = apart;
-  spring_ = spring;
-  return spring;
+  return held_;
 }
 
 template <int N>
@@ -288,7 +300,8 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
       d.M_L_factor.solve(Levers<N>(J.transpose()));  // response to a force at the tip
   const double K = proxy.contacts().stiffest();
   if (gains.weighs()) expect_hand(predictor_, in, J, on_tip, p.hand_mass, K);
-  balance(p, in, proxy, std::min(kSurprise, kPushed * on_tip.norm()));
+  const TorqueLimits<N> motors(in.limit, J, in.tip_force);
+  balance(p, in, proxy, motors, std::min(kSurprise, kPushed * on_tip.norm()));
   network_.set(added_mass(p.eta, in.delay_most, T), d.M_L, in.ledger->damping(), T, p.band);
   // The velocity predicted for a late torque is no newer knowledge: the present one damps.
   if (p.delay > 0) network_.damp_now(predictor_.v_now());
@@ -312,7 +325,6 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
     answer.jump = jump_at_step(predictor_, gains, in);
     answer.most_damping = kMostDamping;
   }
-  const TorqueLimits<N> motors(in.limit, J, in.tip_force);
   const bool resumed = goes_on_;
   bool limited = resumed, settled = true;
   Vec<N> f2;
@@ -328,17 +340,17 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
     tau1_ = motors.within(given);
     cut_ = given - tau1_;
   }
-  limit_ = limited ? motors.along(wanted_) : in.limit;
   goes_on_ = false;
   report_.solved = TickSolve::usual;
   if (limited || !settled) {
     report_.solved = limited ? TickSolve::limited : TickSolve::together;
     const double stiffer = std::max(0.0, p.k_vc * T / 2 - p.b_vc);
     LimitedSolve<N> both = limited ? solve.limited(stiffer, p.b_v) : solve.limited(0, 0);
-    both.limit = limit_;
+    if (limited) both.limit = motors.along(wanted_);
     solve_together(both, answer, solve.right(), T, resumed, motion);
     f2 = both.f2;
     wanted_ = both.wanted();
+    exchanged_ = both.p;
     tau1_ = motors.within(both.tau1);
     cut_ = both.given - both.tau1;
     const Vec<N> apart = predictor_.x() - proxy.x() + T * (motion.w - motion.u);

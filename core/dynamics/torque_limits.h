@@ -34,11 +34,9 @@ struct TorqueLimits {
   }
   // Joint limits that keep the tip's limit for torques in about this direction: clipping to them
   // takes a torque in this direction to the same value as within() [N m].
-  Vec<N> along(const Vec<N>& tau) const {
-    constexpr double kAside = 0.01;  // of a joint's limit: left where the torque has no component
-    if (!tip_cuts(tau)) return joints;
-    return within(tau).cwiseAbs().cwiseMax(kAside * joints);
-  }
+  Vec<N> along(const Vec<N>& tau) const;
+  // Joint limits that a torque in this direction ends at as it grows [N m].
+  Vec<N> reached(const Vec<N>& tau) const;
 
   const Vec<N>& joints;            // 0 where a joint has no motor [N m]
   const Jacobian<N>* J = nullptr;  // of the tip
@@ -51,6 +49,9 @@ struct TorqueLimits {
   }
 };
 
+extern template struct TorqueLimits<3>;
+extern template struct TorqueLimits<7>;
+extern template struct TorqueLimits<kAnyDof>;
 extern template double tip_force<3>(const Vec<3>&, const Jacobian<3>&);
 extern template double tip_force<7>(const Vec<7>&, const Jacobian<7>&);
 extern template double tip_force<kAnyDof>(const Vec<kAnyDof>&, const Jacobian<kAnyDof>&);

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/dynamics/torque_limits.h"
 #include "devices/simulated/random_corner.h"
 #include "tests/support/built_in.h"
 #include "tests/support/guarded_arm.h"
+#include "tests/support/random_arm.h"
 #include "tests/support/rows.h"
 #include "tests/support/table.h"
 
@@ -33,6 +35,7 @@ class PressedRig {
              double tip_force)
       : device(arm), rig(arm, scene, &device), rows(rig.layout()), model(arm), p(parameters) {
     rig.limit({.tip_force = tip_force});
+    for (int i = 0; i < 3; ++i) damping_[i] = arm.joints[static_cast<std::size_t>(i)].damping;
   }
   void start(const RigStart& at) {
     rig.start(p, at);
@@ -46,7 +49,7 @@ class PressedRig {
     const Vec<3> tau1 = rows.vec(k, Column::motor_torque);
     const Vec<3> x = device.own.arm.x(), dx = x - x_;
     x_ = x;
-    const double given = tau1.dot(dx) - kDamping * dx.squaredNorm() / p.tick;
+    const double given = tau1.dot(dx) - dx.dot(damping_.cwiseProduct(dx)) / p.tick;
     port_ += given;
     energy_ += given;
     // The proxy's part is known a tick later.
@@ -79,7 +82,7 @@ class PressedRig {
   test::Rows rows;
 
  private:
-  static constexpr double kDamping = 0.012;  // damping of each joint in its file [N m s/rad]
+  Vec<3> damping_;  // of the joints by their file [N m s/rad]
   Arm<3> model;
   Parameters p;
   Vec<3> x_;
@@ -179,6 +182,55 @@ TEST(TipLimit, LeavesNoDebtThatAHandAtRestCannotPay) {
         }
       }
     }
+  }
+}
+
+// The motors' force changes its direction while the proxy slides along the wall; the account must
+// not take that for energy.
+TEST(TipLimit, KeepsItsForceHoweverDeepItIsPressed) {
+  std::mt19937 random(8);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+  };
+  for (unsigned seed = 0; seed < 160; ++seed) {
+    ArmDescription arm = seed == 0 ? test::omni() : test::random_arm(3, seed);
+    for (Joint& joint : arm.joints) joint.effort = 5;
+    const double force = between(1, 10), grip = between(300, 800), K = between(600, 3000);
+    const Vec3 in = Vec3(between(-1, 1), between(-1, 1), between(-1, 1)).normalized();
+    const Vec3 at = rest_tip(arm);
+    const Arm<3> model(arm);
+    Arm<3>::Frames frames;
+    model.frames(rest_pose(arm), frames);
+    Jacobian<3> J;
+    model.point_jacobian(frames, 2, at, J);
+    constexpr double kLever = 0.05;  // least of the tip in any direction [m]
+    if (J.jacobiSvd().singularValues()[2] < kLever) continue;
+    Object wall;
+    wall.shape = Plane{-in};
+    wall.pose = pose_at(at + 0.005 * in);
+    wall.material = {K, 0, 0, 0};
+    Scene scene;
+    scene.add(wall);
+    Parameters p;
+    p.kind = CouplingKind::predictive;
+    p.hand_stiffness = grip;
+    p.hand_damping = 5;
+    PressedRig run(arm, scene, p, force);
+    run.start(rest_at(arm, at));
+    const double deep = 0.005 + 2.5 * force / grip;  // the hand alone: 2.5 of the limit [m]
+    const auto go = [&](double from, double to, int ticks) {
+      for (int k = 0; k < ticks; ++k) run.step(at + (from + (to - from) * k / ticks) * in);
+    };
+    go(0, deep, 3000);
+    go(deep, deep, 2000);
+    SCOPED_TRACE(testing::Message() << seed << ": " << force << " N, grip " << grip << ", K " << K);
+    EXPECT_GT(run.force(), 0.98 * std::min(force, grip * deep / (1 + grip / K)));
+    EXPECT_GT(run.all.limited, 1000);
+    EXPECT_GT(run.all.contact, 0.99);
+    EXPECT_GT(run.all.reserve, 1e-3);
+    go(deep, 0, 1500);
+    EXPECT_LE(run.all.given, 0.05e-3);
+    EXPECT_LE(run.all.energy, 0.05e-3);
   }
 }
 
