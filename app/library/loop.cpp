@@ -34,6 +34,8 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
+bool finite_number(double x) { return std::isfinite(x); }
+
 // Returns the units of a column's parts as a text, once if all are the same.
 std::string said(const std::vector<std::string>& units) {
   const bool alike = std::ranges::all_of(units, [&](const auto& unit) { return unit == units[0]; });
@@ -105,6 +107,7 @@ struct Loop::State {
   Parameters taken() const noexcept {
     return real ? as_taken(plan.parameters, RealDevice::of(plan.arm, 0)) : plan.parameters;
   }
+  Vec3 tip() const noexcept { return ticks == 0 ? first_tip : rig->tip(); }
   void in_si(std::span<const double> of_rig, std::span<double> into) const noexcept;
   void tell_recorder() const noexcept {
     if (recording) recorder->changed(taken());
@@ -125,7 +128,8 @@ struct Loop::State {
   RigStart scratch;            // with room for all that the rig has
   std::uint64_t ticks = 0;
   Clock::time_point before{};
-  std::size_t wrong_count = 0;  // positions of the last reading, if they were not one a joint
+  Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
+  std::size_t wrong_count = 0;    // positions of the last reading, if they were not one a joint
   ForceAsked force;
   std::unique_ptr<Recorder> recorder;
   bool recording = false;  // the recorder gets rows
@@ -139,7 +143,7 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
       layout(plan.layout()),
       units(layout, slides_of(plan.arm)),
       derived(plan.arm),
-      row(static_cast<std::size_t>(layout.stride()), 0.0),
+      row(static_cast<std::size_t>(layout.stride()), kGuessed),
       row_si(row) {
   plan.hand.source = "library";
   for (const ColumnInfo& each : kColumnInfo) {
@@ -156,6 +160,9 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
 void Loop::State::begin(const RigStart& start) {
   rig->start(plan.parameters, start);
   rig->present(scratch);
+  first_tip = kinematics.tip_at(start.x1);
+  std::ranges::fill(row, kGuessed);
+  std::ranges::fill(row_si, kGuessed);
   ticks = 0;
 }
 
@@ -258,10 +265,11 @@ std::array<double, 15> Loop::derived(std::span<const double> row) const noexcept
 }
 
 double Loop::time() const noexcept {
+  if (state_->ticks == 0) return 0;
   return state_->layout.in(std::span<const double>(state_->row), Column::time)[0];
 }
 
-Point3 Loop::tip() const noexcept { return point3(state_->rig->tip()); }
+Point3 Loop::tip() const noexcept { return point3(state_->tip()); }
 
 Point3 Loop::proxy_tip() const noexcept {
   const State& s = *state_;
@@ -271,6 +279,7 @@ Point3 Loop::proxy_tip() const noexcept {
 }
 
 LoopEnergy Loop::energy() const noexcept {
+  if (state_->ticks == 0) return {};
   const auto value = [&](Column c) {
     return state_->layout.in(std::span<const double>(state_->row), c)[0];
   };
@@ -326,12 +335,14 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   s.before = now;
   const std::size_t positions = reading.position.size();
   s.wrong_count = positions == s.plan.arm.joints.size() ? 0 : positions + 1;
-  if (s.wrong_count > 0) s.device->stop();
-  if (s.wrong_count > 0 && !s.real) return s.device->torque();  // a simulated device cannot trip
+  const bool finite = std::ranges::all_of(reading.position, finite_number);
+  const bool wrong = s.wrong_count > 0 || (!finite && !s.real);
+  if (wrong) s.device->stop();
+  if (wrong && !s.real) return s.device->torque();  // a simulated device cannot trip
   const double T = s.plan.parameters.tick;
   const double passed = elapsed > 0 ? elapsed : T;
   s.device->take(reading.position, reading.fresh, reading.hand, reading.fault, passed);
-  RigInput input{{s.rig->tip(), 1}, s.force.take()};
+  RigInput input{{s.tip(), 1}, s.force.take()};
   constexpr double kMostPeriods = 1e6;
   input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));
   input.dt = elapsed;
@@ -372,7 +383,16 @@ SimulatedLoop::SimulatedLoop(const LoopOptions& options)
 void SimulatedLoop::start(Point3 target) {
   State& s = *state_;
   if (s.recorder) throw LoopError("start: a recording is under way; finish it first");
-  as_library([&] { s.begin(rest_at(s.plan.arm, Vec3(target[0], target[1], target[2]))); });
+  const auto outside = [&](const std::string& why) {
+    return LoopError(fmt::format("start: target: ({:.4g}, {:.4g}, {:.4g}) m: {}", target[0],
+                                 target[1], target[2], why));
+  };
+  if (!std::ranges::all_of(target, finite_number)) throw outside("needed: finite numbers");
+  try {
+    s.begin(rest_at(s.plan.arm, Vec3(target[0], target[1], target[2])));
+  } catch (const std::exception& e) {
+    throw outside(e.what());
+  }
 }
 
 std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
@@ -380,6 +400,9 @@ std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
   HandInput input{Vec3(hand.target[0], hand.target[1], hand.target[2]), hand.grip};
   input.magnet = hand.magnet;
   if (hand.torque.size() == joints()) input.torque = hand.torque;
+  const bool finite = std::ranges::all_of(hand.target, finite_number) && std::isfinite(hand.grip) &&
+                      std::ranges::all_of(input.torque, finite_number);
+  if (!finite) input = {s.tip(), 0};
   s.step({input});
   return row();
 }
@@ -388,7 +411,7 @@ SimulatedLoop::RunEnd SimulatedLoop::run(std::span<const double> path, double du
                                          const TakeRow& take) const {
   return as_library([&]() -> RunEnd {
     if (!take) throw LoopError("take: is empty; needed: a function that takes each row");
-    if (!(duration >= 0)) {
+    if (!(duration >= 0) || !std::isfinite(duration)) {
       throw LoopError(
           fmt::format("duration: {} is not allowed; allowed: seconds, from 0 on", duration));
     }

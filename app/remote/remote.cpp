@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "app/base/version.h"
 #include "app/device/device_store.h"
+#include "app/plot/channel_names.h"
 #include "app/remote/live_channels.h"
 #include "app/remote/remote_settings.h"
 #include "app/run/fitted_gains.h"
-#include "devices/files/session/derived_columns.h"
-#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
@@ -40,13 +38,9 @@ bool runs(LaneRows rows, std::size_t lane) {
 
 // Returns which channel was meant, or where all of them are listed.
 std::string channel_hint(const TraceChannels& channels, const std::string& name) {
-  std::vector<std::string> known;
-  for (const ColumnInfo& each : kColumnInfo)
-    known.emplace_back(std::string_view(each.path).substr(1));
-  for (const DerivedInfo& each : kDerivedInfo)
-    known.emplace_back(std::string_view(each.path).substr(1));
-  for (const auto& each : channels.infos()) known.push_back(each.key);
-  if (const auto meant = nearest(name, known)) return fmt::format("did you mean {}?", *meant);
+  if (const auto meant = meant_channel(channels, name)) {
+    return fmt::format("did you mean {}?", *meant);
+  }
   return "allowed: those of sessions, as hand/torque, and those that `row` without channels lists";
 }
 

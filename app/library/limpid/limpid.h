@@ -25,6 +25,10 @@
 // is allowed.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "limpid/limpid.h needs C++20: compile with -std=c++20"
+#endif
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -183,7 +187,8 @@ struct RowColumn {
   std::size_t width = 0;   // numbers: 1, 3, one a joint, ...
 };
 
-// Energies of the coupling since the loop began [J].
+// Energies of the coupling since the loop began [J]; 0 before the first tick. While there is no
+// force, the proxy follows the device, and E_c counts what the hand stores in its walls.
 struct LoopEnergy {
   // E_c: given by the coupling, with the device's own damping. A passive one's is 0 at most.
   double controller = 0;
@@ -199,8 +204,6 @@ struct LoopEnergy {
 class LIMPID_API Loop {
  public:
   ~Loop();
-  Loop(Loop&&) noexcept;
-  Loop& operator=(Loop&&) noexcept;
 
   std::size_t joints() const;
   double period() const;  // T [s]
@@ -213,7 +216,8 @@ class LIMPID_API Loop {
   void set(std::string_view key, double value);  // of a number or a flag; does not allocate
   double get(std::string_view key) const;  // of a choice the place of its word; NaN: the arm's own
 
-  // The row of the last tick, which recordings keep. NaN stands for what nobody knows.
+  // The row of the last tick, which recordings keep. NaN stands for what nobody knows, and for all
+  // of it before the first tick.
   const std::vector<RowColumn>& columns() const;
   std::span<const double> row() const noexcept;
   std::span<const double> row(std::string_view path) const;  // Errors: no such column.
@@ -222,8 +226,8 @@ class LIMPID_API Loop {
   // what it returns.
   const std::vector<RowColumn>& derived_columns() const;
   std::array<double, 15> derived(std::span<const double> row) const noexcept;
-  double time() const noexcept;                              // t_k [s]
-  Point3 tip() const noexcept;                               // of the device [m]
+  double time() const noexcept;       // t_k [s]; 0 before the first tick
+  Point3 tip() const noexcept;        // of the device, after the tick [m]
   Point3 proxy_tip() const noexcept;  // of the proxy, and of the device before the first tick [m]
   LoopEnergy energy() const noexcept;
   // True once the loop was unstable: force is off, and stays off.
@@ -239,6 +243,8 @@ class LIMPID_API Loop {
   std::uint64_t finish_recording();
 
  protected:
+  Loop(Loop&&) noexcept;
+  Loop& operator=(Loop&&) noexcept;
   struct __attribute__((visibility("hidden"))) State;
   explicit Loop(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
@@ -248,6 +254,8 @@ class LIMPID_API Loop {
 // torques.
 class LIMPID_API DeviceLoop : public Loop {
  public:
+  // With simulated motors `fresh`, `hand` and `fault` are not looked at; a reading that is not
+  // finite, or of another number of joints, gives no torque and leaves the loop as it is.
   struct Reading {
     std::span<const double> position;  // of each joint, now
     // False: the same reading as at the last tick. Force ends where none is fresh for 5 ms.
@@ -301,7 +309,8 @@ class LIMPID_API SimulatedLoop : public Loop {
 
   // Begins anew, at rest, with the tip at `target`. Errors: out of reach; a recording is under way.
   void start(Point3 target);
-  // Runs a tick of arm, hand and coupling; returns its row.
+  // Runs a tick of arm, hand and coupling; returns its row. A hand with a number that is not finite
+  // counts as one that has let go.
   std::span<const double> step(const Hand& hand) noexcept;
 
   // Takes each row of run(); returning false ends it.

@@ -45,7 +45,8 @@ Array as_rows(std::vector<double>&& all, std::size_t stride) {
   return Array({rows, static_cast<py::ssize_t>(stride)}, kept->data(), owner);
 }
 
-// Keeps these numbers of each row, by their offsets; those beyond the row are of its derived columns.
+// Keeps these numbers of each row, by their offsets; those beyond the row are of its derived
+// columns.
 py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
               const std::vector<std::size_t>& kept) {
   const std::vector<double> rows(path.data(), path.data() + path.size());
@@ -55,6 +56,8 @@ py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
   const bool derives = std::ranges::any_of(kept, [&](std::size_t each) { return each >= width; });
   all.reserve(kept.size() * static_cast<std::size_t>(std::max(0.0, seconds / loop.period()) + 2));
   SimulatedLoop::RunEnd end;
+  constexpr std::uint64_t kHeard = 1000;  // ticks after which Ctrl-C is heard
+  std::uint64_t ticks = 0;
   {
     const py::gil_scoped_release others_go_on;
     end = loop.run(rows, duration, [&](std::span<const double> row) {
@@ -62,9 +65,12 @@ py::tuple run(const SimulatedLoop& loop, const Array& path, double duration,
       for (const std::size_t each : kept) {
         all.push_back(each < width ? row[each] : derived[each - width]);
       }
-      return true;
+      if (++ticks % kHeard != 0) return true;
+      const py::gil_scoped_acquire for_signals;
+      return PyErr_CheckSignals() == 0;
     });
   }
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
   return py::make_tuple(as_rows(std::move(all), kept.size()), end.diverged, end.why, end.warnings);
 }
 

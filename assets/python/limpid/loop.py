@@ -201,9 +201,10 @@ class Loop(_AnyLoop):
         """Runs a tick with the hand wanting the tip at `hand`: x, y, z [m]. `grip`: 1 holds, 0 has
         let go. `magnet` picks up objects that may be. `torque`: pushed on each joint besides [N m].
         Returns the row."""
-        if len(torque) not in (0, self.joints):
-            raise ArgumentError(f"torque: has {len(torque)} numbers; needed: {self.joints}, one a joint")
-        row = self._loop.step(_point("hand", hand), number("grip", grip), bool(magnet), torque)
+        pushed = [number("torque", each) for each in _listed("torque", torque)]
+        if len(pushed) not in (0, self.joints):
+            raise ArgumentError(f"torque: has {len(pushed)} numbers; needed: {self.joints}, one a joint")
+        row = self._loop.step(_point("hand", hand), number("grip", grip), bool(magnet), pushed)
         return Channels(row, self._places)
 
     def run(self, hand: Any, duration: Optional[float] = None,
@@ -331,12 +332,12 @@ def _options(arm: Union[None, PathLike, Arm], scene: Union[None, PathLike, Scene
 
 def _listed(name: str, given: Any) -> List[Any]:
     if isinstance(given, (str, bytes, Mapping)) or not isinstance(given, Iterable):
-        raise ArgumentError(f"{name}: {given!s:.40} is not allowed; allowed: a number for each joint")
+        raise ArgumentError(f"{name}: {given!s:.40} is not allowed; allowed: a list of numbers")
     return list(given)
 
 
 def _point(name: str, given: Iterable[float]) -> Tuple[float, float, float]:
-    point = [number(name, each) for each in given]
+    point = [number(name, each) for each in _listed(name, given)]
     if len(point) != 3:
         raise ArgumentError(f"{name}: has {len(point)} numbers; needed: x, y, z [m]")
     return point[0], point[1], point[2]

@@ -151,6 +151,8 @@ def hand_array(hand: Any) -> "numpy.ndarray":
     """The same as an array of N x 4; one that is right is taken as it is."""
     import numpy
 
+    if numpy.ma.isMaskedArray(hand):
+        raise ArgumentError("hand: is a masked array; needed: all of its numbers")
     whole = isinstance(hand, numpy.ndarray) and hand.dtype == float and hand.ndim == 2 and hand.shape[1] == 4
     if whole and len(hand) >= FEWEST_ROWS and numpy.isfinite(hand).all() and (numpy.diff(hand[:, 0]) > 0).all():
         return hand

@@ -210,6 +210,112 @@ TEST(SimulatedLoop, DerivesTipsAndTheTotalForceFromARow) {
   EXPECT_TRUE(std::isnan(turns.derived({})[0]));
 }
 
+TEST(Loops, SayNothingThatTheyDoNotKnowBeforeTheFirstTick) {
+  LoopOptions options;
+  options.arm = "omni.urdf";
+  const std::array<double, 3> x{0.1, -0.78, 1.57};
+  DeviceLoop device(options, x);
+  SimulatedLoop simulated({});
+  simulated.start(device.tip());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(simulated.tip()[i], device.tip()[i], 1e-6);
+    EXPECT_EQ(device.proxy_tip()[i], device.tip()[i]);
+  }
+  EXPECT_GT(device.tip()[0], 0.1);
+  for (int k = 0; k < 20; ++k) simulated.step({device.tip()});
+  EXPECT_GT(simulated.time(), 0);
+  simulated.start(device.tip());
+  for (const Loop* loop : {static_cast<Loop*>(&device), static_cast<Loop*>(&simulated)}) {
+    EXPECT_EQ(loop->time(), 0);
+    EXPECT_EQ(loop->energy().controller, 0);
+    for (const double each : loop->row()) EXPECT_TRUE(std::isnan(each));
+  }
+}
+
+// A hand that is not a number lets go; a reading that is none moves nothing.
+TEST(Loops, GoOnAfterNumbersThatAreNotFinite) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  SimulatedLoop loop({});
+  EXPECT_THROW(loop.start({kNone, 0, 0}), LoopError);
+  SimulatedLoop::Hand hand;
+  hand.target = loop.tip();
+  const std::array<double, 3> torque{0, kNone, 0};
+  for (int k = 0; k < 100; ++k) {
+    SimulatedLoop::Hand wrong = hand;
+    if (k % 3 == 0) wrong.target[1] = kNone;
+    if (k % 3 == 1) wrong.torque = torque;
+    if (k % 3 == 2) wrong.grip = kNone;
+    loop.step(wrong);
+    loop.step(hand);
+  }
+  EXPECT_FALSE(loop.diverged());
+  EXPECT_NEAR(loop.tip()[0], hand.target[0], 1e-3);
+
+  std::array<double, 1> x{-0.01};
+  DeviceLoop device(slide(), x);
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  for (int k = 0; k < 10; ++k) device.tick(reading);
+  x[0] = kNone;
+  EXPECT_EQ(device.tick(reading)[0], 0);
+  x[0] = 0.005;
+  for (int k = 0; k < 1000; ++k) device.tick(reading);
+  EXPECT_FALSE(device.diverged());
+  EXPECT_NEAR(device.tick(reading)[0], -2.5, 0.1) << "500 N/m at 5 mm";
+}
+
+// Pressed by far more than the tip's limit, slowly, the motors hold the limit: it is no debt.
+TEST(DeviceLoop, HoldsTheTipsLimitHoweverDeepItIsPressed) {
+  constexpr double kLink = 0.2;  // [m]
+  ArmModel arm;
+  arm.joints.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    ArmJoint& joint = arm.joints[i];
+    joint.name = fmt::format("j{}", i);
+    joint.axis = i == 0 ? Point3{0, 0, 1} : Point3{0, 1, 0};
+    joint.mass = 0.1;
+    joint.center = {i == 0 ? 0 : kLink / 2, 0, 0};
+    joint.inertia = {4e-4, 0, 0, 4e-4, 0, 4e-4};
+    joint.effort = 3;
+    joint.damping = 0.002;
+  }
+  arm.joints[2].position = arm.tip = {kLink, 0, 0};
+  for (const double most : {3.0, 10.0}) {
+    for (const double friction : {0.0, 0.4}) {
+      LoopOptions options;
+      options.arm_text = urdf_text(arm);
+      options.scene_text =
+          SceneBuilder()
+              .plane("wall", {0.27, 0, 0}, {-1, 0, 0}, {1000, 0, friction, friction})
+              .text();
+      options.settings = {"coupling.kind=predictive"};
+      options.limits.tip_force = most;
+      std::array<double, 3> x{0, -0.9, 1.8};
+      DeviceLoop loop(options, x);
+      loop.arm();
+      std::span<const double> torque;
+      for (int k = 0; k < 4000; ++k) {
+        const double part = std::clamp((k - 600) / 3000.0, 0.0, 1.0);
+        x = {1e-7 * (k % 3), -0.9 + 0.2 * part, 1.8 - 0.4 * part};
+        DeviceLoop::Reading reading;
+        reading.position = x;
+        reading.elapsed = 1e-3;
+        torque = loop.tick(reading);
+        ASSERT_GT(k < 700 ? 1 : loop.energy().reserve, 1e-3) << k << ", " << most << " N";
+      }
+      EXPECT_EQ(loop.force_text(), "");
+      const double upper = x[1], lower = x[1] + x[2];
+      const double out = kLink * (std::cos(upper) + std::cos(lower));
+      const double down = -kLink * (std::sin(upper) + std::sin(lower));
+      const double elbow_x = -kLink * std::sin(lower), elbow_z = -kLink * std::cos(lower);
+      const double det = down * elbow_z + out * elbow_x;
+      const double Fx = (torque[1] * elbow_z + out * torque[2]) / det;
+      const double Fz = (down * torque[2] - elbow_x * torque[1]) / det;
+      EXPECT_NEAR(std::hypot(Fx, Fz), most, 0.01 * most);
+    }
+  }
+}
+
 TEST(SimulatedLoop, HasTheUnitsOfJointsThatSlide) {
   const SimulatedLoop loop(slide());
   std::map<std::string, std::string> units;
