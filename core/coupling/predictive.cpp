@@ -267,19 +267,21 @@ void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const P
 template <int N>
 double Predictive<N>::held(double k_vc, const Ledger<N>& ledger, const Proxy<N>& proxy,
                            const TorqueLimits<N>& motors) {
-  const Vec<N> apart = y_ - proxy.x(), moved = proxy.x() - before_;
-  before_ = proxy.x();
-  const double spring = spring_energy<N>(k_vc, apart, motors.reached(k_vc * apart));
+  const Vec<N> apart = y_ - proxy.x();
+  const bool tip = motors.J != nullptr;
+  const double spring =
+      spring_energy<N>(k_vc, apart, tip ? motors.reached(k_vc * apart) : motors.joints);
   if (!limited_) {
     apart_ = apart;
     spring_ = held_ = spring;
-  } else if (motors.J == nullptr) {
+  } else if (!tip) {
     const double since = spring_ - limit_energy<N>(apart_, motors.joints);
     held_ = std::max(spring, limit_energy<N>(apart, motors.joints) + since);
   } else {
-    const double put_in = exchanged_.dot(moved - ledger.torque() * ledger.dx());
-    held_ = std::max(spring, held_ + put_in);
+    const Vec<N> moved = proxy.x() - before_;
+    held_ = std::max(spring, held_ + exchanged_.dot(moved - ledger.torque() * ledger.dx()));
   }
+  if (tip) before_ = proxy.x();
   return held_;
 }
 

@@ -17,7 +17,6 @@ int main() {
   options.settings = {"coupling.kind=predictive"};
   limpid::SimulatedLoop loop(options);
 
-  const double left = loop.row("/objects/pose")[1];
   loop.start({0.2, -0.005, -0.03});
   limpid::SimulatedLoop::Hand hand;
   for (int k = 0; k < 1500; ++k) {
@@ -28,5 +27,5 @@ int main() {
   std::printf("the block moved from y = 20.0 mm to %.1f mm, the ball lies at %.1f mm\n",
               1e3 * pose[1], 1e3 * pose[8]);
   std::printf("given to objects: %.2f mJ\n", 1e3 * loop.row("/energy/to_objects")[0]);
-  return left == 0 && pose[1] > 0.025 && std::fabs(pose[8] + 0.03) < 1e-3 ? 0 : 1;
+  return pose[1] > 0.025 && std::fabs(pose[8] + 0.03) < 1e-3 ? 0 : 1;
 }
