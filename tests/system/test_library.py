@@ -121,6 +121,21 @@ assert run["device/tip"].shape == (500, 3) and list(run) == ["time", "device/tip
 print("derived")
 '''), "derived\n")
 
+    def test_python_hears_ctrl_c_during_a_run(self) -> None:
+        self.assertEqual(self.python("""
+import limpid, signal
+def heard(*of):
+    raise KeyboardInterrupt
+signal.signal(signal.SIGALRM, heard)
+loop = limpid.Loop()
+loop.run([(0, 0.19, 0, 0), (1, 0.19, 0, -0.01)])
+try:
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    loop.run([(0, 0.19, 0, 0), (3000, 0.19, 0, -0.01)], channels=[])
+except KeyboardInterrupt:
+    print("heard", loop.run([(0, 0.19, 0, 0), (1, 0.19, 0, -0.01)]).rows)
+"""), "heard 1000\n")
+
     def test_python_says_the_programs_version(self) -> None:
         said = self.python("import limpid; print(limpid.__version__)").strip()
         whole = must(LIMPID, "--version").split()[1]
@@ -147,7 +162,7 @@ print("said")
 
     def test_python_steps_a_loop_and_one_of_a_device(self) -> None:
         self.assertEqual(self.python("""
-import limpid
+import limpid, numpy
 loop = limpid.Loop(coupling="standard")
 x, y, z = loop.tip
 for k in range(300):
@@ -162,7 +177,9 @@ device = limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", coupling="predictive
 assert not device.armed and device.force_share == 0 and "not armed" in device.force_text
 assert list(device.tick([0, -0.8, 1.5])) == [0, 0, 0]
 for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
-              lambda: limpid.Loop(etta=1), lambda: loop.step((0, 0)), lambda: row["place"],
+              lambda: limpid.Loop(etta=1), lambda: loop.step((0, 0)), lambda: row["place"], lambda: loop.step(None), lambda: loop.step(loop.tip, torque=None),
+              lambda: loop.step(loop.tip, torque=(0, float("nan"), 0)),
+              lambda: loop.run(numpy.ma.masked_less(numpy.array([[0, 0.19, 0, 0], [1, 0.19, 0, -0.01]]), 0)),
               lambda: limpid.DeviceLoop([0, 0], arm="omni.urdf"), lambda: limpid.DeviceLoop([0, -0.8, 1.5]), lambda: loop.run([(0, 1, 2, 3)]),
               lambda: loop.run([(0, 9, 9, 9), (1, 9, 9, 9)]), lambda: loop.set({"loop.tick": 0.002}),
               lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", limits={"tip_force": 99}),
