@@ -28,6 +28,7 @@
 #include "devices/files/scene/scene_document.h"
 #include "devices/files/session/hand_file.h"
 #include "devices/files/text_file.h"
+#include "devices/files/toml_reader.h"
 
 namespace limpid {
 namespace {
@@ -282,8 +283,8 @@ CheckReport on_sweep(const std::string& file) {
   CheckReport report;
   report.facts.push_back(fmt::format("sweep        {}: {} points", plan.title, plan.points()));
   for (const SweepAxis& axis : plan.axes) {
-    report.facts.push_back(fmt::format("             {}, {} values", axis.name,
-                                       std::max(axis.values.size(), axis.cases.size())));
+    report.facts.push_back(
+        fmt::format("             {}, {} values", axis.name, axis.values.size()));
   }
   return report;
 }
@@ -291,9 +292,9 @@ CheckReport on_sweep(const std::string& file) {
 constexpr std::size_t kLongestToml = 10'000'000;  // [bytes]
 
 CheckReport on_toml(const CheckOptions& options) {
-  const std::string text = "\n" + read_text(options.file, kLongestToml);
-  if (text.find("\n[[step]]") != text.npos) return on_story(options.file);
-  if (text.find("\n[[axis]]") != text.npos) return on_sweep(options.file);
+  const toml::table keys = parse_toml(read_text(options.file, kLongestToml), options.file);
+  if (keys.contains("step")) return on_story(options.file);
+  if (keys.contains("axis") || keys.contains("measure")) return on_sweep(options.file);
   return on_scene(options.file, options.input);
 }
 
@@ -365,9 +366,8 @@ Command declare_check(CLI::App& app) {
   command->add_flag("--json", options->json, "one JSON object on standard output");
   command->footer(
       "The report on an arm has chain, masses, reach and fitting gains. --tip LINK says where the "
-      "chain\nends; --device is the arm that a scene or a hand is for. Exit status: 0 fine, 1 "
-      "works, with "
-      "warnings,\n2 does not work; the report says why.");
+      "chain\nends; --device is the arm that a scene or a hand is for. Exit status: 0 fine,\n1 "
+      "works, with warnings, 2 does not work; the report says why.");
   return [options] { return check(*options); };
 }
 

@@ -126,6 +126,8 @@ def hand_rows(hand: Any) -> List[List[float]]:
     needed = "needed: at least two rows of time [s], x, y, z [m], each later than the one before"
     if hasattr(hand, "to_numpy"):
         hand = _in_order(hand).to_numpy()
+    if hasattr(hand, "mask"):
+        raise ArgumentError("hand: is a masked array; needed: all of its numbers")
     if isinstance(hand, (str, bytes, Mapping)) or not isinstance(hand, Iterable):
         raise ArgumentError(f"hand: {_shown(hand)} is no path of a hand; {needed}")
     rows: List[List[float]] = []
@@ -151,9 +153,7 @@ def hand_array(hand: Any) -> "numpy.ndarray":
     """The same as an array of N x 4; one that is right is taken as it is."""
     import numpy
 
-    if numpy.ma.isMaskedArray(hand):
-        raise ArgumentError("hand: is a masked array; needed: all of its numbers")
-    whole = isinstance(hand, numpy.ndarray) and hand.dtype == float and hand.ndim == 2 and hand.shape[1] == 4
+    whole = type(hand) is numpy.ndarray and hand.dtype == float and hand.ndim == 2 and hand.shape[1] == 4
     if whole and len(hand) >= FEWEST_ROWS and numpy.isfinite(hand).all() and (numpy.diff(hand[:, 0]) > 0).all():
         return hand
     return numpy.array(hand_rows(hand))

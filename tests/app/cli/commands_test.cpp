@@ -584,6 +584,11 @@ TEST_F(Commands, CheckSaysWhatHandsStoriesAndSweepsHold) {
   EXPECT_THAT(run({"check", "touch.csv"}).out, HasSubstr("1001 samples, 10 s"));
   EXPECT_THAT(run({"check", "first.toml"}).out, HasSubstr("6 steps, 47 s, 2 runs on one hand"));
   EXPECT_THAT(run({"check", "arms.toml"}).out, HasSubstr("468 points"));
+  for (const auto& plan : fs::directory_iterator(fs::path(LIMPID_ASSETS_DIR) / "sweeps")) {
+    const bool scene = plan.path().filename() == "pushed_block.toml";  // of one of the plans
+    if (plan.path().extension() != ".toml" || scene) continue;
+    EXPECT_THAT(run({"check", plan.path().string()}).out, StartsWith("sweep ")) << plan.path();
+  }
   write("plan.toml", "measure = ['human_rms']\n[[axis]]\nkey = 'coupling.etta'\nvalues = [1]\n");
   EXPECT_THAT(refused({"check", "plan.toml"}), HasSubstr("did you mean"));
 }
