@@ -13,10 +13,12 @@
 #include "app/library/caller_device.h"
 #include "app/library/limpid/limpid.h"
 #include "app/library/plan.h"
+#include "app/run/motor_limits.h"
 #include "app/run/reach_check.h"
 #include "app/run/recorder.h"
 #include "app/run/replay.h"
 #include "app/run/run_watch.h"
+#include "core/dynamics/torque_limits.h"
 #include "core/tick/as_taken.h"
 #include "core/tick/force_asked.h"
 #include "devices/files/session/derived_columns.h"
@@ -52,6 +54,15 @@ auto as_library(const Work& work) {
   } catch (const std::exception& e) {
     throw LoopError(e.what());
   }
+}
+
+// Puts the library's word in place of the option of the command line.
+std::string by_replace(std::string text) {
+  constexpr std::string_view kOption = "--force";
+  for (std::size_t at = 0; (at = text.find(kOption, at)) != std::string::npos;) {
+    text.replace(at, kOption.size(), "`replace`");
+  }
+  return text;
 }
 
 // Says a joint that is outside of its range, and refuses one that is far outside: such a position
@@ -108,6 +119,7 @@ struct Loop::State {
     return real ? as_taken(plan.parameters, RealDevice::of(plan.arm, 0)) : plan.parameters;
   }
   Vec3 tip() const noexcept { return ticks == 0 ? first_tip : rig->tip(); }
+  bool at_tip_limit() const;  // after a tick
   void in_si(std::span<const double> of_rig, std::span<double> into) const noexcept;
   void tell_recorder() const noexcept {
     if (recording) recorder->changed(taken());
@@ -118,7 +130,8 @@ struct Loop::State {
   std::vector<std::string> notes;
   std::optional<CallerDevice> device;  // of a DeviceLoop
   std::optional<Rig> rig;
-  bool real = false;  // motors of a device with a person's hand on it
+  bool real = false;          // motors of a device with a person's hand on it
+  double most_tip_force = 0;  // of real motors [N]
   RowLayout layout;
   SessionUnits units;
   DerivedColumns derived;
@@ -129,7 +142,8 @@ struct Loop::State {
   std::uint64_t ticks = 0;
   Clock::time_point before{};
   Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
-  std::size_t wrong_count = 0;    // positions of the last reading, if they were not one a joint
+  // Positions and one more of the reading that was not one a joint; 0 once force may be back.
+  std::size_t wrong_count = 0;
   ForceAsked force;
   std::unique_ptr<Recorder> recorder;
   bool recording = false;  // the recorder gets rows
@@ -140,6 +154,7 @@ Loop::State::State(LibraryPlan read, const LoopOptions& options)
       kinematics(plan.arm),
       notes(std::move(read.notes)),
       real(options.motors == Motors::real),
+      most_tip_force(options.limits.tip_force),
       layout(plan.layout()),
       units(layout, slides_of(plan.arm)),
       derived(plan.arm),
@@ -189,6 +204,20 @@ void Loop::State::step(const RigInput& input) noexcept {
   in_si(row, row_si);
 }
 
+bool Loop::State::at_tip_limit() const {
+  if (!real) return false;
+  const auto of = [this](Column column) {
+    return Eigen::Map<const Vec<kAnyDof>>(layout.in(std::span<const double>(row), column).data(),
+                                          plan.arm.dof());
+  };
+  Arm<kAnyDof>::Frames frames;
+  kinematics.frames(of(Column::device_position), frames);
+  Jacobian<kAnyDof> J(3, plan.arm.dof());
+  kinematics.point_jacobian(frames, plan.arm.dof() - 1, kinematics.tip(frames), J);
+  constexpr double kNearly = 0.999;  // the arm has moved since the limit was taken
+  return tip_force<kAnyDof>(of(Column::motor_torque), J) > kNearly * most_tip_force;
+}
+
 void Loop::State::in_si(std::span<const double> of_rig, std::span<double> into) const noexcept {
   std::ranges::copy(of_rig, into.begin());
   for (const SessionUnits::Scaled& each : units.scaled()) {
@@ -207,8 +236,14 @@ std::size_t Loop::joints() const { return state_->plan.arm.joints.size(); }
 double Loop::period() const { return state_->plan.parameters.tick; }
 const std::vector<std::string>& Loop::notes() const { return state_->notes; }
 
-void Loop::set(const std::string& key_value) {
-  as_library([&] { set_live(state_->plan.parameters, key_value, state_->device.has_value()); });
+void Loop::set(const std::string& key_value) { set(std::span(&key_value, 1)); }
+
+void Loop::set(std::span<const std::string> key_values) {
+  as_library([&] {
+    Parameters changed = state_->plan.parameters;
+    for (const std::string& each : key_values) set_live(changed, each, state_->device.has_value());
+    state_->plan.parameters = changed;
+  });
   state_->tell_recorder();
 }
 
@@ -295,13 +330,15 @@ void Loop::record(const std::string& file, bool replace) {
   if (!replace && std::filesystem::exists(file)) {
     throw LoopError(file + ": exists, and is not to be replaced");
   }
-  as_library([&] {
+  try {
     RunPlan recorded = s.plan;
     recorded.parameters = s.taken();
     s.recorder =
         std::make_unique<Recorder>(file, session_info(recorded), recorded.parameters, replace,
                                    s.real ? Recorder::kLiveRoom : Recorder::kWaitingRoom);
-  });
+  } catch (const std::exception& e) {
+    throw LoopError(by_replace(e.what()));
+  }
 }
 
 std::uint64_t Loop::finish_recording() {
@@ -309,7 +346,11 @@ std::uint64_t Loop::finish_recording() {
   if (!s.recorder) throw LoopError("finish_recording: nothing is being recorded");
   const std::unique_ptr<Recorder> recorder = std::move(s.recorder);
   s.recording = false;
-  as_library([&] { recorder->finish(); });
+  try {
+    recorder->finish();
+  } catch (const std::exception& e) {
+    throw LoopError(by_replace(e.what()));
+  }
   return recorder->dropped();
 }
 
@@ -334,9 +375,10 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   if (elapsed == 0 && s.real && s.ticks > 0) elapsed = seconds_between(s.before, now);
   s.before = now;
   const std::size_t positions = reading.position.size();
-  s.wrong_count = positions == s.plan.arm.joints.size() ? 0 : positions + 1;
+  const bool whole = positions == s.plan.arm.joints.size();
+  if (!whole) s.wrong_count = positions + 1;
   const bool finite = std::ranges::all_of(reading.position, finite_number);
-  const bool wrong = s.wrong_count > 0 || (!finite && !s.real);
+  const bool wrong = !whole || (!finite && !s.real);
   if (wrong) s.device->stop();
   if (wrong && !s.real) return s.device->torque();  // a simulated device cannot trip
   const double T = s.plan.parameters.tick;
@@ -347,6 +389,7 @@ std::span<const double> DeviceLoop::tick(const Reading& reading) noexcept {
   input.periods = static_cast<int>(std::clamp(std::round(passed / T), 1.0, kMostPeriods));
   input.dt = elapsed;
   s.step(input);
+  if (whole && s.rig->force_state() != ForceState::lost) s.wrong_count = 0;
   return s.device->torque();
 }
 
@@ -355,20 +398,30 @@ void DeviceLoop::cut() noexcept { state_->force.cut(); }
 bool DeviceLoop::armed() const noexcept { return state_->rig->force().armed(); }
 double DeviceLoop::force_share() const noexcept { return state_->rig->force().gain(); }
 std::string DeviceLoop::force_text() const {
-  if (state_->wrong_count > 0) {
+  const State& s = *state_;
+  if (s.wrong_count > 0) {
     return fmt::format("force off: a reading has {} positions; needed: {}, one per joint",
-                       state_->wrong_count - 1, joints());
+                       s.wrong_count - 1, joints());
   }
-  std::string text = limpid::force_text(state_->rig->force_state());
-  if (!text.empty() || state_->ticks == 0) return text;
+  const ForceState why = s.rig->force_state();
+  std::string text = limpid::force_text(why);
+  if (why == ForceState::frozen && force_share() > 0) {
+    text = fmt::format("force held back: {}", explain(why));
+  }
+  if (!text.empty() || s.ticks == 0) return text;
   if (force_share() < 1) return "force fades in";
-  const auto part = [&](Column column) {
-    return state_->layout.in(std::span<const double>(state_->row), column)[0];
-  };
+  const std::span<const double> row = s.row;
+  const auto part = [&](Column column) { return s.layout.in(row, column)[0]; };
   const double walls = std::min(part(Column::governor), part(Column::torque_governor));
   constexpr double kWhole = 0.995;
-  if (walls >= kWhole) return {};
-  return fmt::format("walls held back to {:.0f} % by the law's energy account", 100 * walls);
+  if (walls < kWhole) {
+    text = fmt::format("walls held back to {:.0f} % by the law's energy account", 100 * walls);
+  }
+  const bool motors = any_at_limit(s.layout, row, motor_limits(s.plan.arm, s.taken()));
+  const std::string limit = motors             ? "motors at their limit"
+                            : s.at_tip_limit() ? "motors at the tip's limit"
+                                               : "";
+  return text + (text.empty() || limit.empty() ? "" : "; ") + limit;
 }
 
 SimulatedLoop::SimulatedLoop(const LoopOptions& options)

@@ -182,6 +182,7 @@ for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
               lambda: loop.run(numpy.ma.masked_less(numpy.array([[0, 0.19, 0, 0], [1, 0.19, 0, -0.01]]), 0)),
               lambda: limpid.DeviceLoop([0, 0], arm="omni.urdf"), lambda: limpid.DeviceLoop([0, -0.8, 1.5]), lambda: loop.run([(0, 1, 2, 3)]),
               lambda: loop.run([(0, 9, 9, 9), (1, 9, 9, 9)]), lambda: loop.set({"loop.tick": 0.002}),
+              lambda: loop.set({"coupling.eta": 0.25, "coupling.k_vc": -1}),
               lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", limits={"tip_force": 99}),
               lambda: limpid.DeviceLoop([0, -0.8, 1.5], arm="omni.urdf", limits={"force": 1})):
     try:
@@ -190,6 +191,7 @@ for wrong in (lambda: limpid.Loop(scene="no.toml"), lambda: limpid.Loop(eta=-1),
         assert str(error)
     else:
         raise AssertionError("refused nothing")
+assert loop.get("coupling.eta") == 0.5, "all settings or none"
 assert "place" not in row and row.get("place", 0) == 0 and "device/position" in row
 simulated = limpid.DeviceLoop([0, -0.8, 1.5], motors="simulated")
 for wrong in ("ab", [0, 0], None, [0, 0, "x"]):

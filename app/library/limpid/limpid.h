@@ -212,8 +212,9 @@ class LIMPID_API Loop {
 
   // Settings. Errors: no such key; a value that is not allowed; a key that is fixed once the loop
   // is made (SettingInfo::live).
-  void set(const std::string& key_value);        // "coupling.kind=standard"
-  void set(std::string_view key, double value);  // of a number or a flag; does not allocate
+  void set(const std::string& key_value);             // "coupling.kind=standard"
+  void set(std::span<const std::string> key_values);  // all of them or none
+  void set(std::string_view key, double value);       // of a number or a flag; does not allocate
   double get(std::string_view key) const;  // of a choice the place of its word; NaN: the arm's own
 
   // The row of the last tick, which recordings keep. NaN stands for what nobody knows, and for all
@@ -290,7 +291,8 @@ class LIMPID_API DeviceLoop : public Loop {
   double force_share() const noexcept;  // part of the torque that leaves, 0 to 1
   // Why there is no force, or less; empty while all of it is on. "held back" returns by itself, and
   // so does "off" by an open hand switch; "off" by anything else returns after arm(). Of force that
-  // is on it also says that it fades in, and that the law's account holds walls back.
+  // is on it also says that it fades in, that the law's account holds walls back, and that a motor
+  // gives all it can.
   std::string force_text() const;
 };
 

@@ -138,7 +138,7 @@ void declare_loops(py::module_& module) {
       .def_property_readonly("time", &Loop::time)
       .def_property_readonly("tip", &Loop::tip)
       .def_property_readonly("proxy_tip", &Loop::proxy_tip)
-      .def("set", py::overload_cast<const std::string&>(&Loop::set))
+      .def("set", [](Loop& loop, const std::vector<std::string>& all) { loop.set(all); })
       .def("get", &Loop::get)
       .def("row", &whole_row)
       .def("columns",

@@ -151,9 +151,9 @@ class _AnyLoop:
         return Energy(*self._loop.energy())
 
     def set(self, settings: Optional[Mapping[str, Any]] = None, **more: Any) -> None:
-        """Changes settings from the next tick on: loop.set(eta=0.5), loop.set({"coupling.k_vc": 8})."""
-        for key, value in settings_of(settings, more).items():
-            self._loop.set(f"{key}={text_of(value)}")
+        """Changes settings from the next tick on, all of them or none: loop.set(eta=0.5),
+        loop.set({"coupling.k_vc": 8})."""
+        self._loop.set([f"{key}={text_of(value)}" for key, value in settings_of(settings, more).items()])
 
     def get(self, key: str) -> Value:
         """A setting's present value; of a choice its word."""

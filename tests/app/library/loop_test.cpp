@@ -19,6 +19,8 @@ namespace limpid {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 // A device that gives readings as they are written down, and remembers its torque.
 class Written final : public Device {
@@ -303,7 +305,7 @@ TEST(DeviceLoop, HoldsTheTipsLimitHoweverDeepItIsPressed) {
         torque = loop.tick(reading);
         ASSERT_GT(k < 700 ? 1 : loop.energy().reserve, 1e-3) << k << ", " << most << " N";
       }
-      EXPECT_EQ(loop.force_text(), "");
+      EXPECT_EQ(loop.force_text(), "motors at the tip's limit");
       const double upper = x[1], lower = x[1] + x[2];
       const double out = kLink * (std::cos(upper) + std::cos(lower));
       const double down = -kLink * (std::sin(upper) + std::sin(lower));
@@ -385,6 +387,17 @@ TEST(DeviceLoop, KeepsToTheLimitAtTheTip) {
   DeviceLoop loop(options, x);
   loop.arm();
   EXPECT_NEAR(rest(loop, x, 2), -1, 1e-6) << "the wall would give 2 N";
+  EXPECT_EQ(loop.force_text(), "motors at the tip's limit");
+}
+
+TEST(DeviceLoop, SaysThatAMotorGivesAllItCan) {
+  std::array<double, 1> x{0.004};
+  DeviceLoop loop(slide(), x);
+  rest(loop, x, 0.5);
+  EXPECT_EQ(loop.force_text(), "") << "2 of 8 N";
+  for (; x[0] < 0.02; x[0] += 1e-5) rest(loop, x, 1e-3);
+  EXPECT_NEAR(rest(loop, x, 0.5), -8, 1e-9);
+  EXPECT_EQ(loop.force_text(), "motors at their limit");
 }
 
 // Arms a loop at a wall, until its force is on.
@@ -415,6 +428,21 @@ TEST(DeviceLoop, TripsOnReadingsThatCannotBe) {
   }
 }
 
+TEST(DeviceLoop, SaysThatForceFadesWhereReadingsStandStill) {
+  DeviceLoop loop = armed();
+  const std::array<double, 1> x{0.004};
+  DeviceLoop::Reading reading;
+  reading.position = x;
+  reading.elapsed = 1e-3;
+  for (int k = 0; k < 450; ++k) loop.tick(reading);
+  EXPECT_GT(loop.force_share(), 0);
+  EXPECT_LT(loop.force_share(), 1);
+  EXPECT_THAT(loop.force_text(), StartsWith("force held back: "));
+  for (int k = 0; k < 300; ++k) loop.tick(reading);
+  EXPECT_EQ(loop.force_share(), 0);
+  EXPECT_THAT(loop.force_text(), StartsWith("force off: "));
+}
+
 TEST(DeviceLoop, EndsForceWithoutFreshReadingsHandOrHealth) {
   const std::array<double, 1> x{0.004};
   const auto after = [&](auto change) {
@@ -443,10 +471,20 @@ TEST(DeviceLoop, SaysThatAReadingHasAnotherNumberOfJoints) {
     options.motors = motors;
     DeviceLoop loop(options, std::array{0.004});
     DeviceLoop::Reading reading;
+    const std::array<double, 1> one{0.004};
+    loop.arm();
+    rest(loop, one, 1);
     const std::array<double, 2> two{0.004, 0};
     reading.position = two;
     EXPECT_EQ(loop.tick(reading)[0], 0);
     EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions; needed: 1"));
+    rest(loop, one, 0.01);
+    if (motors == Motors::real) {
+      EXPECT_THAT(loop.force_text(), HasSubstr("a reading has 2 positions")) << "why it tripped";
+      loop.arm();
+      rest(loop, one, 1);
+    }
+    EXPECT_EQ(loop.force_text(), "");
   }
 }
 
@@ -579,6 +617,28 @@ TEST(Loops, SayWhatIsNotAllowed) {
               HasSubstr("no such column; did you mean /device/position?"));
   loop.set("coupling.kind=standard");
   EXPECT_EQ(loop.get("coupling.kind"), 0);
+}
+
+TEST(Loops, TakeAllSettingsOrNone) {
+  DeviceLoop loop(slide(), std::array{0.0});
+  const double before = loop.get("coupling.k_vc");
+  const std::vector<std::string> wrong{"coupling.k_vc=0.25", "coupling.eta=-1"};
+  EXPECT_THAT(refusal([&] { loop.set(wrong); }), HasSubstr("coupling.eta"));
+  EXPECT_EQ(loop.get("coupling.k_vc"), before);
+  const std::vector<std::string> right{"coupling.k_vc=0.25", "coupling.eta=0.75"};
+  loop.set(right);
+  EXPECT_EQ(loop.get("coupling.k_vc"), 0.25);
+  EXPECT_EQ(loop.get("coupling.eta"), 0.75);
+}
+
+TEST(Loops, RefuseToRecordInTheWordsOfTheLibrary) {
+  const test::TempDir dir;
+  const auto file = dir / "left.h5";
+  std::ofstream(dir / "left.h5.part") << "of a program that ended";
+  DeviceLoop loop(slide(), std::array{0.0});
+  const std::string said = refusal([&] { loop.record(file.string()); });
+  EXPECT_THAT(said, HasSubstr("limpid recover"));
+  EXPECT_THAT(said, AllOf(HasSubstr("`replace` overwrites"), Not(HasSubstr("--force"))));
 }
 
 TEST(SimulatedLoop, MovesABallThatWasBuilt) {

@@ -20,13 +20,6 @@ class Dialog : public WholeWindow {
     ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
     frames(3);
   }
-  // Puts a text in place of that of the field with the keyboard's focus.
-  void write_over(const std::string& text) {
-    show_modifiers(true, false, false);
-    press(GLFW_KEY_A);
-    show_modifiers(false, false, false);
-    write(text);
-  }
   bool said(const std::string& what) const {
     return std::ranges::any_of(desktop->notices.all(), [&](const Notice& notice) {
       return notice.text.find(what) != std::string::npos;

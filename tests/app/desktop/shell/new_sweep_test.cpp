@@ -51,23 +51,10 @@ class ANewSweep : public WholeWindow {
     FAIL() << key << " cannot be scrolled to";
   }
   void type(const std::string& label, const std::string& number) {
-    for (const NotedPlace& each : noted_places()) {
-      if (each.label != label) continue;
-      const ImVec2 at = each.at;
-      frames(20);
-      point_at(at);
-      for (int i = 0; i < 4; ++i) {
-        show_mouse_button(0, i % 2 == 0);
-        frames(1);
-      }
-      frames(2);
-      ImGui::GetIO().AddInputCharactersUTF8(number.c_str());
-      frames(2);
-      press(GLFW_KEY_TAB);
-      frames(2);
-      return;
-    }
-    ADD_FAILURE() << label << " is not there";
+    click_at(label);
+    write_over(number);
+    press(GLFW_KEY_TAB);
+    frames(2);
   }
   std::string says() { return sentences(kDialog); }
   fs::path sweeps() const { return dir / "data/limpid/sweeps"; }

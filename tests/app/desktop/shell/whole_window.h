@@ -112,6 +112,15 @@ class WholeWindow : public testing::Test {
     frames(1);
   }
 
+  // Puts a text in place of that of the field with the keyboard's focus.
+  void write_over(const std::string& text) {
+    show_modifiers(true, false, false);
+    press(GLFW_KEY_A);
+    show_modifiers(false, false, false);
+    ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
+    frames(3);
+  }
+
   // Finds a text in a window whose name begins so; "" for any.
   static std::optional<test::DrawnText> find(const std::string& text, const std::string& in = "") {
     for (const test::DrawnText& each : test::drawn_texts()) {
