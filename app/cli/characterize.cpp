@@ -120,7 +120,7 @@ KnownNumber encoder_number(const Source& source, const InputOptions& input, Para
 }
 
 KnownNumber delay_number(const Source& source, const InputOptions& input, Parameters& p) {
-  KnownNumber number{"delay", "delay from a reading to its torque, beyond the tick", "ms", 0, {}};
+  KnownNumber number{"delay", "delay from a reading to its torque, besides the tick", "ms", 0, {}};
   if (sets(input, &DeviceSettings::device_delay, 1, 2)) {
     number.from = "set";
     return number;

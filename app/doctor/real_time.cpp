@@ -98,7 +98,7 @@ Finding memory(const RealtimeReport& report) {
           "memory",
           State::better,
           fmt::format("may be swapped out to the disk (RLIMIT_MEMLOCK {})", limit),
-          "a tick is late when memory comes back from the disk",
+          "a tick is late when its memory was swapped out to the disk",
           mend_limits()};
 }
 
@@ -130,7 +130,7 @@ Finding governor() {
     return {kRealTimeArea,
             "clock",
             State::fine,
-            "the kernel does not control the processor's clock",
+            "the kernel does not control the processor's frequency",
             {},
             {}};
   }
@@ -146,7 +146,7 @@ Finding governor() {
           "clock",
           State::better,
           found,
-          "ticks take longer while the processor's clock rises",
+          "ticks take longer while the processor's frequency rises",
           "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
 }
 

@@ -249,10 +249,10 @@ FigurePanel named_panel(const LateTable& table) {
 
 std::vector<FigurePanel> draw(const LateTable& table) {
   constexpr std::pair kEnergies(1e-3, 1e5);  // [mJ]
-  FigurePanel free = against_etas(table, "Free motion: most that the hand was given", "energy [mJ]",
-                                  kEnergies, [](auto& f) { return 1e3 * f.free; });
+  FigurePanel free = against_etas(table, "Free motion: largest energy given to the hand",
+                                  "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.free; });
   FigurePanel wall =
-      against_etas(table, "Wall that limpid analyze names: most that the hand was given",
+      against_etas(table, "Wall that limpid analyze names: largest energy given to the hand",
                    "energy [mJ]", kEnergies, [](auto& f) { return 1e3 * f.wall; });
   for (FigurePanel* panel : {&free, &wall}) {
     panel->log_y = true;

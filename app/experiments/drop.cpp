@@ -82,9 +82,10 @@ Outcome drop(TrialRunner& lab) {
   FigurePanel height =
       drop_panel("Height of the block's lower face above the resting tip", "height [mm]");
   FigurePanel reserve = drop_panel("Reserve of the energy account, predictive", "reserve [mJ]");
-  FigurePanel force = drop_panel(fmt::format("Force on the tip, {} N/m", kDropUsual), "force [N]");
+  FigurePanel force =
+      drop_panel(fmt::format("Force on the tip, K_o = {} N/m", kDropUsual), "force [N]");
   FigurePanel beyond = drop_panel(
-      fmt::format("Energy to the human, less the energy of the block; block of {} N/m", kDropUsual),
+      fmt::format("Energy to the human minus the energy of the block; block of {} N/m", kDropUsual),
       "energy [mJ]");
   Outcome outcome;
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -144,7 +145,7 @@ Outcome drop(TrialRunner& lab) {
                  v.governor, 1));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-4));
     outcome.checks.push_back(
-        at_most(which + "largest energy given to the human, less the energy of the block [J]",
+        at_most(which + "largest energy given to the human minus the energy of the block [J]",
                 v.beyond, 5e-5));
     outcome.checks.push_back(at_most(which + "energy gained by the block [J]", v.gain, 1e-6));
   }

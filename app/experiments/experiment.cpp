@@ -483,8 +483,8 @@ std::string why_not(const Experiment& experiment, const ExperimentArm& on) {
   }
   if (experiment.takes == Takes::moving_as_built_in && !moves_as_built_in(on.description)) {
     return begin + fmt::format(
-                       "needs an arm whose joints are named as the built-in arm's and move "
-                       "the tip as these do; {} is another",
+                       "needs an arm with the joints' names and the motion of the built-in arm; "
+                       "{} differs",
                        on.description.name);
   }
   if (on.readings && *experiment.own_readings != '\0') {

@@ -225,7 +225,7 @@ FigurePanel stick_panel(const Trial& trial, const Dragged& d) {
 }
 
 FigurePanel taken_panel(const std::vector<Dragged>& all) {
-  FigurePanel panel{.title = "Energy that friction gave: work and energy in the friction's spring",
+  FigurePanel panel{.title = "Energy that friction gave: its work and the energy in its spring",
                     .x_label = "time [s]",
                     .y_label = "energy [mJ]"};
   for (const Dragged& d : all) {
@@ -241,7 +241,7 @@ FigurePanel taken_panel(const std::vector<Dragged>& all) {
 // Edge and corner with motors of one limit: a panel of E_c, and its checks.
 FigurePanel between_walls(TrialRunner& lab, double motors, const std::string& which,
                           std::vector<Check>& checks) {
-  FigurePanel panel{.title = fmt::format("Wandering in walls of {} N/m, {}", kEdgeWall, which),
+  FigurePanel panel{.title = fmt::format("Tip rubbed along walls of {} N/m, {}", kEdgeWall, which),
                     .x_label = "time [s]",
                     .y_label = "E_c [mJ]"};
   std::vector<RoughWalls> walls;

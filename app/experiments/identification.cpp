@@ -43,7 +43,7 @@ Identification identification(std::string device, const IdentifyRequest& order, 
 
 std::string device_text(const Identification& identification) {
   std::string text =
-      fmt::format("Delay from a reading to the torque that answers it: {} ms, beyond the tick.",
+      fmt::format("Delay from a reading to the torque that answers it: {} ms, besides the tick.",
                   text_of(identification.found.delay, 1e-3));
   const ReadingTimes& timing = identification.bare.timing;
   if (timing.rate > 0) {

@@ -200,11 +200,12 @@ Figure draw(const Runs& runs, const std::string& gains) {
   Figure figure;
   figure.title = "Energy that the coupling adds, over time";
   figure.caption = fmt::format(
-      "Controller energy E_c in free motion, contact and circles on the table; mean of {} trials "
-      "with their lowest and highest, {}. The curve \"total\" includes the device's own "
-      "damping, the curve \"commanded\" only motors and proxy. Last panel: an undamped grip of {} "
-      "N/m holds the device still. Its smallest stable eta is {:.3f} by Routh and Hurwitz.",
-      kTrialsOfACase, gains, kStiffGrip, runs.limit);
+      "Controller energy E_c in free motion, contact and circles on the table; {}. Lines: mean of "
+      "{} trials. Bands: lowest to highest trial. The curve \"total\" includes the device's own "
+      "damping, the curve \"commanded\" only motors and proxy. Last panel: a hand, a spring of {} "
+      "N/m without damping, holds the device still. By Routh and Hurwitz this is stable from eta = "
+      "{:.3f} on.",
+      gains, kTrialsOfACase, kStiffGrip, runs.limit);
   figure.columns = 2;
   const FigurePanel axes{.x_label = "time over the trial's length [-]", .y_label = "energy [mJ]"};
   FigurePanel total = axes, commanded = axes, zero = axes;
@@ -240,7 +241,7 @@ std::vector<Check> judge(const Runs& runs) {
   // Order: 0.6 above standard above 3; 0.6 above 1 above 3 above 5.
   for (const auto& [low, high] : {std::pair(4, 0), {2, 4}, {1, 0}, {2, 1}, {3, 2}}) {
     const auto l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
-    checks.push_back(at_most(fmt::format("mean final E_c, total, {} less {} [J]",
+    checks.push_back(at_most(fmt::format("mean final E_c, total: {} minus {} [J]",
                                          runs.cases[l].name, runs.cases[h].name),
                              final_mean(runs.of(l)) - final_mean(runs.of(h)), 0));
   }

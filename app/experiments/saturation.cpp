@@ -90,8 +90,8 @@ void judge(const CornerSet& set, const std::string& label, const Cornered& worst
   checks.push_back(at_most(where + "highest E_c [J]", worst.energy, kMostEnergy));
   checks.push_back(
       at_most(where + "largest energy given to the human [J]", worst.port, kMostEnergy));
-  checks.push_back(at_most(where + "largest contact torque over the motors' limit", worst.torque,
-                           set.most_torque));
+  checks.push_back(at_most(where + "largest contact torque, divided by the motors' limit",
+                           worst.torque, set.most_torque));
   checks.push_back(
       at_most(where + "longest way of the proxy in a tick [rad]", worst.jump, kMostJump));
   checks.push_back(at_least(where + "lowest reserve of the energy account [J]", worst.reserve, 0));
@@ -348,7 +348,7 @@ Outcome saturation(TrialRunner& lab) {
   const Touch push = worst_push(lab);
   const std::string where = "predictive, pushed with 8 N, motors of 0.4 N m: ";
   outcome.checks.push_back(at_most(where + "highest E_c [J]", push.energy, 5e-5));
-  outcome.checks.push_back(at_most(where + "largest contact torque over the motors' limit",
+  outcome.checks.push_back(at_most(where + "largest contact torque, divided by the motors' limit",
                                    push.torque / kPushLimit, 1.3));
   outcome.checks.push_back(at_most(where + "chatter [m/s]", push.chatter, 1e-4));
   press_into_corners(lab, outcome);

@@ -155,7 +155,7 @@ Outcome stack(TrialRunner& lab) {
     outcome.checks.push_back(at_most(which + "energy gained by the blocks [J]", v.gain, 1e-6));
     outcome.checks.push_back(at_most(which + "highest E_c [J]", v.energy, 5e-5));
     outcome.checks.push_back(
-        at_most(which + "largest energy given to the human, less the energy of the blocks [J]",
+        at_most(which + "largest energy given to the human minus the energy of the blocks [J]",
                 v.beyond, 5e-5));
     outcome.checks.push_back(
         at_most(which + "ticks for which the proxy stood still", v.unsolved, 0));
@@ -168,12 +168,13 @@ Outcome stack(TrialRunner& lab) {
   outcome.figure.columns = 2;
   outcome.figure.panels = {sinks, sweeps, gain, force};
   outcome.figure.caption = fmt::format(
-      "Blocks of {} mm stand on a floor under the predictive coupling. The tip presses from above "
+      "Blocks of {} mm stand on a floor; the coupling is the predictive one. The tip presses from "
+      "above "
       "with {} N after {} s. Friction is 0.5. Contacts among blocks have K_o = {} N/m at each of "
       "{} points; the tip's contact has {} N/m. The first panel shows the depths just before the "
-      "tip comes. Depth above the line existed when the contact was found, and gives no force. "
-      "Sweeps count those over the tip's contacts and those over all others together. A sleeping "
-      "stack has no sweeps.",
+      "tip comes. The part above the line was there when the contact was found and gives no force. "
+      "A sweep goes once through the contacts: the solver's sweeps through the tip's contacts and "
+      "through all others are added. A stack that rests sleeps, and needs no sweeps.",
       1e3 * kStackEdge, kStackPress, kStackDown, kStackBetween, kStackPoints, kStackWall);
   return outcome;
 }

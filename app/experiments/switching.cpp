@@ -175,7 +175,7 @@ FigurePanel stop_panel(const Session& s) {
 FigurePanel gain_panel(const Session& paper, const Balance& papers, const Session& ours,
                        const Balance& own, const Balance& stiff) {
   FigurePanel panel{
-      .title = "Energy that the joint's stop gave, less the energy that was stored in the stop",
+      .title = "Energy that the joint's stop gave minus the energy that was stored in the stop",
       .x_label = "time [s]",
       .y_label = "energy [μJ]"};
   const auto label = [](const char* law, double stop) {
@@ -260,9 +260,9 @@ Outcome switching(TrialRunner& lab) {
                            torque_panel(turns), apart_panel(turns)};
   outcome.checks = {
       at_least("contacts made with each stop, predictive", std::min(own.touched, stiff.touched), 7),
-      at_most("predictive: largest energy without a source when contact is made or broken [J]",
+      at_most("predictive: largest energy that is created when contact is made or broken [J]",
               worse(furthest(own.gain), furthest(stiff.gain)), 1e-9),
-      at_least("proposed: largest energy without a source when contact is made or broken [J]",
+      at_least("proposed: largest energy that is created when contact is made or broken [J]",
                furthest(papers.gain), 1e-6),
       at_least("switching while pressing: completed transitions to another law", steps.arrived,
                kOrder.size() - 1),

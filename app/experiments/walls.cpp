@@ -185,7 +185,7 @@ std::vector<FigurePanel> draw(const std::vector<Felts>& felts) {
   FigurePanel rattle = against_mass(
       felts, "Force above 20 Hz while it is held, divided by what is allowed",
       "rms force, of that allowed [-]", {1e-4, 100}, [](const WallFelt& f) { return f.rattle; });
-  FigurePanel given = against_mass(felts, "Most that the hand was given", "energy [mJ]",
+  FigurePanel given = against_mass(felts, "Largest energy given to the hand", "energy [mJ]",
                                    {1e-3, 1000}, [](const WallFelt& f) { return 1e3 * f.port; });
   named.log_y = rattle.log_y = given.log_y = true;
   add_line(felt, 1 + WallsPlan::kOff, "bounds");

@@ -42,7 +42,8 @@ std::string urdf_text(const ArmModel& arm) {
   for (const ArmJoint& of : arm.joints) {
     if (of.effort <= 0) {
       throw LoopError(
-          fmt::format("arm: joint '{}': effort {} is not allowed; allowed: above 0, or kGuessed",
+          fmt::format("arm: joint '{}': effort {} is not allowed; allowed: above 0; kGuessed lets "
+                      "Limpid choose",
                       of.name, of.effort));
     }
     const double unit = of.slides ? kSlideUnit : 1;

@@ -277,10 +277,10 @@ BodyReport report_on_bodies(const Scene& scene, const ArmDescription& arm) {
                     energy, kHurts));
   }
   if (springs > kHurts) {
-    report.warnings.push_back(
-        fmt::format("springs that are stretched at the start may give {:.3g} J, more than {} J: "
-                    "make the springs softer, or let the objects start nearer to rest",
-                    springs, kHurts));
+    report.warnings.push_back(fmt::format(
+        "springs that are stretched at the start may give {:.3g} J, more than {} J: "
+        "make the springs softer, or let the objects start closer to where the springs are at rest",
+        springs, kHurts));
   }
   for (const auto& [i, j] : overlapping(scene)) {
     report.warnings.push_back(fmt::format("'{}' and '{}' overlap at the start",

@@ -46,13 +46,13 @@ constexpr MeasureInfo kTable[] = {
     {"energy_port", "energy to the hand, highest", "J", "most that the human was given",
      [](const RunMeter& m) { return m.highest_port(); }},
     {"energy_beyond", "energy to the hand beyond the bodies', highest", "J",
-     "largest energy given to the human, less the energy that bodies gave",
+     "largest energy given to the human minus the energy that bodies gave",
      [](const RunMeter& m) { return m.highest_beyond(); }},
     {"bodies_passive", "hand gets no more than bodies give", "yes/no",
      "the human is never given more than a microjoule above the energy that bodies gave",
      [](const RunMeter& m) { return yes(!lost(m) && m.highest_beyond() <= kNoEnergy); }},
     {"bodies_gain", "energy that bodies gain", "J",
-     "largest energy of the bodies, less the energy at the start and the energy given to the "
+     "largest energy of the bodies minus the energy at the start and the energy given to the "
      "bodies",
      [](const RunMeter& m) { return m.bodies_gain(); }},
     {"bodies_moved", "way that a body moves, longest", "m",

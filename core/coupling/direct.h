@@ -23,8 +23,8 @@ struct DirectLaw {
   static constexpr LawInfo kInfo{
       .key = "direct",
       .label = "Direct",
-      .meaning = "the walls' springs act on the device itself, without a virtual mass.",
-      .verdict = "What most programs do: walls as stiff as the hand damps.",
+      .meaning = "without a proxy: the walls' springs act on the device itself.",
+      .verdict = "What most programs do. Stiff walls need a hand that damps.",
       .promise = Promise::none,
       .loop = LinearLoop::on_device,
       .on_device = true,

@@ -25,9 +25,9 @@ struct EbaLaw {
       .key = "eba",
       .label = "Energy bounding",
       .meaning =
-          "walls on the device itself; the law limits their force so that the device's damping can "
-          "pay for the energy (Kim and Ryu 2010).",
-      .verdict = "Passive in every hand, as stiff as the arm's damping.",
+          "without a proxy: walls act on the device itself. The law limits their force so that the "
+          "device's damping dissipates the energy (Kim and Ryu 2010).",
+      .verdict = "Passive in every hand. Walls are soft where the arm has little damping.",
       .promise = Promise::port,
       .on_device = true,
       .for_comparison = true,

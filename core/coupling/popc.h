@@ -28,9 +28,9 @@ struct PopcLaw {
       .key = "popc",
       .label = "PO/PC",
       .meaning =
-          "walls on the device itself, with a damper that takes back the energy the walls gave "
-          "(passivity observer and controller, Hannaford and Ryu 2002).",
-      .verdict = "Brakes what it gave, as far as it may. Coarse encoders mislead it.",
+          "without a proxy: walls act on the device itself, with a damper that takes back the "
+          "energy the walls gave (passivity observer and controller, Hannaford and Ryu 2002).",
+      .verdict = "Its damper takes back most of that energy. Coarse encoders mislead it.",
       .promise = Promise::observer,
       .on_device = true,
       .for_comparison = true,

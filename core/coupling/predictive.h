@@ -97,7 +97,7 @@ struct PredictiveLaw {
       .key = "predictive",
       .label = "Predictive",
       .meaning =
-          "device and proxy solved together for the coming tick, inertia shaped by passive "
+          "solves device and proxy together for the coming tick and shapes inertia by passive "
           "networks: stiff walls, light hands, friction, and an account of the energy given.",
       .verdict = "Recommended: no drift, stiff walls, light, passive.",
       .promise = Promise::ledger,

@@ -27,9 +27,9 @@ struct SfaLaw {
       .key = "sfa",
       .label = "Augmentation",
       .meaning =
-          "soft walls on the device itself; the walls' force grows in the hand up to the right "
-          "force (successive force augmentation, Singh and others 2020).",
-      .verdict = "Grows stiff in the hand; by our rule it gives energy for it.",
+          "without a proxy: soft walls act on the device itself. Their force grows, while they are "
+          "pressed, up to the right force (successive force augmentation, Singh and others 2020).",
+      .verdict = "Walls grow stiff while they are pressed. This gives energy to the hand.",
       .promise = Promise::none,
       .on_device = true,
       .for_comparison = true,

@@ -50,8 +50,8 @@ struct TankLaw {
                 "device never give more than this energy beyond the energy that came in."},
                {"tank.most", "tank's most", "tank's most", &P::tank_most, "J", 1e-4, 100, 1e-2, 1,
                 true, true,
-                "Tank coupling: the most energy that each tank keeps. The coupling may give this "
-                "energy in any part of the time."},
+                "Tank coupling: the most energy that each tank keeps. Over any stretch of time the "
+                "coupling may give this much more than it took."},
                {"tank.share", "tank's share", "tank's share", &P::tank_share, "-", 1e-4, 1, 1e-3, 1,
                 true, true,
                 "Tank coupling: share of the surplus that a tank sends to the other tank in each "

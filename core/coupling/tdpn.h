@@ -27,9 +27,9 @@ struct TdpnLaw {
       .key = "tdpn",
       .label = "Two-port TDPA",
       .meaning =
-          "device velocity to the proxy and force back, with dampers that keep both ports passive "
+          "device velocity goes to the proxy, force goes back. Dampers keep both ports passive "
           "(Ryu, Artigas and Preusche 2010).",
-      .verdict = "Brakes what both ends gave, as far as it may; drifts.",
+      .verdict = "Its dampers take back most of the energy given. Device and proxy drift apart.",
       .promise = Promise::observer,
       .for_links = true,
       .for_comparison = true,

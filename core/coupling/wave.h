@@ -32,9 +32,9 @@ struct WaveLaw {
       .key = "wave",
       .label = "Wave variables",
       .meaning =
-          "device and proxy tied by waves on a line, whatever its delay (Niemeyer and Slotine "
+          "waves on a line tie device and proxy, whatever the delay (Niemeyer and Slotine "
           "1991).",
-      .verdict = "Stable through any delay; as soft as its line.",
+      .verdict = "Stable through any delay. Walls are as soft as its line.",
       .promise = Promise::line,
       .for_links = true,
       .for_comparison = true,

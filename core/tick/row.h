@@ -148,7 +148,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
      "share of the contact force that the ledger lets through; tank: the proxy's damping by that "
      "with what its tank adds"},
     {Column::damping_governor, "/coupling/damping_governor", ColumnWidth::one, "-",
-     "share of the damping that the ledger lets the law cancel; popc: 1 less its damper in force"},
+     "share of the damping that the ledger lets the law cancel; popc: 1 minus its damper in force"},
     {Column::torque_governor, "/coupling/torque_governor", ColumnWidth::one, "-",
      "share of all torque that the ledger, the device's tank or the account of eba lets "
      "through; sfa: of the walls' torque what it has built up"},
@@ -164,7 +164,7 @@ inline constexpr std::array<ColumnInfo, kColumns> kColumnInfo{{
     {Column::energy_commanded, "/energy/controller_commanded", ColumnWidth::one, "J",
      "E_c of motors and proxy"},
     {Column::energy_port, "/energy/port", ColumnWidth::one, "J",
-     "energy given to the human: work of the motors less the device's own damping"},
+     "energy given to the human: work of the motors minus what the device's own damping takes"},
     {Column::energy_ledger, "/energy/ledger", ColumnWidth::one, "J",
      "reserve of the ledger, or what is in both tanks and on its way between them; 0 until a law "
      "with an account was in force"},

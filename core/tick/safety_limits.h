@@ -50,7 +50,7 @@ inline constexpr auto kSafetyLimits = [] {
       limit("energy", "energy in one second", &L::energy, 0.02, "J",
             "Largest energy that the motors put out in one second."),
       limit("range", "part of the range", &L::range, 0.1, "-",
-            "Part of each joint's range, around its middle."),
+            "Share of each joint's range in which force is full, around its middle."),
   };
 }();
 // Clamps to the allowed range; NaN becomes the default.

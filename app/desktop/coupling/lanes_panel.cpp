@@ -109,7 +109,7 @@ void draw_lanes(const Stage& stage, LaneRows rows, std::size_t* edited, bool& ov
     if (rows.size() < kMostLanes) {
       flow("+ run");
       if (ImGui::SmallButton("+ run")) act("session.add_run");
-      tooltip("One more coupling on the same hand (Ctrl+B).");
+      tooltip("Adds another coupling. The same hand moves it (Ctrl+B).");
     }
     flow("- run");
     if (ImGui::SmallButton("\xE2\x88\x92 run")) act("session.drop_run");

@@ -79,7 +79,7 @@ bool draw_arm(DeviceController& devices, const LiveStage& live, StepState state)
   const bool in_place = live.loop().device_in_place();
   const bool asks = hub.may_say_arm() && hub.asks_for_arm();
   begin_step(state, "Its arm", in_place && !asks ? live.stage().arm().name : std::string());
-  tooltip("The arm's ranges and link lengths bound the force.");
+  tooltip("Limpid limits the force by this arm's ranges and link lengths.");
   bool file = false;
   if (asks) {
     ImGui::TextWrapped(

@@ -53,7 +53,7 @@ void hand_choices(DeviceController& devices, const PadChoice& pads) {
   }
   if (known) return;
   hand_choice(
-      devices, pads, "virtual arm, by the last gamepad", pads.chosen,
+      devices, pads, "virtual arm, moved by the gamepad used last", pads.chosen,
       "The last gamepad is not plugged in. The mouse leads the hand until the gamepad is back.");
 }
 

@@ -275,7 +275,7 @@ SweepDraft NewSweepDialog::draft(const SweepBasis& basis) {
                                             "{} runs are too many: the window can do at most {}. "
                                             "`limpid sweep` has no such limit.",
                                             points(), kMostRuns)
-                 : points() == 0 ? "Choose at least one word of each list."
+                 : points() == 0 ? "Choose at least one entry of each list."
                                  : wrong_with(draft);
   }
   return draft;

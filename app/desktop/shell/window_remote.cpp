@@ -320,7 +320,7 @@ Answer WindowRemote::blind(const Keys& keys, LineServer::Client client) {
 Answer WindowRemote::ask(const Keys& keys, LineServer::Client client) {
   if (d_.question.asking()) throw RemoteError("ask: another question is open");
   if (d_.document.asking() || d_.identify.busy()) {
-    throw RemoteError("ask: the window has a question of its own");
+    throw RemoteError("ask: the window already asks something; answer that first");
   }
   const bool ends = keys.has("seconds");
   auto choices = keys.texts_if("choices", PersonQuestion::kMostChoices);

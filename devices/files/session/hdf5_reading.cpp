@@ -220,7 +220,8 @@ void check_storage(const Dataset& dataset, const std::string& path, const fs::pa
   }
   const H5D_layout_t layout = H5Pget_layout(creation.get());
   if (layout != H5D_COMPACT && layout != H5D_CONTIGUOUS && layout != H5D_CHUNKED) {
-    refuse(file, path, "is put together from other datasets; allowed: stored in this file");
+    refuse(file, path,
+           "is put together from other datasets; needed: data that are stored in this file");
   }
   check_filters(creation.get(), path, file);
   if (layout == H5D_CHUNKED) check_chunks(creation.get(), dataset.get(), path, file);

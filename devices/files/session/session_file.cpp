@@ -30,13 +30,13 @@ std::string now() {
 
 constexpr const char* kConventions =
     "Row k is the state at /time[k] and the torques held from then to the next row. Units are SI: "
-    "rad, rad/s and N m of joints that turn, m, m/s and N of joints that slide; the attribute unit "
-    "of a dataset says which, once for all of its columns or once for each joint. Places, "
+    "rad, rad/s and N m of joints that turn, m, m/s and N of joints that slide. The attribute unit "
+    "of a dataset has one unit for all of its columns, or one for each joint. Positions, "
     "velocities and forces at the tip are x, y, z in the frame of the root link of device_urdf. "
     "The device is the arm in the hand, the proxy its image in the simulated world; contact forces "
     "act on the proxy. Where nothing touches, /contact/force and /contact/total_force are 0 and "
-    "/contact/point is not a number. /check is for the program: sums that show damage, and what "
-    "the units' rounding took. Whoever changes a dataset deletes /check.";
+    "/contact/point is not a number. Only the program uses /check: it has sums that show damage, "
+    "and what rounding took when units were converted. If you change a dataset, delete /check.";
 
 constexpr const char* kBodyConventions =
     " /objects has what moves, one object behind the other as the attribute names says: its place "

@@ -85,7 +85,7 @@ TEST(WhyNot, NamesTheExperimentAndTheReason) {
   EXPECT_THAT(why_not(experiment("passivity"), planar),
               HasSubstr("needs an arm of 3 joints; planar2 has 2"));
   const ExperimentArm omega{shipped("omega.urdf"), {}, "omega"};
-  EXPECT_THAT(why_not(experiment("coordination"), omega), HasSubstr("omega is another"));
+  EXPECT_THAT(why_not(experiment("coordination"), omega), HasSubstr("omega differs"));
   EXPECT_EQ(why_not(experiment("passivity"), omega), "");
   for (const Experiment& e : experiments()) EXPECT_EQ(why_not(e, built_in_arm()), "") << e.name;
 }

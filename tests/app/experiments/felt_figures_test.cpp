@@ -432,8 +432,8 @@ TEST(FiguresOf, DropFallFreelyUntilTheTip) {
               least);
     EXPECT_GT(hardest, 9.81 * 0.05) << "harder than the block's weight";
   }
-  const std::string force = "Force on the tip, 2000 N/m",
-                    beyond = "Energy to the human, less the energy of the block; block of 2000 N/m";
+  const std::string force = "Force on the tip, K_o = 2000 N/m",
+                    beyond = "Energy to the human minus the energy of the block; block of 2000 N/m";
   for (const char* law : {"predictive", "proposed", "standard"}) {
     const Kept kept = made.kept(fmt::format("{}-2000", law));
     EXPECT_STREQ(name(kept.p.kind), law);

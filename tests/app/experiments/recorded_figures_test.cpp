@@ -326,7 +326,7 @@ TEST(FiguresOf, SaturationHaveAPointForEachCorner) {
       most_jump = std::max(most_jump, jumps.points[k].y);
     }
     const std::string where = fmt::format("{} corners, {}: ", count, label);
-    EXPECT_EQ(made.check(where + "largest contact torque over the motors' limit").value,
+    EXPECT_EQ(made.check(where + "largest contact torque, divided by the motors' limit").value,
               most_torque);
     EXPECT_NEAR(1e3 * made.check(where + "longest way of the proxy in a tick [rad]").value,
                 most_jump, 1e-9);
@@ -391,7 +391,7 @@ TEST(FiguresOf, FrictionShowItsDrags) {
                    [&](auto k) { return 1e3 * rough.tip(k, Column::device_position).y(); });
   expect_over_time(made.curve(slip, "proxy"), rough,
                    [&](auto k) { return 1e3 * rough.tip(k, Column::proxy_position).y(); });
-  const std::string taken = "Energy that friction gave: work and energy in the friction's spring";
+  const std::string taken = "Energy that friction gave: its work and the energy in its spring";
   const auto& smooth = made.curve(taken, "smooth");
   expect_on(
       smooth, [](double) { return 0.0; }, 1e-6);
@@ -450,7 +450,7 @@ TEST(FiguresOf, FrictionShowEdgesAndCorners) {
             energy = std::max(energy, kept.one(k, Column::energy_total));
           }
           if (grip != 300) continue;
-          expect_over_time(made.curve("Wandering in walls of 3000 N/m, " + which,
+          expect_over_time(made.curve("Tip rubbed along walls of 3000 N/m, " + which,
                                       fmt::format("{}, coefficient {}", place, mu)),
                            kept, [&](auto k) { return 1e3 * kept.one(k, Column::energy_total); });
         }
@@ -488,7 +488,7 @@ TEST(FiguresOf, SwitchingShowStopsAndTurns) {
   expect_over_time(made.curve(stop, "proxy x2"), ours,
                    [&](auto k) { return 1e3 * ours.one(k, Column::proxy_position, 0); });
   const std::string gave =
-      "Energy that the joint's stop gave, less the energy that was stored in the stop";
+      "Energy that the joint's stop gave minus the energy that was stored in the stop";
   const Kept paper = made.kept("stop-20-proposed");
   expect_over_time(made.curve(gave, "proposed, 20 N m/rad"), paper,
                    [&](auto k) { return 1e6 * paper.one(k, Column::contact_gain); });
@@ -604,7 +604,7 @@ TEST(FiguresOf, PassivityShowMeansAndBandsOfTenTrials) {
       EXPECT_EQ(made.check(what + label + " [J]").value, highest);
     }
   }
-  EXPECT_NEAR(made.check("mean final E_c, total, standard less eta = 0.6 [J]").value,
+  EXPECT_NEAR(made.check("mean final E_c, total: standard minus eta = 0.6 [J]").value,
               1e-3 * (made.curve("Total", "standard").points.back().y -
                       made.curve("Total", "eta = 0.6").points.back().y),
               1e-12);

@@ -216,7 +216,7 @@ class Study:
         reference, feels that again whenever it wants, and confirms with a key. `make` gives the
         stimulus of a value, `words` what its first two keys make of it. Of each two trials one starts
         above `around`, the reference's level, and one below, in an order of chance, by a factor up to
-        `spread`. Each key is a row; the one that confirms has the value that was found.
+        `spread`. Each key that is pressed adds a row; the row that confirms has the value that was found.
 
         Returns the pairs for equality(). A trial that takes 100 keys is left, and its pair with it.
         Raises ArgumentError for a number of trials that is not even."""

@@ -81,7 +81,7 @@ TEST_F(TheDevicesCard, SaysWhatWasMeasuredAndReckonsWithIt) {
 
 TEST_F(TheDevicesCard, SaysWhyThereIsNoForce) {
   const auto wire = plug_in();
-  EXPECT_THAT(hint("Its arm: omni", kSidePanel), HasSubstr("bound the force"));
+  EXPECT_THAT(hint("Its arm: omni", kSidePanel), HasSubstr("limits the force"));
   EXPECT_TRUE(until([&] {
     if (!desktop->live.force_armed()) desktop->live.loop().arm();
     return desktop->live.loop().snapshot().arming == Arming::on;

@@ -105,7 +105,7 @@ TEST_F(ANewSweep, TakesTheWordsOfAChoiceThatAreTicked) {
   for (std::size_t i = 1; i < laws; ++i) {
     click(find_parameter("coupling.kind")->words[i], kDialog);
   }
-  EXPECT_THAT(says(), HasSubstr("Choose at least one word of each list."));
+  EXPECT_THAT(says(), HasSubstr("Choose at least one entry of each list."));
   click("Start (Enter)", kDialog);
   EXPECT_FALSE(desktop->sweep.runner().busy());
   EXPECT_EQ(desktop->dialog.name(), "new sweep");
