@@ -75,8 +75,7 @@ Outcome drop(TrialRunner& lab) {
   const ExperimentArm& on = lab.arm();
   std::vector<Trial> trials;
   for (const double K : kDropHard) trials.push_back(dropped(on, predictive, K));
-  for (const CouplingKind kind : {proposed, standard})
-    trials.push_back(dropped(on, kind, kDropUsual));
+  for (const auto kind : {proposed, standard}) trials.push_back(dropped(on, kind, kDropUsual));
   const std::vector<TrialResult> results = lab.run(trials);
 
   FigurePanel height =
