@@ -101,7 +101,9 @@ RigStart start_at(const ArmDescription& arm, std::span<const double> position,
     compare_range(arm, joint, x[i], notes);
   }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.dof());
-  return {x, zero, x, zero, zero};
+  RigStart start{x, zero, x, zero, zero};
+  start.owed = true;
+  return start;
 }
 
 }  // namespace
@@ -119,7 +121,8 @@ struct Loop::State {
     return real ? as_taken(plan.parameters, RealDevice::of(plan.arm, 0)) : plan.parameters;
   }
   Vec3 tip() const noexcept { return ticks == 0 ? first_tip : rig->tip(); }
-  bool at_tip_limit() const;  // after a tick
+  bool at_motor_limit() const;  // after a tick, as at_tip_limit()
+  bool at_tip_limit() const;
   void in_si(std::span<const double> of_rig, std::span<double> into) const noexcept;
   void tell_recorder() const noexcept {
     if (recording) recorder->changed(taken());
@@ -140,6 +143,7 @@ struct Loop::State {
   std::vector<double> row_si;  // as everybody has it
   RigStart scratch;            // with room for all that the rig has
   std::uint64_t ticks = 0;
+  bool lost = false;  // was unstable since the begin
   Clock::time_point before{};
   Vec3 first_tip = Vec3::Zero();  // of the device before the first tick [m]
   // Positions and one more of the reading that was not one a joint; 0 once force may be back.
@@ -179,6 +183,7 @@ void Loop::State::begin(const RigStart& start) {
   std::ranges::fill(row, kGuessed);
   std::ranges::fill(row_si, kGuessed);
   ticks = 0;
+  lost = false;
 }
 
 // Takes up a recording. It restarts the rig where it stands, so that its first row determines all
@@ -199,9 +204,22 @@ void Loop::State::step(const RigInput& input) noexcept {
   layout.in(std::span(row), Column::wake_latency)[0] = 0;
   layout.in(std::span(row), Column::compute)[0] = seconds_between(began, Clock::now());
   ++ticks;
+  lost = lost || rig->diverged();
   if (recording && real) recorder->push(row);
   if (recording && !real) recorder->push_waiting(row);
   in_si(row, row_si);
+}
+
+// Part of a limit that counts as the limit: a hand that trembles takes torques off it and onto it.
+constexpr double kNearly = 0.999;
+
+bool Loop::State::at_motor_limit() const {
+  std::vector<MotorLimit> limits = motor_limits(plan.arm, taken());
+  for (MotorLimit& each : limits) {
+    each.peak *= kNearly;
+    each.continuous *= kNearly;
+  }
+  return any_at_limit(layout, row, limits);
 }
 
 bool Loop::State::at_tip_limit() const {
@@ -214,7 +232,6 @@ bool Loop::State::at_tip_limit() const {
   kinematics.frames(of(Column::device_position), frames);
   Jacobian<kAnyDof> J(3, plan.arm.dof());
   kinematics.point_jacobian(frames, plan.arm.dof() - 1, kinematics.tip(frames), J);
-  constexpr double kNearly = 0.999;  // the arm has moved since the limit was taken
   return tip_force<kAnyDof>(of(Column::motor_torque), J) > kNearly * most_tip_force;
 }
 
@@ -322,7 +339,7 @@ LoopEnergy Loop::energy() const noexcept {
           value(Column::energy_ledger)};
 }
 
-bool Loop::diverged() const noexcept { return state_->rig->diverged(); }
+bool Loop::diverged() const noexcept { return state_->lost; }
 
 void Loop::record(const std::string& file, bool replace) {
   State& s = *state_;
@@ -417,8 +434,7 @@ std::string DeviceLoop::force_text() const {
   if (walls < kWhole) {
     text = fmt::format("walls held back to {:.0f} % by the law's energy account", 100 * walls);
   }
-  const bool motors = any_at_limit(s.layout, row, motor_limits(s.plan.arm, s.taken()));
-  const std::string limit = motors             ? "motors at their limit"
+  const std::string limit = s.at_motor_limit() ? "motors at their limit"
                             : s.at_tip_limit() ? "motors at the tip's limit"
                                                : "";
   return text + (text.empty() || limit.empty() ? "" : "; ") + limit;
@@ -450,7 +466,8 @@ void SimulatedLoop::start(Point3 target) {
 
 std::span<const double> SimulatedLoop::step(const Hand& hand) noexcept {
   State& s = *state_;
-  HandInput input{Vec3(hand.target[0], hand.target[1], hand.target[2]), hand.grip};
+  HandInput input{Vec3(hand.target[0], hand.target[1], hand.target[2]),
+                  std::clamp(hand.grip, 0.0, 1.0)};
   input.magnet = hand.magnet;
   if (hand.torque.size() == joints()) input.torque = hand.torque;
   const bool finite = std::ranges::all_of(hand.target, finite_number) && std::isfinite(hand.grip) &&
@@ -491,12 +508,9 @@ std::string library_version() { return program_version(); }
 std::vector<SettingInfo> setting_list() {
   std::vector<SettingInfo> all;
   for (const ParameterInfo& info : parameter_table()) {
-    all.push_back({info.key,
-                   info.unit,
-                   info.minimum,
-                   info.maximum,
-                   {info.words.begin(), info.words.end()},
-                   info.live,
+    std::vector<std::string> words(info.words.begin(), info.words.end());
+    if (info.kind == FieldInfo::Kind::flag) words = {"false", "true"};
+    all.push_back({info.key, info.unit, info.minimum, info.maximum, std::move(words), info.live,
                    info.meaning});
   }
   return all;

@@ -80,7 +80,9 @@ void refuse_fixed(const ParameterInfo& info) {
 }  // namespace
 
 LibraryPlan read_plan(const LoopOptions& options, bool device) {
-  for (const std::string& setting : options.settings) refuse_simulated(setting, device);
+  for (const std::string& setting : options.settings) {
+    refuse_simulated(key_of_setting(setting), device);
+  }
   LibraryPlan all;
   RunPlan& plan = all.plan;
   plan.arm = read_arm(options);
@@ -156,7 +158,7 @@ const ParameterInfo& setting_named(std::string_view key) {
 }
 
 void set_live(Parameters& p, const std::string& key_value, bool device) {
-  refuse_simulated(key_value, device);
+  refuse_simulated(key_of_setting(key_value), device);
   Parameters changed = p;
   apply_setting(changed, key_value);
   for (const ParameterInfo& info : parameter_table()) {

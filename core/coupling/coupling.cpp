@@ -79,8 +79,7 @@ void Coupling<N>::book(const LawSettings& p, const LawInput<N>& in, const Proxy<
     ledger_.add(in.x1, ledger_.located(in.x1), sent, in.b_d_sure, given, in.encoder_step, elapsed_);
   }
   const double spring = spring_energy<N>(p.k_vc, in.x1 - proxy.x(), in.limit);
-  ledger_.settle(p.energy, spring + proxy.kinetic_energy() + proxy.contact_potential(),
-                 in.authority == 0);
+  ledger_.settle(p.energy, spring + proxy.kinetic_energy() + proxy.contact_potential());
   if (in.armed_anew) ledger_.refill();
   const bool sure = (in.b_d_sure.array() >= in.b_d.array()).all();
   ledger_.forgive(before, sure ? least_left_ : std::max(least_left_, Ledger<N>::kForgiven));

@@ -33,7 +33,11 @@ class Eba final : public Law<N> {
     }
     bool on_its_way = false;
     for (int d = 0; d <= most; ++d) on_its_way = on_its_way || !port_.sent(d).isZero(0);
-    if (wanted.isZero(0) && !on_its_way) E_.fill(0);
+    // Out of walls nothing is saved up. A debt stays until the damping has paid it: a tick that
+    // came late held its torque for longer than was paid for.
+    if (wanted.isZero(0) && !on_its_way) {
+      for (double& energy : E_) energy = std::min(energy, 0.0);
+    }
     const double cost = price(wanted, b, in.tick);
     share_ = 1;
     double reserved = 0;

@@ -18,6 +18,7 @@ template <int N>
 class ProxyLink;
 template <int N>
 class Ledger;
+enum class Owed : std::uint8_t;  // see Ledger
 
 // State in which a law begins: device and proxy as they are.
 template <int N>
@@ -27,7 +28,7 @@ struct LawStart {
   const Vec<N>& f1_hat;  // human torque, if known [N m]
   // Energy that the human may still be given [J]; none: as left by the loop so far.
   std::optional<double> reserve{};
-  bool owed = false;        // the human has not put in the energy that is stored
+  Owed owed{};
   bool takes_over = false;  // another law has been in force until now
 };
 

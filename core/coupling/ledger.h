@@ -14,6 +14,13 @@
 
 namespace limpid {
 
+// What of the energy that is stored when an account begins the human has not put in.
+enum class Owed : std::uint8_t {
+  nothing,
+  growth,  // what there is more than the account last knew of
+  all,
+};
+
 // H = E - (energy stored in device and proxy). While H >= 0 the energy given at the human's port
 // since the start is at most E0, beyond what came in and was dissipated. H is kept to at most four
 // times E0: this much may be given in any part of the time.
@@ -24,8 +31,8 @@ template <int N>
 class Ledger {
  public:
   // Begins anew. left: reserve left by an earlier part of the run [J]; none: this ledger's own.
-  // owed: the human has not put in the energy that is stored now.
-  void start(const Vec<N>& y, std::optional<double> left, bool owed) {
+  // owed: what of the energy that is stored now the human has not put in.
+  void start(const Vec<N>& y, std::optional<double> left, Owed owed) {
     owed_ = owed;
     if (left) {
       left_ = *left;
@@ -73,27 +80,28 @@ class Ledger {
     for (int d = 0; d < most_; ++d) on_its_way_ += std::max(0.0, sent(d).dot(dx_));
   }
 
-  // Takes the energy that is stored now [J]. The first one is a debt where it is owed. Its growth
-  // while no torque reaches the motors (idle) is none: the hand alone brought it there.
-  void settle(double E0, double stored, bool idle = false) {
+  // Takes the energy that is stored now [J]. The first one is a debt where it is owed; so is its
+  // growth while no torque reaches the motors, against which nobody had to push.
+  void settle(double E0, double stored) {
     E0_ = E0;
     const double added = stored - std::exchange(stored_, stored);
     if (fresh_) {
-      H_ = std::min(E0, left_) - (owed_ ? stored : 0);
+      const double owed = owed_ == Owed::all      ? stored
+                          : owed_ == Owed::growth ? std::max(0.0, added)
+                                                  : 0;
+      H_ = std::min(E0, left_) - owed;
       E_.fill(H_ + stored);
       fresh_ = false;
       return;
     }
-    for (int d = least_; d <= most_; ++d) {
-      if (idle) at(d) += added;
-      at(d) = std::min(at(d), kCap * E0 + stored);
-    }
+    for (int d = least_; d <= most_; ++d) at(d) = std::min(at(d), kCap * E0 + stored);
     H_ = E() - stored;
   }
-  // After settle(): gives the hand E0 anew, when force has been requested.
+  // After settle(): gives the hand E0 anew, when force has been requested. Until then no motor
+  // pushed, so what is stored is a debt.
   void refill() {
-    H_ = E0_;
-    E_.fill(E0_ + stored_);
+    H_ = E0_ - stored_;
+    E_.fill(E0_);
   }
 
   // After settle(), for a device whose damping is not sure. The damping took energy from the hand
@@ -162,7 +170,8 @@ class Ledger {
   double& at(int delay) { return E_[static_cast<std::size_t>(delay)]; }
   double E() const { return *std::min_element(E_.begin() + least_, E_.begin() + most_ + 1); }
 
-  bool fresh_ = true, owed_ = false;
+  bool fresh_ = true;
+  Owed owed_ = Owed::nothing;
   int least_ = 0, most_ = 0;
   std::array<double, kMostDelay + 1> E_{};  // by delay [J]
   double E0_ = 0, stored_ = 0, on_its_way_ = 0;

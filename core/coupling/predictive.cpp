@@ -246,10 +246,8 @@ void Predictive<N>::balance(const LawSettings& p, const LawInput<N>& in, const P
     network_.advance(ledger.dx(), elapsed_);
     network_.lose(-cut_.dot(ledger.dx()));
   }
-  ledger.settle(p.energy,
-                held(p.k_vc, ledger, proxy, motors) + network_.storage() + proxy.kinetic_energy() +
-                    proxy.contact_potential(),
-                in.authority == 0);
+  ledger.settle(p.energy, held(p.k_vc, ledger, proxy, motors) + network_.storage() +
+                              proxy.kinetic_energy() + proxy.contact_potential());
   if (in.armed_anew) ledger.refill();
   const bool sure = (in.b_d_sure.array() >= in.b_d.array()).all();
   if (!sure && in.authority > 0) ledger.forgive_at_rest(in.encoder_step, in.tick);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/coupling/device_tank.h"
 #include "core/coupling/law_at_tip.h"
@@ -51,7 +52,10 @@ class Tank final : public Law<N> {
   double sent2_ = 0, got1_ = 0;  // energy from proxy to device
   double reserve_ = 0;           // energy in both tanks and between them when the tick began [J]
   double left_ = std::numeric_limits<double>::infinity();  // of an earlier part of the run [J]
-  bool fresh_ = true, owed_ = false, takes_over_ = false;  // see LawStart
+  double stored_ = 0;  // in proxy and walls when the tick began [J]
+  bool idle_ = false;  // no torque reached the motors in the last tick
+  bool fresh_ = true, takes_over_ = false;
+  Owed owed_{};         // see LawStart
   double elapsed_ = 0;  // since the previous reading; 0 at the first [s]
   double freely_ = 1;   // the proxy's damping over that with its tank's damper [-]
   double share_ = 1;    // share of the device's torque [-]
@@ -62,7 +66,7 @@ void Tank<N>::start(const LawStart<N>& at) {
   if (at.reserve) {
     left_ = *at.reserve;
   } else if (!fresh_) {
-    left_ = device_.energy() + proxy_ + on_its_way() - work2_;
+    left_ = device_.energy() + proxy_ + on_its_way() - (idle_ ? 0 : work2_);
   }
   fresh_ = true;
   owed_ = at.owed;
@@ -78,6 +82,8 @@ template <int N>
 void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay, const LawInput<N>& in,
                      const Proxy<N>& proxy) {
   device_.expect(delay, in.delay_most);
+  const double stored = proxy.kinetic_energy() + proxy.contact_potential();
+  const double added = stored - std::exchange(stored_, stored);
   if (fresh_) {
     if (takes_over_) left_ = in.ledger->reserve();
     const double all = std::min(p.tank_energy, left_), half = std::max(0.0, all / 2);
@@ -85,28 +91,30 @@ void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay, const 
     const double in_spring =
         takes_over_ ? spring_energy<N>(c.k_vc, in.x1 - proxy.x(), in.limit) : 0;
     device_.start(in.x1, all - half + in_spring);
-    proxy_ = half - (owed_ ? proxy.kinetic_energy() + proxy.contact_potential() : 0);
+    proxy_ = half - (owed_ == Owed::all      ? stored
+                     : owed_ == Owed::growth ? std::max(0.0, added)
+                                             : 0);
     fresh_ = false;
   } else if (elapsed_ > 0) {
     device_.settle(in.x1, in.b_d_sure, in.encoder_step, elapsed_, p.tank_most);
-    proxy_ = std::min(proxy_ - work2_, p.tank_most);
+    proxy_ = std::min(proxy_ - (idle_ ? added : work2_), p.tank_most);
   }
   work2_ = 0;
   if (in.armed_anew) {
     device_.add(std::max(0.0, p.tank_energy / 2 - device_.energy()));
-    proxy_ = std::max(proxy_, p.tank_energy / 2);
+    proxy_ = std::max(proxy_, p.tank_energy / 2 - stored);
   }
   reserve_ = device_.energy() + proxy_ + on_its_way();
 }
 
 // Moves the proxy. A damper holds its drive back instead of weakening it: a proxy at rest on a wall
-// is pressed as hard as ever, which takes no energy. While no torque reaches the motors the hand
-// alone moves it, and the tank does not pay.
+// is pressed as hard as ever, which takes no energy. While no torque reaches the motors it follows
+// the hand whatever the tank has; what proxy and walls store meanwhile is a debt of the tank.
 template <int N>
 void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& in,
                    const FromDevice<N>& device, Proxy<N>& proxy) {
   const double T = in.T;
-  const bool idle = in.authority == 0;
+  const bool idle = idle_ = in.authority == 0;
   proxy_ += device.sent - got2_;
   got2_ = device.sent;
   const double surplus = p.tank_share * std::max(0.0, proxy_ - p.tank_energy / 2);
@@ -121,7 +129,7 @@ void Tank<N>::move(const Settings& p, const SpringDamper& c, const LawInput<N>& 
     drive.setZero();
   }
   proxy.advance(T, {drive, damping});
-  work2_ = idle ? 0 : T * proxy.tau().dot(proxy.vbar());
+  work2_ = T * proxy.tau().dot(proxy.vbar());
   freely_ = idle || proxy_ > 0 ? own / damping : 0;
 }
 

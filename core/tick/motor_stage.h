@@ -7,8 +7,10 @@
 
 namespace limpid {
 
-// Clamps the torque; where motors are guarded it bounds its rate as well. While a coupling is being
-// switched the torque moves at a bounded rate until it meets the new command, for 0.2 s at most.
+// Clamps the torque; where motors are guarded it bounds its growth as well. It falls at once:
+// torque that goes on after a wall was left gives the hand energy that no law has counted. While a
+// coupling is being switched the torque moves at a bounded rate, up and down, until it meets the
+// new command, for 0.2 s at most.
 template <int N>
 class MotorStage {
  public:
@@ -26,9 +28,9 @@ class MotorStage {
   bool steady() const { return !slewing_; }
 
   // Returns the motors' torque for this command [N m]. `gain`: the part of the limited torque that
-  // may leave, 0 to 1; at 0 the torque is zero at once. `slew`: time from no torque to a joint's
-  // limit, always in force [s]; 0: only while a coupling is being switched. `dt`: time since the
-  // last torque left [s].
+  // may leave, 0 to 1; at 0 the torque is zero at once. `slew`: least time from no torque to a
+  // joint's limit, always in force [s]; 0: only while a coupling is being switched. `dt`: time
+  // since the last torque left [s].
   const Vec<N>& pass(const Vec<N>& command, const TorqueLimits<N>& limits, double gain, double dt,
                      double slew = 0) {
     Vec<N> target = gain * limits.within(command);
@@ -39,7 +41,11 @@ class MotorStage {
     if (slewing_ || slew > 0) {
       // Straight towards `target`, all joints together: both ends are within the limits, and so is
       // all between. The last torque may be outside them if limits or pose changed.
-      const Vec<N> from = limits.within(tau_);
+      Vec<N> from = limits.within(tau_);
+      if (!slewing_) {
+        from = from.cwiseMax(target.cwiseMin(0.0)).cwiseMin(target.cwiseMax(0.0));
+        from = limits.within(from);
+      }
       const Vec<N> way = target - from;
       const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
       // For the slowest joint; a joint without a motor has neither way nor step.

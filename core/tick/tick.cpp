@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/coupling/ledger.h"
 #include "core/math/subnormals.h"
 #include "core/tick/as_taken.h"
 
@@ -64,7 +65,8 @@ void Tick<N>::restart_here(const Parameters& p, const Start<N>& start) {
   tau1_ = vbar2_ = loads_ = zero;
   b_d_ = resolve<N>(p.damping, arm_damping_);
   kind_ = p.kind;
-  start_law({start.x1, start.v1, start.f1_hat, start.reserve, start.owed});
+  start_law(
+      {start.x1, start.v1, start.f1_hat, start.reserve, start.owed ? Owed::all : Owed::nothing});
   k_ = period_ = 0;
   diverged_ = false;
   restarted_ = true;
@@ -199,7 +201,7 @@ void Tick<N>::begin_anew(const Reading<N>& in) {
   tau1_.setZero();
   loads_.setZero();
   motors_.start();
-  start_law({in.measured, f1_hat_, f1_hat_});
+  start_law({in.measured, f1_hat_, f1_hat_, std::nullopt, Owed::growth});
   x1_before_ = in.x;
 }
 
@@ -226,7 +228,7 @@ template <int N>
 void Tick<N>::switch_law(CouplingKind to, const Vec<N>& x1) {
   motors_.begin_slew();
   proxy_.contacts().forget();
-  start_law({x1, velocity_.estimate(), f1_hat_, std::nullopt, false, true});
+  start_law({x1, velocity_.estimate(), f1_hat_, std::nullopt, Owed::nothing, true});
   kind_ = to;
 }
 

@@ -250,7 +250,8 @@ Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, con
 }
 
 // Hides solids whose nearest point, seen from the free place, something else holds that is nearer.
-// Two that hold the point both push if they face different ways: it is in a corner of them.
+// Two that hold the point both push if they face different ways: it is in a corner of them. What
+// does not touch the probe hides nothing that does.
 void SolidTouch::hide_covered(std::span<const Solid> solids) {
   const Vec3 centre = count_ > 0 ? near_[0].point : free_;
   free_ = centre;
@@ -273,12 +274,14 @@ void SolidTouch::hide_covered(std::span<const Solid> solids) {
   const auto on = [&](const Near& n, const Vec3& place) {
     return distance_to(solids[n.solid], place).distance <= kMeeting;
   };
+  const auto touched = [this](const Near& n) { return n.surface.distance < radius_; };
   for (Near& n : nears()) {
     if (n.seen.distance < 0) continue;
     const Vec3 place = place_of(n);
     const auto hides = [&](const Near& other) {
       const double further = n.seen.distance - other.seen.distance;
       if (further < -kTied || !other.counts || other.seen.distance < 0) return false;
+      if (touched(n) && !touched(other)) return false;
       if (other.solid == n.solid || apart(n, other) || !on(other, place)) return false;
       // The first counts of two that hold each other's nearest point.
       return further > kTied || other.solid < n.solid || !on(n, place_of(other));

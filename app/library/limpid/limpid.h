@@ -187,8 +187,9 @@ struct RowColumn {
   std::size_t width = 0;   // numbers: 1, 3, one a joint, ...
 };
 
-// Energies of the coupling since the loop began [J]; 0 before the first tick. While there is no
-// force, the proxy follows the device, and E_c counts what the hand stores in its walls.
+// Energies of the coupling since the loop, or its recording, began [J]; 0 before the first tick.
+// While there is no force, the proxy follows the device, and E_c counts what the hand stores in its
+// walls.
 struct LoopEnergy {
   // E_c: given by the coupling, with the device's own damping. A passive one's is 0 at most.
   double controller = 0;
@@ -227,7 +228,7 @@ class LIMPID_API Loop {
   // what it returns.
   const std::vector<RowColumn>& derived_columns() const;
   std::array<double, 15> derived(std::span<const double> row) const noexcept;
-  double time() const noexcept;       // t_k [s]; 0 before the first tick
+  double time() const noexcept;       // t_k since start or recording began [s]; 0 before a tick
   Point3 tip() const noexcept;        // of the device, after the tick [m]
   Point3 proxy_tip() const noexcept;  // of the proxy, and of the device before the first tick [m]
   LoopEnergy energy() const noexcept;

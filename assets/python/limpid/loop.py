@@ -32,7 +32,7 @@ class NoChannel(ArgumentError, KeyError):
 
 
 class Energy(NamedTuple):
-    """Energies of the coupling since the loop began [J]."""
+    """Energies of the coupling since the loop, or its recording, began [J]."""
 
     controller: float  # E_c, what the coupling gave with the device's own damping; passive: <= 0
     commanded: float  # E_c of motors and proxy alone
@@ -160,6 +160,8 @@ class _AnyLoop:
         whole = next(iter(settings_of({}, {key.replace(".", "__"): 0})))
         words = next((each.words for each in settings() if each.key == whole), [])
         found = self._loop.get(whole)
+        if words == ["false", "true"]:
+            return bool(found)
         return words[int(found)] if words else float(found)
 
     def record(self, file: PathLike, force: bool = False) -> None:

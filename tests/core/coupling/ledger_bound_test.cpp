@@ -36,7 +36,7 @@ class Adversary {
       : random_(seed), q_(q), delay_(delay), b_(b) {
     x_ = random_.vector(n, 1);
     acted_ = Any::Zero(n);
-    ledger_.start(read(x_), std::nullopt, false);
+    ledger_.start(read(x_), std::nullopt, Owed::nothing);
     ledger_.expect(0, 3);
     ledger_.settle(kReserve, 0);
     sent_.assign(8, Any::Zero(n));

@@ -46,7 +46,7 @@ TEST(PredictiveLaw, IsTheJointSolutionOfItsEquations) {
     law->start({x1, v1, zero});
     law->locate(p, {x1, v1, 0, 0});
     Ledger<3> ledger;
-    ledger.start(x1, std::nullopt, false);
+    ledger.start(x1, std::nullopt, Owed::nothing);
     LawInput<3> in{x1, v1, device, zero, zero, T, frames, b_d, zero, most, 1, T, 0, 0};
     in.ledger = &ledger;
     const Eigen::VectorXd tau1 = law->step(p, in, proxy);

@@ -132,6 +132,26 @@ TEST(SolidTouch, SqueezedBetweenABoxAndAFloorBothHoldThePoint) {
   }
 }
 
+// The free place is nearer to a dome than to the floor, by less than rounding parts things that
+// meet; the point itself is in the floor and outside of the dome.
+TEST(SolidTouch, WhatIsNotTouchedHidesNothing) {
+  constexpr double kRadius = 0.03, kMiddle = 0.01, kDeep = 3.33e-3;
+  Pose dome = Pose::Identity();
+  dome.translation() = Vec3(0, 0, kMiddle);
+  const std::vector<Solid> solids{{Plane{}, Pose::Identity(), {}}, {Sphere{kRadius}, dome, {}}};
+  // Where a place just above the floor is that far from the dome.
+  for (double off = 1e-7; off < 3e-6; off += 1e-7) {
+    const double out = kRadius + off, up = kMiddle - kAbove;
+    const Vec3 at(std::sqrt(out * out - up * up), 0, 0);
+    SolidTouch touch(0, 2);
+    counting(touch, solids, at + Vec3(0, 0, 0.001));
+    const auto near = counting(touch, solids, at - kDeep * Vec3::UnitZ());
+    ASSERT_FALSE(near.empty()) << off;
+    EXPECT_EQ(near[0].solid, 0u) << off;
+    EXPECT_NEAR(near[0].surface.distance, -kDeep, 1e-12) << off;
+  }
+}
+
 TEST(SolidTouch, OfTwoHalfSpacesBothCount) {
   const std::vector<Solid> solids{{Plane{Vec3::UnitZ()}, Pose::Identity(), {}},
                                   {Plane{Vec3(0, 0.6, 0.8)}, Pose::Identity(), {}}};
