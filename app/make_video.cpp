@@ -10,6 +10,7 @@
 #include "app/cli/options.h"
 #include "app/cli/progress.h"
 #include "app/film/session_film.h"
+#include "app/run/run_watch.h"
 #include "app/story/run_story.h"
 
 namespace limpid {
@@ -59,6 +60,22 @@ FilmOrder order_of(const VideoOptions& options, double text_scale) {
           .rerun = options.rerun};
 }
 
+// Says which options of the picture have no effect on a recording of so many runs.
+void say_without_effect(const VideoOptions& options, std::size_t runs) {
+  const auto say = [](const std::string& what) { fmt::print(stderr, "limpid: {}\n", what); };
+  if (!options.rerun.empty() && runs > 1) {
+    say(fmt::format("--rerun: shows the first run and its re-run; {} not shown",
+                    runs == 2 ? "the second run is" : "further runs are"));
+    return;
+  }
+  if (options.lens && runs > 1 && !options.overlaid) {
+    say("--lens: has no effect on runs side by side; --overlaid draws them in one picture");
+  }
+  if (options.overlaid && runs == 1 && options.rerun.empty()) {
+    say("--overlaid: has no effect on a recording of one run");
+  }
+}
+
 int stopped(double at, double whole, const std::string& out) {
   fmt::print(stderr, "limpid: stopped at {:.1f} of {:.1f} s; {} was not written\n", at, whole, out);
   return 1;
@@ -100,6 +117,7 @@ int make_video(const std::string& file, const VideoOptions& options, double text
   order.steps = std::move(told.steps);
   if (!told.title.empty()) order.title = told.title;
   cut(order, session, file);
+  say_without_effect(options, session.lanes());
   catch_interrupts();
   return make(order, session, file, options.print_progress);
 }
@@ -109,6 +127,7 @@ int make_story_video(const std::string& script, const VideoOptions& options, cha
   FilmOrder order = order_of(options, 0);
   order.title = story.title;
   order.steps = story.steps;
+  say_without_effect(options, story.plan.lanes());
   catch_interrupts();
   StoryRun run;
   {
@@ -116,7 +135,11 @@ int make_story_video(const std::string& script, const VideoOptions& options, cha
     run = run_story(story, interrupted, [&](double seconds) { progress.at(seconds); });
   }
   if (run.end.stopped) return stopped(0, story.seconds(), options.out);
-  return make(order, run.session, script, options.print_progress);
+  const int status = make(order, run.session, script, options.print_progress);
+  for (const std::string& warning : warnings_of(run.session, script)) {
+    fmt::print(stderr, "limpid: warning: {}\n", warning);
+  }
+  return run.end.diverged ? 1 : status;
 }
 
 }  // namespace limpid

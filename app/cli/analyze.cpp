@@ -14,6 +14,7 @@
 #include "app/run/provenance.h"
 #include "app/run/replay.h"
 #include "app/run/tip_limits.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 namespace {
@@ -26,7 +27,20 @@ struct AnalyzeOptions {
   bool json = false, all = false;
 };
 
+// Unit of an arm's dampers, and how many make one of the settings'.
+struct DamperUnit {
+  const char* name = "N m s/rad";
+  double many = 1;
+};
+
+DamperUnit damper_unit(const ArmDescription& arm) {
+  if (!arm.only_slides()) return {};
+  const NormUnits units = norm_units(slides_of(arm));
+  return {"N s/m", units.torques / units.angles};
+}
+
 void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
+  const DamperUnit unit = damper_unit(arm);
   const auto list = [](const std::vector<double>& values) {
     return fmt::format("{:.4g}", fmt::join(values, ", "));
   };
@@ -37,7 +51,7 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
   }
   fmt::print("observer bandwidth w_f     {} rad/s\n", list(a.w_f));
   fmt::print("locked system w_c          {} rad/s\n", list(a.w_c));
-  fmt::print("damping b = b_d + b_v      {:.4g} N m s/rad\n", a.b);
+  fmt::print("damping b = b_d + b_v      {:.4g} {}\n", unit.many * a.b, unit.name);
   const Passivity known = passivity(a, p);
   fmt::print("{:<27}{}: {}\n", fmt::format("{}, eta {:.4g}", name(p.kind), p.eta),
              !known.passive   ? "not known to be passive"
@@ -52,9 +66,9 @@ void print(const Analysis& a, const ArmDescription& arm, const Parameters& p) {
       "eta_min, coupling's spring {:.4f}   (the same, with the proxy behind k_vc and b_vc)\n",
       a.eta_min_compliant);
   if (a.condition3.known) {
-    fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} N m s/rad\n",
-               a.condition3.holds ? "holds" : "BROKEN", a.condition3.device_margin,
-               a.condition3.proxy_margin);
+    fmt::print("condition (3)              {}   margins: device {:.4g}, proxy {:.4g} {}\n",
+               a.condition3.holds ? "holds" : "BROKEN", unit.many * a.condition3.device_margin,
+               unit.many * a.condition3.proxy_margin, unit.name);
   } else {
     fmt::print(
         "condition (3)              no bound is known because packets are lost (link.loss)\n");
@@ -118,14 +132,14 @@ nlohmann::ordered_json as_json(const TipLimits& tip, const Parameters& p) {
 }
 
 // Units of the numbers above, by their keys; numbers without an entry have no unit.
-nlohmann::ordered_json units() {
+nlohmann::ordered_json units(const char* damper) {
   return {{"w_f", "rad/s"},
           {"w_c", "rad/s"},
-          {"b", "N m s/rad"},
+          {"b", damper},
           {"delay", "s"},
           {"link", "s"},
-          {"condition3.device_margin", "N m s/rad"},
-          {"condition3.proxy_margin", "N m s/rad"},
+          {"condition3.device_margin", damper},
+          {"condition3.proxy_margin", damper},
           {"tip.mass", "kg"},
           {"tip.led_mass", "kg"},
           {"tip.damping", "N s/m"},
@@ -204,16 +218,17 @@ int analyze_command(const AnalyzeOptions& options) {
     return 0;
   }
   if (!tip && !options.mass) fmt::print(stderr, "limpid: warning: {}\n", still);
+  const DamperUnit unit = damper_unit(arm);
   nlohmann::ordered_json json{{"provenance", provenance(settings_digest(p), std::nullopt)},
                               {"w_f", a.w_f},
                               {"w_c", a.w_c},
-                              {"b", a.b},
+                              {"b", unit.many * a.b},
                               {"eta_min", a.eta_min}};
   if (a.eta_min_band) json["eta_min_band"] = *a.eta_min_band;
   json["eta_min_grip"] = a.eta_min_grip;
   json["eta_min_compliant"] = a.eta_min_compliant;
-  json["condition3"] = {{"device_margin", a.condition3.device_margin},
-                        {"proxy_margin", a.condition3.proxy_margin},
+  json["condition3"] = {{"device_margin", unit.many * a.condition3.device_margin},
+                        {"proxy_margin", unit.many * a.condition3.proxy_margin},
                         {"known", a.condition3.known},
                         {"holds", a.condition3.holds}};
   const Passivity known = passivity(a, p);
@@ -226,7 +241,7 @@ int analyze_command(const AnalyzeOptions& options) {
   json["link"] = a.link;
   json["measured"] = a.measured;
   if (!options.mass) json["tip"] = tip ? as_json(*tip, p) : nlohmann::ordered_json(nullptr);
-  json["units"] = units();
+  json["units"] = units(unit.name);
   if (of.hand) {
     json["measured_grip"] = measured_json(*of.hand);
     json["units"].update(measured_units());
@@ -256,7 +271,9 @@ Command declare_analyze(CLI::App& app) {
                    ->type_name("HZ");
   auto* mass = command
                    ->add_option("--mass", options->mass,
-                                "a scalar inertia in place of the arm's inertia in the rest pose")
+                                "a scalar inertia in place of the arm's inertia in the rest pose; "
+                                "hand.stiffness and hand.damping then count in N m/rad and N m "
+                                "s/rad")
                    ->type_name("KG_M2");
   auto* grip = command
                    ->add_option("--grip", options->grip,

@@ -19,6 +19,7 @@
 #include "app/run/provenance.h"
 #include "app/run/tip_limits.h"
 #include "core/realtime/realtime.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 namespace {
@@ -101,7 +102,8 @@ Source of_device(const CharacterizeOptions& options) {
 }
 
 KnownNumber encoder_number(const Source& source, const InputOptions& input, Parameters& p) {
-  KnownNumber number{"encoder_step", "step of the encoders", "rad", 0, {}};
+  const char* const unit = norm_units(slides_of(source.arm)).angle;
+  KnownNumber number{"encoder_step", "step of the encoders", unit, 0, {}};
   if (sets(input, &DeviceSettings::encoder_step, 0.01, 0.02)) {
     number.from = "set";
   } else if (source.encoder_step.value_or(0) > 0) {
@@ -182,18 +184,24 @@ Characterized subject_of(const CharacterizeOptions& options) {
   Source source = options.device ? of_device(options) : of_file(options);
   const ArmDescription& arm = source.arm;
   if (const std::string still = still_tip(arm); !still.empty()) throw UsageError(still);
-  Parameters base = fitted(arm, make_parameters(input));
+  const Parameters asked = make_parameters(input);
+  Parameters read = asked;
+  KnownNumber encoder = encoder_number(source, input, read);
+  KnownNumber delay = delay_number(source, input, read);
+  // Gains reckon with the delay.
+  Parameters base = fitted(arm, asked, asked.tick * read.device_delay);
+  base.encoder_step = read.encoder_step;
+  base.device_delay = read.device_delay;
+  base.delay = read.delay;
   Characterized subject;
   subject.name = source.name;
   KnownNumber mass{"mass", "mass at the tip", "g", 0, source.from, source.arm_assumed};
   KnownNumber damping = damping_number(source, input, base);
-  KnownNumber encoder = encoder_number(source, input, base);
-  KnownNumber delay = delay_number(source, input, base);
   const Parameters p = make_parameters(input, base);
   const TipLimits tip = tip_limits(arm, rest_pose(arm), p, {});
   mass.value = 1e3 * tip.tip.mass;
   damping.value = tip.tip.damping;
-  encoder.value = p.encoder_step;
+  encoder.value = p.encoder_step * norm_units(slides_of(arm)).angles;
   delay.value = 1e3 * p.tick * p.device_delay;
   const KnownNumber friction = friction_number(
       source, input, friction_at_tip(arm_at(arm, rest_pose(arm)).J, device_friction(arm, p)));

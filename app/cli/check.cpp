@@ -289,13 +289,29 @@ CheckReport on_sweep(const std::string& file) {
   return report;
 }
 
+// Refuses options that have no effect on this kind of file.
+void refuse_options(const InputOptions& input, bool world, const char* kind) {
+  for (const auto& [given, option] :
+       {std::pair(world && !input.device.empty(), "--device"),
+        {world && !input.tip.empty(), "--tip"},
+        {!input.scene.empty(), "--scene"},
+        {input.readings, "--readings"},
+        {input.set_parameters(), "--set, --config, --coupling, --eta, --alpha"}}) {
+    if (given) throw UsageError(fmt::format("{}: not for {}", option, kind));
+  }
+}
+
 constexpr std::size_t kLongestToml = 10'000'000;  // [bytes]
 
 CheckReport on_toml(const CheckOptions& options) {
   const toml::table keys = parse_toml(read_text(options.file, kLongestToml), options.file);
-  if (keys.contains("step")) return on_story(options.file);
-  if (keys.contains("axis") || keys.contains("measure")) return on_sweep(options.file);
-  return on_scene(options.file, options.input);
+  const bool story = keys.contains("step");
+  if (!story && !keys.contains("axis") && !keys.contains("measure")) {
+    return on_scene(options.file, options.input);
+  }
+  refuse_options(options.input, true,
+                 story ? "a story, which names all it needs" : "a sweep, which names all it needs");
+  return story ? on_story(options.file) : on_sweep(options.file);
 }
 
 CheckReport on(const CheckOptions& options) {
@@ -304,10 +320,19 @@ CheckReport on(const CheckOptions& options) {
     throw FileError(fmt::format("{}: {}", options.file, why));
   }
   const std::string suffix = small_suffix(file);
-  if (suffix == ".urdf" || suffix == ".xacro") return on_arm(options.file, options.input);
+  if (suffix == ".urdf" || suffix == ".xacro") {
+    if (!options.input.device.empty()) throw UsageError("--device: not for an arm's own file");
+    return on_arm(options.file, options.input);
+  }
   if (suffix == ".toml") return on_toml(options);
-  if (suffix == ".csv") return on_hand(options.file, options.input);
-  if (model_kind(file) != nullptr) return on_model(options.file);
+  if (suffix == ".csv") {
+    refuse_options(options.input, false, "a hand");
+    return on_hand(options.file, options.input);
+  }
+  if (model_kind(file) != nullptr) {
+    refuse_options(options.input, true, "a model");
+    return on_model(options.file);
+  }
   if (suffix == ".h5") {
     throw FileError(
         fmt::format("{0}: a recording or a table; `limpid info {0}` says what a recording holds",

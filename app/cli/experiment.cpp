@@ -15,6 +15,7 @@
 #include "app/cli/progress.h"
 #include "app/experiments/live.h"
 #include "core/realtime/realtime.h"
+#include "devices/files/config_file.h"
 #include "devices/files/scene/scene_file.h"
 #include "devices/files/toml_reader.h"
 
@@ -72,7 +73,7 @@ Outcome carry_out_with_progress(const Experiment& experiment, const ExperimentAr
 constexpr std::array kGains{"coupling.k_vc", "coupling.b_vc", "coupling.b_v"};
 
 bool sets_a_gain(const std::string& setting) {
-  return std::ranges::count(kGains, setting.substr(0, setting.find('='))) > 0;
+  return std::ranges::count(kGains, key_of_setting(setting)) > 0;
 }
 
 // Refuses options of scene and settings: an experiment has its own.

@@ -131,11 +131,13 @@ std::string metadata_of(const InfoOptions& options, const SessionInfo& i) {
   return json.dump(2) + "\n";
 }
 
+std::string metadata_file(const InfoOptions& options) { return options.csv + "-metadata.json"; }
+
 void write_table(const InfoOptions& options, const Session& session) {
   write_csv(session, options.csv, options.force);
   std::error_code none;
   if (!std::filesystem::is_regular_file(options.csv, none)) return;  // standard output, or a pipe
-  const std::string beside = options.csv + "-metadata.json";
+  const std::string beside = metadata_file(options);
   const std::string wrong = try_write_atomically(beside, metadata_of(options, session.info));
   if (!wrong.empty()) throw FileError(wrong);
   fmt::print(options.json ? stderr : stdout, "written as {}; its sources: {}\n", options.csv,
@@ -234,7 +236,11 @@ int info(const InfoOptions& options) {
   std::error_code none;
   const bool pipe = to_stdout || (std::filesystem::exists(options.csv, none) &&
                                   !std::filesystem::is_regular_file(options.csv, none));
-  if (!options.csv.empty() && !pipe) check_place(options.csv, options.force);
+  if (!options.csv.empty() && !pipe) {
+    check_place(options.csv, options.force);
+    keep_apart("--csv", metadata_file(options), std::span(&options.session, 1));
+    check_place(metadata_file(options), options.force);
+  }
   RowsTold told(options.session);
   const Session session = read_and_tell(options, told);
   const std::vector<std::string> warnings = told.warnings();

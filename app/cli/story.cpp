@@ -13,6 +13,7 @@
 #include "app/run/run_watch.h"
 #include "app/story/run_story.h"
 #include "devices/files/atomic_file.h"
+#include "devices/files/session/session_units.h"
 
 namespace limpid {
 namespace {
@@ -32,6 +33,7 @@ void print_steps(const Story& story) {
 
 void print_numbers(const Story& story, const Session& session) {
   const auto all = measure(story.steps, session);
+  const NormUnits units = norm_units(slides_of(story.plan.arm));
   for (std::size_t i = 0; i < all.size(); ++i) {
     const StoryStep& step = story.steps[i];
     fmt::print("{:.1f} to {:.1f} s  {}\n", step.begins, step.ends, step.caption);
@@ -40,10 +42,12 @@ void print_numbers(const Story& story, const Session& session) {
     for (std::size_t lane = 0; lane < all[i].size(); ++lane) {
       const StepNumbers& n = all[i][lane];
       fmt::print(
-          "    {:{}}  |x_E| up to {:.4g} mrad, |f1| {:.4g} N m rms, |f2| up to {:.4g} N m, E_c "
-          "rises by {:.4g} mJ\n",
-          step.names[lane], width, 1e3 * n.largest_error, n.rms_human, n.largest_contact,
-          1e3 * n.energy_given);
+          "    {:{}}  |x_E| up to {:.4g} {}, |f1| {:.4g} {} rms, |f2| up to {:.4g} {}, E_c rises "
+          "by "
+          "{:.4g} mJ\n",
+          step.names[lane], width, 1e3 * units.angles * n.largest_error, units.milliangle,
+          units.torques * n.rms_human, units.torque, units.torques * n.largest_contact,
+          units.torque, 1e3 * n.energy_given);
     }
   }
 }
@@ -75,7 +79,8 @@ int tell_story(const StoryOptions& options, const MakeVideo& make_video) {
     } catch (const FileError& e) {  // of the results, not of the input
       throw std::runtime_error(e.what());
     }
-    fmt::print("recorded {} ticks of both runs in {}\n", run.session.size(), options.record);
+    fmt::print("recorded {} ticks of {} runs in {}\n", run.session.size(), run.session.lanes(),
+               options.record);
   }
   for (const std::string& warning : warnings_of(run.session, script)) {
     fmt::print(stderr, "limpid: warning: {}\n", warning);
@@ -101,7 +106,7 @@ Command declare_story(CLI::App& app, MakeVideo make_video) {
       ->transform(or_shipped({"stories"}), "", "")
       ->type_name("");
   auto* record =
-      command->add_option("--record", options->record, "write both runs to this session file")
+      command->add_option("--record", options->record, "write all runs to this session file")
           ->type_name("OUT.h5");
   auto* check = command->add_flag("--check", options->check,
                                   "read the script and list the steps, without running them");

@@ -198,6 +198,7 @@ int sweep(const SweepOptions& options) {
     refuse_foreign({options.out, "limpid sweep", {"table", "figure"}, options.force});
   }
   catch_interrupts();
+  if (options.open) check_plan_of(plan, options.out);
   if (options.open) return open_point(plan, *options.open, options.out);
   const SweepFolder folder(plan, options.out);
   try {
@@ -228,9 +229,10 @@ Command declare_sweep(CLI::App& app) {
   command->add_option("--out", options->out, "the folder for the results")
       ->required()
       ->type_name("DIR");
-  command->add_option("--threads", options->threads, "default: one per core; one under mpirun")
-      ->type_name("N")
-      ->check(CLI::Range(1u, kMostThreads));
+  auto* threads =
+      command->add_option("--threads", options->threads, "default: one per core; one under mpirun")
+          ->type_name("N")
+          ->check(CLI::Range(1u, kMostThreads));
   auto* shard = command->add_option("--shard", options->shard, "run only the I-th of N parts")
                     ->type_name("I/N");
   auto* gather = command->add_flag("--gather", options->gather,
@@ -254,11 +256,14 @@ Command declare_sweep(CLI::App& app) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->needs(slurm);
-  command
-      ->add_option("--open", options->open,
-                   "run this point again, record the run in DIR/points and play the recording")
-      ->type_name("POINT");
-  command->add_flag("--csv", options->csv, "write DIR/table.csv as well");
+  auto* open =
+      command
+          ->add_option("--open", options->open,
+                       "run this point again, record the run in DIR/points and play the recording")
+          ->type_name("POINT");
+  require_whole_number(open);
+  auto* csv = command->add_flag("--csv", options->csv, "write DIR/table.csv as well");
+  for (auto* other : {shard, gather, mpi, slurm, threads, csv}) open->excludes(other);
   add_force(*command, options->force);
   command->add_flag("--allow-xacro", options->xacro,
                     "expand arms in xacro that the plan names: this runs code in them");

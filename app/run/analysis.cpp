@@ -230,7 +230,11 @@ Analysis analyze(double mass, const ArmDescription& arm, const Parameters& p,
                  std::optional<double> w_b) {
   const LockedMode mode{mass, device_damping(arm, p).minCoeff() + p.b_v, p.alpha};
   Analysis a = of_modes({mode}, arm, p, w_b);
-  a.eta_min_grip = a.eta_min_compliant = eta_min_grip(mode, p.hand_stiffness, p.hand_damping);
+  a.eta_min_grip = eta_min_grip(mode, p.hand_stiffness, p.hand_damping);
+  const auto scalar = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
+  a.eta_min_compliant = eta_min_compliant(
+      scalar(mass), Eigen::VectorXd::Constant(1, device_damping(arm, p).minCoeff()), p,
+      scalar(p.hand_stiffness), scalar(p.hand_damping), a.eta_min_grip);
   return a;
 }
 

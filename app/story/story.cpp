@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/base/folders.h"
+#include "app/run/fitted_gains.h"
 #include "app/run/lane_settings.h"
 #include "core/dynamics/arm.h"
 #include "core/dynamics/inverse_kinematics.h"
@@ -47,13 +48,8 @@ std::vector<std::pair<std::string, std::uint32_t>> settings_in(const TomlTable& 
   return all;
 }
 
-const ParameterInfo* key_of(const std::string& setting) {
-  const std::string key = setting.substr(0, setting.find_first_of(" \t="));
-  return find_parameter(key);
-}
-
 void check(const std::string& setting, std::size_t lane, double time) {
-  const ParameterInfo* info = key_of(setting);
+  const ParameterInfo* info = find_parameter(key_of_setting(setting));
   if (info == nullptr) return;  // apply_setting has a better message
   if (lane != kAll && !of_controller(*info)) {
     throw ParameterError(
@@ -138,6 +134,7 @@ class Reader {
         file_.need(file_.number("seconds", {0, kLongestStory, true, "s"}), "seconds");
     const std::vector<TomlTable> steps = file_.tables("step");
     if (steps.empty()) file_.refuse_missing("step");
+    fit_settings(steps[0]);
     StoryHand hand(story_.plan.arm, where_, folder_);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const double begins = begin_of(steps[i], i);
@@ -161,6 +158,13 @@ class Reader {
     plan.arm = read_urdf(file("device", "devices", default_device()));
     plan.document = read_scene(file("scene", "scenes", default_scene()), plan.arm);
     plan.models = build_meshes(plan.document);
+  }
+
+  // Lets settings that no step says fit the arm.
+  void fit_settings(const TomlTable& first) {
+    StorySettings asked;
+    asked.read(first, where_, 0);
+    settings_ = StorySettings(fitted(story_.plan.arm, asked.now()[0]));
   }
 
   double begin_of(const TomlTable& step, std::size_t i) const {
@@ -236,7 +240,8 @@ bool flag_in(const TomlTable& step, const char* key, bool otherwise) {
 
 void StorySettings::read(const TomlTable& step, const std::string& where, double time) {
   constexpr std::size_t kThird = 2;
-  if (time == 0 && step.find(lane_name(kThird).c_str()) != nullptr) now_.resize(kThird + 1);
+  if (time == 0 && step.find(lane_name(kThird).c_str()) != nullptr)
+    now_.resize(kThird + 1, now_[0]);
   const std::vector<Parameters> before = now_;
   changes_.resize(now_.size());
   for (const auto& [key, lane] :

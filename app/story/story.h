@@ -69,6 +69,9 @@ bool flag_in(const TomlTable& step, const char* key, bool otherwise);
 // Settings of a story's runs, step by step: two, or three if the first step has `lane3`.
 class StorySettings {
  public:
+  // `base`: the settings where no step says otherwise.
+  explicit StorySettings(const Parameters& base = {}) : now_(2, base) {}
+
   // Takes in the settings that a step beginning at `time` [s] has under `set` (all runs), `first`,
   // `twin` and `lane3`. Errors: FileError.
   void read(const TomlTable& step, const std::string& where, double time);
@@ -82,7 +85,7 @@ class StorySettings {
     double time;
     std::string setting;
   };
-  std::vector<Parameters> began_, now_ = std::vector<Parameters>(2);
+  std::vector<Parameters> began_, now_;
   std::vector<std::vector<Change>> changes_;
 };
 

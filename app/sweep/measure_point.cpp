@@ -1,7 +1,9 @@
 #include "app/sweep/measure_point.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -79,9 +81,20 @@ class BoundarySearch {
 
 }  // namespace
 
+std::string unit_of(const MeasureInfo& measure, const SweepPlan& plan) {
+  std::vector<std::string> units;
+  for (const auto& [world, run] : plan.worlds) {
+    std::string unit = measure.unit_in(norm_units(slides_of(run->arm)));
+    if (std::ranges::find(units, unit) == units.end()) units.push_back(std::move(unit));
+  }
+  return units.empty() ? measure.unit : fmt::format("{}", fmt::join(units, " or "));
+}
+
 std::vector<SweepColumn> measured_columns(const SweepPlan& plan) {
   std::vector<SweepColumn> columns;
-  for (const MeasureInfo* m : plan.measures) columns.push_back({m->name, m->unit, m->what});
+  for (const MeasureInfo* m : plan.measures) {
+    columns.push_back({m->name, unit_of(*m, plan), m->what});
+  }
   if (!plan.boundary) return columns;
   const SweepAxis& axis = plan.boundary->axis;
   const std::string condition = plan.boundary->condition.measure->name;

@@ -1,5 +1,7 @@
 #include "app/sweep/measures.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -59,16 +61,16 @@ constexpr MeasureInfo kTable[] = {
      "largest distance of a body's centre of mass from its start",
      [](const RunMeter& m) { return m.bodies_moved(); }},
     {"error_largest", "coordination error, largest", "rad", "largest |x_E|",
-     [](const RunMeter& m) { return of(m).largest_error; }},
+     [](const RunMeter& m) { return m.units().angles * of(m).largest_error; }},
     {"error_slope", "coordination error over contact torque", "rad/(N m)",
      "|x_E| over |f2|, least squares through the origin",
      [](const RunMeter& m) { return m.error_slope(); }},
     {"contact_largest", "contact torque, largest", "N m", "largest |f2|",
-     [](const RunMeter& m) { return of(m).largest_contact; }},
+     [](const RunMeter& m) { return m.units().torques * of(m).largest_contact; }},
     {"contact_share", "share of time in contact", "-", "share of the time that is spent in contact",
      [](const RunMeter& m) { return of(m).share_in_contact(); }},
     {"human_rms", "hand torque, rms", "N m", "rms of the human's torque |f1|",
-     [](const RunMeter& m) { return of(m).human_rms(); }},
+     [](const RunMeter& m) { return m.units().torques * of(m).human_rms(); }},
     {"chatter", "chatter of the tip", "m/s", "rms speed of the tip above 20 Hz in the second half",
      [](const RunMeter& m) { return m.chatter(); }, true},
     {"felt_stiffness", "stiffness felt", "N/m",
@@ -103,6 +105,16 @@ constexpr MeasureInfo kTable[] = {
 
 std::span<const MeasureInfo> measure_table() { return kTable; }
 
+std::string MeasureInfo::unit_in(const NormUnits& units) const {
+  if (units.angles == 1 && units.torques == 1) return unit;
+  const std::string_view mine = unit;
+  if (mine == "rad") return units.angle;
+  if (mine == "N m") return units.torque;
+  if (mine == "rad/(N m)") return fmt::format("{}/{}", units.angle, units.torque);
+  if (mine == "N m s/rad") return fmt::format("{} s/{}", units.torque, units.angle);
+  return unit;
+}
+
 const MeasureInfo* find_measure(std::string_view name) {
   const auto* found = std::ranges::find(kTable, name, &MeasureInfo::name);
   return found == std::end(kTable) ? nullptr : found;
@@ -118,7 +130,7 @@ std::string words_of_measure(std::string_view name) {
 RunMeter::RunMeter(const ArmDescription& arm, double T, std::uint64_t rows, bool felt,
                    const Object* wall, int bodies)
     : layout_(arm.dof(), bodies),
-      summary_(layout_),
+      summary_(layout_, arm),
       T_(T),
       rows_(rows),
       bodies_gain_(bodies > 0 ? 0 : kNoMeasure),
@@ -226,7 +238,8 @@ void RunMeter::add_free(Felt& f, const Vec<kAnyDof>& v) const {
 }
 
 double RunMeter::error_slope() const {
-  return contact2_ > 0 ? error_contact_ / contact2_ : kNoMeasure;
+  if (!(contact2_ > 0)) return kNoMeasure;
+  return units().angles / units().torques * error_contact_ / contact2_;
 }
 
 double RunMeter::chatter() const {
@@ -252,7 +265,8 @@ std::array<double, 2> RunMeter::felt_inertia_damping() const {
   const Felt& f = *felt_;
   const double determinant = f.aa * f.vv - f.av * f.av;
   if (!(determinant > 0)) return {kNoMeasure, kNoMeasure};
-  return {(f.af * f.vv - f.vf * f.av) / determinant, (f.vf * f.aa - f.af * f.av) / determinant};
+  return {(f.af * f.vv - f.vf * f.av) / determinant,
+          units().torques / units().angles * (f.vf * f.aa - f.af * f.av) / determinant};
 }
 
 // A motion that grows, or does not die away, is unstable.

@@ -19,12 +19,14 @@ class RunMeter;
 struct MeasureInfo {
   const char* name;   // in plans and tables
   const char* words;  // in the window
-  const char* unit;   // "-" for none; "yes/no" is 1 or 0
+  const char* unit;   // of arms that turn; "-" for none; "yes/no" is 1 or 0
   const char* what;
   double (*value)(const RunMeter&);
   bool felt = false;  // needs the arm's inertia and tip
 
   bool yes_no() const { return std::string_view(unit) == "yes/no"; }
+  // Returns the unit of its values for an arm whose norms have these units.
+  std::string unit_in(const NormUnits& units) const;
 };
 
 std::span<const MeasureInfo> measure_table();
@@ -46,9 +48,12 @@ class RunMeter {
 
   void add(std::span<const double> row);
   const Summary& summary() const { return summary_; }
+  // Returns the units of angles and torques in its values: metres and newtons of arms that slide.
+  const NormUnits& units() const { return summary_.units(); }
 
   double seconds() const { return static_cast<double>(row_) * T_; }
-  double error_slope() const;  // |x_E| over |f2|, least squares through the origin [rad/(N m)]
+  // |x_E| over |f2|, least squares through the origin [rad/(N m) or m/N].
+  double error_slope() const;
   double highest_port() const { return highest_port_; }            // [J]
   double highest_commanded() const { return highest_commanded_; }  // [J]
   // Most energy that the human was given beyond what bodies gave [J]; most that bodies had beyond
@@ -68,7 +73,8 @@ class RunMeter {
   double chatter() const;  // of the tip above 20 Hz in the second half, rms [m/s]
   // Slope of the hand's force over the tip's motion, along the mean force in contact [N/m].
   double felt_stiffness() const;
-  // f1 = m M a + b v out of contact, least squares in the metric of M^-1: m [-], b [N m s/rad].
+  // f1 = m M a + b v out of contact, least squares in the metric of M^-1: m [-], b [N m s/rad or N
+  // s/m].
   std::array<double, 2> felt_inertia_damping() const;
   bool dies_away() const;  // the device's speed, over twentieths of the run
 

@@ -301,9 +301,11 @@ void sample(std::vector<ReadAxis>& axes, std::uint64_t samples, std::uint64_t se
       SweepAxis& axis = these[d]->axis;
       const FieldInfo* field = axis_field(axis.key);
       const bool whole = field != nullptr && field->kind == Kind::whole;
+      AxisRange range = these[d]->range;
+      if (whole) range.to += 1;  // each whole number has a cell of its own
       for (const double part : drawn[d]) {
-        const double x = scaled(these[d]->range, part, axis.logarithmic);
-        axis.values.push_back(whole ? std::round(x) : x);
+        const double x = scaled(range, part, axis.logarithmic);
+        axis.values.push_back(whole ? std::min(std::floor(x), these[d]->range.to) : x);
       }
     }
   }

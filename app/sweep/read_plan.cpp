@@ -28,6 +28,19 @@ constexpr Range kRunSeconds{0, 3600, true, "s"};
 constexpr Range kMetres{-10, 10, false, "m"};
 constexpr Range kPress{0, 1000, true, "N"};
 
+// Returns the keys that an axis decides: its own, or those of its cases.
+std::set<std::string> decided_by(const SweepAxis& axis) {
+  if (!axis.key.empty()) return {axis.key};
+  std::set<std::string> keys;
+  for (const SweepCase& one : axis.cases) {
+    for (const std::string& setting : one.settings) keys.insert(key_of_setting(setting));
+    if (!one.world.device.empty()) keys.insert("device");
+    if (!one.world.scene.empty()) keys.insert("scene");
+    if (!one.world.hand.empty()) keys.insert("hand");
+  }
+  return keys;
+}
+
 // State while a plan is read.
 class Reader {
  public:
@@ -74,9 +87,8 @@ class Reader {
 
   void read_settings() {
     try {
-      for (const std::string& setting : file_.texts("set")) {
-        apply_setting(plan_.parameters, setting);
-      }
+      plan_.settings = file_.texts("set");
+      for (const std::string& setting : plan_.settings) apply_setting(plan_.parameters, setting);
     } catch (const ParameterError& error) {
       file_.refuse("set", error.what());
     }
@@ -123,8 +135,10 @@ class Reader {
       if (axes.back().axis.key.starts_with(kBodyKey) && plan_.tap) {
         each.refuse("key", "no body's: a tap has its own wall");
       }
-      if (names.insert(axes.back().axis.name).second) continue;
-      each.refuse(each.find("name") ? "name" : "key", "a name that no other axis has");
+      if (!names.insert(axes.back().axis.name).second) {
+        each.refuse(each.find("name") ? "name" : "key", "a name that no other axis has");
+      }
+      claim(each, axes.back().axis);
     }
     if (sampled && plan_.samples < 2) file_.refuse_missing("samples");
     if (!sampled && plan_.samples > 1) file_.refuse("samples", "nothing: no axis is sampled");
@@ -142,6 +156,26 @@ class Reader {
     for (ReadAxis& read : axes) plan_.axes.push_back(std::move(read.axis));
   }
 
+  // Refuses an axis that would have no effect: another one decides the same, or the hand does.
+  void claim(const TomlTable& table, const SweepAxis& axis) {
+    const char* const where = table.find("cases") != nullptr ? "cases" : "key";
+    for (const std::string& key : decided_by(axis)) {
+      if (key == "scene" && plan_.tap) table.refuse(where, "no scene: a tap has its own wall");
+      if (key == "hand" && (plan_.tap || plan_.jump)) {
+        table.refuse(where, "no hand: the plan's own `hand` is no file");
+      }
+      const bool random = key.starts_with("arm.");
+      const bool of_arms = random || key == "device";
+      if (of_arms && decided_.contains(random ? "device" : "arm.")) {
+        table.refuse(where, "device or arm.joints, arm.mass, arm.seed: a random arm is no device");
+      }
+      if (random) decided_.insert("arm.");
+      if (decided_.insert(key).second) continue;
+      table.refuse(where,
+                   fmt::format("a key that no other axis decides; {} is decided already", key));
+    }
+  }
+
   void read_boundary() {
     const auto boundary = table(file_, "boundary", "boundary");
     if (!boundary) return;
@@ -150,6 +184,7 @@ class Reader {
     if (!axis) boundary->refuse_missing("axis");
     SweepBoundary& b = plan_.boundary.emplace();
     b.axis = read_axis(*axis, plan_.parameters).axis;
+    claim(*axis, b.axis);
     if (!b.axis.words.empty() || b.axis.values.size() < 2) {
       boundary->refuse("axis", "numbers from, to and a count of at least 2");
     }
@@ -208,6 +243,7 @@ class Reader {
   const TomlTable& file_;
   const std::string& where_;
   SweepPlan& plan_;
+  std::set<std::string> decided_;  // keys that axes decide; "arm." for those of random arms
 };
 
 // Refuses axes of bodies that the scene does not have.
@@ -246,7 +282,8 @@ RunPlan read_world(const SweepPlan& plan, const SweepWorld& world) {
     run.hand.source = "a jump";
   } else {
     run.hand = limpid::read_hand(file(world.hand, "hands", default_hand()));
-    run.hand.source = world.hand;  // the same wherever the plan lies
+    // The same wherever the plan lies.
+    run.hand.source = world.hand.empty() ? default_hand().filename().string() : world.hand;
   }
   if (const std::string why = out_of_reach(run); !why.empty()) {
     throw FileError(fmt::format("{}: {}{}; hand = {{ tap = 1 }} suits any arm", plan.file.string(),

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "app/run/fitted_gains.h"
+
 namespace limpid {
 namespace {
 
@@ -23,7 +25,11 @@ toml::array settings_of(const SweepDraft& draft) {
   toml::array settings;
   for (const ParameterInfo& info : parameter_table()) {
     const std::string value = parameter_text(draft.parameters, info);
-    if (value.empty() || value == parameter_text(Parameters{}, info)) continue;
+    // A sweep fits these to another arm where its plan does not say them.
+    const bool fits =
+        !draft.device.empty() &&
+        std::ranges::find(kFittedKeys, std::string_view(info.key)) != kFittedKeys.end();
+    if (value.empty() || (!fits && value == parameter_text(Parameters{}, info))) continue;
     if (varies(draft, info.key)) continue;
     settings.push_back(fmt::format("{} = {}", info.key, value));
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/run/fitted_gains.h"
 #include "app/run/tip_limits.h"
 #include "app/run/urdf_writer.h"
 #include "app/run/varied_hand.h"
@@ -48,6 +49,16 @@ struct Chosen {
   }
 };
 
+// Returns the choices of a point for settings that begin as `base`.
+Chosen chosen_of(const SweepPlan& plan, const SweepPoint& point, std::optional<double> at,
+                 const Parameters& base) {
+  Chosen chosen{plan.world, base};
+  for (const std::string& setting : plan.settings) apply_setting(chosen.parameters, setting);
+  for (std::size_t a = 0; a < plan.axes.size(); ++a) chosen.take(plan.axes[a], point.values[a]);
+  if (at) chosen.take(plan.boundary->axis, *at);
+  return chosen;
+}
+
 // An arm in a pose.
 struct PosedArm {
   ArmDescription arm;
@@ -67,14 +78,8 @@ PosedArm random_one(const Chosen& chosen) {
 }
 
 // A run that taps a wall, as stiff as an axis says or as tip_limits() names it.
-RunPlan tapping(const SweepPlan& plan, const Chosen& chosen, const RunPlan& world) {
+RunPlan tapping(const SweepPlan& plan, const Chosen& chosen, const PosedArm& posed) {
   constexpr double kSoftest = 1;  // if no wall is named [N/m]
-  PosedArm posed{world.arm, {}};
-  if (chosen.random_arm()) {
-    posed = random_one(chosen);
-  } else {
-    posed.x = rest_pose(posed.arm);
-  }
   const Parameters& p = chosen.parameters;
   const TapPlace place = tap_place(posed.arm, posed.x, p);
   WallTap tap;
@@ -141,11 +146,17 @@ std::uint64_t number_of(const SweepPlan& plan, const std::vector<std::size_t>& p
 
 RunPlan run_of(const SweepPlan& plan, std::uint64_t index, std::optional<double> at) {
   const SweepPoint point = point_of(plan, index);
-  Chosen chosen{plan.world, plan.parameters};
-  for (std::size_t a = 0; a < plan.axes.size(); ++a) chosen.take(plan.axes[a], point.values[a]);
-  if (at) chosen.take(plan.boundary->axis, *at);
-  if (plan.tap) return tapping(plan, chosen, *plan.worlds.at(chosen.world));
-  RunPlan run = *plan.worlds.at(chosen.world);
+  const Chosen asked = chosen_of(plan, point, at, {});
+  const RunPlan& world = *plan.worlds.at(asked.world);
+  PosedArm posed{world.arm, {}};
+  if (asked.random_arm()) posed = random_one(asked);
+  // Gains fit the arm where the plan does not say them.
+  const Chosen chosen = chosen_of(plan, point, at, fitted(posed.arm, asked.parameters));
+  if (plan.tap) {
+    if (!chosen.random_arm()) posed.x = rest_pose(posed.arm);
+    return tapping(plan, chosen, posed);
+  }
+  RunPlan run = world;
   run.parameters = chosen.parameters;
   run.seed = plan.seed;
   if (chosen.stiffness) set_surface_stiffness(run.document.scene, *chosen.stiffness);

@@ -86,10 +86,11 @@ inline constexpr const char* kTheories[] = {"pr", "routh", "routh_compliant"};
 
 struct SweepPlan {
   std::string title;
-  std::string text;             // the plan's own
-  std::filesystem::path file;   // file that the plan came from
-  Xacro xacro = Xacro::refuse;  // for arms that the plan names
-  Parameters parameters;
+  std::string text;                   // the plan's own
+  std::filesystem::path file;         // file that the plan came from
+  Xacro xacro = Xacro::refuse;        // for arms that the plan names
+  std::vector<std::string> settings;  // key=value, of all points
+  Parameters parameters;              // with these settings, for the built-in arm
   SweepWorld world;
   std::optional<SweepJump> jump;
   std::optional<double> tap;  // force of a tap on a wall, in place of a path and a scene [N]

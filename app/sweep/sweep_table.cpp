@@ -23,6 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Attribute of tables whose measures have metres and newtons where arms slide; earlier ones have
+// rad and N m of all arms.
+constexpr const char* kOwnUnits = "units of the arm";
+
 constexpr std::size_t kGrowth = 1 << 18;  // [bytes]
 constexpr hsize_t kChunk = 1 << 14;       // values
 
@@ -257,6 +261,7 @@ void write_table(const SweepPlan& plan, const SweepTable& table,
   image.text(image.root(), "key", hex(plan.key));
   image.text(image.root(), "app_version", program_version());
   image.text(image.root(), "build", hex(build_digest()));
+  image.text(image.root(), "measures_in", kOwnUnits);
   image.number(image.root(), "points", points);
   image.number(image.root(), "done", table.count());
   for (std::size_t a = 0; a < plan.axes.size(); ++a) add_axis(plan, a, image);
@@ -350,6 +355,11 @@ std::shared_ptr<const OpenedSweep> open_table(const fs::path& path, const Opened
   auto opened = std::make_shared<OpenedSweep>(OpenedSweep{
       path, plan, SweepTable(*plan), file.text_if_any("build"), std::move(why_no_run), {}});
   fill(file, opened->table);
+  if (file.text_if_any("measures_in") != kOwnUnits) {
+    for (SweepColumn& each : opened->table.columns) {
+      if (const MeasureInfo* measure = find_measure(each.name)) each.unit = measure->unit;
+    }
+  }
   for (std::size_t c = 0; c < opened->table.columns.size(); ++c) {
     opened->ranges.push_back(range_of(opened->table, c));
   }

@@ -38,6 +38,17 @@ void check_same(const Belongs& found, const Belongs& own, const fs::path& file) 
   }
 }
 
+// Reads a folder's note; nothing if there is none.
+std::optional<Belongs> belongs(const fs::path& note) {
+  if (!fs::exists(note)) return std::nullopt;
+  const std::string said = read_text(note, kLongestNote);
+  Belongs found{};
+  if (std::sscanf(said.c_str(), "plan %lx\nbuild %lx", &found.plan, &found.build) != 2) {
+    throw FileError(fmt::format("{}: this file is no note of a sweep", note.string()));
+  }
+  return found;
+}
+
 std::string note_of(const Belongs& own, const fs::path& plan) {
   return fmt::format("plan {}\nbuild {}\nfrom {}\n", hex(own.plan), hex(own.build),
                      fs::weakly_canonical(plan).string());
@@ -92,20 +103,20 @@ SweepFolder::SweepFolder(const SweepPlan& plan, fs::path dir)
     : plan_(plan), dir_(std::move(dir)), columns_(measured_columns(plan).size()) {
   const Belongs own{plan.key, build_digest()};
   const fs::path note = dir_ / kNote;
-  if (fs::exists(note)) {
-    const std::string said = read_text(note, kLongestNote);
-    Belongs found{};
-    if (std::sscanf(said.c_str(), "plan %lx\nbuild %lx", &found.plan, &found.build) != 2) {
-      throw FileError(fmt::format("{}: this file is no note of a sweep", note.string()));
-    }
-    check_same(found, own, note);
-    return;
-  }
+  const std::optional<Belongs> found = belongs(note);
+  if (found) check_same(*found, own, note);
   std::error_code error;
   fs::create_directories(dir_ / "blocks", error);
   if (error) throw FileError(fmt::format("{}: {}", dir_.string(), error.message()));
+  if (found) return;
   const std::string text = note_of(own, plan.file);
   write_atomically(note, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+void check_plan_of(const SweepPlan& plan, const fs::path& dir) {
+  const fs::path note = dir / kNote;
+  const std::optional<Belongs> found = belongs(note);
+  if (found) check_same(*found, {plan.key, found->build}, note);
 }
 
 fs::path SweepFolder::file(const SweepBlock& block) const {

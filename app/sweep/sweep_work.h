@@ -44,6 +44,9 @@ class SweepFolder {
 // Whether a sweep began in that folder.
 bool is_sweep_folder(const std::filesystem::path& dir);
 
+// Refuses a folder in which a sweep of another plan began. Errors: FileError.
+void check_plan_of(const SweepPlan& plan, const std::filesystem::path& dir);
+
 // Path of the plan behind a sweep's folder, beside the files that the plan names. A path in the
 // folder itself if the original is unknown or gone. Errors: FileError.
 std::filesystem::path plan_behind(const std::filesystem::path& dir);

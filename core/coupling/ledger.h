@@ -14,7 +14,7 @@
 
 namespace limpid {
 
-// What of the energy that is stored when an account begins the human has not put in.
+// The part of the energy stored when an account begins that the human has not put in.
 enum class Owed : std::uint8_t {
   nothing,
   growth,  // what there is more than the account last knew of

@@ -112,9 +112,13 @@ std::vector<UntakenKey> take_config_table(Parameters& p, const std::string& text
   return untaken;
 }
 
+std::string key_of_setting(std::string_view setting) {
+  return std::string(trimmed(setting.substr(0, setting.find('='))));
+}
+
 void apply_setting(Parameters& p, std::string_view setting) {
   const auto equals = setting.find('=');
-  const std::string key(trimmed(setting.substr(0, equals)));
+  const std::string key = key_of_setting(setting);
   const std::string value(equals == std::string_view::npos ? ""
                                                            : trimmed(setting.substr(equals + 1)));
   if (key.empty() || value.empty()) {

@@ -37,6 +37,8 @@ struct UntakenKey {
 std::vector<UntakenKey> take_config_table(Parameters& p, const std::string& text,
                                           const std::string& table, const std::string& where);
 
+// Returns the key of a "key=value", without the spaces around it.
+std::string key_of_setting(std::string_view setting);
 // Applies one "key=value" of `--set`; bare words are text. Errors: ParameterError.
 void apply_setting(Parameters& p, std::string_view setting);
 

@@ -227,6 +227,9 @@ Recovered recover_session(const fs::path& part, bool force, const fs::path& to) 
   if (const std::string why = why_not_found(part, "no such file"); !why.empty()) {
     throw FileError(fmt::format("{}: {}", part.string(), why));
   }
+  if (std::error_code none; fs::equivalent(out, part, none)) {
+    throw FileError(fmt::format("{}: is the file to recover; name another one", out.string()));
+  }
   check_place(out, force);
   const WriteLock lock(part, WriteLock::Make::no);
   // In pieces: rows in memory or beside it would take room that the copy may need.

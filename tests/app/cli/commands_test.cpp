@@ -14,6 +14,7 @@ using nlohmann::json;
 using test::lines_of;
 using test::Said;
 using test::text_of;
+using testing::AllOf;
 using testing::Contains;
 using testing::ContainsRegex;
 using testing::ElementsAre;
@@ -276,6 +277,55 @@ TEST_F(Commands, InfoWritesATableBesideWhereItIsFrom) {
   EXPECT_EQ(table.out, text_of("a.csv"));
   EXPECT_THAT(table.err, HasSubstr("length                   0.050 s"));
   EXPECT_FALSE(fs::exists("-"));
+}
+
+TEST_F(Commands, InfoOverwritesNothingBesideItsTable) {
+  done({"run", "--duration", "0.05", "--record", "a.h5"});
+  write("c.csv-metadata.json", "precious");
+  EXPECT_THAT(refused({"info", "a.h5", "--csv", "c.csv"}),
+              HasSubstr("c.csv-metadata.json: exists"));
+  EXPECT_EQ(text_of("c.csv-metadata.json"), "precious");
+  EXPECT_FALSE(fs::exists("c.csv"));
+  done({"info", "a.h5", "--csv", "c.csv", "--force"});
+  EXPECT_THAT(text_of("c.csv-metadata.json"), HasSubstr("csvw"));
+  fs::copy_file("a.h5", "m.csv-metadata.json");
+  const auto before = fs::file_size("m.csv-metadata.json");
+  EXPECT_THAT(refused({"info", "m.csv-metadata.json", "--csv", "m.csv", "--force"}),
+              HasSubstr("the command reads this file"));
+  EXPECT_EQ(fs::file_size("m.csv-metadata.json"), before);
+}
+
+TEST_F(Commands, CheckRefusesOptionsThatHaveNoEffect) {
+  for (const char* file : {"tiny.toml", "first.toml"}) {
+    EXPECT_THAT(refused({"check", file, "--device", "omni.urdf"}), HasSubstr("--device: not for"));
+    EXPECT_THAT(refused({"check", file, "--set", "coupling.eta=5"}), HasSubstr("--set"));
+    EXPECT_THAT(refused({"check", file, "--tip", "nonsense"}), HasSubstr("--tip: not for"));
+  }
+  EXPECT_THAT(refused({"check", "touch.urdf", "--device", "omni.urdf"}), HasSubstr("--device"));
+  EXPECT_THAT(refused({"check", "touch.csv", "--eta", "1"}),
+              AllOf(HasSubstr("--eta"), HasSubstr("not for a hand")));
+}
+
+// By the eigenvalues of the four states of device, proxy and estimate, computed elsewhere.
+TEST_F(Commands, AnalyzeOfOneMassKnowsTheCouplingsSpring) {
+  const auto least = [&](const char* damping) {
+    return parsed({"analyze", "--mass", "0.001", "--eta", "0.65", "--coupling", "proposed", "--set",
+                   damping, "--set", "hand.stiffness=3000", "--json"});
+  };
+  const json bare = least("hand.damping=0");
+  EXPECT_NEAR(bare["eta_min_compliant"], 0.7030, 1e-4);
+  EXPECT_EQ(bare["passive"], false);
+  EXPECT_NEAR(least("hand.damping=0.5")["eta_min_compliant"], 0.0577, 1e-4);
+}
+
+// An arm that slides has newtons and metres wherever people read numbers.
+TEST_F(Commands, AnalyzeHasNewtonsAndMetresOfSlides) {
+  const json told = parsed({"analyze", "--device", "omega.urdf", "--json"});
+  EXPECT_EQ(told["units"]["b"], "N s/m");
+  EXPECT_EQ(told["units"]["condition3.device_margin"], "N s/m");
+  const json inside = parsed({"analyze", "--device", "omega.urdf", "--set", "coupling.b_v=0.02",
+                              "--set", "device.damping=0.01", "--json"});
+  EXPECT_NEAR(inside["b"], 3, 1e-12) << "0.03 N m s/rad, where 1 rad is 0.1 m and 1 N m 10 N";
 }
 
 TEST_F(Commands, RecoverMakesASessionOfWhatWasLeft) {

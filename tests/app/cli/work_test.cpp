@@ -80,6 +80,10 @@ TEST_F(Work, OfASweepRunsOnePointAgain) {
               HasSubstr("predictive, eta 1\n"));
   EXPECT_THAT(refused({"sweep", file, "--out", "swept", "--open", "4"}),
               HasSubstr("--open 4: is not allowed; allowed: a point from 0 to 3"));
+  EXPECT_THAT(refused({"sweep", file, "--out", "swept", "--open", "-1"}),
+              HasSubstr("whole number"));
+  EXPECT_EQ(run({"sweep", file, "--out", "swept", "--open", "3", "--csv"}).status, 2);
+  EXPECT_EQ(run({"sweep", file, "--out", "swept", "--open", "3", "--gather"}).status, 2);
   if (!shown.empty()) setenv("DISPLAY", shown.c_str(), 1);
 }
 
@@ -150,7 +154,8 @@ TEST_F(Work, OfAnExperimentSaysWhichArmItDoesNotTake) {
         {{"zwidth", "--device", "touch.urdf", "--readings"}, "zwidth: takes no --readings"},
         {{"passivity", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
         {{"all", "--device", "planar2.urdf"}, "needs an arm of 3 joints; planar2 has 2"},
-        {{"coordination", "--device", "omega.urdf"}, "joints are named as the built-in arm's"},
+        {{"coordination", "--device", "omega.urdf"},
+         "joints' names and the motion of the built-in arm"},
         {{"inertia", "--readings"}, "--readings: the file of the arm omni has neither"},
         {{"inertia", "--device", "none.urdf"}, "none.urdf"},
         {{"inertia", "--device", "touch.urdf", "--set", "coupling.eta=2"}, "--set: only together"},
@@ -185,7 +190,7 @@ TEST_F(Work, OfAStoryTellsItsSteps) {
   EXPECT_THAT(told, StartsWith("0.0 to 0.2 s  Two laws.\n    standard "));
   EXPECT_THAT(told, ContainsRegex("\n    predictive +\\|x_E\\| up to [0-9.e-]+ mrad, \\|f1\\| "));
   EXPECT_THAT(told, HasSubstr("\n0.2 to 0.4 s  Later.\n"));
-  EXPECT_THAT(told, EndsWith("recorded 400 ticks of both runs in short.h5\n"));
+  EXPECT_THAT(told, EndsWith("recorded 400 ticks of 2 runs in short.h5\n"));
   EXPECT_THAT(done({"info", "short.h5"}), HasSubstr("story                    Short, 2 steps\n"));
   EXPECT_THAT(refused({"story", "short.toml", "--record", "short.h5"}), HasSubstr("short.h5"));
   EXPECT_THAT(done({"story", "short.toml", "--record", "short.h5", "--force"}),

@@ -531,7 +531,7 @@ TEST(DeviceLoop, LetsGoOfAHandThatLeavesAWallAtOnce) {
   }
 }
 
-// One tick of each touch comes 2 to 5 ms late, which is no stall; the hand moves as it gains most.
+// A tick of each touch comes 2 to 5 ms late, which is no stall. The hand moves as it gains most.
 TEST(DeviceLoop, KeepsEnergyBoundedWhereTicksAreLate) {
   for (const int late : {2, 5}) {
     for (const Motors motors : {Motors::simulated, Motors::real}) {

@@ -1,9 +1,11 @@
 // Scripts as people write them, right and wrong, and the plans made of them.
 #include "app/story/story.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/run/fitted_gains.h"
 #include "app/story/run_story.h"
 #include "devices/files/text_file.h"
 
@@ -133,6 +135,19 @@ TEST(StoryScripts, RefuseSettingsThatCannotHoldForOneRunOrFromThere) {
                  "write this setting under set");
   expect_refused(with("set = [\"hand.stiffness = 700\"]", "set = [\"loop.tick = 0.002\"]"),
                  "in the first step only");
+  for (const char* spaced : {"  loop.tick = 0.002", "\\tloop.tick=0.002"}) {
+    expect_refused(with("set = [\"hand.stiffness = 700\"]", fmt::format("set = [\"{}\"]", spaced)),
+                   "in the first step only");
+  }
+}
+
+TEST(StoryScripts, FitGainsToTheirArm) {
+  const Story story = parse("device = \"omega.urdf\"\n" + kWhole);
+  const Parameters fit = fitted(story.plan.arm);
+  EXPECT_NE(fit.k_vc, Parameters{}.k_vc);
+  EXPECT_EQ(story.plan.parameters.k_vc, fit.k_vc);
+  EXPECT_EQ(story.plan.beside[0].parameters.b_v, fit.b_v);
+  EXPECT_EQ(parse(kWhole).plan.parameters.k_vc, Parameters{}.k_vc);
 }
 
 // The error is 0.3 rad amid the first step and 0.4 rad in the second one's first row. E_c climbs

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 
 #include "app/run/analysis.h"
@@ -32,6 +33,37 @@ class Measures : public testing::Test {
   SweepPlan plan_;
   std::atomic<bool> stop_{false};
 };
+
+// Angles of an arm that slides are metres, torques are newtons. k_vc stands for 100 times as
+// many newtons per metre, so that the same compliance holds: x_E/f2 = 1/k_vc.
+TEST_F(Measures, AreInMetresAndNewtonsOfAnArmThatSlides) {
+  read(R"(device = "omega.urdf"
+hand = { tap = 2 }
+measure = ["error_largest", "error_slope", "contact_largest", "human_rms", "felt_damping", "wall"]
+set = ["coupling.kind = standard"]
+axis = [{ key = "coupling.k_vc", values = [5] }]
+)");
+  std::map<std::string, std::string> units;
+  for (const SweepColumn& each : measured_columns(plan_)) units[each.name] = each.unit;
+  EXPECT_EQ(units["error_largest"], "m");
+  EXPECT_EQ(units["error_slope"], "m/N");
+  EXPECT_EQ(units["contact_largest"], "N");
+  EXPECT_EQ(units["human_rms"], "N");
+  EXPECT_EQ(units["felt_damping"], "N s/m");
+  EXPECT_EQ(units["wall"], "N/m");
+  EXPECT_NEAR(measured(0, "error_slope"), 1 / 500.0, 0.05 / 500);
+  EXPECT_GT(measured(0, "contact_largest"), 1) << "a press of 2 N";
+  EXPECT_LT(measured(0, "contact_largest"), 10);
+}
+
+TEST_F(Measures, OfArmsThatSlideAndTurnNameBothUnits) {
+  read(R"(hand = { tap = 2 }
+measure = ["human_rms"]
+axis = [{ key = "device", values = ["omega.urdf", "omni.urdf"] }]
+)");
+  const std::string unit = measured_columns(plan_)[0].unit;
+  EXPECT_TRUE(unit == "N or N m" || unit == "N m or N") << unit;
+}
 
 // (1) at rest: k_vc x_E = f2.
 TEST_F(Measures, ErrorOverContactOfTheStandardCouplingIsItsCompliance) {

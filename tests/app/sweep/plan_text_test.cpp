@@ -107,6 +107,28 @@ TEST(TextOfAPlan, SaysWhatIsWrongWithTheRest) {
             "each one once"},
            {kMeasured + "axis = [{ name = \"a\", cases = [{ name = \"b\" }, { name = \"b\" }] }]",
             "each one once"},
+           {kMeasured + "axis = [" + kEta + ", { key = \"coupling.eta\", name = \"eta2\", " +
+                "values = [0.2, 0.9] }]",
+            "a key that no other axis decides; coupling.eta"},
+           {kMeasured + "axis = [" + kEta + ", { name = \"case\", cases = [{ name = \"x\", " +
+                "set = [\" coupling.eta = 1\"] }] }]",
+            "a key that no other axis decides; coupling.eta"},
+           {kMeasured + "axis = [{ key = \"scene\", values = [\"free.toml\"] }, { name = \"c\", " +
+                "cases = [{ name = \"x\", scene = \"table.toml\" }] }]",
+            "a key that no other axis decides; scene"},
+           {"axis = [" + kEta + "]\n[boundary]\naxis = { key = \"coupling.eta\", from = 0.1, " +
+                "to = 1, count = 3 }\nmeasure = \"stable\"\ntolerance = 0.1",
+            "a key that no other axis decides; coupling.eta"},
+           {taps + "axis = [{ key = \"scene\", values = [\"free.toml\", \"table.toml\"] }]",
+            "a tap has its own wall"},
+           {taps + "axis = [{ name = \"c\", cases = [{ name = \"x\", hand = \"touch.csv\" }] }]",
+            "the plan's own `hand` is no file"},
+           {kMeasured + "hand = { at = [0, 0, 0] }\nseconds = 1\naxis = [{ key = \"hand\", " +
+                "values = [\"touch.csv\"] }]",
+            "the plan's own `hand` is no file"},
+           {taps + "axis = [{ key = \"arm.joints\", values = [2, 3] }, { key = \"device\", " +
+                "values = [\"omni.urdf\"] }]",
+            "a random arm is no device"},
            {kMeasured + "[[stop]]\nabove = 1", "measure: missing"},
            {kMeasured + "[[stop]]\nmeasure = \"stable\"\nafter = -1", "after"},
            {kMeasured + "[figure]\nx = \"eta\"", "the name of an axis"},
@@ -136,7 +158,7 @@ measure = ["energy", "stable"]
 axis = [ { key = "coupling.eta", from = 0.1, to = 10, count = 3, scale = "log" },
          { key = "hand.stiffness", from = 100, to = 200, sample = "latin", name = "grip" },
          { name = "law", cases = [ { name = "a", set = ["coupling.kind = direct"] },
-                                   { name = "b", device = "other.urdf", hand = "h.csv" } ] } ]
+                                   { name = "b", device = "other.urdf", scene = "s.toml" } ] } ]
 [[stop]]
 measure = "energy"
 above = 3
@@ -178,8 +200,8 @@ caption = "What is seen."
   ASSERT_EQ(plan.axes[2].cases.size(), 2u);
   EXPECT_THAT(plan.axes[2].cases[0].settings, ElementsAre("coupling.kind = direct"));
   EXPECT_EQ(plan.axes[2].cases[1].world.device, "other.urdf");
-  EXPECT_EQ(plan.axes[2].cases[1].world.hand, "h.csv");
-  EXPECT_EQ(plan.axes[2].cases[1].world.scene, "");
+  EXPECT_EQ(plan.axes[2].cases[1].world.scene, "s.toml");
+  EXPECT_EQ(plan.axes[2].cases[1].world.hand, "");
   ASSERT_EQ(plan.measures.size(), 2u);
   EXPECT_STREQ(plan.measures[1]->name, "stable");
   ASSERT_EQ(plan.stops.size(), 1u);

@@ -1,9 +1,13 @@
 #include "app/sweep/sweep_plan.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <map>
 
+#include "app/run/fitted_gains.h"
 #include "devices/files/text_file.h"
 #include "tests/app/sweep/plans.h"
 
@@ -54,6 +58,52 @@ TEST_F(SweepPlans, SayWhichOfTheirFilesIsNotThere) {
     EXPECT_THAT(said, AllOf(HasSubstr((dir_ / "x").parent_path().string()),
                             HasSubstr("\"nope.file\" is not there")))
         << key;
+  }
+}
+
+// Gains fit the arm as in `limpid run`, but for those that the plan says.
+TEST_F(SweepPlans, FitGainsToTheArm) {
+  const SweepPlan plan = read(R"(device = "omega.urdf"
+scene = "free.toml"
+hand = { at = [0.19, 0, 0] }
+seconds = 0.1
+measure = ["energy"]
+set = ["coupling.kind = standard", "coupling.b_v = 0.5"]
+axis = [{ key = "coupling.b_vc", values = [0.001, 0.002] }]
+)");
+  const RunPlan run = run_of(plan, 1);
+  const Parameters fit = fitted(run.arm);
+  EXPECT_NE(fit.k_vc, Parameters{}.k_vc);
+  EXPECT_EQ(run.parameters.k_vc, fit.k_vc);
+  EXPECT_EQ(run.parameters.alpha, fit.alpha);
+  EXPECT_EQ(run.parameters.b_v, 0.5) << "the plan's own";
+  EXPECT_EQ(run.parameters.b_vc, 0.002) << "the axis' own";
+  EXPECT_EQ(run.parameters.kind, CouplingKind::standard);
+}
+
+TEST_F(SweepPlans, FitGainsToRandomArmsThatTap) {
+  const SweepPlan plan = read(R"(hand = { tap = 2 }
+measure = ["energy"]
+axis = [{ key = "arm.mass", values = [5] }]
+)");
+  const RunPlan run = run_of(plan, 0);
+  const Parameters fit = fitted(run.arm);
+  EXPECT_NE(fit.k_vc, Parameters{}.k_vc);
+  EXPECT_EQ(run.parameters.k_vc, fit.k_vc);
+  EXPECT_EQ(run.parameters.b_v, fit.b_v);
+}
+
+// Each number is as likely as the others.
+TEST_F(SweepPlans, SampleWholeNumbersUniformly) {
+  for (const char* way : {"random", "latin", "sobol"}) {
+    const SweepPlan plan = read(with(fmt::format(R"(samples = 3000
+axis = [{{ key = "device.delay", sample = "{}", from = 0, to = 2 }}])",
+                                                 way)));
+    std::map<double, int> count;
+    for (const double x : plan.axes[0].values) ++count[x];
+    ASSERT_EQ(count.size(), 3u) << way;
+    for (const auto& [x, n] : count)
+      EXPECT_NEAR(n, 1000, 4 * std::sqrt(3000 * 2 / 9.0)) << way << x;
   }
 }
 

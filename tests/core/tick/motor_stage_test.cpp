@@ -139,7 +139,7 @@ TEST(MotorStage, BoundsTheRateOfRealMotorsInTheTimeThatPassed) {
   }
 }
 
-// What goes on after the command has gone gives the hand energy that no law has counted.
+// Torque that goes on after the command has gone gives the hand energy that no law has counted.
 TEST(MotorStage, LetsTheTorqueOfRealMotorsFallAtOnce) {
   MotorStage<kAnyDof> motors(3);
   const Vector limit = three(1, 1, 1);

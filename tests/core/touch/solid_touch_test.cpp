@@ -139,7 +139,7 @@ TEST(SolidTouch, WhatIsNotTouchedHidesNothing) {
   Pose dome = Pose::Identity();
   dome.translation() = Vec3(0, 0, kMiddle);
   const std::vector<Solid> solids{{Plane{}, Pose::Identity(), {}}, {Sphere{kRadius}, dome, {}}};
-  // Where a place just above the floor is that far from the dome.
+  // A place just above the floor that is as far from the dome as `off`.
   for (double off = 1e-7; off < 3e-6; off += 1e-7) {
     const double out = kRadius + off, up = kMiddle - kAbove;
     const Vec3 at(std::sqrt(out * out - up * up), 0, 0);

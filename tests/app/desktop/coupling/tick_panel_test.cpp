@@ -178,7 +178,7 @@ TEST_F(NumbersOfRuns, ComeAndGoByTheirButtons) {
   draw_runs(2);
   click("+ run");
   EXPECT_EQ(asked_, "session.add_run");
-  EXPECT_THAT(hint("+ run"), HasSubstr("One more coupling"));
+  EXPECT_THAT(hint("+ run"), HasSubstr("Adds another coupling"));
   click("? run");  // a minus sign that ImGui's own font lacks
   EXPECT_EQ(asked_, "session.drop_run");
   click("all in one picture");

@@ -11,6 +11,7 @@ namespace limpid {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -62,6 +63,11 @@ class MapOfASweep : public WholeWindow {
     std::string said;
     for (const test::DrawnText& each : all) said += each.text + '\n';
     return said;
+  }
+  static std::vector<std::string> lines(std::span<const Fact> facts) {
+    std::vector<std::string> all;
+    for (const Fact& each : facts) all.push_back(each.name + ": " + each.value);
+    return all;
   }
   std::string in_table(std::uint64_t point, std::size_t column) const {
     return fmt::format("{:.6g}", desktop->sweep.sweep()->table.at(point, column));
@@ -138,6 +144,70 @@ TEST_F(MapOfASweep, PlaysThePointThatIsClicked) {
               HasSubstr("kind standard, stiffness 1000 N/m, eta 0.7: hand torque, rms "));
   click("Back to map (F6)");
   EXPECT_EQ(desktop->dialog.name(), "sweep");
+}
+
+TEST_F(MapOfASweep, TellsWhatThePointIsThatIsPlayed) {
+  open(test::sweep_plan(dir, kMapPlan));
+  click(cell(1, 2, 1, 3));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  const PlayedSession& played = *desktop->playback.shown();
+  EXPECT_THAT(lines(played.facts()), ElementsAre("Point of the sweep: 1", "kind: standard",
+                                                 "stiffness: 1000 N/m", "eta: 0.7"));
+  const SweepTable& table = desktop->sweep.sweep()->table;
+  const std::vector<std::string> verdict = lines(played.verdict());
+  ASSERT_GE(verdict.size(), 2u);
+  EXPECT_EQ(verdict[0], fmt::format("hand torque, rms: {:.4g} N m", table.at(1, 0)));
+  EXPECT_EQ(verdict[1], table.at(1, 1) == 1 ? "comes to rest: yes" : "comes to rest: no");
+}
+
+TEST_F(MapOfASweep, SaysThatAPointDiffersFromItsTable) {
+  const SweepPlan plan = test::sweep_plan(dir, kMapPlan);
+  const SweepFolder swept(plan, folder());
+  SweepBook book(plan, swept, false);
+  const std::atomic<bool> stop{false};
+  for (std::uint64_t b = 0; b < blocks_of(plan); ++b) {
+    std::vector<double> values = *measure_point(plan, block_of(plan, b).first, stop);
+    values[0] += 0.5;
+    book.take(b, values);
+  }
+  book.write();
+  desktop->world.open_files({swept.table()});
+  ASSERT_TRUE(until([&] { return drawn(); }));
+  frames(3);
+  const double wrong = desktop->sweep.sweep()->table.at(1, 0);
+  click(cell(1, 2, 1, 3));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  EXPECT_TRUE(
+      said(fmt::format("The result differs from the table: human_rms is {:.6g}, but the "
+                       "table says {:.6g}.",
+                       wrong - 0.5, wrong)));
+  EXPECT_TRUE(desktop->notices.all().back().bad);
+}
+
+TEST_F(MapOfASweep, PlaysAPointThatItsTableLacks) {
+  open(test::sweep_plan(dir, kMapPlan), 4);
+  click(cell(0, 2, 2, 3));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  EXPECT_TRUE(
+      said("Point 5: kind standard, stiffness 100 N/m, eta 1. The table does not have this "
+           "point yet."));
+}
+
+TEST_F(MapOfASweep, NamesTheRepeatOfAPoint) {
+  std::ofstream(dir / "hand.csv") << "time_s,x_m,y_m,z_m\n0,0.19,0,0\n0.05,0.191,0,0\n";
+  open(test::sweep_plan(dir, R"(title = "Twice"
+scene = "free.toml"
+hand = "hand.csv"
+measure = ["human_rms"]
+repeats = 2
+axis = [ { key = "coupling.eta", values = [0.5, 1] },
+         { key = "hand.stiffness", values = [100, 200] } ]
+)"));
+  click(cell(1, 2, 1, 2));
+  ASSERT_TRUE(until([&] { return desktop->playback.on(); }));
+  const std::vector<std::string> facts = lines(desktop->playback.shown()->facts());
+  ASSERT_FALSE(facts.empty());
+  EXPECT_EQ(facts.back(), "repeat: 0");
 }
 
 TEST_F(MapOfASweep, ShowsWhatIsChosen) {

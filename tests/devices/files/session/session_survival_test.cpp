@@ -254,6 +254,13 @@ TEST(Recovery, RefusesWhatItCannotDo) {
   test::write_file(dir / "a.h5", "precious");
   EXPECT_THAT(refusal([&] { recover_session(dir / "a.h5.part", false); }), HasSubstr("--force"));
   EXPECT_EQ(test::file_bytes(dir / "a.h5"), "precious");
+  for (const char* itself : {"a.h5.part", "./a.h5.part"}) {
+    EXPECT_THAT(refusal([&] { recover_session(dir / "a.h5.part", true, dir / itself); }),
+                HasSubstr("is the file to recover"));
+  }
+  fs::create_symlink("a.h5.part", dir / "link.h5");
+  EXPECT_THAT(refusal([&] { recover_session(dir / "a.h5.part", true, dir / "link.h5"); }),
+              HasSubstr("is the file to recover"));
   EXPECT_EQ(recover_session(dir / "a.h5.part", true).rows, 512u);
 }
 
