@@ -33,7 +33,8 @@ class Ledger {
   // Begins anew. left: reserve left by an earlier part of the run [J]; none: this ledger's own.
   // owed: what of the energy that is stored now the human has not put in.
   void start(const Vec<N>& y, std::optional<double> left, Owed owed) {
-    owed_ = owed;
+    const bool all = fresh_ && owed_ == Owed::all && owed == Owed::growth;
+    owed_ = all ? Owed::all : owed;
     if (left) {
       left_ = *left;
     } else if (!fresh_) {

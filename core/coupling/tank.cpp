@@ -68,8 +68,9 @@ void Tank<N>::start(const LawStart<N>& at) {
   } else if (!fresh_) {
     left_ = device_.energy() + proxy_ + on_its_way() - (idle_ ? 0 : work2_);
   }
+  const bool all = fresh_ && owed_ == Owed::all && at.owed == Owed::growth;
+  owed_ = all ? Owed::all : at.owed;
   fresh_ = true;
-  owed_ = at.owed;
   takes_over_ = at.takes_over;
   device_.start(at.x1, 0);
   work2_ = sent1_ = got1_ = sent2_ = got2_ = 0;

@@ -342,5 +342,14 @@ TEST_P(LedgerOfJoints, OwesWhatIsStoredAtAStartUntilItIsStoredNoMore) {
   EXPECT_NEAR(ledger_.reserve(), kE0, 1e-14);
 }
 
+// A loop that starts over knows nothing of its first reading, as after a stall.
+TEST_P(LedgerOfJoints, OwesAllThatIsStoredWhereAStallFollowsTheStart) {
+  ledger_.settle(kE0, 3.6);
+  ledger_.start(y_, std::nullopt, Owed::all);
+  ledger_.start(y_, std::nullopt, Owed::growth);
+  ledger_.settle(kE0, 3.6);
+  EXPECT_NEAR(ledger_.reserve(), kE0 - 3.6, 1e-14);
+}
+
 }  // namespace
 }  // namespace limpid
