@@ -38,29 +38,32 @@ class MotorStage {
       start();
       return tau_;
     }
-    if (slewing_ || slew > 0) {
-      // Straight towards `target`, all joints together: both ends are within the limits, and so is
-      // all between. The last torque may be outside them if limits or pose changed.
-      Vec<N> from = limits.within(tau_);
-      if (!slewing_) {
-        from = from.cwiseMax(target.cwiseMin(0.0)).cwiseMin(target.cwiseMax(0.0));
-        from = limits.within(from);
-      }
-      const Vec<N> way = target - from;
-      const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
-      // For the slowest joint; a joint without a motor has neither way nor step.
-      const double steps = way.cwiseAbs()
-                               .cwiseQuotient(step.cwiseMax(std::numeric_limits<double>::min()))
-                               .maxCoeff();
-      slewed_ += dt;
-      slewing_ = slewing_ && steps > 1 && slewed_ < kLongestSlew;
-      if (steps > 1) target = from + way / steps;
-    }
+    if (slewing_ || slew > 0) approach(target, limits, dt, slew);
     tau_ = target;
     return tau_;
   }
 
  private:
+  // Moves the target to where the torque may be by now.
+  [[gnu::noinline]] void approach(Vec<N>& target, const TorqueLimits<N>& limits, double dt,
+                                  double slew) {
+    // Straight towards `target`, all joints together: both ends are within the limits, and so is
+    // all between. The last torque may be outside them if limits or pose changed.
+    Vec<N> from = limits.within(tau_);
+    if (!slewing_) {
+      from = from.cwiseMax(target.cwiseMin(0.0)).cwiseMin(target.cwiseMax(0.0));
+      from = limits.within(from);
+    }
+    const Vec<N> way = target - from;
+    const Vec<N> step = limits.joints * (dt / (slewing_ ? kSlew : slew));
+    // For the slowest joint; a joint without a motor has neither way nor step.
+    const double steps =
+        way.cwiseAbs().cwiseQuotient(step.cwiseMax(std::numeric_limits<double>::min())).maxCoeff();
+    slewed_ += dt;
+    slewing_ = slewing_ && steps > 1 && slewed_ < kLongestSlew;
+    if (steps > 1) target = from + way / steps;
+  }
+
   static constexpr double kSlew = 0.1;  // from no torque to the limit [s]
   // Time from one limit to the other: a command that swings faster is never met.
   static constexpr double kLongestSlew = 2 * kSlew;
