@@ -161,8 +161,8 @@ TEST(SimulatedLoop, WarnsOfARunThatGivesEnergyOrMovesAsNoHandDoes) {
   EXPECT_NE(end.warnings[0].find("not passive"), std::string::npos) << end.warnings[0];
 }
 
-// A slide along x of 0.1 kg, with a wall from x = 0 on.
-LoopOptions slide() {
+// A slide along x [N, N s/m, kg], with a wall from x = 0 on [N/m].
+LoopOptions slide_at_wall(double effort, double damping, double mass, double stiffness) {
   ArmModel arm;
   ArmJoint joint;
   joint.name = "slide";
@@ -170,16 +170,21 @@ LoopOptions slide() {
   joint.axis = {1, 0, 0};
   joint.lower = -0.2;
   joint.upper = 0.2;
-  joint.effort = 8;
-  joint.damping = 0.5;
-  joint.mass = 0.1;
+  joint.effort = effort;
+  joint.damping = damping;
+  joint.mass = mass;
   arm.joints = {joint};
   LoopOptions options;
   options.arm_text = urdf_text(arm);
   SceneBuilder scene;
   SurfaceMaterial wall;
-  wall.stiffness = 500;
+  wall.stiffness = stiffness;
   options.scene_text = scene.plane("wall", {0, 0, 0}, {-1, 0, 0}, wall).text();
+  return options;
+}
+
+LoopOptions slide() {
+  LoopOptions options = slide_at_wall(8, 0.5, 0.1, 500);
   options.settings = {"coupling.kind=direct"};
   options.motors = Motors::simulated;
   return options;
@@ -411,25 +416,9 @@ DeviceLoop armed() {
   return loop;
 }
 
-// A slide of so much effort [N] and damping [N s/m] before a wall.
+// Real motors of so much effort [N], an arm of so much damping [N s/m].
 LoopOptions before_wall(double effort, double damping, double stiffness, const char* law) {
-  ArmModel arm;
-  ArmJoint joint;
-  joint.name = "slide";
-  joint.slides = true;
-  joint.axis = {1, 0, 0};
-  joint.lower = -0.2;
-  joint.upper = 0.2;
-  joint.effort = effort;
-  joint.damping = damping;
-  joint.mass = 0.25;
-  arm.joints = {joint};
-  LoopOptions options;
-  options.arm_text = urdf_text(arm);
-  SceneBuilder scene;
-  SurfaceMaterial wall;
-  wall.stiffness = stiffness;
-  options.scene_text = scene.plane("wall", {0, 0, 0}, {-1, 0, 0}, wall).text();
+  LoopOptions options = slide_at_wall(effort, damping, 0.25, stiffness);
   options.settings = {std::string("coupling.kind=") + law, "model.delay_most=0"};
   return options;
 }
