@@ -56,13 +56,20 @@ auto as_library(const Work& work) {
   }
 }
 
-// Puts the library's word in place of the option of the command line.
-std::string by_replace(std::string text) {
+// Calls `work`, which writes a file; its errors name the library's word in place of the option of
+// the command line.
+template <class Work>
+void as_recording(const Work& work) {
   constexpr std::string_view kOption = "--force";
-  for (std::size_t at = 0; (at = text.find(kOption, at)) != std::string::npos;) {
-    text.replace(at, kOption.size(), "`replace`");
+  try {
+    as_library(work);
+  } catch (const LoopError& e) {
+    std::string text = e.what();
+    for (std::size_t at = 0; (at = text.find(kOption, at)) != std::string::npos;) {
+      text.replace(at, kOption.size(), "`replace`");
+    }
+    throw LoopError(text);
   }
-  return text;
 }
 
 // Says a joint that is outside of its range, and refuses one that is far outside: such a position
@@ -347,15 +354,13 @@ void Loop::record(const std::string& file, bool replace) {
   if (!replace && std::filesystem::exists(file)) {
     throw LoopError(file + ": exists, and is not to be replaced");
   }
-  try {
+  as_recording([&] {
     RunPlan recorded = s.plan;
     recorded.parameters = s.taken();
     s.recorder =
         std::make_unique<Recorder>(file, session_info(recorded), recorded.parameters, replace,
                                    s.real ? Recorder::kLiveRoom : Recorder::kWaitingRoom);
-  } catch (const std::exception& e) {
-    throw LoopError(by_replace(e.what()));
-  }
+  });
 }
 
 std::uint64_t Loop::finish_recording() {
@@ -363,11 +368,7 @@ std::uint64_t Loop::finish_recording() {
   if (!s.recorder) throw LoopError("finish_recording: nothing is being recorded");
   const std::unique_ptr<Recorder> recorder = std::move(s.recorder);
   s.recording = false;
-  try {
-    recorder->finish();
-  } catch (const std::exception& e) {
-    throw LoopError(by_replace(e.what()));
-  }
+  as_recording([&] { recorder->finish(); });
   return recorder->dropped();
 }
 
