@@ -21,6 +21,15 @@ enum class Owed : std::uint8_t {
   all,
 };
 
+// Returns what is owed where a start follows one that was not used yet.
+constexpr Owed after_unused(Owed unused, Owed next) {
+  return unused == Owed::all && next == Owed::growth ? Owed::all : next;
+}
+// Returns the debt of a start at which so much is stored, `added` more than was known of [J].
+constexpr double debt_of(Owed owed, double stored, double added) {
+  return owed == Owed::all ? stored : owed == Owed::growth ? std::max(0.0, added) : 0;
+}
+
 // H = E - (energy stored in device and proxy). While H >= 0 the energy given at the human's port
 // since the start is at most E0, beyond what came in and was dissipated. H is kept to at most four
 // times E0: this much may be given in any part of the time.
@@ -33,8 +42,7 @@ class Ledger {
   // Begins anew. left: reserve left by an earlier part of the run [J]; none: this ledger's own.
   // owed: what of the energy that is stored now the human has not put in.
   void start(const Vec<N>& y, std::optional<double> left, Owed owed) {
-    const bool all = fresh_ && owed_ == Owed::all && owed == Owed::growth;
-    owed_ = all ? Owed::all : owed;
+    owed_ = fresh_ ? after_unused(owed_, owed) : owed;
     if (left) {
       left_ = *left;
     } else if (!fresh_) {
@@ -87,10 +95,7 @@ class Ledger {
     E0_ = E0;
     const double added = stored - std::exchange(stored_, stored);
     if (fresh_) {
-      const double owed = owed_ == Owed::all      ? stored
-                          : owed_ == Owed::growth ? std::max(0.0, added)
-                                                  : 0;
-      H_ = std::min(E0, left_) - owed;
+      H_ = std::min(E0, left_) - debt_of(owed_, stored, added);
       E_.fill(H_ + stored);
       fresh_ = false;
       return;

@@ -68,8 +68,7 @@ void Tank<N>::start(const LawStart<N>& at) {
   } else if (!fresh_) {
     left_ = device_.energy() + proxy_ + on_its_way() - (idle_ ? 0 : work2_);
   }
-  const bool all = fresh_ && owed_ == Owed::all && at.owed == Owed::growth;
-  owed_ = all ? Owed::all : at.owed;
+  owed_ = fresh_ ? after_unused(owed_, at.owed) : at.owed;
   fresh_ = true;
   takes_over_ = at.takes_over;
   device_.start(at.x1, 0);
@@ -92,9 +91,7 @@ void Tank<N>::settle(const Settings& p, const SpringDamper& c, int delay, const 
     const double in_spring =
         takes_over_ ? spring_energy<N>(c.k_vc, in.x1 - proxy.x(), in.limit) : 0;
     device_.start(in.x1, all - half + in_spring);
-    proxy_ = half - (owed_ == Owed::all      ? stored
-                     : owed_ == Owed::growth ? std::max(0.0, added)
-                                             : 0);
+    proxy_ = half - debt_of(owed_, stored, added);
     fresh_ = false;
   } else if (elapsed_ > 0) {
     device_.settle(in.x1, in.b_d_sure, in.encoder_step, elapsed_, p.tank_most);
