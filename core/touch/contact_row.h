@@ -19,11 +19,15 @@ template <int N>
 struct Contact;
 template <int N>
 struct MeshContact;
+class SolidCorner;
+template <int N, class Touch>
+struct RoomContact;
 template <int N>
 struct MagnetContact;
 // A kind of contacts more has its name here, and in Contacts::kinds().
 template <int N>
-using AnyContact = std::variant<Contact<N>*, MeshContact<N>*, MagnetContact<N>*>;
+using AnyContact =
+    std::variant<Contact<N>*, MeshContact<N>*, RoomContact<N, SolidCorner>*, MagnetContact<N>*>;
 
 // Response of everything that moves to torques, and to a torque f2 of the contacts on the proxy.
 // Unknown are the device's motion w and the proxy's relative motion u - w.

@@ -1,6 +1,7 @@
 #include "core/touch/contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -16,6 +17,9 @@ constexpr int kMostBalls = 24;
 constexpr double kWakes = 5e-3;
 // Reach of the tip's magnet [m].
 constexpr double kPicksUp = 5e-3;
+
+// Cosine between normals below which surfaces are at right angles: each holds by itself [-].
+constexpr double kSquare = 1e-9;
 
 // Depth below the plane that it is deepest under, or else the nearest one [m].
 double deepest(const FreeSpace& space, const Vec3& x) {
@@ -69,7 +73,12 @@ Contacts<N>::Contacts(const ArmDescription& arm, const Scene& scene)
     const int body = world_ ? world_->body_of(i) : BodyContact::kStill;
     add_mesh_contacts(scene.objects[i], body, arm);
   }
-  memories_.resize(contacts_.size() + meshes_.size());
+  for (std::size_t k = 0; solids_.size() > 1 && k < probes_.size(); ++k) {
+    corners_.emplace_back(SolidCorner(probes_[k].radius), Material{}, arm.dof());
+    corners_.back().link = probes_[k].link;
+    corners_.back().id = contacts_.size() + meshes_.size() + k;
+  }
+  memories_.resize(contacts_.size() + meshes_.size() + corners_.size());
   balls_.resize(probes_.size());
   for (MeshContact<N>& contact : meshes_) {
     if (contact.probe >= 0) balls_[static_cast<std::size_t>(contact.probe)].push_back(&contact);
@@ -185,7 +194,7 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
   for (std::size_t k = 0; k < probes_.size(); ++k) {
     const Vec3 from = Arm<N>::point(f, probes_[k].link, probes_[k].from);
     const Vec3 to = Arm<N>::point(f, probes_[k].link, probes_[k].to);
-    touches_[k].look(solids_, from, to, lifted_out_of_meshes(from, from, k, nullptr, false));
+    touches_[k].look(solids_, from, to);
   }
   // First those meshes that do not hold the ball: they may take it over from what does.
   for (MeshContact<N>& contact : meshes_) {
@@ -198,11 +207,13 @@ void Contacts<N>::find(const Arm<N>& arm, const typename Arm<N>::Frames& f, cons
   if (!meshes_.empty()) follow(false, T);
   for (std::size_t k = 0; k < probes_.size(); ++k) {
     const std::size_t first = k * solids_.size();
-    for (const auto& near : touches_[k].settle(solids_)) {
+    touches_[k].settle(solids_);
+    if (!corners_.empty()) look_at_corner(k, arm, f);
+    for (const auto& near : touches_[k].near()) {
       const Solid& solid = solids_[near.solid];
       const double depth = probes_[k].radius - near.surface.distance;
       if (solid.body != BodyContact::kStill && depth > -kWakes) world_->touch(solid.body);
-      if (!near.counts) continue;
+      if (!near.counts || in_corner(k, near)) continue;
       add({depth,
            {},
            solid.material,
@@ -321,6 +332,70 @@ bool Contacts<N>::covered(const MeshContact<N>& mesh, const Vec3& place, const V
   });
 }
 
+// Finds the corner that a probe is in: surfaces of plain solids of one body that hold it together
+// and are not at right angles. A wall by itself would begin there with a force. Half spaces alone
+// have no ends, so each begins without.
+template <int N>
+void Contacts<N>::look_at_corner(std::size_t probe, const Arm<N>& arm,
+                                 const typename Arm<N>::Frames& f) {
+  CornerContact<N>& corner = corners_[probe];
+  corner.touch.clear();
+  corner.rank = 0;
+  corner.active = {};
+  if (probes_[probe].from != probes_[probe].to) return;
+  std::array<const SolidTouch::Near*, FreeSpace::kMostPlanes> by{};
+  std::size_t count = 0;
+  bool square = true, bounded = false;
+  for (const auto& near : touches_[probe].near()) {
+    if (!near.counts || !near.holds) continue;
+    if (count == by.size()) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (solids_[by[i]->solid].body != solids_[near.solid].body) return;
+      square = square && std::abs(by[i]->surface.normal.dot(near.surface.normal)) < kSquare;
+    }
+    bounded = bounded || !std::holds_alternative<Plane>(solids_[near.solid].shape);
+    by[count++] = &near;
+  }
+  if (square || !bounded) return;
+  corner.center = by[0]->point;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Surface& s = by[i]->surface;
+    const double offset = s.normal.dot(corner.center) - s.distance + probes_[probe].radius;
+    corner.touch.add(s.normal, offset);
+  }
+  Vec3 weights;
+  if (!corner.touch.settle(corner.center, corner.active, weights)) return corner.touch.clear();
+  arm.point_jacobian(f, corner.link, corner.center, corner.J);
+  corner.aim();
+  // The stiffness is a mean by the parts of the depth; the rest is the main surface's.
+  double all = 0, stiff = 0, most = -1;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(corner.active.count); ++i) {
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    const auto plane = static_cast<std::size_t>(corner.active.plane[i]);
+    const Solid& solid = solids_[by[plane]->solid];
+    all += weight;
+    stiff += weight * solid.material.stiffness;
+    if (weight <= most) continue;
+    most = weight;
+    corner.material = solid.material;
+    corner.body = solid.body;
+  }
+  if (all > 0) corner.material.stiffness = stiff / all;
+}
+
+// True if the probe's corner holds it in place of a surface.
+template <int N>
+bool Contacts<N>::in_corner(std::size_t probe, const SolidTouch::Near& near) const {
+  return !corners_.empty() && corners_[probe].touch.near() && near.holds;
+}
+
+template <int N>
+Material Contacts<N>::material_of(std::size_t id) const {
+  if (id < contacts_.size()) return solids_[id % solids_.size()].material;
+  id -= contacts_.size();
+  return id < meshes_.size() ? meshes_[id].material : corners_[id - meshes_.size()].material;
+}
+
 // Gives the force and the friction of a contact that something else now covers to the one that took
 // the probe over. Friction's spring keeps its force, or gets less where that would take energy.
 template <int N>
@@ -328,7 +403,12 @@ void Contacts<N>::pass_on() {
   constexpr auto kNone = std::numeric_limits<std::size_t>::max();
   for (std::size_t k = 0; k < probes_.size(); ++k) {
     const auto hidden = [](const SolidTouch::Near& near) { return !near.counts; };
-    if (balls_[k].empty() && std::ranges::none_of(touches_[k].near(), hidden)) continue;
+    const CornerContact<N>* corner = corners_.empty() ? nullptr : &corners_[k];
+    const bool cornered =
+        corner != nullptr && (corner->touch.near() || !memories_[corner->id].push.isZero(0));
+    if (balls_[k].empty() && !cornered && std::ranges::none_of(touches_[k].near(), hidden)) {
+      continue;
+    }
     std::size_t from = kNone, to = kNone;
     const auto take = [&](std::size_t id, bool covered, bool inside) {
       const bool pushed = !memories_[id].push.isZero(0);
@@ -337,25 +417,25 @@ void Contacts<N>::pass_on() {
     };
     for (const auto& near : touches_[k].near()) {
       const bool inside = near.surface.distance < probes_[k].radius;
-      take(k * solids_.size() + near.solid, !near.counts, inside);
+      take(k * solids_.size() + near.solid, !near.counts || in_corner(k, near), inside);
     }
     for (const MeshContact<N>* mesh : balls_[k]) take(mesh->id, mesh->covered, mesh->rank > 0);
+    if (cornered) take(corner->id, !corner->touch.near(), corner->rank > 0);
     if (from == kNone || to == kNone) continue;
-    const auto stiffness = [&](std::size_t id) {
-      return friction_stiffness(id < contacts_.size() ? solids_[id % solids_.size()].material
-                                                      : meshes_[id - contacts_.size()].material);
-    };
-    // A wall remembers the size of its force, a mesh a vector; the solve corrects both.
+    // A wall remembers the size of its force, a room a vector; the solve corrects both.
     ContactMemory& now = memories_[to];
     now = memories_[from];
     memories_[from] = {};
-    const bool to_mesh = to >= contacts_.size(), from_mesh = from >= contacts_.size();
-    if (to_mesh && !from_mesh) {
-      now.push = now.push.norm() * meshes_[to - contacts_.size()].direction.col(0);
-    } else if (from_mesh && !to_mesh) {
+    const bool to_room = to >= contacts_.size(), from_room = from >= contacts_.size();
+    if (to_room && !from_room) {
+      const std::size_t room = to - contacts_.size();
+      now.push = now.push.norm() *
+                 (room < meshes_.size() ? meshes_[room].direction : corner->direction).col(0);
+    } else if (from_room && !to_room) {
       now.push = now.push.norm() * Vec3::UnitX();
     }
-    now.anchor *= std::min(1.0, stiffness(from) / stiffness(to));
+    now.anchor *=
+        std::min(1.0, friction_stiffness(material_of(from)) / friction_stiffness(material_of(to)));
   }
 }
 
@@ -376,6 +456,9 @@ void Contacts<N>::look_for_magnet(const Arm<N>& arm, const typename Arm<N>::Fram
     for (const Contact<N>& c : list()) {
       if (c.id < solids_.size())
         take(c.body, c.depth);  // the first solids.size() contacts are the tip's
+    }
+    if (!corners_.empty() && corners_[0].touch.near()) {
+      take(corners_[0].body, corners_[0].depth.norm());
     }
     for (const MeshContact<N>& c : meshes_) {
       const bool tips = c.link == probes_[0].link && c.on_link == probes_[0].from;

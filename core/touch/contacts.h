@@ -9,6 +9,7 @@
 #include "core/dynamics/arm.h"
 #include "core/math/solve.h"
 #include "core/touch/body_world.h"
+#include "core/touch/corner_contact.h"
 #include "core/touch/magnet_contact.h"
 #include "core/touch/mesh_contact.h"
 #include "core/touch/scene.h"
@@ -60,9 +61,11 @@ class Contacts {
   std::span<const Contact<N>> list() const { return {contacts_.data(), count_}; }
   std::size_t capacity() const { return contacts_.size(); }
   std::span<const MeshContact<N>> meshes() const { return meshes_; }
+  std::span<const CornerContact<N>> corners() const { return corners_; }
   // Access for laws that solve for the forces themselves.
   std::span<Contact<N>> list() { return {contacts_.data(), count_}; }
   std::span<MeshContact<N>> meshes() { return meshes_; }
+  std::span<CornerContact<N>> corners() { return corners_; }
   ContactMemory& memory(std::size_t id) { return memories_[id]; }
   // True if some surface of the scene has friction or damping.
   bool rub() const { return rub_; }
@@ -85,10 +88,12 @@ class Contacts {
   // All kinds of contacts. A new one has a place here and its name in AnyContact. Sums are taken in
   // these orders, so they decide on the last bits of rows.
   // Both have every kind of AnyContact.
-  auto kinds() { return std::tuple(list(), meshes(), std::span(&magnet_, 1)); }
-  auto kinds() const { return std::tuple(list(), meshes(), std::span(&magnet_, 1)); }
-  auto magnet_first() { return std::tuple(std::span(&magnet_, 1), list(), meshes()); }
-  auto magnet_first() const { return std::tuple(std::span(&magnet_, 1), list(), meshes()); }
+  auto kinds() { return std::tuple(list(), meshes(), corners(), std::span(&magnet_, 1)); }
+  auto kinds() const { return std::tuple(list(), meshes(), corners(), std::span(&magnet_, 1)); }
+  auto magnet_first() { return std::tuple(std::span(&magnet_, 1), list(), meshes(), corners()); }
+  auto magnet_first() const {
+    return std::tuple(std::span(&magnet_, 1), list(), meshes(), corners());
+  }
 
   // Steps the bodies with the forces that push() found, for laws that do not solve for bodies.
   void step_bodies();
@@ -112,6 +117,9 @@ class Contacts {
   bool has_company(const MeshContact<N>& mesh) const;
   bool covers_others(const MeshContact<N>& mesh) const;
   void pass_on();
+  void look_at_corner(std::size_t probe, const Arm<N>& arm, const typename Arm<N>::Frames& f);
+  bool in_corner(std::size_t probe, const SolidTouch::Near& near) const;
+  Material material_of(std::size_t id) const;
   bool covered(const MeshContact<N>& mesh, const Vec3& place, const Vec3& free) const;
   void look(MeshContact<N>& contact, const Arm<N>& arm, const typename Arm<N>::Frames& f);
 
@@ -126,6 +134,7 @@ class Contacts {
   std::vector<Contact<N>> contacts_;
   std::size_t count_ = 0;
   std::vector<MeshContact<N>> meshes_;
+  std::vector<CornerContact<N>> corners_;            // of each probe, if solids can meet; for balls
   std::vector<std::vector<MeshContact<N>*>> balls_;  // the contacts with meshes of each probe
   std::vector<ContactMemory> memories_;              // by id
   std::unique_ptr<BodyWorld> world_;

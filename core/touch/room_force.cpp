@@ -93,31 +93,31 @@ class Segment {
   Vec3 from_, D_;
 };
 
-Mean mean_of(const MeshTouch& touch, const Vec3& center, const Vec3& D) {
-  if (!touch.held()) return Segment(touch.space(), center, D).mean();
-  return {touch.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
+Mean mean_of(const Room& room, const Vec3& center, const Vec3& D) {
+  if (!room.held()) return Segment(room.space(), center, D).mean();
+  return {room.anchor() - center - 0.5 * D, Mat3::Identity(), 0.5 * Mat3::Identity()};
 }
 
 // Slope of the damper's way, m.damped D, over D. By differences, where planes share the damper.
-Mat3 damped_on(const MeshTouch& touch, const Vec3& center, const Vec3& D, const Mean& m) {
+Mat3 damped_on(const Room& room, const Vec3& center, const Vec3& D, const Mean& m) {
   const double step = kStep * D.norm();
   if (m.one_plane || !(step > 0)) return m.damped;
   Mat3 slope;
   for (int i = 0; i < 3; ++i) {
     const Vec3 there = D + step * Vec3::Unit(i);
-    slope.col(i) = (mean_of(touch, center, there).damped * there - m.damped * D) / step;
+    slope.col(i) = (mean_of(room, center, there).damped * there - m.damped * D) / step;
   }
   return slope;
 }
 
 }  // namespace
 
-void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
+void room_force(const Room& room, const RoomTick& tick, Vec3& F) {
   const double b = tick.B / tick.T;
   Vec3 pull = Vec3::Zero();
   for (int i = 0; i < kMostSteps; ++i) {
     const Vec3 D = tick.a + tick.W * F;
-    const Mean m = mean_of(touch, tick.center, D);
+    const Mean m = mean_of(room, tick.center, D);
     const Vec3 wanted = tick.K * m.pull - b * (m.damped * D);
     const Mat3 slope = Mat3::Identity() + (tick.K * m.later + b * m.damped) * tick.W;
     const Vec3 step = slope.inverse() * (wanted - F);
@@ -128,15 +128,15 @@ void room_force(const MeshTouch& touch, const RoomTick& tick, Vec3& F) {
   if (F.dot(pull) <= 0) F.setZero();  // walls do not stick
 }
 
-Vec3 room_push(const MeshTouch& touch, const RoomTick& tick, Slope slope, Mat3& on_D) {
+Vec3 room_push(const Room& room, const RoomTick& tick, Slope slope, Mat3& on_D) {
   const double b = tick.B / tick.T;
-  const Mean m = mean_of(touch, tick.center, tick.a);
+  const Mean m = mean_of(room, tick.center, tick.a);
   Vec3 F = tick.K * m.pull - b * (m.damped * tick.a);
   const bool pushes = F.dot(m.pull) > 0;
   on_D.setZero();
   if (!pushes) return Vec3::Zero();
   const bool whole = slope == Slope::whole;
-  on_D = -tick.K * m.later - b * (whole ? damped_on(touch, tick.center, tick.a, m) : m.damped);
+  on_D = -tick.K * m.later - b * (whole ? damped_on(room, tick.center, tick.a, m) : m.damped);
   return F;
 }
 

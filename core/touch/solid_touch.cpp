@@ -1,8 +1,10 @@
 #include "core/touch/solid_touch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace limpid {
 namespace {
@@ -12,14 +14,26 @@ constexpr double kReach = 0.02;
 // Cosines: of normals that are the same, of one that faces the other way, and of one that is
 // opposite.
 constexpr double kSame = 0.99, kAway = -0.5, kOpposite = -0.99;
-constexpr double kOne = 1 - 1e-9;  // cosine of normals that differ by rounding
-constexpr int kLifts = 4;          // rounds of lifting out of several solids
+constexpr double kBeside = 5 * kAbove;  // distance from the free place of what is level [m]
+constexpr double kLeap =
+    5e-3;  // way of the free place in a tick beside bodies, beyond the probe's [m]
+constexpr double kSoon = 2e-3;  // distance within which a tick may make a contact [m]
+constexpr int kRounds = 12;     // in which the free place follows the probe
+constexpr int kLifts = 2;       // rounds of lifting out of several things
 
 Surface distance_to(const Solid& solid, const Vec3& point) {
   return std::visit(
       [&](const auto& shape) { return limpid::distance_to(shape, solid.pose, point); },
       solid.shape);
 }
+
+Vec3 nearest_on(const Solid& solid, const Vec3& from, const Vec3& to) {
+  return std::visit(
+      [&](const auto& shape) { return nearest_on_segment(shape, solid.pose, from, to); },
+      solid.shape);
+}
+
+bool half_space(const Solid& solid) { return std::holds_alternative<Plane>(solid.shape); }
 
 // Largest coordinate of a shape along a unit vector of its frame.
 double extent(const Plane&, const Vec3&) { return 0; }
@@ -96,48 +110,83 @@ Surface on_side(const Solid& solid, const Vec3& point, const Surface& nearest, c
 
 }  // namespace
 
+// The half spaces that stop the free place.
+class SolidTouch::Stops {
+ public:
+  // False if there is no place for another one.
+  bool add(const Stop& stop) {
+    const auto i = static_cast<std::size_t>(space_.count());
+    if (!space_.add(stop.normal, stop.offset)) return false;
+    of_[i] = stop.near;
+    return true;
+  }
+  int count() const { return space_.count(); }
+  Stop operator[](int i) const {
+    return {of_[static_cast<std::size_t>(i)], space_.normal(i), space_.offset(i)};
+  }
+  Stops of_solids() const {
+    Stops out;
+    for (int i = 0; i < count(); ++i) {
+      if ((*this)[i].near != nullptr) out.add((*this)[i]);
+    }
+    return out;
+  }
+  bool has(const Near& near) const {
+    const auto* end = of_.begin() + count();
+    return std::find(of_.begin(), end, &near) != end;
+  }
+  // Finds the place nearest to `from`. False if they leave none.
+  bool project(const Vec3& from, Vec3& place) { return space_.project(from, place, active_); }
+  // True if the place of the last project() is at a solid.
+  bool at(const Near& near) const {
+    for (int i = 0; i < active_.count; ++i) {
+      const auto plane = static_cast<std::size_t>(active_.plane[static_cast<std::size_t>(i)]);
+      if (of_[plane] == &near) return true;
+    }
+    return false;
+  }
+
+ private:
+  FreeSpace space_;
+  std::array<const Near*, FreeSpace::kMostPlanes> of_{};
+  FreeSpace::Active active_;
+};
+
 void SolidTouch::forget() {
   std::ranges::fill(sides_, Side{});
+  known_ = false;
   recoverable_ = true;
 }
 
-void SolidTouch::look(std::span<const Solid> solids, const Vec3& from, const Vec3& to,
-                      const Vec3& free) {
-  ball_ = from == to;
-  bool held = false;
+void SolidTouch::look(std::span<const Solid> solids, const Vec3& from, const Vec3& to) {
+  moved_ = known_ ? (from - from_).norm() : 0;
+  from_ = from;
+  along_ = to - from;
+  if (!known_) place_ = from;
+  known_ = true;
+  const double off = place_ == from ? 0 : (place_ - from).norm();
   count_ = 0;
-  recoverable_ = true;
   for (std::size_t i = 0; i < solids.size(); ++i) {
     Near& n = near_[count_];
-    std::visit(
-        [&](const auto& shape) {
-          const Pose& pose = solids[i].pose;
-          n.point = ball_ ? from : nearest_on_segment(shape, pose, from, to);
-          n.surface = limpid::distance_to(shape, pose, n.point);
-        },
-        solids[i].shape);
-    Side& side = sides_[i];
-    if (!(radius_ - n.surface.distance > -kReach) && !side.holds) {
-      side = {};
+    n.point = from == to ? from : nearest_on(solids[i], from, to);
+    n.surface = distance_to(solids[i], n.point);
+    if (!(radius_ - n.surface.distance + off > -kReach)) {
+      sides_[i] = {};
       continue;
     }
-    held = held || side.holds;
     n.solid = i;
     n.counts = true;
-    n.inside = n.surface.distance < 0;
     ++count_;
   }
-  free_ = free;
-  // Inside of one solid alone the free place is not needed.
-  const bool alone = count_ == 1 && near_[0].inside && free == from;
-  if (ball_ && (held || free != from) && !alone) lift_out(solids, true);
 }
 
 std::span<const SolidTouch::Near> SolidTouch::settle(std::span<const Solid> solids) {
-  for (Near& n : nears()) choose(solids, n);
-  if (count_ + meshes_.size() > 1) hide_covered(solids);
+  recoverable_ = true;
+  const bool settled = alone(solids) || hold_together(solids);
+  if (count_ > 1 && settled) hide_covered(solids);
+  if (!meshes_.empty() && along_.isZero(0)) hide_in_meshes(solids);
   for (const Near& n : near()) {
-    sides_[n.solid] = {remembered(solids[n.solid], n.surface.normal), n.counts,
+    sides_[n.solid] = {remembered(solids[n.solid], n.surface.normal), n.counts, n.counts && n.holds,
                        n.counts && n.surface.distance < 0};
   }
   return near();
@@ -147,7 +196,7 @@ Vec3 SolidTouch::lifted(std::span<const Solid> solids, Vec3 point, bool whole) c
   const double out = whole ? radius_ : 0;
   for (const Near& n : near()) {
     const Side& side = sides_[n.solid];
-    if (!(whole ? side.counts : side.holds)) continue;
+    if (!(whole ? side.counts : side.deep)) continue;
     const Solid& solid = solids[n.solid];
     const Surface s = plane_at(solid, in_world(solid, side.normal), point);
     if (s.distance < out + kAbove / 2) point += (out + kAbove - s.distance) * s.normal;
@@ -155,147 +204,263 @@ Vec3 SolidTouch::lifted(std::span<const Solid> solids, Vec3 point, bool whole) c
   return point;
 }
 
-// Lifts the free place out of the solids that hold the probe: by the sides they had, else by the
-// surfaces found. A solid into which it is lifted, or slid, is entered on its own side.
-void SolidTouch::lift_out(std::span<const Solid> solids, bool by_sides) {
-  bool moved = true;
-  for (int round = 0; moved && round < kLifts; ++round) {
-    moved = false;
-    for (const Near& n : near()) {
-      const Solid& solid = solids[n.solid];
-      const Side& side = sides_[n.solid];
-      Surface s{};
-      if (by_sides && side.holds) {
-        s = plane_at(solid, in_world(solid, side.normal), free_);
-      } else if (by_sides) {
-        s = distance_to(solid, free_);
-        if (!(s.distance < 0)) continue;
-        s = entered(solids, n, s);
-      } else {
-        if (!(n.surface.distance < 0)) continue;
-        s = {n.surface.distance + n.surface.normal.dot(free_ - n.point), n.surface.normal};
-      }
-      if (s.distance >= kAbove / 2) continue;
-      free_ += (kAbove - s.distance) * s.normal;
-      moved = true;
-    }
+// Takes from each solid the surface nearest to the probe, of those on its side. True if no more
+// than one of them holds the probe, and the place to which that one leads it is free.
+bool SolidTouch::alone(std::span<const Solid> solids) {
+  const Near* holder = nullptr;
+  bool several = false, same = true;
+  for (Near& n : nears()) {
+    const Solid& solid = solids[n.solid];
+    const Vec3 nearest = n.surface.normal;
+    n.surface = on_side(solid, n.point, n.surface, in_world(solid, sides_[n.solid].normal));
+    same = same && n.surface.normal.dot(nearest) > kSame;
+    n.holds = n.surface.distance < radius_;
+    if (!n.holds) continue;
+    several = several || holder != nullptr;
+    holder = &n;
   }
-}
-
-// Chooses the surface of a near solid that holds the probe.
-void SolidTouch::choose(std::span<const Solid> solids, Near& near) {
-  const Solid& solid = solids[near.solid];
-  const bool holds = sides_[near.solid].holds;
-  const Vec3 side = in_world(solid, sides_[near.solid].normal);
-  const auto is_side = [&](const Surface& s) { return side.dot(s.normal) > kSame; };
-  const bool lifted = ball_ && free_ != near.point;
-  if (!lifted && is_side(near.surface)) return;
-  const Surface nearest = near.surface;
-  if (lifted && holds && nearest.distance >= 0) {
-    // The point has left the solid: by another face, or below it where it is thin.
-    const Surface plane = plane_at(solid, side, near.point);
-    if (plane.distance < 0 && is_side(distance_to(solid, free_))) near.surface = plane;
-  } else if (lifted && !holds) {
-    Surface seen = distance_to(solid, free_);
-    if (seen.distance < 0) seen = entered(solids, near, seen);
-    if (seen.normal.dot(nearest.normal) < kOne) {
-      near.surface = {seen.distance + seen.normal.dot(near.point - free_), seen.normal};
-    }
-  } else {
-    near.surface = on_side(solid, near.point, nearest, side);
-    const bool turned = near.surface.distance < 0 && !is_side(near.surface);
-    // Before a side is known, solids that overlap are left each on its own.
-    const Asked asked = side.isZero(0) ? Asked::not_inside : Asked::all;
-    const bool several = count_ > 1 || !meshes_.empty();
-    if (turned && several && covered(solids, near, near.point, near.surface, asked)) {
-      near.surface = holds ? plane_at(solid, side, near.point)
-                           : exposed(solids, near, near.point, near.surface, asked);
-    }
+  if (several) return false;
+  Vec3 place = from_;
+  if (holder != nullptr) {
+    place += (radius_ + kAbove - holder->surface.distance) * holder->surface.normal;
   }
-  recoverable_ = recoverable_ && near.surface.normal.dot(nearest.normal) > kSame;
-}
-
-// Surface of a solid by which the free place has just come in. `nearest`: of all.
-Surface SolidTouch::entered(std::span<const Solid> solids, const Near& near,
-                            const Surface& nearest) {
-  const Solid& solid = solids[near.solid];
-  const Vec3 side = in_world(solid, sides_[near.solid].normal);
-  const Surface s = on_side(solid, free_, nearest, side);
-  if (side.dot(s.normal) > kSame || !covered(solids, near, free_, s, Asked::all)) return s;
-  return exposed(solids, near, free_, s, Asked::all);
-}
-
-// True if another solid covers the place of a surface that is nearest to a point inside.
-bool SolidTouch::covered(std::span<const Solid> solids, const Near& near, const Vec3& point,
-                         const Surface& surface, Asked asked) {
-  const Vec3 foot = point - surface.distance * surface.normal;
-  const Vec3 place = foot + kMeeting * surface.normal;
-  const auto in_solid = [&](const Near& other) {
-    if (other.solid == near.solid) return false;
-    const Solid& solid = solids[other.solid];
-    if (asked == Asked::not_inside && distance_to(solid, point).distance < 0) return false;
-    return distance_to(solid, place).distance <= 0;
+  const auto is_free = [&] {
+    Stops own;
+    if (holder != nullptr) {
+      own.add({holder, holder->surface.normal, 0});
+      const Vec3 foot = holder->point - holder->surface.distance * holder->surface.normal;
+      const auto on_mesh = [&](const MeshTouch* mesh) { return mesh->meets(foot, kMeeting); };
+      if (turned(solids, *holder) && std::ranges::any_of(meshes_, on_mesh)) return false;
+    }
+    return !blocker(solids, place, own);
   };
-  const auto on_mesh = [&](const MeshTouch* mesh) { return mesh->meets(foot, kMeeting); };
-  return std::ranges::any_of(this->near(), in_solid) || std::ranges::any_of(meshes_, on_mesh);
+  if (count_ + meshes_.size() > 1 && !is_free()) return false;
+  place_ = place;
+  recoverable_ = same;
+  if (holder == nullptr || count_ == 1) return true;
+  for (Near& n : nears()) {
+    if (!n.holds) face(solids, n);
+  }
+  return true;
 }
 
-// Nearest face of a solid that no other one covers; `else_`, if all are covered.
-Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
-                            const Surface& else_, Asked asked) {
-  const Solid& solid = solids[near.solid];
-  const Vec3 side = in_world(solid, sides_[near.solid].normal);
-  const auto bare = [&](const Surface& face) { return !covered(solids, near, point, face, asked); };
-  return nearest_face(solid, point, side, std::nullopt, bare).value_or(else_);
+// True if a solid's surface is not the one at which the probe was.
+bool SolidTouch::turned(std::span<const Solid> solids, const Near& near) const {
+  const Vec3 side = in_world(solids[near.solid], sides_[near.solid].normal);
+  return !side.isZero(0) && side.dot(near.surface.normal) <= kSame;
 }
 
-// Hides solids whose nearest point, seen from the free place, something else holds that is nearer.
-// Two that hold the point both push if they face different ways: it is in a corner of them. What
-// does not touch the probe hides nothing that does.
+// Takes from a solid the surface that faces the free place. It counts unless the probe is in it.
+void SolidTouch::face(std::span<const Solid> solids, Near& near) const {
+  Vec3 point;
+  near.surface = see(solids, near, point);
+  near.surface.distance += near.surface.normal.dot(near.point - point);
+  near.counts = near.surface.distance >= radius_;
+}
+
+// Takes from each solid the surface that faces the free place. Those at which it is hold the probe,
+// or, if they leave it no place, all that stop it; what else the probe is in is covered. False if
+// there is no place.
+bool SolidTouch::hold_together(std::span<const Solid> solids) {
+  Stops all;
+  const bool followed = follow(solids, all);
+  Stops stops = all.of_solids();
+  Vec3 place;
+  const bool squeezed = !stops.project(from_, place) || !followed;
+  // Half spaces among themselves have no ends: the probe meets each when it is in it.
+  const bool ends = std::ranges::any_of(
+      near(), [&](const Near& n) { return stops.at(n) && !half_space(solids[n.solid]); });
+  for (Near& n : nears()) {
+    face(solids, n);
+    if (squeezed || !ends) {
+      n.holds = !n.counts && (stops.has(n) || half_space(solids[n.solid]));
+    } else {
+      n.holds = stops.at(n);
+    }
+    if (!n.holds) continue;
+    n.counts = true;
+    const Surface nearest = distance_to(solids[n.solid], n.point);
+    recoverable_ = recoverable_ && n.surface.normal.dot(nearest.normal) > kSame;
+  }
+  return !squeezed;
+}
+
+// Hides solids that the probe may touch soon, if something nearer to the free place holds their
+// point nearest to it. The first counts of two that hold each other's.
 void SolidTouch::hide_covered(std::span<const Solid> solids) {
-  const Vec3 centre = count_ > 0 ? near_[0].point : free_;
-  free_ = centre;
-  for (const MeshTouch* mesh : meshes_) {
-    if (mesh->holds(centre)) free_ = mesh->lifted(free_, kAbove);
-  }
-  if (ball_) lift_out(solids, false);
-  const bool lifted = free_ != centre;
-  for (Near& n : nears()) n.seen = lifted ? distance_to(solids[n.solid], free_) : n.surface;
-  const auto half_space = [&](const Near& n) {
-    return std::holds_alternative<Plane>(solids[n.solid].shape);
-  };
-  const auto apart = [&](const Near& a, const Near& b) {
-    if (half_space(a) && half_space(b)) return true;
-    return a.inside && b.inside && a.surface.normal.dot(b.surface.normal) < kSame;
-  };
-  const auto place_of = [&](const Near& n) {
-    return Vec3((ball_ ? free_ : n.point) - n.seen.distance * n.seen.normal);
+  const auto seen = [&](const Near& n) {
+    const Vec3 point = point_at(solids[n.solid], place_);
+    const Surface surface = distance_to(solids[n.solid], point);
+    return std::pair(surface.distance, Vec3(point - surface.distance * surface.normal));
   };
   const auto on = [&](const Near& n, const Vec3& place) {
     return distance_to(solids[n.solid], place).distance <= kMeeting;
   };
-  const auto touched = [this](const Near& n) { return n.surface.distance < radius_; };
+  const double soon = radius_ + kSoon + (place_ - from_).norm();
   for (Near& n : nears()) {
-    if (n.seen.distance < 0) continue;
-    const Vec3 place = place_of(n);
+    if (n.holds || !n.counts || n.surface.distance > soon) continue;
+    const auto [distance, place] = seen(n);
+    if (distance < 0 || !(distance < radius_ + kSoon)) continue;
     const auto hides = [&](const Near& other) {
-      const double further = n.seen.distance - other.seen.distance;
-      if (further < -kTied || !other.counts || other.seen.distance < 0) return false;
-      if (touched(n) && !touched(other)) return false;
-      if (other.solid == n.solid || apart(n, other) || !on(other, place)) return false;
-      // The first counts of two that hold each other's nearest point.
-      return further > kTied || other.solid < n.solid || !on(n, place_of(other));
+      if (&other == &n || !other.counts || !on(other, place)) return false;
+      if (half_space(solids[n.solid]) && half_space(solids[other.solid])) return false;
+      const auto [its, its_place] = seen(other);
+      if (other.holds || its < distance - kTied) return true;
+      return its < distance + kTied && (other.solid < n.solid || !on(n, its_place));
     };
-    n.counts = std::ranges::none_of(near(), hides) &&
-               !(ball_ && hidden_by_mesh(solids[n.solid], n, place));
+    n.counts = std::ranges::none_of(near(), hides);
   }
 }
 
-bool SolidTouch::hidden_by_mesh(const Solid& solid, const Near& near, const Vec3& place) const {
+// Takes the free place as near to the probe as it gets. False if what is around leaves none.
+bool SolidTouch::follow(std::span<const Solid> solids, Stops& stops) {
+  for (const Near& n : near()) {
+    if (sides_[n.solid].holds && !stops.add(stop_by(solids, n))) return false;
+  }
+  bool from_here = false;  // the stops are those seen from the free place
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3 place;
+    if (!stops.project(from_, place) || leaps(solids, place, stops)) return false;
+    if (const std::optional<Stop> next = blocker(solids, place, stops)) {
+      if (!stops.add(*next)) return false;
+      continue;
+    }
+    const bool still = from_here && (place - place_).norm() < kTied;
+    place_ = place;
+    if (still) break;
+    Stops seen;
+    const auto take = [&](const Stop& stop) {
+      return !(stop.normal.dot(from_) < stop.offset) || seen.add(stop);
+    };
+    for (int i = 0; i < stops.count(); ++i) {
+      if (!take(stops[i].near != nullptr ? stop_by(solids, *stops[i].near) : stops[i]))
+        return false;
+    }
+    for (const Near& n : near()) {  // what a surface goes on in beyond its edge
+      if (stops.has(n) || distance(solids[n.solid], place_) > radius_ + kBeside) continue;
+      if (!take(stop_by(solids, n))) return false;
+    }
+    stops = seen;
+    from_here = true;
+  }
+  return true;
+}
+
+// True if the free place would leave the gap between a body and something else by its far end: the
+// two squeeze the probe.
+bool SolidTouch::leaps(std::span<const Solid> solids, const Vec3& place, const Stops& stops) const {
+  if ((place - place_).norm() < kLeap + 2 * moved_) return false;
+  for (int i = 0; i < stops.count(); ++i) {
+    if (stops[i].near && solids[stops[i].near->solid].body != BodyContact::kStill) return true;
+  }
+  return false;
+}
+
+// Point of the probe nearest to a solid, if its first end is at a place.
+Vec3 SolidTouch::point_at(const Solid& solid, const Vec3& place) const {
+  return along_.isZero(0) ? place : nearest_on(solid, place, place + along_);
+}
+
+double SolidTouch::distance(const Solid& solid, const Vec3& place) const {
+  return distance_to(solid, point_at(solid, place)).distance;
+}
+
+// True if a solid at this distance from a place is in the way from the free place to there.
+bool SolidTouch::crossed(const Solid& solid, const Vec3& place, double distance) const {
+  if (!along_.isZero(0)) return false;
+  const double way = (place - place_).norm();
+  if (distance_to(solid, place_).distance + distance > 2 * radius_ + way) return false;
+  const Vec3 nearest = nearest_on(solid, place_, place);
+  return distance_to(solid, nearest).distance < radius_ + kAbove / 4;
+}
+
+// Finds a thing that the probe would be in at a place, or on its way there, beside those that stop
+// it already: the deepest solid around it, or a mesh.
+std::optional<SolidTouch::Stop> SolidTouch::blocker(std::span<const Solid> solids,
+                                                    const Vec3& place, const Stops& stops) const {
+  const Near* deepest = nullptr;
+  double least = radius_ + kAbove / 2;
+  const double way = (place - place_).norm() + (place - from_).norm();
+  for (const Near& n : near()) {
+    if (n.surface.distance > least + way || stops.has(n)) continue;
+    const Solid& solid = solids[n.solid];
+    double d = distance(solid, place);
+    if (d >= radius_ + kAbove / 2 && crossed(solid, place, d)) d = radius_;
+    if (!(d < least)) continue;
+    least = d;
+    deepest = &n;
+  }
+  if (deepest != nullptr) return stop_by(solids, *deepest);
+  for (const MeshTouch* mesh : meshes_) {
+    if (!mesh->near() || mesh->held()) continue;
+    const FreeSpace& room = mesh->space();
+    for (int i = 0; i < room.count(); ++i) {
+      if (room.normal(i).dot(place) >= room.offset(i)) continue;
+      return Stop{nullptr, room.normal(i), room.offset(i) + kAbove};
+    }
+  }
+  return std::nullopt;
+}
+
+// Surface of a solid that faces the free place, and the point of the probe nearest to it there.
+Surface SolidTouch::see(std::span<const Solid> solids, const Near& near, Vec3& point) const {
+  const Solid& solid = solids[near.solid];
+  point = point_at(solid, place_);
+  const Surface nearest = distance_to(solid, point);
+  const Vec3 side = in_world(solid, sides_[near.solid].normal);
+  if (nearest.distance >= 0) return on_side(solid, point, nearest, side);
+  // The solid has moved over the place, or it is where all begins.
+  return side.isZero(0) ? exposed(solids, near, point, nearest) : plane_at(solid, side, point);
+}
+
+SolidTouch::Stop SolidTouch::stop_by(std::span<const Solid> solids, const Near& near) const {
+  Vec3 point;
+  const Surface s = see(solids, near, point);
+  return {&near, s.normal, s.normal.dot(place_) - s.distance + radius_ + kAbove};
+}
+
+// Nearest face of a solid around a point that nothing else covers, if there is one.
+Surface SolidTouch::exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
+                            const Surface& nearest) const {
+  const auto bare = [&](const Surface& face) {
+    const Vec3 foot = point - face.distance * face.normal;
+    const auto in_solid = [&](const Near& other) {
+      const Vec3 over = foot + kMeeting * face.normal;
+      return other.solid != near.solid && distance_to(solids[other.solid], over).distance <= 0;
+    };
+    const auto on_mesh = [&](const MeshTouch* mesh) { return mesh->meets(foot, kMeeting); };
+    return std::ranges::none_of(this->near(), in_solid) && std::ranges::none_of(meshes_, on_mesh);
+  };
+  return nearest_face(solids[near.solid], point, Vec3::Zero(), std::nullopt, bare)
+      .value_or(nearest);
+}
+
+// Hides solids whose nearest point, seen from outside of all that holds the ball's centre, a mesh
+// holds that is nearer.
+void SolidTouch::hide_in_meshes(std::span<const Solid> solids) {
+  Vec3 free = from_;
+  for (const MeshTouch* mesh : meshes_) {
+    if (mesh->holds(from_)) free = mesh->lifted(free, kAbove);
+  }
+  for (int round = 0; round < kLifts; ++round) {
+    for (const Near& n : near()) {
+      const double distance = n.surface.distance + n.surface.normal.dot(free - n.point);
+      if (n.counts && n.surface.distance < 0 && distance < kAbove / 2) {
+        free += (kAbove - distance) * n.surface.normal;
+      }
+    }
+  }
+  for (Near& n : nears()) n.counts = n.counts && !hidden_by_mesh(solids[n.solid], free);
+}
+
+bool SolidTouch::hidden_by_mesh(const Solid& solid, const Vec3& free) const {
+  const Surface seen = distance_to(solid, free);
+  if (seen.distance < 0) return false;
+  const Vec3 place = free - seen.distance * seen.normal;
   return std::ranges::any_of(meshes_, [&](const MeshTouch* mesh) {
-    const std::optional<Vec3> on_mesh = mesh->nearest_to(free_);
+    const std::optional<Vec3> on_mesh = mesh->nearest_to(free);
     if (!on_mesh) return false;
-    const double further = near.seen.distance - (free_ - *on_mesh).norm();
+    const double further = seen.distance - (free - *on_mesh).norm();
     if (further < -kTied || !mesh->meets(place, kMeeting)) return false;
     return further > kTied || distance_to(solid, *on_mesh).distance > kMeeting;
   });

@@ -1,6 +1,7 @@
 // Touch of one probe of the arm on all plain solids, beside meshes: the surfaces that hold it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <variant>
@@ -21,25 +22,22 @@ struct Solid {
   Pose in_body = Pose::Identity();
 };
 
-// Knows for each solid the side on which the probe is. A point inside of a solid is held by the
-// surface nearest to it, but never by one that faces the other way than its side does: however deep
-// it is pressed, it leaves a thin board where it came in. The place that it is held to is its free
-// place, outside of all solids; a segment has none and is looked at where it is.
+// Follows the probe with its free place, which is as near to the probe as solids and meshes let it.
+// The free place never enters a solid: convex as they are, each leaves it the half space beyond the
+// surface that faces it. So a thin board holds the probe where it came in, however deep it is
+// pressed, a surface inside of another thing is none, and seams between level faces are not felt.
+// Where one solid alone holds the probe, its surface is the one nearest to the probe on that side.
 //
-// Things that meet are one: a surface inside of another thing is no surface. Seen from the free
-// place, a solid or a mesh counts only if no other one that holds its nearest point is nearer. So
-// seams between level faces are not felt; of level faces on top of each other the first counts,
-// solids before meshes.
+// A segment's free place is that of its first end; the segment is moved along, not turned.
 class SolidTouch {
  public:
   // A solid within reach.
   struct Near {
     std::size_t solid = 0;  // index
     Vec3 point;             // of the probe, nearest to it [m]
-    Surface surface;        // with the distance of the point from it
+    Surface surface;        // that may hold the probe, with its distance from the point
     bool counts = true;     // nothing else covers this surface
-    bool inside = false;    // the point is in the solid
-    Surface seen{};         // from the free place
+    bool holds = false;     // it keeps the probe from where it would be
   };
 
   // radius: of the probe [m].
@@ -47,14 +45,12 @@ class SolidTouch {
 
   // Sets the meshes that the same ball touches. They outlive this.
   void set_meshes(std::vector<const MeshTouch*> meshes) { meshes_ = std::move(meshes); }
-  // Looks at all solids from the probe's new place. `free`: a ball's centre, lifted out of meshes
-  // that hold it.
-  void look(std::span<const Solid> solids, const Vec3& from, const Vec3& to, const Vec3& free);
-  // Chooses the surfaces; the answer is in the solids' order. Two half spaces never cover each
-  // other.
+  // Looks at all solids from the probe's new place.
+  void look(std::span<const Solid> solids, const Vec3& from, const Vec3& to);
+  // Chooses the surfaces; the answer is in the solids' order.
   std::span<const Near> settle(std::span<const Solid> solids);
   std::span<const Near> find(std::span<const Solid> solids, const Vec3& from, const Vec3& to) {
-    look(solids, from, to, from);
+    look(solids, from, to);
     return settle(solids);
   }
   // Lifts a point out of the solids that hold the probe's point, or, `whole`, the probe; until
@@ -71,33 +67,49 @@ class SolidTouch {
 
  private:
   // Outward normal of the surface at which the probe was last, in the frame of a body; zero: none.
-  // `counts`: nothing covered it; `holds`: the point was inside of it besides.
+  // The rest is as in Near; `deep`: the point was inside of it besides.
   struct Side {
     Vec3 normal = Vec3::Zero();
-    bool counts = false, holds = false;
+    bool counts = false, holds = false, deep = false;
   };
-
-  // Solids that may cover a surface: all, or those that are not around the point.
-  enum class Asked { all, not_inside };
+  // Half space beyond which the free place stays: of a solid, or, null, of a mesh. offset: see
+  // FreeSpace.
+  struct Stop {
+    const Near* near;
+    Vec3 normal;
+    double offset;
+  };
+  class Stops;
 
   std::span<Near> nears() { return {near_.data(), count_}; }
-  void lift_out(std::span<const Solid> solids, bool by_sides);
-  void choose(std::span<const Solid> solids, Near& near);
-  bool covered(std::span<const Solid> solids, const Near& near, const Vec3& point,
-               const Surface& surface, Asked asked);
-  Surface exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
-                  const Surface& else_, Asked asked);
-  Surface entered(std::span<const Solid> solids, const Near& near, const Surface& nearest);
+  bool alone(std::span<const Solid> solids);
+  bool hold_together(std::span<const Solid> solids);
   void hide_covered(std::span<const Solid> solids);
-  bool hidden_by_mesh(const Solid& solid, const Near& near, const Vec3& place) const;
+  bool follow(std::span<const Solid> solids, Stops& stops);
+  bool turned(std::span<const Solid> solids, const Near& near) const;
+  void face(std::span<const Solid> solids, Near& near) const;
+  bool leaps(std::span<const Solid> solids, const Vec3& place, const Stops& stops) const;
+  Vec3 point_at(const Solid& solid, const Vec3& place) const;
+  double distance(const Solid& solid, const Vec3& place) const;
+  bool crossed(const Solid& solid, const Vec3& place, double distance) const;
+  std::optional<Stop> blocker(std::span<const Solid> solids, const Vec3& place,
+                              const Stops& stops) const;
+  Surface see(std::span<const Solid> solids, const Near& near, Vec3& point) const;
+  Stop stop_by(std::span<const Solid> solids, const Near& near) const;
+  Surface exposed(std::span<const Solid> solids, const Near& near, const Vec3& point,
+                  const Surface& nearest) const;
+  void hide_in_meshes(std::span<const Solid> solids);
+  bool hidden_by_mesh(const Solid& solid, const Vec3& free) const;
 
   double radius_;
   std::vector<Side> sides_;  // by solid
   std::vector<Near> near_;
   std::size_t count_ = 0;
   std::vector<const MeshTouch*> meshes_;
-  Vec3 free_ = Vec3::Zero();
-  bool ball_ = true;
+  Vec3 from_ = Vec3::Zero(), along_ = Vec3::Zero();  // the segment, from and to - from
+  Vec3 place_ = Vec3::Zero();                        // free place of `from`
+  bool known_ = false;                               // the free place
+  double moved_ = 0;                                 // by `from` since the last look() [m]
   bool recoverable_ = true;
 };
 

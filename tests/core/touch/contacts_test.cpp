@@ -265,14 +265,14 @@ TEST(Contacts, OfASceneThatWasReadForAnotherArmAreRefused) {
   }
 }
 
-// The tip is 1 mm deep in balls, the hardest neither first nor last. A stop has no place to be
-// listed.
+// The tip is 1 mm deep in half spaces, the hardest neither first nor last. A stop has no place to
+// be listed.
 TEST(Contacts, AreListedByTheHardestIfThereIsNoRoomForAll) {
   World w(3);
   w.scene.probes.clear();
   for (const double stiffness : {300.0, 500.0, 200.0, 700.0, 400.0, 600.0, 100.0}) {
     const Vec3 side(0, std::cos(stiffness), std::sin(stiffness));
-    w.scene.add({"", pose_at(w.arm.tip(w.frames) + 0.029 * side), Sphere{0.03}, stiffness});
+    w.scene.add({"", pose_at(w.arm.tip(w.frames) - 0.001 * side), Plane{-side}, stiffness});
   }
   w.scene.add({.shape = JointStop{0, w.x[0] - 0.1, 1}, .material = {1e4}});
   Contacts<kAnyDof> contacts(w.description, w.scene);
@@ -378,8 +378,10 @@ class TipBeforeThings : public testing::Test {
   ArmDescription description_ = random_arm(3, 27);
   Arm<kAnyDof> arm_{description_};
   Vec<kAnyDof> x_ = Random(28).vector(3, 2);
-  const Vec3 out_[3] = {Vec3(0.2, 0.1, 0.9).normalized(), Vec3(-0.8, 0.5, 0.1).normalized(),
-                        Vec3(0.3, 0.8, -0.3).normalized()};
+  // Normals at right angles, so that no two things make a corner.
+  const Vec3 third_ = Vec3(0.3, 0.8, -0.3).normalized();
+  const Vec3 first_ = third_.cross(Vec3(-0.8, 0.5, 0.1)).normalized();
+  const Vec3 out_[3] = {first_, third_.cross(first_), third_};
   Arm<kAnyDof>::Frames frames_;
   Jacobian<kAnyDof> J_;
   Vec3 tip_;
@@ -417,7 +419,7 @@ TEST_F(TipBeforeThings, TakesNobodyInOnceContactsAreOnlyLetGo) {
 
 TEST_F(TipBeforeThings, SaysWhereAndHowHardItIsPushedUntilItIsLifted) {
   add_plane(0.003);
-  add_ball(0.002);
+  scene_.add({"", pose_at(tip_ - (kRadius - 0.002) * out_[1]), Plane{out_[1]}, {800}});
   add_sheet(0.001);
   Contacts<kAnyDof> contacts = placed(x_);
   std::array<ContactForce, 8> forces;

@@ -1,12 +1,13 @@
 // The nearest point of a room of planes, against Dykstra's alternating projections and against the
 // conditions that determine it.
+#include "core/touch/free_space.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <vector>
 
-#include "core/touch/mesh_touch.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {

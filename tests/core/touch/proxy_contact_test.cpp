@@ -143,6 +143,18 @@ TEST_P(ProxyAmongThings, BalancesEnergyNeverIsPulledAndStaysFinite) {
       const double middle = contact.depth + contact.gradient.dot(dx) / 2;
       ASSERT_NEAR(contact.force, contact.force > 0 ? contact.material.stiffness * middle : 0, 1e-8);
     }
+    for (const auto& corner : proxy.contacts().corners()) {
+      if (corner.rank == 0) continue;
+      f2 += corner.J.transpose() * corner.force;
+      pushing += corner.force.isZero(0) ? 0 : 1;
+      const Vec3 middle = corner.J * dx / 2;
+      Vec3 pull = Vec3::Zero();
+      for (int i = 0; i < corner.rank; ++i) {
+        const Vec3 e = corner.direction.col(i);
+        pull += (corner.depth[i] - e.dot(middle)) * e;
+      }
+      ASSERT_LT((corner.force - corner.material.stiffness * pull).norm(), 1e-8);
+    }
     ASSERT_LT((f2 - proxy.f()).norm(), 1e-12 * (1 + f2.norm()));
     // Torque of the drive, share of the contacts included.
     const Vector tau =

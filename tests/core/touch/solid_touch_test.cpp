@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "core/touch/free_space.h"
 #include "tests/support/random_arm.h"
 
 namespace limpid {
@@ -149,6 +152,61 @@ TEST(SolidTouch, WhatIsNotTouchedHidesNothing) {
     ASSERT_FALSE(near.empty()) << off;
     EXPECT_EQ(near[0].solid, 0u) << off;
     EXPECT_NEAR(near[0].surface.distance, -kDeep, 1e-12) << off;
+  }
+}
+
+// A floor z < 0 and a ramp that rises from it along y; the ramp's edge lies `below` the floor.
+std::vector<Solid> floor_and_ramp(const Mat3& turned, double angle, double below, bool plane) {
+  const Vec3 size(0.2, 0.06, 0.02);
+  const Mat3 up = Eigen::AngleAxisd(angle, Vec3::UnitX()).matrix();
+  const Vec3 middle = up * Vec3(0, size.y() / 2, -size.z() / 2) - below * Vec3::UnitZ();
+  Solid floor{Plane{turned.col(2)}, Pose::Identity(), {}};
+  if (!plane)
+    floor = {Box{Vec3(0.2, 0.2, 0.03)}, turned_at(turned, turned * Vec3(0, 0, -0.015)), {}};
+  return {floor, {Box{size}, turned_at(turned * up, turned * middle), {}}};
+}
+
+// The place nearest to p above the floor and the ramp, both moved out by the radius, in closed
+// form.
+Vec3 above_floor_and_ramp(const Vec3& p, double angle, double below, double radius) {
+  const Vec3 along(0, std::cos(angle), std::sin(angle)), out(0, -std::sin(angle), std::cos(angle));
+  const double y = below / std::tan(angle) - radius * std::tan(angle / 2);
+  const Vec3 corner(p.x(), y, radius);
+  const double way = along.dot(p - corner), over = out.dot(p - corner);
+  if (way > 0 && over < 0) return corner + way * along;
+  if (p.y() < y && p.z() < radius) return Vec3(p.x(), p.y(), radius);
+  return over < 0 ? corner : p;
+}
+
+// The tip goes over a floor and up a ramp, pressed in by a few millimetres.
+TEST(SolidTouch, FromAFloorToARampThePlaceIsTheNearestFreeOne) {
+  Random random(45);
+  for (int round = 0; round < 300; ++round) {
+    const Mat3 turned = random.rotation();
+    const double angle = random.between(0.1, 1.5), below = random.between(0, 5e-4);
+    const double radius = round % 3 * 0.002, deep = random.between(1e-4, 5e-3);
+    const auto solids = floor_and_ramp(turned, angle, below, round % 2 == 0);
+    SolidTouch touch(radius, 2);
+    const double step = random.between(1e-6, 1e-4);
+    double worst = 0;
+    const double z = radius - deep;
+    for (double y = -0.005; y < 0.005; y += step) {
+      const double down = std::max(z, radius + 0.001 - 2 * (y + 0.005));
+      const Vec3 p(0.003, y, down), point = turned * p;
+      FreeSpace space;
+      for (const auto& near : counting(touch, solids, point)) {
+        if (near.surface.distance >= radius) continue;
+        const Vec3& n = near.surface.normal;
+        space.add(n, n.dot(point) - near.surface.distance + radius);
+      }
+      Vec3 place;
+      FreeSpace::Active by;
+      ASSERT_TRUE(space.project(point, place, by));
+      const Vec3 right = turned * above_floor_and_ramp(p, angle, below, radius);
+      worst = std::max(worst, (place - right).norm());
+    }
+    // A free place is above its surfaces by two micrometres, and it is late by a part of a step.
+    EXPECT_LT(worst, 1e-5 + step) << "round " << round << ", angle " << angle;
   }
 }
 

@@ -181,6 +181,53 @@ TEST(FlatSurfaces, OfModelsAndSolidsHaveNoSeamsForTheTip) {
 
 TEST(FlatSurfaces, OfModelsAndSolidsRubAsOne) { expect_all_flat(floors_of_models(), 96, 0.4); }
 
+// A floor and a ramp that rises from it, its edge at the floor's height or a little below. A point
+// also meets edges above; a ball would pop over them.
+Scene floor_with_ramp(Random& random, const Material& material, double radius) {
+  Scene scene;
+  if (random.between(0, 1) < 0.5) {
+    scene.add({.pose = pose_at(kMiddle), .shape = Plane{}, .material = material});
+  } else {
+    scene.add(slab(kMiddle, Vec3(0.2, 0.2, 0.02), 0, false, material));
+  }
+  const Vec3 size(0.1, 0.05, 0.02);
+  const double edge = random.between(0, 1) < 0.3 ? 0 : random.between(-5e-4, radius > 0 ? 0 : 1e-3);
+  Object ramp = slab(Vec3(0, size.y() / 2, 0), size, 0, false, material);
+  Pose up = pose_at(kMiddle + edge * Vec3::UnitZ());
+  up.linear() = Eigen::AngleAxisd(random.between(0.1, 1.3), Vec3::UnitX()).matrix();
+  ramp.pose = up * ramp.pose;
+  scene.add(ramp);
+  return scene;
+}
+
+// The force turns where a floor ends and a ramp begins; it does not jump.
+TEST(FlatSurfaces, ThatRiseTakeTheTipOverSteadily) {
+  Random random(97);
+  for (int round = 0; round < 12; ++round) {
+    for (const double radius : kRadii) {
+      for (const CouplingKind kind : kKinds) {
+        SCOPED_TRACE(std::to_string(round) + ", radius " + std::to_string(radius) + ", " +
+                     name(kind));
+        Scene scene = floor_with_ramp(random, {.stiffness = 600}, radius);
+        scene.tip_radius = radius;
+        const Rows rows = stroked(scene, kind);
+        double change = 0, moved = 0;
+        for (std::size_t k = 651; k < rows.size(); ++k) {
+          change = std::max(change, (rows.force(k) - rows.force(k - 1)).norm());
+          moved = std::max(
+              moved, (rows.vec(k, Column::proxy_position) - rows.vec(k - 1, Column::proxy_position))
+                         .norm());
+        }
+        EXPECT_LT(change, 0.05);  // in a tick [N]
+        EXPECT_LT(moved, 1e-3);   // in a tick [rad]
+        const double gained =
+            rows.at(rows.size() - 1, Column::contact_gain) - rows.at(650, Column::contact_gain);
+        EXPECT_LT(std::abs(gained), 1e-4);  // [J]
+      }
+    }
+  }
+}
+
 // Presses slowly, by 45 mm of the hand's spring.
 Rows pressed_through(const Scene& scene, CouplingKind kind) {
   const auto hand = [&](double t) {
