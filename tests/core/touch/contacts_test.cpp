@@ -378,10 +378,8 @@ class TipBeforeThings : public testing::Test {
   ArmDescription description_ = random_arm(3, 27);
   Arm<kAnyDof> arm_{description_};
   Vec<kAnyDof> x_ = Random(28).vector(3, 2);
-  // Normals at right angles, so that no two things make a corner.
-  const Vec3 third_ = Vec3(0.3, 0.8, -0.3).normalized();
-  const Vec3 first_ = third_.cross(Vec3(-0.8, 0.5, 0.1)).normalized();
-  const Vec3 out_[3] = {first_, third_.cross(first_), third_};
+  const Vec3 out_[3] = {Vec3(0.2, 0.1, 0.9).normalized(), Vec3(-0.8, 0.5, 0.1).normalized(),
+                        Vec3(0.3, 0.8, -0.3).normalized()};
   Arm<kAnyDof>::Frames frames_;
   Jacobian<kAnyDof> J_;
   Vec3 tip_;
