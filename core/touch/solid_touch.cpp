@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 namespace limpid {
 namespace {
@@ -103,7 +102,7 @@ std::optional<Surface> nearest_face(const Solid& solid, const Vec3& point, const
 Surface on_side(const Solid& solid, const Vec3& point, const Surface& nearest, const Vec3& side) {
   const double along = side.dot(nearest.normal);
   if (side.isZero(0) || along >= (nearest.distance < 0 ? kAway : kOpposite)) return nearest;
-  const Surface same = plane_at(solid, side, point);
+  Surface same = plane_at(solid, side, point);
   if (nearest.distance >= 0) return same;
   return *nearest_face(solid, point, side, same, [](const Surface&) { return true; });
 }
@@ -288,10 +287,14 @@ bool SolidTouch::hold_together(std::span<const Solid> solids) {
 // Hides solids that the probe may touch soon, if something nearer to the free place holds their
 // point nearest to it. The first counts of two that hold each other's.
 void SolidTouch::hide_covered(std::span<const Solid> solids) {
+  struct Seen {
+    double distance;  // from the free place [m]
+    Vec3 foot;
+  };
   const auto seen = [&](const Near& n) {
     const Vec3 point = point_at(solids[n.solid], place_);
     const Surface surface = distance_to(solids[n.solid], point);
-    return std::pair(surface.distance, Vec3(point - surface.distance * surface.normal));
+    return Seen{surface.distance, point - surface.distance * surface.normal};
   };
   const auto on = [&](const Near& n, const Vec3& place) {
     return distance_to(solids[n.solid], place).distance <= kMeeting;
@@ -299,14 +302,15 @@ void SolidTouch::hide_covered(std::span<const Solid> solids) {
   const double soon = radius_ + kSoon + (place_ - from_).norm();
   for (Near& n : nears()) {
     if (n.holds || !n.counts || n.surface.distance > soon) continue;
-    const auto [distance, place] = seen(n);
-    if (distance < 0 || !(distance < radius_ + kSoon)) continue;
+    const Seen own = seen(n);
+    if (own.distance < 0 || !(own.distance < radius_ + kSoon)) continue;
     const auto hides = [&](const Near& other) {
-      if (&other == &n || !other.counts || !on(other, place)) return false;
+      if (&other == &n || !other.counts || !on(other, own.foot)) return false;
       if (half_space(solids[n.solid]) && half_space(solids[other.solid])) return false;
-      const auto [its, its_place] = seen(other);
-      if (other.holds || its < distance - kTied) return true;
-      return its < distance + kTied && (other.solid < n.solid || !on(n, its_place));
+      const Seen its = seen(other);
+      if (other.holds || its.distance < own.distance - kTied) return true;
+      if (its.distance >= own.distance + kTied) return false;
+      return other.solid < n.solid || !on(n, its.foot);
     };
     n.counts = std::ranges::none_of(near(), hides);
   }
