@@ -7,8 +7,8 @@
 namespace limpid {
 
 // The force is conservative like a single wall's. A spring K and damper B pull a ball's centre to
-// the nearest free place. Over the tick the centre moves by D = a + W F: a
-// without this force [m], W the response to it [m/N].
+// the nearest free place. Over the tick the centre moves by D = a + W F: a without this force [m],
+// W the response to it [m/N].
 struct RoomTick {
   double K, B, T;
   Vec3 center;

@@ -14,8 +14,8 @@ constexpr double kReach = 0.02;
 // opposite.
 constexpr double kSame = 0.99, kAway = -0.5, kOpposite = -0.99;
 constexpr double kBeside = 5 * kAbove;  // distance from the free place of what is level [m]
-constexpr double kLeap =
-    5e-3;  // way of the free place in a tick beside bodies, beyond the probe's [m]
+// Way of the free place in a tick beside bodies, beyond the probe's own [m].
+constexpr double kLeap = 5e-3;
 constexpr double kSoon = 2e-3;  // distance within which a tick may make a contact [m]
 constexpr int kRounds = 12;     // in which the free place follows the probe
 constexpr int kLifts = 2;       // rounds of lifting out of several things

@@ -26,7 +26,7 @@ struct Solid {
 // The free place never enters a solid: convex as they are, each leaves it the half space beyond the
 // surface that faces it. So a thin board holds the probe where it came in, however deep it is
 // pressed, a surface inside of another thing is none, and seams between level faces are not felt.
-// Where one solid alone holds the probe, its surface is the one nearest to the probe on that side.
+// A solid that holds the probe alone does so by its surface nearest to the probe on that side.
 //
 // A segment's free place is that of its first end; the segment is moved along, not turned.
 class SolidTouch {

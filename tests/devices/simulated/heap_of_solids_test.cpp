@@ -23,8 +23,7 @@ constexpr double kHeapLasts = 3;
 // Four solids of any kind in each other and in a floor.
 Scene heap(Random& random) {
   Scene scene;
-  scene.tip_radius =
-      std::array{0.0, 0.002, 0.005}[static_cast<std::size_t>(3 * random.between(0, 0.999))];
+  scene.tip_radius = random.one_of({0.0, 0.002, 0.005});
   const Material material{.stiffness = random.between(300, 1000)};
   scene.add({.pose = pose_at(kHeap), .shape = Plane{}, .material = material});
   for (int i = 0; i < 4; ++i) {
@@ -33,7 +32,7 @@ Scene heap(Random& random) {
                                   random.between(-0.02, 0.015)));
     o.pose.linear() = random.rotation();
     const double length = random.between(0.01, 0.04), radius = random.between(0.005, 0.015);
-    switch (static_cast<int>(4 * random.between(0, 0.999))) {
+    switch (random.one_of({0, 1, 2, 3})) {
       case 0:
         o.shape = Box{Vec3(length, random.between(0.01, 0.04), random.between(0.01, 0.04))};
         break;
