@@ -181,11 +181,11 @@ def _share_cancelled(s: Session) -> Array:
 
 def _springs(s: Session) -> Array:
     """V of every row (N,) [J]. After a tick with motors at their limit it returns the work of a
-    constant torque, that tick's limit, from where the motors reached it."""
+    constant torque, the row's limit, from where the motors reached it: limits of motors that get
+    warm fall meanwhile, and motors can return only what they can still give."""
     x = np.abs(s["/device/measured_position"] - s["/proxy/position"])
     limit, limited = s.law_limit, np.roll(s["/coupling/solved"] == LIMITED, 1)
     limited[0] = False
-    limit = np.where(limited[:, None], np.roll(limit, 1, axis=0), limit)
     spring = spring_energy(x, s.number("coupling.k_vc"), limit)
     out, reached = spring.copy(), 0
     for k in range(len(s)):
