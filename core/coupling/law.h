@@ -70,6 +70,7 @@ struct LawInput {
   bool armed_anew = false;                // force was off and has just been requested
   // Largest force that the motors may make at the tip, beside `limit` [N].
   double tip_force = std::numeric_limits<double>::infinity();
+  double alpha = std::numeric_limits<double>::infinity();  // gain of f1_hat's observer [N m s/rad]
 };
 
 // Way in which a law solved a tick.

@@ -46,6 +46,22 @@ void expect_hand(Predictor<N>& predictor, const LawInput<N>& in, const Jacobian<
   predictor.expect_hand(on_tip, J, hand_mass, at_rest);
 }
 
+// Share of the hand's observed torque that is fed forward. The observer lags behind the hand by
+// tau, so in a hand with mass m the feedforward multiplies the coupling's spring and damper by
+//     (1 + tau s) / (1 - r + tau s),    r = share phi m / (M1 + m) < share phi,
+// which takes off damping where proxy and hand are heavy. By Routh's criterion device and proxy do
+// not swing against each other, whatever m, if
+//     share phi <= b_vc (1 / (b_vc + k_vc tau) + (M1/alpha) / M2).
+// The traces bound all joints: M2 / M1 is the same for each, and none's inertia exceeds M1's trace.
+template <int N>
+double fed_forward(const SpringDamper& p, int delay, const LawInput<N>& in, const Mat<N>& M2) {
+  constexpr double kSampled = 1.5;  // lag of an acceleration from sampled positions [ticks]
+  const double own = in.device.M.trace(), ratio = M2.trace() / own;
+  const double lag = own / in.alpha + (kSampled + delay) * in.T;
+  const double most = p.b_vc * (1 / (p.b_vc + p.k_vc * lag) + 1 / (ratio * in.alpha));
+  return std::min(1.0, most * (1 + ratio) / ratio);
+}
+
 // Jump of a joint's velocity when an encoder makes a step [rad/s].
 template <int N>
 double jump_at_step(const Predictor<N>& predictor, const PredictorGains& gains,
@@ -117,10 +133,11 @@ template <int N>
 struct Predictive<N>::Solve {
   const InertiaNetwork<N>& network;
   const Mat<N>& D0;
-  const Vec<N>&f1_hat, &limit;
+  const Vec<N>& limit;
   double authority;
   Wide<N> phi_T, C_LE_T, impedance;
   Vec<N> drive, momentum;
+  Vec<N> f1_hat;  // its share that is fed forward
   Vec<N> b_w, s0;
   double c = 0, g_f = 0;
 
@@ -128,14 +145,14 @@ struct Predictive<N>::Solve {
         const Proxy<N>& proxy, const LawInput<N>& in)
       : network(of_inertia),
         D0(device.D0()),
-        f1_hat(in.f1_hat),
         limit(in.limit),
         authority(in.authority),
         phi_T(d.phi_T()),
         C_LE_T(d.C_LE_T(phi_T)),
         impedance(proxy.impedance(in.tick)),
         drive(device.drive()),
-        momentum(proxy.momentum(in.tick)) {}
+        momentum(proxy.momentum(in.tick)),
+        f1_hat(in.f1_hat) {}
 
   ContactAnswer<N> system() const {
     const Wide<N>& Z2 = impedance;
@@ -308,6 +325,7 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = in.ledger->torque();
   solve.authority *= share;
+  solve.f1_hat *= fed_forward(p, p.delay, in, proxy.M());
   solve.c = p.b_vc + p.k_vc * T / 2;
   solve.s0 = p.k_vc * (predictor_.x() - proxy.x());
   solve.g_f = in.ledger->contact();

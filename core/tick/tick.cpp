@@ -140,6 +140,7 @@ const Vec<N>& Tick<N>::run(const Parameters& given, const Reading<N>& in, ForceR
                   link_.of(p)};
   now.armed_anew = gate_.armed_anew();
   now.tip_force = tip_force_left(in.health.guarded);
+  now.alpha = p.alpha;
   command_ = coupling_.step(p.kind, p, now, proxy_);
   potential_ = proxy_.contact_potential();
   if (k_ == 0) first_potential_ = potential_;

@@ -54,6 +54,28 @@ TEST(PredictiveTaps, OfStiffWallsAreFeltAsTheyAreSetAndWithoutEnergy) {
   }
 }
 
+// In a heavy hand the observer's lag turns feedforward of the hand's torque into a spring that
+// swings, if it is not held back.
+TEST(PredictiveTaps, WithAHeavyProxyInAHeavyHandGiveNoEnergy) {
+  for (const double ratio : {0.3, 0.5, 1.0}) {
+    for (const double eta : {1.0, 0.5}) {
+      for (const double mass : {0.0, 0.05, 0.2, 1.0}) {
+        for (const double alpha : {0.035, 0.2}) {
+          Parameters p = predictive(eta);
+          p.inertia_ratio = ratio;
+          p.hand_mass_at_tip = mass;
+          p.alpha = alpha;
+          const Felt felt = tapped({.wall = 600}, p);
+          SCOPED_TRACE(testing::Message() << "M2/M1 " << ratio << ", eta " << eta << ", hand "
+                                          << mass << " kg, alpha " << alpha);
+          EXPECT_LE(felt.energy, 0.05e-3);
+          EXPECT_LE(felt.port, 0.05e-3);
+        }
+      }
+    }
+  }
+}
+
 TEST(PredictiveTaps, ThroughAnEncoderGiveTheHandNoEnergy) {
   for (const double wall : {600.0, 2000.0, 5000.0}) {
     for (const double eta : {1.0, 0.3}) {
