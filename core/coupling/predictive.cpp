@@ -54,10 +54,10 @@ void expect_hand(Predictor<N>& predictor, const LawInput<N>& in, const Jacobian<
 //     share phi <= b_vc (1 / (b_vc + k_vc tau) + (M1/alpha) / M2).
 // The traces bound all joints: M2 / M1 is the same for each, and none's inertia exceeds M1's trace.
 template <int N>
-double fed_forward(const SpringDamper& p, int delay, const LawInput<N>& in, const Mat<N>& M2) {
+double fed_forward(const LawSettings& p, const LawInput<N>& in, const Mat<N>& M2) {
   constexpr double kSampled = 1.5;  // lag of an acceleration from sampled positions [ticks]
   const double own = in.device.M.trace(), ratio = M2.trace() / own;
-  const double lag = own / in.alpha + (kSampled + delay) * in.T;
+  const double lag = own / in.alpha + (kSampled + p.delay) * in.T;
   const double most = p.b_vc * (1 / (p.b_vc + p.k_vc * lag) + 1 / (ratio * in.alpha));
   return std::min(1.0, most * (1 + ratio) / ratio);
 }
@@ -325,7 +325,7 @@ Vec<N> Predictive<N>::step(const LawSettings& p, const LawInput<N>& in, Proxy<N>
   Solve solve(d, network_, predictor_, proxy, in);
   const double share = in.ledger->torque();
   solve.authority *= share;
-  solve.f1_hat *= fed_forward(p, p.delay, in, proxy.M());
+  solve.f1_hat *= fed_forward(p, in, proxy.M());
   solve.c = p.b_vc + p.k_vc * T / 2;
   solve.s0 = p.k_vc * (predictor_.x() - proxy.x());
   solve.g_f = in.ledger->contact();
